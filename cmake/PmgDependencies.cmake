@@ -1,0 +1,50 @@
+# Every external library, found once. From the distribution unless third_party/ says otherwise; scripts/setup installs them.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(orocos_kdl REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(lcm REQUIRED)
+pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
+pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+if(PMG_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+  include(GoogleTest)
+endif()
+
+if(NOT TARGET yaml-cpp::yaml-cpp) # yaml-cpp 0.7 and earlier export the bare name
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()
+
+# KDL's package file names no target of its own.
+add_library(pmg_kdl INTERFACE)
+target_include_directories(pmg_kdl SYSTEM INTERFACE ${orocos_kdl_INCLUDE_DIRS})
+target_link_libraries(pmg_kdl INTERFACE ${orocos_kdl_LIBRARIES} Eigen3::Eigen)
+
+# MuJoCo 2.2.2 and ONNX Runtime 1.21: third_party/fetch unpacks them, checked, into third_party/prefix.
+set(PMG_THIRD_PARTY ${CMAKE_SOURCE_DIR}/third_party/prefix)
+if(NOT EXISTS ${PMG_THIRD_PARTY}/complete)
+  message(STATUS "Fetching MuJoCo and ONNX Runtime (third_party/fetch)")
+  execute_process(COMMAND ${CMAKE_SOURCE_DIR}/third_party/fetch RESULT_VARIABLE fetched)
+  if(NOT fetched EQUAL 0)
+    message(FATAL_ERROR "third_party/fetch failed; see its message above")
+  endif()
+endif()
+
+add_library(pmg_mujoco SHARED IMPORTED GLOBAL)
+set_target_properties(pmg_mujoco PROPERTIES
+  IMPORTED_LOCATION ${PMG_THIRD_PARTY}/mujoco/lib/libmujoco.so.2.2.2
+  IMPORTED_SONAME libmujoco.so.2.2.2)
+target_include_directories(pmg_mujoco SYSTEM INTERFACE ${PMG_THIRD_PARTY}/mujoco/include)
+
+add_library(pmg_onnxruntime SHARED IMPORTED GLOBAL)
+set_target_properties(pmg_onnxruntime PROPERTIES
+  IMPORTED_LOCATION ${PMG_THIRD_PARTY}/onnxruntime/lib/libonnxruntime.so.1
+  IMPORTED_SONAME libonnxruntime.so.1)
+target_include_directories(pmg_onnxruntime SYSTEM INTERFACE ${PMG_THIRD_PARTY}/onnxruntime/include)

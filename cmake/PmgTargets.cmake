@@ -1,0 +1,46 @@
+# How this project's targets are made. Flags: baseline x86-64 everywhere, because -march=native or AVX changes Eigen's
+# alignment and with it the ABI of the distribution's KDL.
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+if(PMG_SANITIZE)
+  add_compile_options(-fsanitize=${PMG_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${PMG_SANITIZE})
+endif()
+
+add_library(pmg_warnings INTERFACE)
+target_compile_options(pmg_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast -Werror)
+
+# pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_NAME from src/NAME. Includes are written from
+# src/: #include "model/robot_model.hpp".
+function(pmg_add_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(pmg_${name} STATIC ${ROOM_SOURCES})
+  target_include_directories(pmg_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+  target_link_libraries(pmg_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
+endfunction()
+
+# pmg_add_app(NAME LINK targets...): the executable bin/NAME from apps/NAME.cpp.
+function(pmg_add_app name)
+  cmake_parse_arguments(APP "" "" "LINK" ${ARGN})
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE ${APP_LINK} pmg_warnings)
+endfunction()
+
+# pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry a TEST, run from the source root.
+function(pmg_add_test name)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(test_${name} ${TEST_SOURCES})
+  target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
+  target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+                       DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,47 @@
+// Motion clips (paper III-A.1): D_d-clip = {q, dq, v, omega, c = {mu, r}, T} and D_s = {q, p, r, h}.
+// Plain data, filled by model::load_clip_library (src/model/clip_library_file.hpp); nothing here reads files.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "pmg/command.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg {
+
+/// One gait cycle of a single-direction movement. Sample k of N is at phase k/N; the end is not repeated; phase 0 is the left
+/// foot's initial contact.
+struct DynamicClip {
+  std::vector<JointVector> q;      ///< N samples [rad]
+  std::vector<JointVector> dq_dphi;  ///< N samples: derivative with respect to phase [rad per cycle]
+  double period_s = 0.0;           ///< T
+  PerFoot<double> contact_center{};  ///< mu, phase in [0, 1)
+  PerFoot<double> duty_factor{};     ///< r in (0, 1]
+  std::array<double, kVelocityChannels> mean_velocity{};  ///< vx, vy [m/s], omega [rad/s] of the stance feet's kinematics
+};
+
+/// A posture channel's joint angles over its command, piecewise linear between rows.
+struct StaticClip {
+  std::vector<double> command;  ///< strictly increasing, deviation from stand [rad or m]; contains 0 in its range
+  std::vector<JointVector> q;   ///< one a command [rad]; at command 0 it is q_stand
+};
+
+/// Joint i's counterpart under reflection in the sagittal plane: q_mirrored[i] = sign[i] * q[partner[i]].
+struct MirrorMap {
+  std::vector<int> partner;
+  std::vector<double> sign;
+};
+
+/// Everything the generator blends. A missing negative velocity clip means: mirror the positive one (vy, omega).
+struct ClipLibrary {
+  std::array<std::optional<DynamicClip>, kVelocityChannels> positive;  ///< vx, vy, omega > 0
+  std::array<std::optional<DynamicClip>, kVelocityChannels> negative;  ///< vx, vy, omega < 0
+  std::array<StaticClip, 3> posture;                                   ///< pitch, roll, height
+  JointVector q_stand;                                                 ///< [rad]
+  JointVector q_lower, q_upper;                                        ///< joint limits [rad]
+  MirrorMap mirror;
+};
+
+}  // namespace pmg

@@ -1,0 +1,74 @@
+// Forward kinematics and Jacobian of both legs on their KDL chains. No heap after construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
+#include <memory>
+#include <vector>
+
+#include "model/robot_model.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::model {
+
+inline constexpr int kMaxLegJoints = 8;
+
+/// A foot link seen from the base frame B.
+struct FootKinematics {
+  Eigen::Matrix3d R_BF = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_BF = Eigen::Vector3d::Zero();  ///< foot link origin [m]
+  /// 6 x n: rows 0-2 linear velocity of the foot link's origin [m/rad], rows 3-5 angular velocity, both in B, for the leg's joints.
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxLegJoints> J;
+  Eigen::Vector3d v_BF = Eigen::Vector3d::Zero();      ///< J * dq, linear [m/s], in B
+  Eigen::Vector3d omega_BF = Eigen::Vector3d::Zero();  ///< J * dq, angular [rad/s], in B
+  std::array<Eigen::Vector3d, 4> sole_B;               ///< sole corners in B [m]
+};
+
+class LegKinematics {
+ public:
+  explicit LegKinematics(const RobotModel& robot);
+  LegKinematics(const LegKinematics&) = delete;
+  LegKinematics& operator=(const LegKinematics&) = delete;
+
+  /// q, dq: all joints of the robot [rad], [rad/s].
+  const PerFoot<FootKinematics>& compute(const JointVector& q, const JointVector& dq) noexcept;
+
+ private:
+  struct Leg {
+    explicit Leg(const RobotModel& robot, Foot foot);
+    const KDL::Chain& chain;
+    const std::vector<int>& joints;
+    std::array<Eigen::Vector3d, 4> sole_corners_F;
+    KDL::ChainFkSolverPos_recursive fk;
+    KDL::ChainJntToJacSolver jacobian;
+    KDL::JntArray q;
+    KDL::Jacobian J;
+  };
+  PerFoot<std::unique_ptr<Leg>> legs_;
+  PerFoot<FootKinematics> feet_;
+};
+
+/// Orientation of the base in the heading frame H when the torso has this pitch and roll there: R_HB such that the torso
+/// link's attitude is Rz(yaw) Ry(pitch) Rx(roll) and the base's own yaw is zero. q: all joints [rad]; no heap.
+/// With all torso joints at zero it is Ry(pitch) Rx(roll).
+class BaseAttitude {
+ public:
+  explicit BaseAttitude(const RobotModel& robot);
+  struct Result {
+    Eigen::Matrix3d R_HB = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d omega_HB_H = Eigen::Vector3d::Zero();  ///< pitch and roll rates, z component zero [rad/s]
+  };
+  Result compute(const JointVector& q, const JointVector& dq, double pitch_rad, double roll_rad, double pitch_rate_rad_s,
+                 double roll_rate_rad_s) noexcept;
+
+ private:
+  KDL::ChainFkSolverPos_recursive fk_;
+  KDL::ChainJntToJacSolver jacobian_;
+  const std::vector<int>& joints_;
+  KDL::JntArray q_;
+  KDL::Jacobian J_;
+};
+
+}  // namespace pmg::model

@@ -1,0 +1,87 @@
+// The robot: robot.yaml and its URDF, read once, validated whole. Nothing in C++ knows a particular robot.
+#pragma once
+
+#include <urdf_model/model.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <filesystem>
+#include <kdl/chain.hpp>
+#include <kdl/tree.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/joint_index.hpp"
+#include "pmg/clip.hpp"
+#include "pmg/command.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::model {
+
+/// Where a drive sits on the bus: EtherCAT slave and the CAN node behind it.
+struct BusAddress {
+  std::string bus;  ///< "can0", "ethercat", ...
+  int node = 0;
+};
+
+struct Joint {
+  std::string name;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< in the joint frame, unit length
+  double lower_rad = 0.0, upper_rad = 0.0;          ///< from the URDF
+  double velocity_limit_rad_s = 0.0;                ///< from the URDF
+  double effort_limit_Nm = 0.0;                     ///< from the URDF
+  double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;
+  double armature_kg_m2 = 0.0;  ///< rotor inertia seen at the joint
+  double damping_Nm_s_per_rad = 0.0, friction_Nm = 0.0;
+  double stand_rad = 0.0;
+  bool policy = false;  ///< driven by the policy (the legs); the others follow q_ref
+  BusAddress bus;
+};
+
+/// One foot: the box that touches the ground. Its bottom face is the sole.
+struct FootModel {
+  std::string link;
+  Eigen::Vector3d box_center_F = Eigen::Vector3d::Zero();     ///< [m] in the foot link's frame
+  Eigen::Vector3d box_half_size_m = Eigen::Vector3d::Zero();  ///< [m] along the link's axes
+  std::array<Eigen::Vector3d, 4> sole_corners_F() const;      ///< [m] front-left, front-right, rear-left, rear-right
+};
+
+struct ImuModel {
+  std::string link;
+  Eigen::Isometry3d T_LI = Eigen::Isometry3d::Identity();  ///< IMU frame in its link
+};
+
+struct RobotModel {
+  std::string name;
+  std::filesystem::path directory;  ///< where robot.yaml lies; clips/ and policies/ are beside it
+  JointIndex joint_index;
+  std::vector<Joint> joints;  ///< in joint_index order
+  std::string base_link, torso_link;
+  PerFoot<FootModel> feet;
+  ImuModel imu;
+  CommandLimits command_limits;
+  std::array<double, kVelocityChannels> velocity_scale_negative{}, velocity_scale_positive{};  ///< u_max_i per sign
+  urdf::ModelInterfaceSharedPtr urdf;
+  KDL::Tree tree;                  ///< rooted at base_link, inertias included (the root's own: base_inertia)
+  KDL::RigidBodyInertia base_inertia;
+  PerFoot<KDL::Chain> leg_chain;   ///< base_link -> foot link
+  PerFoot<std::vector<int>> leg_joints;  ///< joint order index of each joint of leg_chain, from the base down
+  std::vector<int> torso_joints;         ///< joints between base_link and torso_link, from the base up
+  KDL::Chain torso_chain;                ///< base_link -> torso_link
+  MirrorMap mirror;                      ///< found from names (left_/right_) and axes
+  double total_mass_kg = 0.0;
+  double standing_height_m = 0.0;  ///< base_link origin above the soles in the standing posture
+
+  JointVector q_stand() const;
+  JointVector q_lower() const;
+  JointVector q_upper() const;
+};
+
+/// Reads DIRECTORY/robot.yaml and the URDF it names. Throws ConfigError on anything missing, unknown or implausible.
+RobotModel load_robot(const std::filesystem::path& directory);
+
+/// config/robots/NAME below the source tree or beside the installed binary, or NAME itself when it is a directory.
+std::filesystem::path find_robot(const std::string& name);
+
+}  // namespace pmg::model

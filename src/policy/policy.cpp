@@ -1,0 +1,11 @@
+#include "policy/policy.hpp"
+
+namespace pmg::policy {
+
+Status ReferencePolicy::act(const model::RobotState& /*state*/, const Reference& reference,
+                            const Command& /*optimised_command*/, JointVector& q_des) noexcept {
+  q_des = reference.q;
+  return Status::kOk;
+}
+
+}  // namespace pmg::policy

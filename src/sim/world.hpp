@@ -1,0 +1,65 @@
+// A MuJoCo 2.2 world built in memory from the robot model.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "model/robot_io.hpp"
+#include "model/robot_model.hpp"
+
+namespace pmg::sim {
+
+struct WorldOptions {
+  double timestep_s = 0.002;    ///< one physics step a bus cycle
+  bool gantry = false;          ///< hang the torso in a soft suspension, feet clear of the ground
+  double floor_friction = 0.8;
+  std::uint64_t seed = 0;       ///< of the sensor noise
+  double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
+};
+
+/// What only a simulation knows; for metrics and pictures, never for control.
+struct Truth {
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d omega_WB_B = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  ///< torso link
+  std::array<double, 2> foot_force_N{};                     ///< normal force, left and right
+  std::array<double, 2> foot_slip_m_s{};                    ///< horizontal speed of the contact point, 0 when in the air
+};
+
+/// The MJCF text of this robot in this world. Deterministic: same input, same bytes.
+std::string mjcf(const model::RobotModel& robot, const WorldOptions& options);
+
+class World {
+ public:
+  World(const model::RobotModel& robot, const WorldOptions& options);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  void reset();  ///< standing posture, soles on the ground (or hanging on the gantry), at rest, time zero
+
+  /// One physics step under the command (held); the drives' PD runs inside MuJoCo's affine-bias actuators. No heap.
+  void step(const model::JointCommand& command) noexcept;
+  void read(model::RobotState& state) noexcept;  ///< sensors of the current step
+  Truth truth() const noexcept;
+  bool diverged() const noexcept;  ///< MuJoCo warned of NaN, a bad state, or a reset of its own
+  double time_s() const noexcept;
+
+  const mjModel* mj_model() const { return model_; }
+  mjData* mj_data() { return data_; }
+
+ private:
+  const model::RobotModel& robot_;
+  mjModel* model_ = nullptr;
+  mjData* data_ = nullptr;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pmg::sim
