@@ -9,7 +9,6 @@ find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(orocos_kdl REQUIRED)
 find_package(Ceres REQUIRED)
-find_package(lcm REQUIRED)
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
 if(PMG_BUILD_TESTS)
@@ -21,6 +20,14 @@ endif()
 if(NOT TARGET yaml-cpp::yaml-cpp) # yaml-cpp 0.7 and earlier export the bare name
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
+
+# LCM before 1.4 has no package file for CMake, and its pkg-config file asks for GLib's development files, which nothing here needs.
+find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+add_library(pmg_lcm INTERFACE)
+target_include_directories(pmg_lcm SYSTEM INTERFACE ${LCM_INCLUDE_DIR})
+target_link_libraries(pmg_lcm INTERFACE ${LCM_LIBRARY})
 
 # KDL's package file names no target of its own.
 add_library(pmg_kdl INTERFACE)
