@@ -1,15 +1,38 @@
 // The parameterized motion generator (paper III-A.2) as one class: command in, reference out, once a tick.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "pmg/admissible_set.hpp"
+#include "pmg/blending.hpp"
 #include "pmg/clip.hpp"
+#include "pmg/clip_sampling.hpp"
 #include "pmg/command.hpp"
+#include "pmg/command_limiter.hpp"
+#include "pmg/contact.hpp"
+#include "pmg/joint_clamp.hpp"
+#include "pmg/library_check.hpp"
+#include "pmg/mirror.hpp"
+#include "pmg/phase.hpp"
+#include "pmg/posture.hpp"
 #include "pmg/reference.hpp"
 
 namespace pmg {
 
-enum class Blend {
-  kGain,   ///< g_i = n_i / max(1, sum n), q_d = sum g_i q_i + (1 - sum g_i) q_stand
-  kPaper,  ///< the paper's w and alpha literally
+/// The duty factor between standing (1) and walking (the clips' average).
+enum class StanceRule {
+  /// The clips' average as soon as any gain is positive, 1 at rest, over stance_ramp_s between the two. The default: a
+  /// small
+  /// gain lifts the feet in the clips' own swing windows, only less high, and a longer stance would call a moving foot
+  /// loaded.
+  kRestRamp,
+  /// r = sum g_i r_i + (1 - sum g_i): standing counts with its share of the motion.
+  kGainWeighted,
 };
 
 struct GeneratorOptions {
@@ -20,15 +43,232 @@ struct GeneratorOptions {
   double limit_margin_rad = 0.0349066;                     ///< 2 degrees
   double contact_edge_cycle = 0.04;                        ///< width of the contact weights' cosine edges
   double rest_before_freeze_s = 0.5;
+  StanceRule stance_rule = StanceRule::kRestRamp;
+  double stance_ramp_s = 0.2;
+  double double_support_rate =
+      0.15;                    ///< velocity channels' rate while both feet are loaded, as a share of the full rate, > 0
+  double stop_within_s = 0.5;  ///< from the command of zero velocity to zero gains, whatever the phase
 };
 
+/// q_ref(phi) = q_d + q_s with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand, and everything that goes with it.
+///
+/// A tick: the user's command is clamped to its range and rate-limited; posture, then velocity, are scaled into the
+/// admissible set; the phase advances by dt / T; the clips are sampled and blended; contacts follow from mu and r. A
+/// velocity direction without a clip (vx < 0 without a backward one) and a posture channel without rows have the range
+/// 0.
 class Generator {
  public:
-  Generator(ClipLibrary library, const GeneratorOptions& options);  ///< may allocate and throw std::invalid_argument
+  /// Allocates. Throws std::invalid_argument, saying what was expected, for: joint counts that differ, fewer than 8
+  /// samples, values that aren't finite, period <= 0, duty factor outside (0, 1], contact centres of one foot more than
+  /// 0.15 cycles apart, posture ranges without 0, q_stand nearer to a joint limit than the margin, options out of
+  /// range.
+  Generator(const ClipLibrary& library, const GeneratorOptions& options) : options_(options) {
+    check_options();
+    check::stand_and_limits(library, options_.limit_margin_rad);
+    q_stand_ = library.q_stand;
+    q_lower_ = library.q_lower;
+    q_upper_ = library.q_upper;
+    const auto clips = all_directions(library);
+    check::contact_centers(clips);
+    timings_ = GaitTimings(clips);
+    admissible_ = AdmissibleSet(q_stand_, q_lower_, q_upper_, options_.limit_margin_rad);
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      if (!clips[d]) continue;
+      curve_[d] = ClipCurve(*clips[d]);
+      admissible_.add(d, curve_[d], q_stand_);
+    }
+    for (std::size_t i = 0; i < kPostureChannels; ++i) {
+      check::static_clip(library.posture[i], q_stand_, std::string("clip ") + kChannelNames[kVelocityChannels + i]);
+    }
+    posture_ = Posture(library.posture, q_stand_);
+    limiter_ = CommandLimiter(realisable_limits(clips), options_.double_support_rate, options_.stop_within_s);
+    reset();
+  }
 
-  void reset() noexcept;  ///< rest, q_stand, phase frozen with both feet in contact
-  const Reference& step(const Command& user, double dt_s) noexcept;  ///< no heap, no exception
-  const Reference& reference() const noexcept;
+  /// Rest, q_stand, phase frozen in the middle of a double support.
+  void reset() noexcept {
+    limiter_.reset();
+    stance_.reset();
+    timing_ = timings_.first();
+    phase_.reset(double_support_phase(timing_));
+    gain_.fill(0.0);
+    q_s_.setZero(q_stand_.size());
+    previous_q_s_ = q_s_;
+    reference_ = Reference{};
+    reference_.q = q_stand_;
+    reference_.dq.setZero(q_stand_.size());
+    set_contacts(0.0);
+  }
+
+  /// One tick. No heap, no exception. A channel that isn't finite keeps its last value; a dt that isn't positive
+  /// changes nothing.
+  const Reference& step(const Command& user, double dt_s) noexcept {
+    if (!(dt_s > 0.0 && std::isfinite(dt_s))) return reference_;
+    const Command& wanted =
+        limiter_.step(user, reference_.contact_weight[kLeft] * reference_.contact_weight[kRight], dt_s);
+    const double posture_share = posture_scale(
+        admissible_, [&](double scale, JointVector& q_s) { posture_.offset(wanted, scale, q_s); }, q_s_);
+    Mixture mixture = mix(options_.blend, wanted, scale_);
+    const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_);
+    for (double& g : mixture.gain) g *= velocity_share;
+    mixture.gain_sum *= velocity_share;
+
+    report_command(wanted, mixture, posture_share, dt_s);
+    reference_.command_limited =
+        limiter_.limited() || mixture.normalised || posture_share < 1.0 || velocity_share < 1.0;
+    advance_gait(mixture, dt_s);
+    blend(mixture, dt_s);
+    reference_.joint_clamped = clamp_joints(q_lower_, q_upper_, reference_.q, reference_.dq);
+    return reference_;
+  }
+
+  const Reference& reference() const noexcept { return reference_; }
+
+ private:
+  void check_options() {
+    check::command_limits(options_.limits);
+    check::require(std::isfinite(options_.limit_margin_rad), "limit_margin_rad; expected a number");
+    check::require(options_.contact_edge_cycle > 0.0 && options_.contact_edge_cycle < 0.5,
+                   "contact_edge_cycle; expected in (0, 0.5)");
+    check::require(options_.rest_before_freeze_s >= 0.0, "rest_before_freeze_s; expected 0 or more");
+    check::require(options_.stance_ramp_s >= 0.0, "stance_ramp_s; expected 0 or more");
+    check::require(options_.double_support_rate > 0.0 && options_.double_support_rate <= 1.0,
+                   "double_support_rate; expected in (0, 1], or no robot at rest would ever start");
+    check::require(options_.stop_within_s > 0.0, "stop_within_s; expected more than 0");
+  }
+
+  /// The library's clips, checked, and mirrored ones where the other side's clip is missing.
+  static PerDirection<std::optional<DynamicClip>> all_directions(const ClipLibrary& library) {
+    PerDirection<std::optional<DynamicClip>> clips;
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      clips[direction_of(channel, false)] = library.positive[channel];
+      clips[direction_of(channel, true)] = library.negative[channel];
+    }
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      if (clips[d]) check::dynamic_clip(*clips[d], library.q_stand.size(), check::direction_name(d));
+    }
+    for (const std::size_t channel : {std::size_t{kVy}, std::size_t{kOmega}}) {
+      auto& positive = clips[direction_of(channel, false)];
+      auto& negative = clips[direction_of(channel, true)];
+      if (positive.has_value() == negative.has_value()) continue;
+      check::mirror_map(library.mirror, library.q_stand.size());
+      (positive ? negative : positive) = mirrored(library.mirror, positive ? *positive : *negative);
+    }
+    return clips;
+  }
+
+  /// The ranges of the options, less what no clip can show; also sets scale_.
+  CommandLimits realisable_limits(const PerDirection<std::optional<DynamicClip>>& clips) {
+    CommandLimits limits = options_.limits;
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
+      scale_[forward] = options_.scale_positive[channel];
+      scale_[back] = options_.scale_negative[channel];
+      if (!clips[forward]) limits.upper[channel] = 0.0;
+      if (!clips[back]) limits.lower[channel] = 0.0;
+      check::require((limits.upper[channel] == 0.0 || scale_[forward] > 0.0) &&
+                         (limits.lower[channel] == 0.0 || scale_[back] > 0.0),
+                     std::string("scale of ") + kChannelNames[channel] + "; expected more than 0");
+    }
+    for (std::size_t i = 0; i < kPostureChannels; ++i) {
+      const std::size_t channel = kVelocityChannels + i;
+      limits.lower[channel] = std::max(limits.lower[channel], posture_.curve(i).lower());
+      limits.upper[channel] = std::min(limits.upper[channel], posture_.curve(i).upper());
+    }
+    return limits;
+  }
+
+  /// Where both feet are furthest from leaving the ground.
+  static double double_support_phase(const GaitTiming& timing) noexcept {
+    double best_phase = 0.0, best_margin = -1.0;
+    for (int k = 0; k < 200; ++k) {
+      const double phase = k / 200.0;
+      double margin = 1.0;
+      for (const Foot foot : {kLeft, kRight}) {
+        const double distance = std::abs(wrap_half_cycle(phase - timing.contact_center[foot]));
+        margin = std::min(margin, 0.5 * timing.duty_factor[foot] - distance);
+      }
+      if (margin > best_margin + 1e-12) {  // of two equal double supports the first, whatever the rounding
+        best_margin = margin;
+        best_phase = phase;
+      }
+    }
+    return best_phase;
+  }
+
+  void report_command(const Command& wanted, const Mixture& mixture, double posture_share, double dt_s) noexcept {
+    const Command previous = reference_.command;
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
+      reference_.command.u[channel] = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
+    }
+    for (std::size_t channel = kVelocityChannels; channel < kChannels; ++channel) {
+      reference_.command.u[channel] = posture_share * wanted.u[channel];
+    }
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      reference_.command_rate.u[channel] = (reference_.command.u[channel] - previous.u[channel]) / dt_s;
+    }
+  }
+
+  void advance_gait(const Mixture& mixture, double dt_s) noexcept {
+    const bool at_rest = mixture.gain_sum == 0.0;
+    if (!at_rest) timing_ = timings_.average(mixture.weight);
+    stance_.step(at_rest, options_.stance_ramp_s, dt_s);
+    phase_.advance(timing_.period_s, at_rest, dt_s);
+    set_contacts(mixture.gain_sum);
+    phase_.freeze_after_rest(options_.rest_before_freeze_s, reference_.contact[kLeft] && reference_.contact[kRight]);
+  }
+
+  void set_contacts(double gain_sum) noexcept {
+    const double standing = options_.stance_rule == StanceRule::kRestRamp ? stance_.standing() : 1.0 - gain_sum;
+    reference_.phase = phase_.phase();
+    reference_.phase_rate_per_s = phase_.rate_per_s();
+    reference_.gain = gain_sum;
+    reference_.contact_center = timing_.contact_center;
+    for (const Foot foot : {kLeft, kRight}) {
+      const double mu = timing_.contact_center[foot];
+      const double r = timing_.duty_factor[foot] + standing * (1.0 - timing_.duty_factor[foot]);
+      reference_.duty_factor[foot] = r;
+      reference_.contact[foot] = in_contact(phase_.phase(), mu, r);
+      reference_.contact_weight[foot] = contact_weight(phase_.phase(), mu, r, options_.contact_edge_cycle);
+    }
+  }
+
+  /// q_ref and its time derivative; gains and offsets by their backward difference, so that dq_ref is what q_ref really
+  /// does.
+  void blend(const Mixture& mixture, double dt_s) noexcept {
+    PerDirection<double> gain_rate_per_s;
+    double gain_sum_rate_per_s = 0.0;
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      gain_rate_per_s[d] = (mixture.gain[d] - gain_[d]) / dt_s;
+      gain_sum_rate_per_s += gain_rate_per_s[d];
+    }
+    reference_.q.noalias() = (1.0 - mixture.gain_sum) * q_stand_ + q_s_;
+    reference_.dq.noalias() = (q_s_ - previous_q_s_) * (1.0 / dt_s) - gain_sum_rate_per_s * q_stand_;
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      if (mixture.gain[d] == 0.0 && gain_rate_per_s[d] == 0.0) continue;
+      curve_[d].add_blended(phase_.phase(), phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
+                            reference_.dq);
+    }
+    gain_ = mixture.gain;
+    previous_q_s_ = q_s_;
+  }
+
+  GeneratorOptions options_;
+  JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]
+  PerDirection<ClipCurve> curve_;            ///< empty where there is no clip
+  PerDirection<double> scale_{};             ///< u_max of each direction
+  GaitTimings timings_;
+  Posture posture_;
+  AdmissibleSet admissible_;
+
+  CommandLimiter limiter_;
+  GaitPhase phase_;
+  StanceRamp stance_;
+  GaitTiming timing_;            ///< of the last motion; held at rest
+  PerDirection<double> gain_{};  ///< of the previous tick
+  JointVector q_s_, previous_q_s_;
+  Reference reference_;
 };
 
 }  // namespace pmg

@@ -1,0 +1,87 @@
+// Which commands keep every joint away from its limits at every phase; computed when the library is loaded.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+
+#include "pmg/blending.hpp"
+#include "pmg/clip_sampling.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg {
+
+/// The set of gains g and posture offsets q_s with
+///   q_lower + margin <= q_stand + q_s + sum g_i (q_i(phi_i) - q_stand) <= q_upper - margin   for all joints and phi_i.
+/// Each clip is taken at its own worst phase: conservative for mixtures, exact for one direction alone, and linear in
+/// the gains.
+class AdmissibleSet {
+ public:
+  AdmissibleSet() = default;
+
+  /// q_stand lies within the limits by the margin or more.
+  AdmissibleSet(const JointVector& q_stand, const JointVector& q_lower, const JointVector& q_upper, double margin_rad)
+      : room_up_((q_upper - q_stand).array() - margin_rad), room_down_((q_stand - q_lower).array() - margin_rad) {
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      up_[d].setZero(q_stand.size());
+      down_[d].setZero(q_stand.size());
+    }
+  }
+
+  void add(std::size_t direction, const ClipCurve& curve, const JointVector& q_stand) {
+    curve.extremes(up_[direction], down_[direction]);
+    up_[direction] -= q_stand;
+    down_[direction] = q_stand - down_[direction];
+  }
+
+  bool contains_posture(const JointVector& q_s) const noexcept {
+    return (q_s - room_up_).maxCoeff() <= 0.0 && (q_s + room_down_).minCoeff() >= 0.0;
+  }
+
+  /// The largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s.
+  double velocity_scale(const PerDirection<double>& gain, const JointVector& q_s) const noexcept {
+    JointVector rise = JointVector::Zero(q_s.size());
+    JointVector fall = JointVector::Zero(q_s.size());
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      if (gain[d] == 0.0) continue;
+      rise.noalias() += gain[d] * up_[d];
+      fall.noalias() += gain[d] * down_[d];
+    }
+    if ((rise + q_s - room_up_).maxCoeff() <= 0.0 && (fall - q_s - room_down_).maxCoeff() <= 0.0) return 1.0;
+    double scale = 1.0;
+    for (Eigen::Index i = 0; i < q_s.size(); ++i) {
+      scale = std::min(scale, allowed(rise[i], room_up_[i] - q_s[i]));
+      scale = std::min(scale, allowed(fall[i], room_down_[i] + q_s[i]));
+    }
+    return scale;
+  }
+
+ private:
+  static double allowed(double excursion, double room) noexcept {
+    return excursion > room ? std::max(room, 0.0) / excursion : 1.0;
+  }
+
+  JointVector room_up_;             ///< q_upper - margin - q_stand [rad]
+  JointVector room_down_;           ///< q_stand - q_lower - margin [rad]
+  PerDirection<JointVector> up_;    ///< largest q_i(phi) - q_stand over phi [rad]
+  PerDirection<JointVector> down_;  ///< largest q_stand - q_i(phi) over phi [rad]
+};
+
+/// The largest found s in [0, 1] for which the posture command scaled by s is admissible, and its offset q_s. Posture
+/// curves bend, so s is bisected; where joints move monotonically with the command (any sensible squat, bend and lean)
+/// it is the largest there is and continuous in the command.
+template <typename Offset>
+double posture_scale(const AdmissibleSet& set, const Offset& offset_at, JointVector& q_s) noexcept {
+  offset_at(1.0, q_s);
+  if (set.contains_posture(q_s)) return 1.0;
+  double inside = 0.0, outside = 1.0;
+  for (int i = 0; i < 30; ++i) {  // to 1e-9 of the command: far below what dq_ref could show
+    const double middle = 0.5 * (inside + outside);
+    offset_at(middle, q_s);
+    (set.contains_posture(q_s) ? inside : outside) = middle;
+  }
+  offset_at(inside, q_s);
+  return inside;
+}
+
+}  // namespace pmg

@@ -1,0 +1,110 @@
+// A dynamic clip as a curve over phase: periodic cubic Hermite interpolation of q and dq/dphi.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "pmg/clip.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg {
+
+/// q(phi) through a clip's samples with the clip's slopes there, so that q and dq/dphi are both continuous and
+/// periodic.
+class ClipCurve {
+ public:
+  ClipCurve() = default;
+
+  /// Copies the samples; allocates. The clip has at least one sample and as many slopes.
+  explicit ClipCurve(const DynamicClip& clip)
+      : samples_(static_cast<double>(clip.q.size())),
+        knots_(clip.q.front().size(), 2 * static_cast<Eigen::Index>(clip.q.size() + 1)) {
+    for (std::size_t k = 0; k <= clip.q.size(); ++k) {  // the first sample again at the end: no wrap between two knots
+      const auto column = 2 * static_cast<Eigen::Index>(k);
+      knots_.col(column) = clip.q[k % clip.q.size()];
+      knots_.col(column + 1) = clip.dq_dphi[k % clip.q.size()];
+    }
+  }
+
+  /// q [rad] and dq/dphi [rad per cycle] at a phase in [0, 1).
+  void sample(double phase, JointVector& q, JointVector& dq_dphi) const noexcept {
+    const Segment s = segment(phase);
+    const auto x = knots_.middleCols<4>(s.column);
+    q.noalias() = x * s.value;
+    dq_dphi.noalias() = x * s.slope;
+  }
+
+  /// Adds g q(phi) to q and its time derivative, g dq/dphi dphi/dt + dg/dt q(phi), to dq: four multiply-adds of a joint
+  /// vector each, because gains and Hermite weights are multiplied first.
+  void add_blended(double phase, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
+                   JointVector& dq) const noexcept {
+    const Segment s = segment(phase);
+    const Eigen::Vector4d a = gain * s.value;
+    const Eigen::Vector4d b = gain * phase_rate_per_s * s.slope + gain_rate_per_s * s.value;
+    const auto x = knots_.middleCols<4>(s.column);
+    q.noalias() += a[0] * x.col(0) + a[1] * x.col(1) + a[2] * x.col(2) + a[3] * x.col(3);
+    dq.noalias() += b[0] * x.col(0) + b[1] * x.col(1) + b[2] * x.col(2) + b[3] * x.col(3);
+  }
+
+  /// Largest and smallest value of each joint over all phases [rad], exact for the interpolated curve.
+  void extremes(JointVector& highest, JointVector& lowest) const {
+    highest = knots_.col(0);
+    lowest = knots_.col(0);
+    for (Eigen::Index column = 0; column + 2 < knots_.cols(); column += 2) {
+      for (Eigen::Index joint = 0; joint < knots_.rows(); ++joint) {
+        widen_by_segment(knots_.row(joint).segment<4>(column).transpose(), highest[joint], lowest[joint]);
+      }
+    }
+  }
+
+  Eigen::Index joints() const noexcept { return knots_.rows(); }
+
+ private:
+  /// Four neighbouring columns of knots_ and their weights for q and for dq/dphi.
+  struct Segment {
+    Eigen::Index column;
+    Eigen::Vector4d value;
+    Eigen::Vector4d slope;
+  };
+
+  Segment segment(double phase) const noexcept {
+    const double x = phase * samples_;
+    const double k = std::min(std::floor(x), samples_ - 1.0);  // phase just below 1 may round up to the end
+    return {2 * static_cast<Eigen::Index>(k), value_weights(x - k), slope_weights(x - k)};
+  }
+
+  // Cubic Hermite basis on a segment of length 1/N, t in [0, 1), for (q_k, q'_k, q_k+1, q'_k+1).
+  Eigen::Vector4d value_weights(double t) const noexcept {
+    const double h01 = t * t * (3.0 - 2.0 * t);
+    return {1.0 - h01, t * (1.0 - t) * (1.0 - t) / samples_, h01, t * t * (t - 1.0) / samples_};
+  }
+  Eigen::Vector4d slope_weights(double t) const noexcept {
+    const double dh01 = 6.0 * t * (1.0 - t) * samples_;
+    return {-dh01, (1.0 - t) * (1.0 - 3.0 * t), dh01, t * (3.0 * t - 2.0)};
+  }
+
+  /// knots: q, q', q, q' of one joint at both ends. The inner extremes of a cubic are the roots of a t^2 + b t + c = 0.
+  void widen_by_segment(const Eigen::Vector4d& knots, double& highest, double& lowest) const {
+    const double m0 = knots[1] / samples_, m1 = knots[3] / samples_, rise = knots[2] - knots[0];
+    const double a = 3.0 * (m0 + m1 - 2.0 * rise), b = 2.0 * (3.0 * rise - 2.0 * m0 - m1), c = m0;
+    const auto widen_at = [&](double t) {
+      if (!(t >= 0.0 && t <= 1.0)) return;  // also when a division below gave NaN
+      const double q = value_weights(t).dot(knots);
+      highest = std::max(highest, q);
+      lowest = std::min(lowest, q);
+    };
+    widen_at(0.0);
+    const double discriminant = b * b - 4.0 * a * c;
+    if (discriminant < 0.0) return;
+    const double half_sum = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));  // no cancellation
+    widen_at(half_sum / a);
+    widen_at(c / half_sum);
+  }
+
+  double samples_ = 0.0;   ///< N
+  Eigen::MatrixXd knots_;  ///< joints x 2 (N + 1): q_0, q'_0, q_1, q'_1, ... q_0, q'_0
+};
+
+}  // namespace pmg

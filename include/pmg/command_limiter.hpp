@@ -1,0 +1,79 @@
+// From what the user asks to what may be asked now: ranges, rates, and when a gait may change its amplitude.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "pmg/command.hpp"
+
+namespace pmg {
+
+/// Clamps a command to its range and limits its rate of change, channel by channel.
+///
+/// The feet's distance scales with the gains, so a gain that changes while both feet are loaded makes them slide
+/// against each other. The velocity channels therefore run at their full rate in single support and at a fraction of it
+/// in double support. A stop does not wait for the feet: from the tick on in which all three velocities are commanded
+/// to zero, every channel is at least so fast that it reaches zero in stop_within_s.
+class CommandLimiter {
+ public:
+  CommandLimiter() = default;
+  CommandLimiter(const CommandLimits& limits, double double_support_rate, double stop_within_s)
+      : limits_(limits),
+        double_support_rate_(double_support_rate),
+        stop_within_s_(stop_within_s),
+        stop_left_s_(stop_within_s) {}
+
+  void reset() noexcept {
+    target_ = Command{};
+    command_ = Command{};
+    stop_left_s_ = stop_within_s_;
+    limited_ = false;
+  }
+
+  /// A channel that isn't finite keeps its previous target. double_support in [0, 1]: how far both feet are loaded.
+  const Command& step(const Command& user, double double_support, double dt_s) noexcept {
+    limited_ = false;
+    for (std::size_t channel = 0; channel < kChannels; ++channel) set_target(channel, user.u[channel]);
+    const double rate_factor = 1.0 - (1.0 - double_support_rate_) * double_support;
+    const bool stopping = target_[kVx] == 0.0 && target_[kVy] == 0.0 && target_[kOmega] == 0.0;
+    if (!stopping) stop_left_s_ = stop_within_s_;
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      const bool velocity = channel < kVelocityChannels;
+      double step = limits_.rate_per_s[channel] * dt_s * (velocity ? rate_factor : 1.0);
+      if (velocity && stopping) step = std::max(step, stopping_step(channel, dt_s));
+      command_.u[channel] += std::clamp(target_.u[channel] - command_.u[channel], -step, step);
+    }
+    if (stopping) stop_left_s_ = std::max(0.0, stop_left_s_ - dt_s);
+    return command_;
+  }
+
+  /// The user's command of the last step was out of range or not finite.
+  bool limited() const noexcept { return limited_; }
+
+ private:
+  void set_target(std::size_t channel, double user) noexcept {
+    if (!std::isfinite(user)) {
+      limited_ = true;
+      return;
+    }
+    target_.u[channel] = std::clamp(user, limits_.lower[channel], limits_.upper[channel]);
+    limited_ = limited_ || target_.u[channel] != user;
+  }
+
+  double stopping_step(std::size_t channel, double dt_s) const noexcept {
+    constexpr double kRounding_s = 1e-9;  // stop_left_s_ is a difference of many dt
+    const double speed = std::abs(command_.u[channel]);
+    return stop_left_s_ <= dt_s + kRounding_s ? speed : speed * dt_s / stop_left_s_;
+  }
+
+  CommandLimits limits_;
+  double double_support_rate_ = 1.0;
+  double stop_within_s_ = 0.0;
+  double stop_left_s_ = 0.0;
+  Command target_;
+  Command command_;
+  bool limited_ = false;
+};
+
+}  // namespace pmg

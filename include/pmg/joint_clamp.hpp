@@ -1,0 +1,20 @@
+// The last guard: no reference leaves the joint limits, whatever came before.
+#pragma once
+
+#include "pmg/types.hpp"
+
+namespace pmg {
+
+/// Clamps q [rad] to its limits and stops them (dq = 0). True if any joint was clamped.
+inline bool clamp_joints(const JointVector& q_lower, const JointVector& q_upper, JointVector& q,
+                         JointVector& dq) noexcept {
+  if ((q - q_upper).maxCoeff() <= 0.0 && (q - q_lower).minCoeff() >= 0.0) return false;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (q[i] >= q_lower[i] && q[i] <= q_upper[i]) continue;
+    q[i] = q[i] > q_upper[i] ? q_upper[i] : q_lower[i];
+    dq[i] = 0.0;
+  }
+  return true;
+}
+
+}  // namespace pmg
