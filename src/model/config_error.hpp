@@ -13,4 +13,24 @@ class ConfigError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Where in an input something stands. Line and column count from 1; 0 means the input has none.
+struct Place {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// Throws the ConfigError that says so. The key may be empty.
+[[noreturn]] inline void raise(const Place& place, const std::string& key, const std::string& wrong,
+                               const std::string& expected) {
+  std::string text = place.file;
+  if (place.line > 0) text += ":" + std::to_string(place.line);
+  if (place.line > 0 && place.column > 0) text += ":" + std::to_string(place.column);
+  text += ": ";
+  if (!key.empty()) text += key + ": ";
+  text += wrong;
+  if (!expected.empty()) text += "; expected " + expected;
+  throw ConfigError(text);
+}
+
 }  // namespace pmg::model

@@ -1,13 +1,11 @@
-// Forward kinematics and Jacobian of both legs on their KDL chains. No heap after construction.
+// Forward kinematics and Jacobian of both legs on their KDL chains, and the base attitude that a torso attitude means.
+// No heap after construction; nothing keeps a reference to the robot.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
-#include <memory>
-#include <vector>
 
+#include "model/chain_kinematics.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
 
@@ -29,24 +27,13 @@ struct FootKinematics {
 class LegKinematics {
  public:
   explicit LegKinematics(const RobotModel& robot);
-  LegKinematics(const LegKinematics&) = delete;
-  LegKinematics& operator=(const LegKinematics&) = delete;
 
   /// q, dq: all joints of the robot [rad], [rad/s].
   const PerFoot<FootKinematics>& compute(const JointVector& q, const JointVector& dq) noexcept;
 
  private:
-  struct Leg {
-    explicit Leg(const RobotModel& robot, Foot foot);
-    const KDL::Chain& chain;
-    const std::vector<int>& joints;
-    std::array<Eigen::Vector3d, 4> sole_corners_F;
-    KDL::ChainFkSolverPos_recursive fk;
-    KDL::ChainJntToJacSolver jacobian;
-    KDL::JntArray q;
-    KDL::Jacobian J;
-  };
-  PerFoot<std::unique_ptr<Leg>> legs_;
+  PerFoot<ChainKinematics> chains_;
+  PerFoot<std::array<Eigen::Vector3d, 4>> sole_corners_F_;
   PerFoot<FootKinematics> feet_;
 };
 
@@ -64,11 +51,7 @@ class BaseAttitude {
                  double roll_rate_rad_s) noexcept;
 
  private:
-  KDL::ChainFkSolverPos_recursive fk_;
-  KDL::ChainJntToJacSolver jacobian_;
-  const std::vector<int>& joints_;
-  KDL::JntArray q_;
-  KDL::Jacobian J_;
+  ChainKinematics torso_;
 };
 
 }  // namespace pmg::model

@@ -1,0 +1,1 @@
+#include "model/clip_library_file.hpp"

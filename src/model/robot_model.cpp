@@ -1,0 +1,226 @@
+#include "model/robot_model.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <kdl/treefksolverpos_recursive.hpp>
+#include <limits>
+
+#include "model/config_reader.hpp"
+#include "model/leg_kinematics.hpp"
+#include "model/mirror.hpp"
+#include "model/urdf_tree.hpp"
+
+namespace pmg::model {
+namespace {
+
+Eigen::Vector3d vector3(ConfigReader& reader, const std::string& key, const NumberCheck& check = any_number()) {
+  const std::vector<double> v = reader.numbers(key, 3, check);
+  return {v[0], v[1], v[2]};
+}
+
+std::string link_name(ConfigReader& reader, const std::string& key, const UrdfTree& tree) {
+  const std::string name = reader.required<std::string>(key);
+  if (!tree.urdf->getLink(name)) reader.fail(key, "'" + name + "' isn't a link", "a link of " + tree.file.string());
+  return name;
+}
+
+FootModel read_foot(ConfigReader reader, const UrdfTree& tree) {
+  FootModel foot;
+  foot.link = link_name(reader, "link", tree);
+  foot.box_center_F = vector3(reader, "box_center_m");
+  foot.box_half_size_m = 0.5 * vector3(reader, "box_size_m", positive());
+  reader.finish();
+  return foot;
+}
+
+ImuModel read_imu(ConfigReader reader, const UrdfTree& tree) {
+  ImuModel imu;
+  imu.link = link_name(reader, "link", tree);
+  imu.T_LI.translation() = vector3(reader, "position_m");
+  const Eigen::Vector3d rpy = vector3(reader, "rpy_rad");
+  imu.T_LI.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                       Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                          .toRotationMatrix();
+  reader.finish();
+  return imu;
+}
+
+BusAddress read_bus(ConfigReader reader) {
+  BusAddress bus;
+  bus.bus = reader.required<std::string>("name");
+  bus.node = reader.required<int>("node", non_negative());
+  reader.finish();
+  return bus;
+}
+
+Joint read_joint(ConfigReader reader, const std::string& name, const UrdfTree& tree) {
+  const urdf::JointConstSharedPtr source = tree.urdf->getJoint(name);
+  if (!source || source->type == urdf::Joint::FIXED) {
+    raise(reader.place(), "joints." + name, "isn't a moving joint", "one of " + tree.file.string());
+  }
+  Joint joint;
+  joint.name = name;
+  joint.axis = {source->axis.x, source->axis.y, source->axis.z};
+  joint.lower_rad = source->limits->lower;
+  joint.upper_rad = source->limits->upper;
+  joint.velocity_limit_rad_s = source->limits->velocity;
+  joint.effort_limit_Nm = source->limits->effort;
+  joint.stand_rad = reader.required<double>("stand_rad", in_range(joint.lower_rad, joint.upper_rad));
+  joint.kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", positive());
+  joint.kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", non_negative());
+  joint.armature_kg_m2 = reader.required<double>("armature_kg_m2", non_negative());
+  joint.damping_Nm_s_per_rad = reader.required<double>("damping_Nm_s_per_rad", non_negative());
+  joint.friction_Nm = reader.required<double>("friction_Nm", non_negative());
+  reader.one_of("drive", {"position_pd"});
+  joint.bus = read_bus(reader.map("bus"));
+  reader.finish();
+  return joint;
+}
+
+void read_joints(RobotModel& robot, ConfigReader reader, const UrdfTree& tree) {
+  for (const std::string& name : reader.keys()) robot.joints.push_back(read_joint(reader.map(name), name, tree));
+  if (robot.joints.empty() || robot.joints.size() > static_cast<std::size_t>(kMaxJoints)) {
+    raise(reader.place(), "joints", fmt::format("has {} joints", robot.joints.size()), fmt::format("1 to {}", kMaxJoints));
+  }
+  robot.joint_index = JointIndex(reader.keys());
+  for (const auto& [name, joint] : tree.urdf->joints_) {
+    if (joint->type != urdf::Joint::FIXED && !robot.joint_index.find(name)) {
+      raise(reader.place(), "joints." + name, "is missing",
+            fmt::format("every moving joint of {}:{}", tree.file.string(), tree.place("joint", name).line));
+    }
+  }
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const BusAddress &mine = robot.joints[i].bus, &theirs = robot.joints[k].bus;
+      if (mine.bus == theirs.bus && mine.node == theirs.node) {
+        reader.fail(robot.joints[i].name, "has the bus address of " + robot.joints[k].name, "an address of its own");
+      }
+    }
+  }
+}
+
+void read_channel(RobotModel& robot, ConfigReader reader, std::size_t channel) {
+  const std::vector<double> range = reader.numbers("range", 2);
+  if (range[0] > 0.0 || range[1] < 0.0 || !(range[0] < range[1])) {
+    reader.fail("range", fmt::format("is [{}, {}]", range[0], range[1]), "lower < upper with 0 between them");
+  }
+  robot.command_limits.lower[channel] = range[0];
+  robot.command_limits.upper[channel] = range[1];
+  robot.command_limits.rate_per_s[channel] = reader.required<double>("rate_per_s", positive());
+  if (channel < kVelocityChannels) {
+    const std::vector<double> scale = reader.numbers("velocity_scale", 2, positive());
+    robot.velocity_scale_negative[channel] = scale[0];
+    robot.velocity_scale_positive[channel] = scale[1];
+  }
+  reader.finish();
+}
+
+void read_policy_joints(RobotModel& robot, ConfigReader& reader) {
+  for (const std::string& name : reader.required<std::vector<std::string>>("policy_joints")) {
+    const std::optional<int> joint = robot.joint_index.find(name);
+    if (!joint) reader.fail("policy_joints", "'" + name + "' isn't a joint", "names of `joints`");
+    robot.joints[static_cast<std::size_t>(*joint)].policy = true;
+  }
+}
+
+/// The chain from the base to a link, and which joint each of its moving segments is.
+std::vector<int> find_chain(const RobotModel& robot, const std::string& link, KDL::Chain& chain) {
+  robot.tree.getChain(robot.base_link, link, chain);
+  std::vector<int> joints;
+  for (const KDL::Segment& segment : chain.segments) {
+    if (segment.getJoint().getType() != KDL::Joint::Fixed) joints.push_back(robot.joint_index.at(segment.getJoint().getName()));
+  }
+  return joints;
+}
+
+void find_chains(RobotModel& robot, ConfigReader& reader) {
+  for (const Foot foot : {kLeft, kRight}) {
+    robot.leg_joints[foot] = find_chain(robot, robot.feet[foot].link, robot.leg_chain[foot]);
+    const std::size_t count = robot.leg_joints[foot].size();
+    if (count == 0 || count > static_cast<std::size_t>(kMaxLegJoints)) {
+      reader.fail("feet", fmt::format("{} hangs on {} joints", robot.feet[foot].link, count),
+                  fmt::format("1 to {}", kMaxLegJoints));
+    }
+  }
+  robot.torso_joints = find_chain(robot, robot.torso_link, robot.torso_chain);
+}
+
+double standing_height(const RobotModel& robot) {
+  const JointVector q = robot.q_stand();
+  LegKinematics legs(robot);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const FootKinematics& foot : legs.compute(q, JointVector::Zero(q.size()))) {
+    for (const Eigen::Vector3d& corner : foot.sole_B) lowest = std::min(lowest, corner.z());
+  }
+  return -lowest;
+}
+
+double mass(const KDL::Tree& tree) {
+  double sum = 0.0;
+  for (const auto& [name, element] : tree.getSegments()) sum += GetTreeElementSegment(element).getInertia().getMass();
+  return sum;
+}
+
+template <typename Get>
+JointVector collect(const std::vector<Joint>& joints, Get get) {
+  JointVector values(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t i = 0; i < joints.size(); ++i) values[static_cast<Eigen::Index>(i)] = get(joints[i]);
+  return values;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector3d, 4> FootModel::sole_corners_F() const {
+  const Eigen::Vector3d& h = box_half_size_m;
+  return {box_center_F + Eigen::Vector3d(h.x(), h.y(), -h.z()), box_center_F + Eigen::Vector3d(h.x(), -h.y(), -h.z()),
+          box_center_F + Eigen::Vector3d(-h.x(), h.y(), -h.z()), box_center_F + Eigen::Vector3d(-h.x(), -h.y(), -h.z())};
+}
+
+JointVector RobotModel::q_stand() const {
+  return collect(joints, [](const Joint& joint) { return joint.stand_rad; });
+}
+JointVector RobotModel::q_lower() const {
+  return collect(joints, [](const Joint& joint) { return joint.lower_rad; });
+}
+JointVector RobotModel::q_upper() const {
+  return collect(joints, [](const Joint& joint) { return joint.upper_rad; });
+}
+
+RobotModel load_robot(const std::filesystem::path& directory) {
+  ConfigReader reader = ConfigReader::from_file(directory / "robot.yaml");
+  RobotModel robot;
+  robot.directory = directory;
+  robot.name = reader.required<std::string>("name");
+  const UrdfTree tree = read_urdf(directory / reader.required<std::string>("urdf"));
+  robot.urdf = tree.urdf;
+  robot.tree = tree.tree;
+  robot.base_inertia = tree.root_inertia;
+
+  robot.base_link = link_name(reader, "base_link", tree);
+  if (robot.base_link != tree.urdf->getRoot()->name) {
+    reader.fail("base_link", "'" + robot.base_link + "' isn't the root", tree.urdf->getRoot()->name);
+  }
+  robot.torso_link = link_name(reader, "torso_link", tree);
+  robot.imu = read_imu(reader.map("imu"), tree);
+  ConfigReader feet = reader.map("feet");
+  robot.feet = {read_foot(feet.map("left"), tree), read_foot(feet.map("right"), tree)};
+  feet.finish();
+  read_joints(robot, reader.map("joints"), tree);
+  ConfigReader command = reader.map("command");
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    read_channel(robot, command.map(kChannelNames[channel]), channel);
+  }
+  command.finish();
+  read_policy_joints(robot, reader);
+  reader.finish();
+
+  find_chains(robot, reader);
+  robot.mirror = find_mirror(robot, tree);
+  robot.total_mass_kg = robot.base_inertia.getMass() + mass(robot.tree);
+  robot.standing_height_m = standing_height(robot);
+  return robot;
+}
+
+}  // namespace pmg::model

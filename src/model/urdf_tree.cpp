@@ -1,0 +1,140 @@
+#include "model/urdf_tree.hpp"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace pmg::model {
+namespace {
+
+/// urdfdom says what is wrong on stderr only; this keeps it for the exception.
+class Listener final : public console_bridge::OutputHandler {
+ public:
+  Listener() { console_bridge::useOutputHandler(this); }
+  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && said.empty()) said = text;
+  }
+  std::string said;
+};
+
+KDL::Vector to_kdl(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+KDL::Frame to_kdl(const urdf::Pose& pose) {
+  const urdf::Rotation& r = pose.rotation;
+  return {KDL::Rotation::Quaternion(r.x, r.y, r.z, r.w), to_kdl(pose.position)};
+}
+
+KDL::RigidBodyInertia to_kdl(const urdf::Inertial& inertial) {
+  const KDL::Frame origin = to_kdl(inertial.origin);
+  const KDL::RotationalInertia at_com(inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz);
+  // KDL turns a RigidBodyInertia into other axes, but not a RotationalInertia: turn one without mass.
+  const KDL::RigidBodyInertia turned = origin.M * KDL::RigidBodyInertia(0.0, KDL::Vector::Zero(), at_com);
+  return KDL::RigidBodyInertia(inertial.mass, origin.p, turned.getRotationalInertia());
+}
+
+KDL::Joint to_kdl(const urdf::Joint& joint, const KDL::Frame& origin) {
+  if (joint.type == urdf::Joint::FIXED) return KDL::Joint(joint.name, KDL::Joint::Fixed);
+  return {joint.name, origin.p, origin.M * to_kdl(joint.axis), KDL::Joint::RotAxis};
+}
+
+/// Positive mass, and principal moments that obey the triangle inequality: what no mass distribution has is a typing error.
+void check_inertia(const UrdfTree& tree, const urdf::Link& link) {
+  const Place place = tree.place("link", link.name);
+  const std::string key = "link " + link.name + " inertial";
+  if (!link.inertial) raise(place, key, "is missing", "mass, origin and inertia");
+  const urdf::Inertial& body = *link.inertial;
+  if (!(body.mass > 0.0) || !std::isfinite(body.mass)) {
+    raise(place, key + " mass", fmt::format("is {}", body.mass), "a mass above 0 kg");
+  }
+  Eigen::Matrix3d inertia;
+  inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
+  if (!inertia.allFinite()) raise(place, key + " inertia", "isn't finite", "finite numbers");
+  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (moments[0] <= 0.0 || moments[0] + moments[1] < moments[2] * (1.0 - 1e-6)) {
+    raise(place, key + " inertia", fmt::format("has the principal moments {}, {}, {}", moments[0], moments[1], moments[2]),
+          "three positive ones, none above the sum of the others");
+  }
+}
+
+void check_joint(const UrdfTree& tree, const urdf::Joint& joint) {
+  if (joint.type == urdf::Joint::FIXED) return;
+  const Place place = tree.place("joint", joint.name);
+  const std::string key = "joint " + joint.name;
+  if (joint.type != urdf::Joint::REVOLUTE) raise(place, key + " type", "isn't supported", "revolute or fixed");
+  if (!(std::abs(to_kdl(joint.axis).Norm() - 1.0) < 1e-6)) {
+    raise(place, key + " axis", fmt::format("has the length {}", to_kdl(joint.axis).Norm()), "a unit vector");
+  }
+  if (!joint.limits) raise(place, key + " limit", "is missing", "lower, upper, effort and velocity");
+  const urdf::JointLimits& limit = *joint.limits;
+  if (!(limit.lower < limit.upper) || !std::isfinite(limit.lower) || !std::isfinite(limit.upper)) {
+    raise(place, key + " limit", fmt::format("has lower {} and upper {}", limit.lower, limit.upper), "lower < upper");
+  }
+  if (!(limit.effort > 0.0) || !std::isfinite(limit.effort)) {
+    raise(place, key + " limit effort", fmt::format("is {}", limit.effort), "a number above 0");
+  }
+  if (!(limit.velocity > 0.0) || !std::isfinite(limit.velocity)) {
+    raise(place, key + " limit velocity", fmt::format("is {}", limit.velocity), "a number above 0");
+  }
+}
+
+void add_children(UrdfTree& tree, const urdf::Link& parent) {
+  for (const urdf::LinkSharedPtr& link : parent.child_links) {
+    const urdf::Joint& joint = *link->parent_joint;
+    check_joint(tree, joint);
+    check_inertia(tree, *link);
+    const KDL::Frame origin = to_kdl(joint.parent_to_joint_origin_transform);
+    tree.tree.addSegment(KDL::Segment(link->name, to_kdl(joint, origin), origin, to_kdl(*link->inertial)), parent.name);
+    tree.link_pose[link->name] = tree.link_pose.at(parent.name) * origin;
+    add_children(tree, *link);
+  }
+}
+
+}  // namespace
+
+Place UrdfTree::place(const std::string& element, const std::string& name) const {
+  const std::string opening = "<" + element + " ";
+  for (std::size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at + 1)) {
+    const std::string tag = text.substr(at, text.find('>', at) - at);
+    if (tag.find("name=\"" + name + "\"") == std::string::npos) continue;
+    const std::size_t line_start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+    const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::size_t column = line_start == std::string::npos ? at : at - line_start - 1;
+    return {file.string(), static_cast<int>(lines) + 1, static_cast<int>(column) + 1};
+  }
+  return {file.string()};
+}
+
+UrdfTree read_urdf(const std::filesystem::path& file) {
+  UrdfTree tree;
+  tree.file = file;
+  std::ifstream stream(file);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a URDF file");
+  }
+  tree.text = text.str();
+
+  Listener listener;
+  tree.urdf = urdf::parseURDF(tree.text);
+  if (!tree.urdf || !tree.urdf->getRoot()) {
+    raise({file.string()}, "", listener.said.empty() ? "isn't a robot" : listener.said, "a URDF robot with one root link");
+  }
+  const urdf::Link& root = *tree.urdf->getRoot();
+  check_inertia(tree, root);
+  tree.tree = KDL::Tree(root.name);
+  tree.root_inertia = to_kdl(*root.inertial);
+  tree.link_pose[root.name] = KDL::Frame::Identity();
+  add_children(tree, root);
+  return tree;
+}
+
+}  // namespace pmg::model
