@@ -68,8 +68,12 @@ void report(const ContactProblem<kUnknowns>& problem, const Command& u, const st
 }  // namespace
 
 struct GroundAwareCommand::Impl {
-  Impl(const model::RobotModel& robot_model, const Options& user_options)
-      : robot(robot_model), options(user_options), legs(robot_model), base_attitude(robot_model) {
+  Impl(const model::RobotModel& robot, const Options& user_options)
+      : joints(robot.joint_index.size()),
+        standing_height_m(robot.standing_height_m),
+        options(user_options),
+        legs(robot),
+        base_attitude(robot) {
     solver5.options = solver_options<5>();
     solver7.options = solver_options<7>();
   }
@@ -88,9 +92,8 @@ struct GroundAwareCommand::Impl {
     const Command& rate = reference.command_rate;
     const model::BaseAttitude::Result attitude =
         base_attitude.compute(reference.q, reference.dq, u[kPitch], u[kRoll], rate[kPitch], rate[kRoll]);
-    ContactTerms terms =
-        contact_terms(reference, legs.compute(reference.q, reference.dq), attitude, robot.standing_height_m,
-                      options.prior_weight, height_known ? result.command[kHeight] : u[kHeight]);
+    ContactTerms terms = contact_terms(reference, legs.compute(reference.q, reference.dq), attitude, standing_height_m,
+                                       options.prior_weight, height_known ? result.command[kHeight] : u[kHeight]);
     if (options.optimise_roll_pitch) {
       terms.torso_heading_H = torso_heading(reference);
       terms.prior_weight[kXPitch] = std::hypot(terms.prior_weight[kXPitch], options.attitude_prior_weight);
@@ -119,8 +122,9 @@ struct GroundAwareCommand::Impl {
     return contact ? Status::kConverged : Status::kNoContact;
   }
 
-  const model::RobotModel& robot;
-  Options options;
+  const int joints;
+  const double standing_height_m;
+  const Options options;
   model::LegKinematics legs;
   model::BaseAttitude base_attitude;
   Solver<5> solver5;
@@ -140,8 +144,7 @@ GroundAwareCommand::~GroundAwareCommand() = default;
 
 const Result& GroundAwareCommand::solve(const Reference& reference) noexcept {
   Impl& impl = *impl_;
-  const auto joints = impl.robot.joint_index.size();
-  if (reference.q.size() != joints || reference.dq.size() != joints) {
+  if (reference.q.size() != impl.joints || reference.dq.size() != impl.joints) {
     impl.result.status = Status::kNotConverged;
     return impl.result;
   }

@@ -44,7 +44,7 @@ struct Result {
 /// slip is reported, and the lower foot is the one on the ground. Pitch always wins over height.
 class GroundAwareCommand {
  public:
-  /// Keeps a reference to the robot. Throws std::invalid_argument if a prior weight isn't positive.
+  /// Throws std::invalid_argument if a prior weight isn't positive.
   explicit GroundAwareCommand(const model::RobotModel& robot, const Options& options = {});
   ~GroundAwareCommand();
 
