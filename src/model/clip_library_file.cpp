@@ -1,1 +1,259 @@
 #include "model/clip_library_file.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "model/clip_table.hpp"
+#include "model/config_reader.hpp"
+
+namespace pmg::model {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, kVelocityChannels> kPositiveNames = {"forward", "lateral", "turn"};
+constexpr std::array<const char*, kVelocityChannels> kNegativeNames = {"backward", "lateral_right", "turn_right"};
+constexpr std::array<const char*, 3> kPostureNames = {"bend", "lean", "squat"};
+constexpr std::array<const char*, 2> kFootNames = {"left", "right"};
+constexpr std::size_t kMinSamples = 4, kMaxSamples = 1024;
+constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far above a round-off
+
+fs::path csv(const fs::path& directory, const std::string& name) { return directory / (name + ".csv"); }
+fs::path yaml(const fs::path& directory, const std::string& name) { return directory / (name + ".yaml"); }
+
+double wrap(double phase) { return phase - std::floor(phase); }
+double circular_distance(double a, double b) { return std::abs(a - b - std::round(a - b)); }
+
+void check_limits(const ClipTable& table, const RobotModel& robot) {
+  for (std::size_t row = 0; row < table.q.size(); ++row) {
+    for (const Joint& joint : robot.joints) {
+      const double angle = table.q[row][robot.joint_index.at(joint.name)];
+      if (angle >= joint.lower_rad && angle <= joint.upper_rad) continue;
+      raise(table.place(row), joint.name, fmt::format("is {} rad", angle),
+            fmt::format("{} to {}, its limits", joint.lower_rad, joint.upper_rad));
+    }
+  }
+}
+
+void read_mean_velocity(DynamicClip& clip, ConfigReader reader, std::size_t channel, double direction) {
+  for (std::size_t i = 0; i < kVelocityChannels; ++i) {
+    clip.mean_velocity[i] = reader.required<double>(kChannelNames[i]);
+  }
+  if (!(clip.mean_velocity[channel] * direction > 0.0)) {
+    reader.fail(kChannelNames[channel], fmt::format("is {}", clip.mean_velocity[channel]),
+                direction > 0.0 ? "a number above 0" : "a number below 0");
+  }
+  reader.finish();
+}
+
+DynamicClip read_dynamic(const fs::path& directory, const std::string& name, const RobotModel& robot, std::size_t channel,
+                         double direction) {
+  DynamicClip clip;
+  ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
+  reader.one_of("kind", {"dynamic"});
+  reader.required<std::string>("source");
+  clip.period_s = reader.required<double>("period_s", positive());
+  ConfigReader contact = reader.map("contact");
+  for (const Foot foot : {kLeft, kRight}) {
+    ConfigReader side = contact.map(kFootNames[foot]);
+    clip.contact_center[foot] = side.required<double>("center", in_range(0.0, std::nextafter(1.0, 0.0)));
+    clip.duty_factor[foot] = side.required<double>("duty_factor", in_range(1e-3, 1.0));
+    side.finish();
+  }
+  contact.finish();
+  read_mean_velocity(clip, reader.map("mean_velocity"), channel, direction);
+  reader.finish();
+
+  const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, false);
+  if (table.q.size() < kMinSamples || table.q.size() > kMaxSamples) {
+    raise({table.file.string()}, "", fmt::format("has {} samples", table.q.size()),
+          fmt::format("{} to {}", kMinSamples, kMaxSamples));
+  }
+  check_limits(table, robot);
+  clip.q = table.q;
+  clip.dq_dphi = periodic_spline_slopes(clip.q);
+  return clip;
+}
+
+/// At command 0 the posture is the standing one, or the robot would jump when its clips are loaded.
+void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
+  std::size_t above = 0;
+  while (above < table.command.size() && table.command[above] < 0.0) ++above;
+  if (above == table.command.size() || (above == 0 && table.command[0] > 0.0)) {
+    raise({table.file.string()}, "command", fmt::format("goes from {} to {}", table.command.front(), table.command.back()),
+          "0 in its range");
+  }
+  const std::size_t below = table.command[above] == 0.0 ? above : above - 1;
+  const double span = table.command[above] - table.command[below];
+  const double share = span > 0.0 ? -table.command[below] / span : 0.0;
+  for (const Joint& joint : robot.joints) {
+    const int i = robot.joint_index.at(joint.name);
+    const double angle = (1.0 - share) * table.q[below][i] + share * table.q[above][i];
+    if (std::abs(angle - joint.stand_rad) > kSamePosture_rad) {
+      raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", angle),
+            fmt::format("{}, the standing posture", joint.stand_rad));
+    }
+  }
+}
+
+StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot, std::size_t channel) {
+  ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
+  reader.one_of("kind", {"static"});
+  reader.required<std::string>("source");
+  reader.one_of("channel", {kChannelNames[channel]});
+  reader.finish();
+
+  const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, true);
+  if (table.q.size() < 2) raise({table.file.string()}, "", fmt::format("has {} rows", table.q.size()), "2 or more");
+  for (std::size_t row = 1; row < table.command.size(); ++row) {
+    if (!(table.command[row] > table.command[row - 1])) {
+      raise(table.place(row), "command", fmt::format("is {} after {}", table.command[row], table.command[row - 1]),
+            "strictly increasing ones");
+    }
+  }
+  check_limits(table, robot);
+  check_passes_stand(table, robot);
+  return {table.command, table.q};
+}
+
+struct NamedClip {
+  std::string name;
+  PerFoot<double> contact_center;
+};
+
+/// Every clip that the generator may blend, with the mirrored ones it makes of positive clips without a negative partner.
+std::vector<NamedClip> blended_clips(const ClipLibrary& library) {
+  std::vector<NamedClip> clips;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    const std::optional<DynamicClip>& positive = library.positive[channel];
+    const std::optional<DynamicClip>& negative = library.negative[channel];
+    if (positive) clips.push_back({kPositiveNames[channel], positive->contact_center});
+    if (negative) {
+      clips.push_back({kNegativeNames[channel], negative->contact_center});
+    } else if (positive && channel != kVx) {
+      clips.push_back({kPositiveNames[channel],
+                       {wrap(positive->contact_center[kRight] + 0.5), wrap(positive->contact_center[kLeft] + 0.5)}});
+    }
+  }
+  return clips;
+}
+
+void check_contact_centers(const fs::path& directory, const ClipLibrary& library) {
+  const std::vector<NamedClip> clips = blended_clips(library);
+  for (const NamedClip& clip : clips) {
+    for (const NamedClip& other : clips) {
+      for (const Foot foot : {kLeft, kRight}) {
+        if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= kMaxContactCenterSpread) continue;
+        const fs::path file = yaml(directory, clip.name);
+        ConfigReader reader = ConfigReader::from_file(file);
+        reader.map("contact").map(kFootNames[foot]).fail(
+            "center", fmt::format("is {}, and {} in {}", clip.contact_center[foot], other.contact_center[foot], other.name),
+            fmt::format("at most {} of a cycle between a library's clips", kMaxContactCenterSpread));
+      }
+    }
+  }
+}
+
+void check_total(const fs::path& directory, const ClipLibrary& library) {
+  double total_s = 0.0;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    for (const auto& [clip, name] : {std::pair(&library.positive[channel], kPositiveNames[channel]),
+                                     std::pair(&library.negative[channel], kNegativeNames[channel])}) {
+      if (!*clip) continue;
+      total_s += (*clip)->period_s;
+      if (total_s < kMaxDynamicTotal_s) continue;
+      ConfigReader::from_file(yaml(directory, name))
+          .fail("period_s", fmt::format("brings the dynamic clips to {} s", total_s),
+                fmt::format("less than {} s in total", kMaxDynamicTotal_s));
+    }
+  }
+}
+
+void write_file(const fs::path& file, const std::string& text) {
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
+}
+
+/// A YAML double-quoted string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q) {
+  const auto n = static_cast<Eigen::Index>(q.size());
+  const Eigen::Index joints = q.front().size();
+  // A cubic spline with the slopes m_k, sampled every 1/n: m_(k-1) + 4 m_k + m_(k+1) = 3 n (q_(k+1) - q_(k-1)).
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n, n), right(n, joints);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index before = (k + n - 1) % n, after = (k + 1) % n;
+    system(k, k) += 4.0;
+    system(k, before) += 1.0;
+    system(k, after) += 1.0;
+    right.row(k) = 3.0 * static_cast<double>(n) *
+                   (q[static_cast<std::size_t>(after)] - q[static_cast<std::size_t>(before)]).transpose();
+  }
+  const Eigen::MatrixXd slopes = system.partialPivLu().solve(right);
+  std::vector<JointVector> result;
+  for (Eigen::Index k = 0; k < n; ++k) result.emplace_back(slopes.row(k).transpose());
+  return result;
+}
+
+ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot) {
+  if (!fs::is_directory(directory)) raise({directory.string()}, "", "isn't a directory", "a directory of clips");
+  ClipLibrary library;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    library.positive[channel] = read_dynamic(directory, kPositiveNames[channel], robot, channel, 1.0);
+    const char* negative = kNegativeNames[channel];
+    if (fs::exists(csv(directory, negative)) || fs::exists(yaml(directory, negative))) {
+      library.negative[channel] = read_dynamic(directory, negative, robot, channel, -1.0);
+    }
+  }
+  for (std::size_t i = 0; i < library.posture.size(); ++i) {
+    library.posture[i] = read_static(directory, kPostureNames[i], robot, kVelocityChannels + i);
+  }
+  library.q_stand = robot.q_stand();
+  library.q_lower = robot.q_lower();
+  library.q_upper = robot.q_upper();
+  library.mirror = robot.mirror;
+  check_contact_centers(directory, library);
+  check_total(directory, library);
+  return library;
+}
+
+void write_dynamic_clip(const fs::path& directory, const std::string& name, const DynamicClip& clip, const RobotModel& robot,
+                        const std::string& source) {
+  std::string text = fmt::format("kind: dynamic\nsource: {}\nperiod_s: {}\ncontact:\n", quoted(source), clip.period_s);
+  for (const Foot foot : {kLeft, kRight}) {
+    text += fmt::format("  {}: {{center: {}, duty_factor: {}}}\n", kFootNames[foot], clip.contact_center[foot],
+                        clip.duty_factor[foot]);
+  }
+  text += "mean_velocity:\n";
+  for (std::size_t i = 0; i < kVelocityChannels; ++i) {
+    text += fmt::format("  {}: {}\n", kChannelNames[i], clip.mean_velocity[i]);
+  }
+  write_file(csv(directory, name), format_clip_table(robot.joint_index, {}, clip.q));
+  write_file(yaml(directory, name), text);
+}
+
+void write_static_clip(const fs::path& directory, const std::string& name, Channel channel, const StaticClip& clip,
+                       const RobotModel& robot, const std::string& source) {
+  write_file(csv(directory, name), format_clip_table(robot.joint_index, clip.command, clip.q));
+  write_file(yaml(directory, name),
+             fmt::format("kind: static\nsource: {}\nchannel: {}\n", quoted(source), kChannelNames[channel]));
+}
+
+}  // namespace pmg::model
