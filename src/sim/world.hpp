@@ -32,12 +32,14 @@ struct Truth {
   std::array<double, 2> foot_slip_m_s{};                    ///< horizontal speed of the contact point, 0 when in the air
 };
 
-/// The MJCF text of this robot in this world. Deterministic: same input, same bytes.
+/// The MJCF text of this robot in this world. Deterministic: same input, same bytes. Its actuators are position servos
+/// (ctrl = q_des [rad]) with robot.yaml's gains; the keyframe "stand" is the standing posture on the ground. Throws
+/// model::ConfigError when a link collides by a mesh; a visual mesh is left out.
 std::string mjcf(const model::RobotModel& robot, const WorldOptions& options);
 
 class World {
  public:
-  World(const model::RobotModel& robot, const WorldOptions& options);
+  World(const model::RobotModel& robot, const WorldOptions& options);  ///< keeps a reference to robot
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -45,16 +47,30 @@ class World {
   void reset();  ///< standing posture, soles on the ground (or hanging on the gantry), at rest, time zero
 
   /// One physics step under the command (held); the drives' PD runs inside MuJoCo's affine-bias actuators. No heap.
+  /// The command's vectors have one element a joint. After divergence nothing moves any more until reset().
   void step(const model::JointCommand& command) noexcept;
   void read(model::RobotState& state) noexcept;  ///< sensors of the current step
   Truth truth() const noexcept;
   bool diverged() const noexcept;  ///< MuJoCo warned of NaN, a bad state, or a reset of its own
   double time_s() const noexcept;
 
+  /// The gantry's soft suspension of the torso. lift_m: how far the torso's anchor is above its place in the standing
+  /// posture on the ground; the feet are clear from about 0.03 m on, because the suspension gives 0.02 m under the robot's
+  /// weight. engaged: 0 free, 1 held, in between a share of the stiffness. The anchor's place and heading are taken from the
+  /// torso when it is engaged from 0. Takes effect at the next step, so the caller ramps it.
+  void set_hoist(double lift_m, double engaged) noexcept;
+
+  /// A force on the torso link's centre of mass, in the world frame [N], until it is set again or reset.
+  void set_push(const Eigen::Vector3d& force_W_N) noexcept;
+
   const mjModel* mj_model() const { return model_; }
   mjData* mj_data() { return data_; }
 
  private:
+  void set_drives(const model::JointCommand& command) noexcept;
+  void measure_feet() noexcept;
+  void check_divergence() noexcept;
+
   const model::RobotModel& robot_;
   mjModel* model_ = nullptr;
   mjData* data_ = nullptr;

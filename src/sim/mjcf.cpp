@@ -1,0 +1,213 @@
+// The robot model and its world as MJCF text for MuJoCo 2.2.2, which has no <frame>, no position kv, no actuatorfrcrange,
+// and wants `limited` beside every range.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "model/config_error.hpp"
+#include "sim/mjcf_geometry.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::sim {
+
+namespace {
+
+// Contact classes: soles touch the floor only, bodies touch the floor and each other. Two geoms collide when one's contype
+// meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2), whose sole is its floor contact.
+constexpr const char* kScene = R"(
+  <compiler angle="radian" inertiafromgeom="false" balanceinertia="false"/>
+  <option timestep="{timestep}" integrator="implicit" gravity="0 0 -9.81"/>
+  <size njmax="600" nconmax="150"/>
+  <statistic center="0 0 {look_height}" extent="{extent}"/>
+  <visual>
+    <global offwidth="1280" offheight="720" fovy="38"/>
+    <quality shadowsize="4096" offsamples="4"/>
+    <headlight ambient="0.34 0.34 0.36" diffuse="0.30 0.30 0.31" specular="0.05 0.05 0.05"/>
+    <map znear="0.02" zfar="40" fogstart="5" fogend="16" shadowclip="1.6"/>
+    <rgba fog="0.80 0.84 0.89 1" haze="0.80 0.84 0.89 1"/>
+  </visual>
+  <default>
+    <geom friction="{friction} 0.005 0.0001"/>
+    <default class="visual"><geom group="1" contype="0" conaffinity="0" material="shell"/></default>
+    <default class="collision"><geom group="3" contype="2" conaffinity="3" condim="1"/></default>
+    <default class="foot_collision"><geom group="3" contype="2" conaffinity="2" condim="1"/></default>
+    <default class="sole"><geom group="3" contype="0" conaffinity="1" condim="3"/></default>
+  </default>
+  <asset>
+    <texture type="skybox" builtin="gradient" rgb1="0.60 0.70 0.82" rgb2="0.93 0.95 0.97" width="256" height="1536"/>
+    <texture name="floor" type="2d" builtin="checker" mark="edge" rgb1="0.72 0.74 0.76" rgb2="0.67 0.69 0.715"
+             markrgb="0.60 0.62 0.645" width="512" height="512"/>
+    <material name="floor" texture="floor" texrepeat="1 1" texuniform="true" specular="0.1" shininess="0.2"/>
+    <material name="shell" specular="0.35" shininess="0.45"/>
+  </asset>
+)";
+
+constexpr const char* kFloor =
+    R"(    <geom name="floor" type="plane" size="0 0 0.05" material="floor" contype="1" conaffinity="0" condim="3"/>)"
+    "\n";
+
+/// Directional, above and in front, following the robot so that its shadow stays inside the shadow map.
+constexpr const char* kLight =
+    R"(<light mode="trackcom" directional="true" castshadow="true" pos="1.2 1.0 3.2" dir="-0.34 -0.28 -0.9" )"
+    R"(diffuse="0.62 0.61 0.58" specular="0.25 0.25 0.25" ambient="0 0 0"/>)";
+
+class MjcfText {
+ public:
+  MjcfText(const model::RobotModel& robot, const WorldOptions& options) : robot_(robot), options_(options) {}
+
+  std::string build() {
+    text_ = fmt::format("<mujoco model=\"{}\">", xml_escaped(robot_.name));
+    text_ += fmt::format(kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("friction", options_.floor_friction),
+                         fmt::arg("look_height", robot_.standing_height_m), fmt::arg("extent", 2.0 * robot_.standing_height_m));
+    text_ += "  <worldbody>\n";
+    text_ += kFloor;
+    write_body(*robot_.urdf->getRoot(), nullptr, "", 2);
+    text_ += "  </worldbody>\n";
+    write_exclusions();
+    write_actuators();
+    write_sensors();
+    write_standing_keyframe();
+    return text_ + "</mujoco>\n";
+  }
+
+ private:
+  void line(int depth, const std::string& element) {
+    text_.append(static_cast<std::size_t>(2 * depth), ' ');
+    text_ += element;
+    text_ += '\n';
+  }
+
+  /// colliding_ancestor: the nearest link above that carries collision shapes, "" for none.
+  void write_body(const urdf::Link& link, const urdf::Joint* joint, std::string colliding_ancestor, int depth) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    if (joint == nullptr) T.translation().z() = robot_.standing_height_m;
+    if (joint != nullptr) T = isometry(joint->parent_to_joint_origin_transform);
+    line(depth, fmt::format(R"(<body name="{}" {}>)", xml_escaped(link.name), pose_attributes(T)));
+    if (joint == nullptr) line(depth + 1, R"(<freejoint name="base"/>)");
+    if (joint == nullptr) line(depth + 1, kLight);
+    if (joint != nullptr && joint->type != urdf::Joint::FIXED) write_joint(joint->name, depth + 1);
+    if (link.inertial) line(depth + 1, inertial_element(*link.inertial));
+    write_visuals(link, depth + 1);
+    write_collisions(link, depth + 1);
+    if (!link.collision_array.empty()) {
+      if (!colliding_ancestor.empty()) neighbours_.emplace_back(colliding_ancestor, link.name);
+      colliding_ancestor = link.name;
+    }
+    if (link.name == robot_.imu.link)
+      line(depth + 1, fmt::format(R"(<site name="imu" group="4" size="0.01" {}/>)", pose_attributes(robot_.imu.T_LI)));
+    for (const auto& child : children_in_joint_order(link)) write_body(*child, child->parent_joint.get(), colliding_ancestor, depth + 1);
+    line(depth, "</body>");
+  }
+
+  void write_joint(const std::string& name, int depth) {
+    const model::Joint& joint = robot_.joints[static_cast<std::size_t>(robot_.joint_index.at(name))];
+    line(depth, fmt::format(R"(<joint name="{}" type="hinge" axis="{} {} {}" limited="true" range="{} {}" armature="{}" )"
+                            R"(damping="{}" frictionloss="{}"/>)",
+                            xml_escaped(name), joint.axis.x(), joint.axis.y(), joint.axis.z(), joint.lower_rad,
+                            joint.upper_rad, joint.armature_kg_m2, joint.damping_Nm_s_per_rad, joint.friction_Nm));
+  }
+
+  void write_visuals(const urdf::Link& link, int depth) {
+    for (const auto& visual : link.visual_array) {
+      const auto shape = visual_shape(*visual->geometry);
+      if (!shape) continue;
+      std::string colour;
+      if (visual->material) {
+        const urdf::Color& c = visual->material->color;
+        colour = fmt::format(R"( rgba="{} {} {} {}")", c.r, c.g, c.b, c.a);
+      }
+      line(depth, fmt::format(R"(<geom class="visual" {} {}{}/>)", *shape, pose_attributes(isometry(visual->origin)), colour));
+    }
+  }
+
+  void write_collisions(const urdf::Link& link, int depth) {
+    const model::FootModel* foot = nullptr;
+    for (const auto& candidate : robot_.feet)
+      if (candidate.link == link.name) foot = &candidate;
+    for (const auto& collision : link.collision_array) {
+      const auto shape = collision_shape(*collision->geometry);
+      if (!shape)
+        throw model::ConfigError(fmt::format("{}: link {}: collision by a mesh; expected box, cylinder or sphere",
+                                             (robot_.directory / "robot.yaml").string(), link.name));
+      line(depth, fmt::format(R"(<geom class="{}" {} {}/>)", foot != nullptr ? "foot_collision" : "collision", *shape,
+                              pose_attributes(isometry(collision->origin))));
+    }
+    if (foot == nullptr) return;
+    const Eigen::Vector3d &c = foot->box_center_F, &h = foot->box_half_size_m;
+    line(depth, fmt::format(R"(<geom name="{}_sole" class="sole" type="box" pos="{} {} {}" size="{} {} {}"/>)",
+                            xml_escaped(link.name), c.x(), c.y(), c.z(), h.x(), h.y(), h.z()));
+  }
+
+  /// So that MuJoCo's depth-first order of coordinates is the robot's joint order wherever the tree allows it.
+  std::vector<urdf::LinkSharedPtr> children_in_joint_order(const urdf::Link& link) const {
+    std::vector<urdf::LinkSharedPtr> children = link.child_links;
+    std::stable_sort(children.begin(), children.end(),
+                     [this](const auto& a, const auto& b) { return first_joint(*a) < first_joint(*b); });
+    return children;
+  }
+
+  int first_joint(const urdf::Link& link) const {
+    int first = robot_.joint_index.find(link.parent_joint->name).value_or(std::numeric_limits<int>::max());
+    for (const auto& child : link.child_links) first = std::min(first, first_joint(*child));
+    return first;
+  }
+
+  /// Links next to each other overlap at their joint by design; MuJoCo leaves out direct parents only, but the small links
+  /// inside a compound joint carry no shapes.
+  void write_exclusions() {
+    text_ += "  <contact>\n";
+    for (const auto& [above, below] : neighbours_)
+      line(2, fmt::format(R"(<exclude body1="{}" body2="{}"/>)", xml_escaped(above), xml_escaped(below)));
+    text_ += "  </contact>\n";
+  }
+
+  void write_actuators() {
+    text_ += "  <actuator>\n";
+    for (const auto& joint : robot_.joints)
+      line(2, fmt::format(R"(<general name="{0}" joint="{0}" gaintype="fixed" gainprm="{1}" biastype="affine" )"
+                          R"(biasprm="0 {2} {3}" forcelimited="true" forcerange="{4} {5}"/>)",
+                          xml_escaped(joint.name), joint.kp_Nm_per_rad, -joint.kp_Nm_per_rad, -joint.kd_Nm_s_per_rad,
+                          -joint.effort_limit_Nm, joint.effort_limit_Nm));
+    text_ += "  </actuator>\n";
+  }
+
+  void write_sensors() {
+    text_ += "  <sensor>\n";
+    line(2, R"(<gyro name="imu_gyro" site="imu"/>)");
+    line(2, R"(<accelerometer name="imu_accelerometer" site="imu"/>)");
+    line(2, R"(<framequat name="imu_orientation" objtype="site" objname="imu"/>)");
+    text_ += "  </sensor>\n";
+  }
+
+  void write_standing_keyframe() {
+    std::string qpos = fmt::format("0 0 {} 1 0 0 0", robot_.standing_height_m);
+    append_standing_angles(*robot_.urdf->getRoot(), qpos);
+    std::string ctrl;
+    for (const auto& joint : robot_.joints) ctrl += fmt::format("{}{}", ctrl.empty() ? "" : " ", joint.stand_rad);
+    text_ += "  <keyframe>\n";
+    line(2, fmt::format(R"(<key name="stand" qpos="{}" ctrl="{}"/>)", qpos, ctrl));
+    text_ += "  </keyframe>\n";
+  }
+
+  void append_standing_angles(const urdf::Link& link, std::string& qpos) const {
+    for (const auto& child : children_in_joint_order(link)) {
+      const auto joint = robot_.joint_index.find(child->parent_joint->name);
+      if (joint) qpos += fmt::format(" {}", robot_.joints[static_cast<std::size_t>(*joint)].stand_rad);
+      append_standing_angles(*child, qpos);
+    }
+  }
+
+  const model::RobotModel& robot_;
+  const WorldOptions& options_;
+  std::string text_;
+  std::vector<std::pair<std::string, std::string>> neighbours_;
+};
+
+}  // namespace
+
+std::string mjcf(const model::RobotModel& robot, const WorldOptions& options) { return MjcfText(robot, options).build(); }
+
+}  // namespace pmg::sim

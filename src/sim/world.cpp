@@ -1,0 +1,228 @@
+#include "sim/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+#include "sim/sensor_noise.hpp"
+#include "sim/suspension.hpp"
+
+namespace pmg::sim {
+
+namespace {
+
+constexpr double kGantryLift_m = 0.2;           // of a world that starts hanging
+constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
+
+struct FreeModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct FreeData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+/// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in mjData.
+void silence_warnings(const char*) {}
+
+[[noreturn]] void abort_on_error(const char* message) {
+  std::fprintf(stderr, "MuJoCo: %s\n", message);
+  std::abort();  // mju_error doesn't expect its handler to return
+}
+
+std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
+  mju_user_warning = silence_warnings;
+  mju_user_error = abort_on_error;
+  constexpr const char* kName = "robot.xml";
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(xml.size()));
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), kName)], xml.data(), xml.size());
+  std::array<char, 1000> error{};
+  std::unique_ptr<mjModel, FreeModel> model(mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())));
+  mj_deleteVFS(files.get());
+  if (!model) throw std::runtime_error(std::string("MuJoCo refuses the robot: ") + error.data());
+  return model;
+}
+
+int find(const mjModel* model, mjtObj type, const std::string& name) {
+  const int id = mj_name2id(model, type, name.c_str());
+  if (id < 0) throw std::runtime_error("no such object in the MuJoCo model: " + name);
+  return id;
+}
+
+Eigen::Quaterniond quaternion(const mjtNum* q) { return {q[0], q[1], q[2], q[3]}; }
+
+}  // namespace
+
+struct World::Impl {
+  Impl(const model::RobotModel& robot, const WorldOptions& world_options)
+      : options(world_options),
+        model(compile(mjcf(robot, world_options))),
+        data(mj_makeData(model.get())),
+        suspension(robot.total_mass_kg, robot.standing_height_m),
+        noise(world_options, robot.joint_index.size()) {
+    for (const auto& joint : robot.joints) {
+      const int id = find(model.get(), mjOBJ_JOINT, joint.name);
+      qpos_address.push_back(model->jnt_qposadr[id]);
+      dof_address.push_back(model->jnt_dofadr[id]);
+    }
+    base_body = find(model.get(), mjOBJ_BODY, robot.base_link);
+    torso_body = find(model.get(), mjOBJ_BODY, robot.torso_link);
+    for (const Foot foot : {kLeft, kRight}) {
+      foot_body[foot] = find(model.get(), mjOBJ_BODY, robot.feet[foot].link);
+      sole_geom[foot] = find(model.get(), mjOBJ_GEOM, robot.feet[foot].link + "_sole");
+    }
+    gyro_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_gyro")];
+    accelerometer_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_accelerometer")];
+    orientation_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_orientation")];
+    // The exported model's actuators are position servos. Here ctrl carries kp q_des + kd dq_des + tau_ff whole, because
+    // a drive that only damps has kp = 0.
+    for (int a = 0; a < model->nu; ++a) model->actuator_gainprm[a * mjNGAIN] = 1.0;
+  }
+
+  WorldOptions options;
+  std::unique_ptr<mjModel, FreeModel> model;
+  std::unique_ptr<mjData, FreeData> data;
+  Suspension suspension;
+  SensorNoise noise;
+  Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
+  std::vector<int> qpos_address, dof_address;  // in joint order, as the actuators are
+  int base_body = 0, torso_body = 0;
+  std::array<int, 2> foot_body{}, sole_geom{};
+  int gyro_address = 0, accelerometer_address = 0, orientation_address = 0;
+  std::array<double, 2> foot_force_N{}, foot_slip_m_s{};
+  std::uint64_t steps = 0;
+  bool diverged = false;
+};
+
+World::World(const model::RobotModel& robot, const WorldOptions& options)
+    : robot_(robot), impl_(std::make_unique<Impl>(robot, options)) {
+  model_ = impl_->model.get();
+  data_ = impl_->data.get();
+  reset();
+}
+
+World::~World() = default;
+
+void World::reset() {
+  Impl& w = *impl_;
+  mj_resetDataKeyframe(model_, data_, find(model_, mjOBJ_KEY, "stand"));
+  mju_zero(data_->ctrl, model_->nu);
+  mj_forward(model_, data_);
+  w.suspension = Suspension(robot_.total_mass_kg, robot_.standing_height_m);
+  w.suspension.set_ground_place(Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * w.torso_body), 0.0);
+  if (w.options.gantry) {
+    w.suspension.set(kGantryLift_m, 1.0);
+    data_->qpos[2] += kGantryLift_m - Suspension::kSag_m;
+    mj_forward(model_, data_);
+  }
+  w.noise = SensorNoise(w.options, robot_.joint_index.size());
+  w.push_W_N.setZero();
+  w.foot_force_N = w.foot_slip_m_s = {};
+  w.steps = 0;
+  w.diverged = false;
+}
+
+// mj_step in two halves, so that positions, velocities and the sensors of both belong to the new state when the step is
+// over; mj_step itself leaves them one step behind. Forces, and with them the accelerometer, are those of the step done.
+void World::step(const model::JointCommand& command) noexcept {
+  Impl& w = *impl_;
+  if (w.diverged) return;
+  set_drives(command);
+  mjtNum* torso_wrench = data_->xfrc_applied + 6 * w.torso_body;
+  mju_zero(torso_wrench, 6);
+  Eigen::Map<Eigen::Vector3d>(torso_wrench) += w.push_W_N;
+  w.suspension.apply(model_, data_, w.torso_body);
+  mj_step2(model_, data_);
+  measure_feet();
+  mj_step1(model_, data_);
+  w.noise.draw();
+  ++w.steps;
+  check_divergence();
+}
+
+void World::set_drives(const model::JointCommand& command) noexcept {
+  for (int j = 0; j < model_->nu; ++j) {
+    mjtNum* bias = model_->actuator_biasprm + j * mjNBIAS;
+    bias[1] = -command.kp[j];
+    bias[2] = -command.kd[j];
+    data_->ctrl[j] = command.kp[j] * command.q[j] + command.kd[j] * command.dq[j] + command.tau_ff[j];
+  }
+}
+
+// Between the two halves of a step, while contacts and their forces belong together.
+void World::measure_feet() noexcept {
+  Impl& w = *impl_;
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    Eigen::Vector3d weighted_point = Eigen::Vector3d::Zero();
+    double force_N = 0.0;
+    for (int c = 0; c < data_->ncon; ++c) {
+      const mjContact& contact = data_->contact[c];
+      if (contact.geom1 != w.sole_geom[foot] && contact.geom2 != w.sole_geom[foot]) continue;
+      mjtNum wrench[6];
+      mj_contactForce(model_, data_, c, wrench);
+      force_N += wrench[0];
+      weighted_point += wrench[0] * Eigen::Map<const Eigen::Vector3d>(contact.pos);
+    }
+    w.foot_force_N[foot] = force_N;
+    w.foot_slip_m_s[foot] = 0.0;
+    if (force_N <= 0.0) continue;
+    mjtNum velocity[6];
+    mj_objectVelocity(model_, data_, mjOBJ_XBODY, w.foot_body[foot], velocity, 0);
+    const Eigen::Map<const Eigen::Vector3d> omega(velocity), v(velocity + 3);
+    const Eigen::Vector3d lever =
+        weighted_point / force_N - Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * w.foot_body[foot]);
+    w.foot_slip_m_s[foot] = (v + omega.cross(lever)).head<2>().norm();
+  }
+}
+
+// MuJoCo resets a state that it finds bad and goes on; the counted warning is all that tells.
+void World::check_divergence() noexcept {
+  for (const mjWarningStat& warning : data_->warning)
+    if (warning.number > 0) impl_->diverged = true;
+}
+
+void World::read(model::RobotState& state) noexcept {
+  const Impl& w = *impl_;
+  const int joints = model_->nu;
+  state.stamp_ns = std::llround(static_cast<double>(w.steps) * w.options.timestep_s * 1e9);
+  state.bus_sample = w.steps;
+  state.q.resize(joints);
+  state.dq.resize(joints);
+  state.tau = Eigen::Map<const Eigen::VectorXd>(data_->actuator_force, joints);
+  state.temperature_degC.setConstant(joints, kDriveTemperature_degC);
+  for (int j = 0; j < joints; ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    state.q[j] = data_->qpos[w.qpos_address[index]] + w.noise.encoder_rad()[j];
+    state.dq[j] = data_->qvel[w.dof_address[index]];
+  }
+  state.gyro_rad_s = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.gyro_address) + w.noise.gyro_rad_s();
+  state.acceleration_m_s2 = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.accelerometer_address);
+  state.orientation_WI = quaternion(data_->sensordata + w.orientation_address) * w.noise.orientation();
+}
+
+Truth World::truth() const noexcept {
+  const Impl& w = *impl_;
+  Truth truth;
+  truth.p_WB = Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * w.base_body);
+  truth.q_WB = quaternion(data_->xquat + 4 * w.base_body);
+  truth.v_WB_W = Eigen::Map<const Eigen::Vector3d>(data_->qvel);
+  truth.omega_WB_B = Eigen::Map<const Eigen::Vector3d>(data_->qvel + 3);
+  truth.q_WT = quaternion(data_->xquat + 4 * w.torso_body);
+  truth.foot_force_N = w.foot_force_N;
+  truth.foot_slip_m_s = w.foot_slip_m_s;
+  return truth;
+}
+
+bool World::diverged() const noexcept { return impl_->diverged; }
+
+double World::time_s() const noexcept { return static_cast<double>(impl_->steps) * impl_->options.timestep_s; }
+
+void World::set_hoist(double lift_m, double engaged) noexcept { impl_->suspension.set(lift_m, engaged); }
+
+void World::set_push(const Eigen::Vector3d& force_W_N) noexcept { impl_->push_W_N = force_W_N; }
+
+}  // namespace pmg::sim
