@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -27,14 +25,12 @@ struct FreeData {
 /// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in mjData.
 void silence_warnings(const char*) {}
 
-[[noreturn]] void abort_on_error(const char* message) {
-  std::fprintf(stderr, "MuJoCo: %s\n", message);
-  std::abort();  // mju_error doesn't expect its handler to return
-}
+/// mju_error doesn't expect its handler to return. A step that ends this way leaves a state that only a reset makes whole.
+[[noreturn]] void throw_error(const char* message) { throw std::runtime_error(std::string("MuJoCo: ") + message); }
 
 std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
   mju_user_warning = silence_warnings;
-  mju_user_error = abort_on_error;
+  mju_user_error = throw_error;
   constexpr const char* kName = "robot.xml";
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
@@ -111,6 +107,7 @@ void World::reset() {
   Impl& w = *impl_;
   mj_resetDataKeyframe(model_, data_, find(model_, mjOBJ_KEY, "stand"));
   mju_zero(data_->ctrl, model_->nu);
+  mju_zero(model_->actuator_biasprm, mjNBIAS * model_->nu);  // no drive acts before the first command
   mj_forward(model_, data_);
   w.suspension = Suspension(robot_.total_mass_kg, robot_.standing_height_m);
   w.suspension.set_ground_place(Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * w.torso_body), 0.0);
@@ -136,9 +133,14 @@ void World::step(const model::JointCommand& command) noexcept {
   mju_zero(torso_wrench, 6);
   Eigen::Map<Eigen::Vector3d>(torso_wrench) += w.push_W_N;
   w.suspension.apply(model_, data_, w.torso_body);
-  mj_step2(model_, data_);
-  measure_feet();
-  mj_step1(model_, data_);
+  try {
+    mj_step2(model_, data_);
+    measure_feet();
+    mj_step1(model_, data_);
+  } catch (const std::runtime_error&) {  // throw_error: the implicit integrator met a matrix that it can't factor
+    w.diverged = true;
+    return;
+  }
   w.noise.draw();
   ++w.steps;
   check_divergence();

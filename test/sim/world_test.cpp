@@ -133,6 +133,7 @@ TEST(World, StepIsMuJoCosStep) {
   sim::World world(z1(), {});
   model::JointCommand command = standing_command(z1());
   command.q[z1().joint_index.at("left_elbow")] -= 0.5;
+  world.step(command);  // the gains are in the model from the first command on
   mjModel* model = mj_copyModel(nullptr, world.mj_model());
   mjData* data = mj_copyData(nullptr, model, world.mj_data());
   for (int j = 0; j < model->nu; ++j) data->ctrl[j] = command.kp[j] * command.q[j];
@@ -203,7 +204,7 @@ TEST(World, AStateThatBlowsUpIsReportedAndFrozen) {
 TEST(World, PushMovesTheRobotItsWay) {
   sim::World world(z1(), {});
   const model::JointCommand command = standing_command(z1());
-  for (int i = 0; i < 500; ++i) world.step(command);
+  for (int i = 0; i < 2500; ++i) world.step(command);  // settled
   const Eigen::Vector3d before = world.truth().p_WB;
   world.set_push({0.0, 15.0, 0.0});
   for (int i = 0; i < 250; ++i) world.step(command);
