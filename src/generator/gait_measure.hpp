@@ -1,0 +1,41 @@
+// What a leg trajectory does on the ground: the figures that clips are accepted by.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "generator/gait_optimization.hpp"
+#include "generator/gait_task.hpp"
+
+namespace pmg::generator {
+
+/// Stance windows and period of a trajectory.
+struct GaitTiming {
+  double period_s = 1.0;
+  PerFoot<double> contact_center{0.0, 0.5};
+  PerFoot<double> duty_factor{0.6, 0.6};
+};
+
+/// A clip's own timing: left initial contact at phase 0, right half a cycle later.
+GaitTiming timing(double period_s, double duty_factor);
+
+/// q = q_stand + gain (q_clip - q_stand) + addition, at every sample.
+LegTrajectory blend(const RobotLegs& legs, const LegTrajectory& clip, const Scenario& scenario);
+
+struct GroundMeasure {
+  Eigen::Vector3d mean_velocity = Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]
+  Eigen::Vector3d velocity_range = Eigen::Vector3d::Zero();  ///< largest deviation from the mean
+  double slip_mean_m_s = 0.0, slip_p95_m_s = 0.0;           ///< each foot in double support after the best base motion
+  double yaw_slip_max_rad_s = 0.0;                          ///< the same for its turning
+  double other_foot_height_m = 0.0;    ///< largest height of the higher stance foot in double support
+  double clearance_m = 0.0;            ///< lowest sole point in the middle of the swing (0.3 .. 0.7 of it), smaller foot
+  double lowest_swing_m = 0.0;         ///< lowest sole point anywhere in swing, negative below ground
+  double foot_gap_m = 0.0;             ///< smallest width between the soles, along the base's y axis
+  double height_mean_m = 0.0, height_min_m = 0.0, height_max_m = 0.0;  ///< base, deviation from stand
+};
+
+/// R_HB: base attitude in the heading frame, constant. Contact edges as in the generator (0.04 of a cycle).
+GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
+                      const Eigen::Matrix3d& R_HB = Eigen::Matrix3d::Identity());
+
+}  // namespace pmg::generator

@@ -1,0 +1,204 @@
+#include "generator/gait_optimization.hpp"
+
+#include <ceres/ceres.h>
+
+#include <vector>
+
+#include "generator/gait_measure.hpp"
+#include "generator/gait_residuals.hpp"
+#include "model/config_error.hpp"
+
+namespace pmg::generator {
+namespace {
+
+constexpr std::size_t kKnots = 24;       // even, so that half a cycle is a whole number of knots
+constexpr double kEdgeBeyond = 0.03;     // cycles around double support in which the feet already have the same height
+constexpr int kVelocityCorrections = 3;  // solves: each moves the target by what the mean velocity missed
+
+/// Which knots a leg uses and how: the right leg of a symmetric gait borrows the left one's.
+struct KnotTable {
+  std::vector<std::array<double, kLegJoints>> left, right;
+  bool symmetric;
+
+  explicit KnotTable(bool is_symmetric) : left(kKnots), right(is_symmetric ? 0 : kKnots), symmetric(is_symmetric) {}
+  double* knot(Foot foot, std::size_t i) {
+    return (foot == kRight && !symmetric) ? right[i].data() : left[i].data();
+  }
+};
+
+double own_phase(double phase, Foot foot, bool symmetric) { return (foot == kRight && symmetric) ? phase + 0.5 : phase; }
+
+void start_from_reference(const RobotLegs& legs, const GaitTask& task, KnotTable& table) {
+  for (const Foot foot : {kLeft, kRight}) {
+    if (foot == kRight && task.symmetric) {
+      continue;
+    }
+    for (std::size_t i = 0; i < kKnots; ++i) {
+      const std::size_t sample = i * kClipSamples / kKnots;
+      for (std::size_t j = 0; j < kLegJoints; ++j) {
+        const auto joint = static_cast<Eigen::Index>(j);
+        table.knot(foot, i)[j] = task.reference[sample][foot][joint] - legs.stand[foot][joint];
+      }
+    }
+  }
+}
+
+void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vector<Eigen::Vector3d>& correction,
+                   KnotTable& table, ceres::Problem& problem) {
+  for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
+    for (std::size_t sample = 0; sample < kClipSamples; ++sample) {
+      const double phase = static_cast<double>(sample) / static_cast<double>(kClipSamples);
+      std::vector<double*> blocks;
+      for (const Foot foot : {kLeft, kRight}) {
+        for (const std::size_t k : spline_basis(own_phase(phase, foot, task.symmetric), kKnots).knot) {
+          blocks.push_back(table.knot(foot, k));
+        }
+      }
+      using Cost = ceres::AutoDiffCostFunction<GroundResiduals, kGroundResiduals, kLegJoints, kLegJoints, kLegJoints,
+                                               kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
+      problem.AddResidualBlock(
+          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, correction[s])), nullptr, blocks);
+    }
+  }
+  for (const Foot foot : {kLeft, kRight}) {
+    if (foot == kRight && task.symmetric) {
+      continue;
+    }
+    for (std::size_t sample = 0; sample < kClipSamples; ++sample) {
+      const double phase = static_cast<double>(sample) / static_cast<double>(kClipSamples);
+      const SplineBasis basis = spline_basis(phase, kKnots);
+      using Cost = ceres::AutoDiffCostFunction<PostureResiduals, 2 * kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
+      problem.AddResidualBlock(new Cost(new PostureResiduals(legs, task, foot, sample, kKnots)), nullptr,
+                               table.knot(foot, basis.knot[0]), table.knot(foot, basis.knot[1]),
+                               table.knot(foot, basis.knot[2]), table.knot(foot, basis.knot[3]));
+    }
+    for (std::size_t i = 0; i < kKnots; ++i) {
+      using Cost = ceres::AutoDiffCostFunction<SmoothResiduals, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
+      const double per_knot = task.weights.smooth * static_cast<double>(kKnots * kKnots);
+      problem.AddResidualBlock(new Cost(new SmoothResiduals{per_knot}), nullptr, table.knot(foot, (i + kKnots - 1) % kKnots),
+                               table.knot(foot, i), table.knot(foot, (i + 1) % kKnots));
+    }
+  }
+}
+
+LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& table) {
+  LegTrajectory out;
+  for (std::size_t sample = 0; sample < kClipSamples; ++sample) {
+    const double phase = static_cast<double>(sample) / static_cast<double>(kClipSamples);
+    LegPose q = legs.stand;
+    LegPose dq = {LegVector<double>::Zero(), LegVector<double>::Zero()};
+    for (const Foot foot : {kLeft, kRight}) {
+      const SplineBasis basis = spline_basis(own_phase(phase, foot, symmetric), kKnots);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Eigen::Map<const LegVector<double>> knot(table.knot(foot, basis.knot[k]));
+        const LegVector<double> signed_knot =
+            foot == kRight && symmetric ? LegVector<double>(knot.cwiseProduct(legs.mirror_sign)) : LegVector<double>(knot);
+        q[foot] += basis.value[k] * signed_knot;
+        dq[foot] += basis.slope[k] * signed_knot;
+      }
+    }
+    out.q.push_back(q);
+    out.dq_dphi.push_back(dq);
+  }
+  return out;
+}
+
+}  // namespace
+
+RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles) {
+  RobotLegs legs;
+  legs.standing_height_m = robot.standing_height_m;
+  for (const Foot foot : {kLeft, kRight}) {
+    legs.geometry[foot] = leg_geometry(robot, roles, foot);
+    for (std::size_t role = 0; role < kLegJoints; ++role) {
+      const model::Joint& joint = robot.joints[static_cast<std::size_t>(roles.leg[foot][role])];
+      const auto i = static_cast<Eigen::Index>(role);
+      legs.stand[foot][i] = joint.stand_rad;
+      legs.lower[foot][i] = joint.lower_rad;
+      legs.upper[foot][i] = joint.upper_rad;
+    }
+  }
+  for (std::size_t role = 0; role < kLegJoints; ++role) {
+    const auto left = static_cast<std::size_t>(roles.leg[kLeft][role]);
+    if (robot.mirror.partner[left] != roles.leg[kRight][role]) {
+      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": " + robot.joints[left].name +
+                               ": its mirror image isn't the right leg's joint; expected symmetric legs");
+    }
+    legs.mirror_sign[static_cast<Eigen::Index>(role)] = robot.mirror.sign[left];
+  }
+  return legs;
+}
+
+GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, const Scenario& scenario, double phase,
+                                 std::size_t sample, std::size_t knots, const Eigen::Vector3d& velocity_correction)
+    : legs_(legs), task_(task), scenario_(scenario) {
+  const double r = task.duty_factor;
+  PerFoot<double> wide{};
+  for (const Foot foot : {kLeft, kRight}) {
+    basis_[foot] = spline_basis(own_phase(phase, foot, task.symmetric), knots);
+    sign_[foot] = foot == kRight && task.symmetric ? legs.mirror_sign : LegVector<double>::Ones();
+    base_q_[foot] = legs.stand[foot];
+    base_dq_dphi_[foot].setZero();
+    const Addition& addition = scenario.addition;
+    if (!addition.q.empty()) {
+      base_q_[foot] += addition.q[sample % addition.q.size()][foot];
+    }
+    if (!addition.dq_dphi.empty()) {
+      base_dq_dphi_[foot] += addition.dq_dphi[sample % addition.dq_dphi.size()][foot];
+    }
+    const double s = stance_phase(phase, foot, r);
+    contact_[foot] = contact_weight(s, r);
+    wide[foot] = contact_weight(s, r + 2.0 * kEdgeBeyond);
+    const double in_stance = s / r + 0.5;
+    flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
+    const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
+    const double rise = std::sin(std::numbers::pi * swing);
+    clearance_m_[foot] = scenario.gain * task.clearance_m * rise * rise;
+  }
+  near_both_ = std::sqrt(wide[kLeft] * wide[kRight]);
+  scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
+  height_m_ = legs.standing_height_m + scenario.gain * task.height_m + scenario.addition.height_m;
+  velocity_ = scenario.gain * task.velocity + scenario.addition.velocity + velocity_correction;
+  // The base sways towards the left foot in the middle of its stance, and to the right half a cycle later.
+  const double angle = 2.0 * std::numbers::pi * (phase - 0.5 * r);
+  velocity_.y() -= scenario.gain * task.sway_m * 2.0 * std::numbers::pi / task.period_s * std::sin(angle);
+}
+
+PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample, std::size_t knots)
+    : basis_(spline_basis(static_cast<double>(sample) / static_cast<double>(kClipSamples), knots)),
+      stand_(legs.stand[foot]),
+      reference_(task.reference[sample][foot]),
+      reference_weight_(task.weights.reference / std::sqrt(static_cast<double>(kClipSamples))),
+      lower_(legs.lower[foot].array() + kLimitMargin_rad),
+      upper_(legs.upper[foot].array() - kLimitMargin_rad),
+      limit_weight_(task.weights.limit / std::sqrt(static_cast<double>(kClipSamples))) {}
+
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
+  KnotTable table(task.symmetric);
+  start_from_reference(legs, task, table);
+  std::vector<Eigen::Vector3d> correction(task.scenarios.size(), Eigen::Vector3d::Zero());
+  GaitSolution solution;
+  for (int round = 0; round < kVelocityCorrections; ++round) {
+    ceres::Problem problem;
+    add_residuals(legs, task, correction, table, problem);
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = round == 0 ? 60 : 15;
+    options.function_tolerance = 1e-5;
+    options.num_threads = 1;  // the same bytes every time
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    solution.cost = summary.final_cost;
+    solution.iterations += static_cast<int>(summary.iterations.size());
+    solution.legs = sample_legs(legs, task.symmetric, table);
+    for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
+      const Scenario& scenario = task.scenarios[s];
+      correction[s] += scenario.gain * task.velocity + scenario.addition.velocity -
+                       measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor)).mean_velocity;
+    }
+  }
+  return solution;
+}
+
+}  // namespace pmg::generator

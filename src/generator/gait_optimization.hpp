@@ -1,0 +1,31 @@
+// Makes the legs' part of a dynamic clip by nonlinear least squares, so that it stays consistent with the ground at every
+// gain at which the generator blends it with standing.
+#pragma once
+
+#include "generator/gait_task.hpp"
+#include "generator/leg_geometry.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::generator {
+
+struct RobotLegs {
+  PerFoot<LegGeometry> geometry;
+  LegPose stand, lower, upper;                   ///< [rad]
+  LegVector<double> mirror_sign;                 ///< q_right = mirror_sign * q_left of the mirrored posture
+  double standing_height_m = 0.0;                ///< base above the soles
+};
+
+/// Throws model::ConfigError when the legs aren't mirror images.
+RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles);
+
+struct GaitSolution {
+  LegTrajectory legs;
+  double cost = 0.0;
+  int iterations = 0;
+};
+
+/// The generator blends in joint space: q = q_stand + g (q_clip - q_stand) + addition. Unknown are the knots of a periodic
+/// cubic spline of each leg joint's deviation from stand; see gait_residuals.hpp for what is asked of it. Deterministic.
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task);
+
+}  // namespace pmg::generator

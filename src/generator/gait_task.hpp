@@ -1,0 +1,75 @@
+// What a dynamic clip shall be: the input of the optimisation in gait_optimization.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "generator/leg_geometry.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::generator {
+
+inline constexpr std::size_t kClipSamples = 100;  ///< rows of a dynamic clip; phase k / kClipSamples
+
+/// Both legs' joint angles at one phase.
+using LegPose = PerFoot<LegVector<double>>;
+
+/// Joint angles [rad] and slopes [rad per cycle] of both legs over one cycle.
+struct LegTrajectory {
+  std::vector<LegPose> q, dq_dphi;
+};
+
+/// Joint angles that the generator adds to this clip's, with the velocity that they make: a posture offset (constant) or
+/// another clip in a mixture. Empty trajectories mean none.
+struct Addition {
+  std::vector<LegPose> q, dq_dphi;                               ///< one entry (constant) or one a sample; deviation from stand
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< vx, vy [m/s], omega [rad/s]
+  double height_m = 0.0;                                         ///< what it does to the base height
+};
+
+/// The clip at one gain, with or without something added: one set of ground residuals.
+struct Scenario {
+  double gain = 1.0;
+  double weight = 1.0;
+  Addition addition;
+};
+
+struct GaitWeights {
+  double slip = 20.0;          ///< per m/s, feet against each other in double support
+  double slip_yaw = 5.0;       ///< per rad/s
+  double step_height = 200.0;  ///< per m, feet against each other in double support
+  double velocity = 3.0;       ///< per m/s, base against the steady velocity
+  double velocity_yaw = 3.0;   ///< per rad/s
+  double velocity_up = 0.5;    ///< per m/s
+  double height = 3.0;         ///< per m, base against height_m
+  double clearance = 150.0;    ///< per m short of it
+  double foot_flat = 10.0;     ///< per rad
+  double foot_gap = 60.0;      ///< per m short of it
+  LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad
+  double limit = 50.0;         ///< per rad beyond
+  double smooth = 2e-4;        ///< per rad/cycle^2
+};
+
+struct GaitTask {
+  double period_s = 1.0;
+  double duty_factor = 0.6;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s] at full gain
+  bool symmetric = true;       ///< the right leg is the left one mirrored, half a cycle later
+  double sway_m = 0.0;         ///< the base moves this far towards the stance foot at full gain
+  double height_m = 0.0;       ///< mean base height at full gain, deviation from stand
+  double clearance_m = 0.04;   ///< of the lowest sole point in mid swing
+  double flat_from = 0.0;      ///< part of the stance in which the sole lies flat, fractions of the stance
+  double flat_to = 1.0;
+  double foot_gap_m = 0.03;    ///< between the soles, sideways
+  std::vector<LegPose> reference;  ///< kClipSamples joint angles to stay near [rad]
+  std::vector<Scenario> scenarios;
+  GaitWeights weights;
+};
+
+/// Phase of the foot relative to the middle of its stance, in [-0.5, 0.5). Stance lasts |s| <= duty_factor / 2.
+double stance_phase(double phase, Foot foot, double duty_factor);
+
+/// 1 in stance, 0 in swing, with cosine edges of this width around touch-down and lift-off (design: 0.04 of a cycle).
+double contact_weight(double stance_phase, double duty_factor, double edge_cycle = 0.04);
+
+}  // namespace pmg::generator

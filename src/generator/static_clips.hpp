@@ -1,0 +1,21 @@
+// The posture clips: feet flat and in place on the ground, the centre of mass above them.
+#pragma once
+
+#include "generator/gait_optimization.hpp"
+#include "generator/joint_roles.hpp"
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+
+namespace pmg::generator {
+
+/// Torso pitch (+ forward) over the robot's command range; base height as it stands, hips going back.
+StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
+/// Torso roll (+ right); base level, moved a little to the other side.
+StaticClip make_lean(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
+/// Base height; torso upright. Ends where the legs are nearly straight if the range goes beyond.
+StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
+
+/// The legs' part of a posture: deviation from stand at this command, linear between rows as in the generator.
+LegPose leg_offset(const StaticClip& clip, const JointRoles& roles, const RobotLegs& legs, double command);
+
+}  // namespace pmg::generator

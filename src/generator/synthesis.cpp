@@ -1,0 +1,223 @@
+#include "generator/synthesis.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "generator/gait_measure.hpp"
+#include "generator/gait_reference.hpp"
+#include "generator/static_clips.hpp"
+#include "generator/upper_body.hpp"
+
+namespace pmg::generator {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct Making {
+  const model::RobotModel& robot;
+  JointRoles roles;
+  RobotLegs legs;
+  std::array<StaticClip, 3> posture;  // pitch, roll, height
+};
+
+Addition posture_addition(const Making& making, Channel channel, double command) {
+  Addition addition;
+  addition.q = {leg_offset(making.posture[channel - kPitch], making.roles, making.legs, command)};
+  addition.height_m = channel == kHeight ? command : 0.0;
+  return addition;
+}
+
+/// A finished clip as a part of a mixture.
+Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain, double period_s) {
+  Addition addition;
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    LegPose q;
+    LegPose dq;
+    for (const Foot foot : {kLeft, kRight}) {
+      q[foot] = gain * (legs.q[k][foot] - making.legs.stand[foot]);
+      dq[foot] = gain * legs.dq_dphi[k][foot];
+    }
+    addition.q.push_back(q);
+    addition.dq_dphi.push_back(dq);
+  }
+  addition.velocity = gain * task.velocity * (task.period_s / period_s);
+  addition.height_m = gain * task.height_m;
+  return addition;
+}
+
+std::vector<Scenario> scenarios(const Making& making) {
+  std::vector<Scenario> list;
+  for (const double gain : {0.12, 0.3, 0.55, 0.8, 1.0}) {
+    list.push_back({gain, 1.0, {}});
+  }
+  list.push_back({0.3, 0.7, posture_addition(making, kHeight, -0.09)});
+  list.push_back({0.6, 0.7, posture_addition(making, kHeight, -0.09)});
+  list.push_back({0.5, 0.5, posture_addition(making, kRoll, 0.12)});
+  list.push_back({0.5, 0.5, posture_addition(making, kPitch, 0.25)});
+  return list;
+}
+
+GaitTask forward_task(const Making& making) {
+  GaitTask task;
+  task.period_s = 1.10;
+  task.duty_factor = 0.60;
+  task.velocity = {0.8, 0.0, 0.0};
+  task.sway_m = 0.015;
+  task.height_m = 0.0;
+  task.clearance_m = 0.035;
+  task.flat_from = 0.18;
+  task.flat_to = 0.55;
+  task.reference = published_reference(making.legs);
+  task.weights.reference << 4.0, 1.5, 1.5, 4.0, 4.0, 0.5;
+  task.scenarios = scenarios(making);
+  return task;
+}
+
+GaitTask backward_task(const Making& making, const LegTrajectory& forward, const GaitTask& forward_task) {
+  GaitTask task;
+  task.period_s = 1.17;
+  task.duty_factor = 0.58;
+  task.velocity = {-0.5, 0.0, 0.0};
+  task.sway_m = 0.015;
+  task.clearance_m = 0.045;
+  task.flat_from = 0.3;
+  task.flat_to = 0.85;
+  const double scale = (0.5 * task.period_s) / (0.8 * forward_task.period_s);
+  task.reference = reversed_reference(making.legs, forward, forward_task.duty_factor, scale);
+  task.weights.reference << 2.0, 1.5, 1.5, 2.0, 2.0, 0.5;
+  task.scenarios = scenarios(making);
+  return task;
+}
+
+// Timing: mean of the four sidesteps of CMU subject 69 (mocap.cs.cmu.edu): 1.00 .. 1.03 s a cycle, 53 .. 65 % stance.
+GaitTask lateral_task(const Making& making) {
+  GaitTask task;
+  task.period_s = 1.02;
+  task.duty_factor = 0.58;
+  task.velocity = {0.0, 0.35, 0.0};
+  task.symmetric = false;
+  task.height_m = -0.02;
+  task.clearance_m = 0.045;
+  task.foot_gap_m = 0.035;
+  task.weights.reference = LegVector<double>::Constant(1.5);
+  task.scenarios = scenarios(making);
+  task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
+  // Feet 0.31 m apart on average: the closing foot then keeps clear of the other.
+  task.reference = stepping_reference(making.legs, task, {.half_width_m = 0.155, .lift_m = 0.05, .height_m = -0.02});
+  return task;
+}
+
+// Timing: steady turning in circle walks of CMU subject 69 (1.17 .. 1.20 s, 58 .. 60 % stance). The same subject's turns in place
+// are quarter turns that stop in between, 84 % stance: such windows can't be blended with walking.
+GaitTask turn_task(const Making& making) {
+  GaitTask task;
+  task.period_s = 1.18;
+  task.duty_factor = 0.59;
+  task.velocity = {0.0, 0.0, 0.8};
+  task.symmetric = false;
+  task.sway_m = 0.012;
+  task.height_m = -0.01;
+  task.clearance_m = 0.045;
+  task.foot_gap_m = 0.03;
+  task.weights.reference = LegVector<double>::Constant(1.5);
+  task.scenarios = scenarios(making);
+  task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
+  task.reference = stepping_reference(making.legs, task,
+                                      {.half_width_m = 0.115, .toe_out_rad = 0.08, .lift_m = 0.05, .height_m = -0.01});
+  return task;
+}
+
+DynamicClip assemble(const Making& making, const GaitTask& task, const LegTrajectory& legs, const UpperBody& body) {
+  DynamicClip clip;
+  clip.period_s = task.period_s;
+  const GaitTiming when = timing(task.period_s, task.duty_factor);
+  clip.contact_center = when.contact_center;
+  clip.duty_factor = when.duty_factor;
+  const JointVector q_stand = making.robot.q_stand();
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    const double phase = static_cast<double>(k) / static_cast<double>(kClipSamples);
+    JointVector q = q_stand;
+    JointVector dq = JointVector::Zero(q_stand.size());
+    move_upper_body(making.roles, body, phase, q);
+    constexpr double kStep = 1e-5;  // cycles; the upper body's curves are smooth
+    JointVector before = q_stand;
+    JointVector after = q_stand;
+    move_upper_body(making.roles, body, phase - kStep, before);
+    move_upper_body(making.roles, body, phase + kStep, after);
+    dq = (after - before) / (2.0 * kStep);
+    for (const Foot foot : {kLeft, kRight}) {
+      for (std::size_t role = 0; role < kLegJoints; ++role) {
+        const auto i = static_cast<Eigen::Index>(role);
+        const int joint = making.roles.leg[foot][role];
+        q[joint] += legs.q[k][foot][i] - making.legs.stand[foot][i];
+        dq[joint] += legs.dq_dphi[k][foot][i];
+      }
+    }
+    clip.q.push_back(q);
+    clip.dq_dphi.push_back(dq);
+  }
+  const Eigen::Vector3d mean = measure(making.legs, legs, when).mean_velocity;
+  clip.mean_velocity = {mean.x(), mean.y(), mean.z()};
+  return clip;
+}
+
+}  // namespace
+
+ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(const std::string&)>& progress) {
+  const JointRoles roles = find_joint_roles(robot);
+  Making making{robot, roles, robot_legs(robot, roles), {}};
+  ClipLibrary library;
+  library.q_stand = robot.q_stand();
+  library.q_lower = robot.q_lower();
+  library.q_upper = robot.q_upper();
+  library.mirror = robot.mirror;
+
+  progress("bend");
+  making.posture[0] = make_bend(robot, roles, making.legs);
+  progress("lean");
+  making.posture[1] = make_lean(robot, roles, making.legs);
+  progress("squat");
+  making.posture[2] = make_squat(robot, roles, making.legs);
+  library.posture = making.posture;
+
+  progress("forward");
+  const GaitTask forward = forward_task(making);
+  const LegTrajectory forward_legs = optimize_gait(making.legs, forward).legs;
+  library.positive[kVx] = assemble(making, forward, forward_legs,
+                                   {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+
+  progress("backward");
+  const GaitTask backward = backward_task(making, forward_legs, forward);
+  const LegTrajectory backward_legs = optimize_gait(making.legs, backward).legs;
+  library.negative[kVx] = assemble(making, backward, backward_legs,
+                                   {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+
+  progress("lateral");
+  GaitTask lateral = lateral_task(making);
+  lateral.scenarios.push_back({0.5, 0.7, clip_addition(making, forward_legs, forward, 0.5, lateral.period_s)});
+  const LegTrajectory lateral_legs = optimize_gait(making.legs, lateral).legs;
+  library.positive[kVy] = assemble(making, lateral, lateral_legs, {.pelvis_tilt_rad = 2.0 * kDegree});
+
+  progress("turn");
+  GaitTask turn = turn_task(making);
+  turn.scenarios.push_back({0.5, 0.7, clip_addition(making, forward_legs, forward, 0.5, turn.period_s)});
+  const LegTrajectory turn_legs = optimize_gait(making.legs, turn).legs;
+  library.positive[kOmega] = assemble(making, turn, turn_legs,
+                                      {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  return library;
+}
+
+std::string clip_source(const std::string& name) {
+  if (name == "forward") {
+    return "synthesised from published adult gait (Leboeuf et al., Gait & Posture 69, 2019)";
+  }
+  if (name == "backward") {
+    return "synthesised: forward walking with time reversed (Thorstensson 1986; Winter, Pluck, Yang 1989)";
+  }
+  if (name == "lateral" || name == "turn") {
+    return "synthesised: flat-footed stepping; timing of CMU mocap subject 69 (mocap.cs.cmu.edu)";
+  }
+  return "synthesised: feet in place, centre of mass over them";
+}
+
+}  // namespace pmg::generator

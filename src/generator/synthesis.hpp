@@ -1,0 +1,18 @@
+// A whole clip library for a robot, made from published gait figures.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+
+namespace pmg::generator {
+
+/// progress is told the name of each clip before it is made, and may throw to stop.
+ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(const std::string&)>& progress);
+
+/// Where a clip's numbers come from, one line for its YAML.
+std::string clip_source(const std::string& name);
+
+}  // namespace pmg::generator
