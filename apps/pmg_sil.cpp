@@ -1,0 +1,273 @@
+// pmg_sil: the controller against a MuJoCo simulation, in lockstep, playing a scenario.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "hal/sil_hal.hpp"
+#include "model/clip_library_file.hpp"
+#include "runtime/lockstep.hpp"
+#include "runtime/summary.hpp"
+#include "sim/renderer.hpp"
+#include "sim/video_writer.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kFellOrFault = 1, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+Writes DIR/log.lcm (simulation time only: same binary, inputs and seed give the same bytes), DIR/timing.csv (wall times),
+DIR/summary.json, and with --video DIR/video.mp4.
+
+Example:
+  pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
+
+Exit codes: 0 the scenario ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
+(what was done until then is kept).)";
+
+// Assumed: what consumer-grade IMUs and 14-bit encoders show; no data sheet of this robot is published.
+constexpr double kGyroNoise_rad_s = 0.01, kEncoderNoise_rad = 0.0004, kOrientationNoise_rad = 0.002;
+
+struct Arguments {
+  std::string robot = "z1";
+  fs::path scenario, out, clips, export_mjcf;
+  std::string policy = "none";
+  std::uint64_t seed = 0;
+  bool gantry = false, video = false, json = false, print_config = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")->capture_default_str();
+  app.add_option("--scenario", arguments.scenario, "scenario to play (YAML)");
+  app.add_option("--out", arguments.out, "folder for the results; made if absent");
+  app.add_option("--policy", arguments.policy, "policy's name below the robot's policies/, or none: drives follow the reference")
+      ->capture_default_str();
+  app.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
+  app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
+  app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
+  app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)");
+  app.add_option("--export-mjcf", arguments.export_mjcf, "write the robot's MuJoCo model to this file and exit");
+  app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
+  app.add_flag("--json", arguments.json, "print summary.json on stdout instead of the short report");
+}
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+/// A flag's absence that CLI11 can't judge, because --export-mjcf and --print-config need less.
+void require(const fs::path& value, const char* option) {
+  if (value.empty()) throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
+}
+
+std::unique_ptr<policy::Policy> load_policy(const std::string& name, const model::RobotModel& robot) {
+  if (name == "none") return std::make_unique<policy::ReferencePolicy>();
+  const fs::path file = robot.directory / "policies" / (name + ".onnx");
+  if (!fs::exists(file)) {
+    throw std::invalid_argument(fmt::format("--policy {}: there is no {}; expected the name of a policy there, or none",
+                                            name, file.string()));
+  }
+  throw std::invalid_argument(fmt::format("--policy {}: this build can't run ONNX policies yet; expected none", name));
+}
+
+sim::WorldOptions world_options(const Arguments& arguments) {
+  sim::WorldOptions options;
+  options.gantry = arguments.gantry;
+  options.seed = arguments.seed;
+  options.gyro_noise_rad_s = kGyroNoise_rad_s;
+  options.encoder_noise_rad = kEncoderNoise_rad;
+  options.orientation_noise_rad = kOrientationNoise_rad;
+  return options;
+}
+
+nlohmann::ordered_json channels_json(const std::array<double, kChannels>& values) {
+  nlohmann::ordered_json json;
+  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = values[i];
+  return json;
+}
+
+nlohmann::ordered_json config_json(const Arguments& arguments, const model::RobotModel& robot, const fs::path& clips,
+                                   const runtime::TickOptions& tick, const runtime::LockstepOptions& lockstep) {
+  const runtime::FaultLimits& faults = tick.supervisor.fault_limits;
+  return {{"robot", robot.directory.string()},
+          {"clips", clips.string()},
+          {"scenario", arguments.scenario.string()},
+          {"policy", arguments.policy},
+          {"seed", arguments.seed},
+          {"gantry", arguments.gantry},
+          {"bus_period_s", lockstep.bus_period_s},
+          {"control_period_s", tick.dt_s},
+          {"sensor_noise",
+           {{"gyro_rad_s", kGyroNoise_rad_s}, {"encoder_rad", kEncoderNoise_rad}, {"orientation_rad", kOrientationNoise_rad}}},
+          {"command",
+           {{"lower", channels_json(tick.generator.limits.lower)},
+            {"upper", channels_json(tick.generator.limits.upper)},
+            {"rate_per_s", channels_json(tick.generator.limits.rate_per_s)}}},
+          {"gco", {{"prior_weight", tick.gco.prior_weight}, {"optimise_roll_pitch", tick.gco.optimise_roll_pitch}}},
+          {"limiter", {{"target_rate_factor", tick.limiter.target_rate_factor}}},
+          {"entry",
+           {{"speed_rad_s", tick.entry.speed_rad_s},
+            {"shortest_s", tick.entry.shortest_s},
+            {"longest_s", tick.entry.longest_s}}},
+          {"supervisor",
+           {{"stale_command_s", tick.supervisor.stale_command_s}, {"stop_within_s", tick.supervisor.stop_within_s}}},
+          {"faults",
+           {{"stale_state_s", faults.stale_state_s},
+            {"temperature_degC", faults.temperature_degC},
+            {"joint_limit_margin_rad", faults.joint_limit_margin_rad},
+            {"velocity_factor", faults.velocity_factor},
+            {"torque_factor", faults.torque_factor},
+            {"tilt_rad", faults.tilt_rad},
+            {"persist_ticks", faults.persist_ticks}}}};
+}
+
+/// Films every second tick: 50 frames a second of simulation.
+class Film {
+ public:
+  Film(sim::World& world, const fs::path& file) : world_(world), renderer_(world.mj_model()) { start(file); }
+
+  void after_tick(const runtime::LockstepProgress& progress) {
+    if (++ticks_ % 2 != 0) return;
+    const std::string text = fmt::format("{:6.1f} s  {}\n{}", progress.time_s, runtime::to_string(progress.result.mode),
+                                         progress.step.text);
+    writer_->write(renderer_.render(world_.mj_data(), text));
+  }
+  void close() { writer_->close(); }
+
+ private:
+  void start(const fs::path& file) { writer_.emplace(file, renderer_.width(), renderer_.height(), 50); }
+
+  sim::World& world_;
+  sim::Renderer renderer_;
+  std::optional<sim::VideoWriter> writer_;
+  std::int64_t ticks_ = 0;
+};
+
+/// One line that renews itself, when somebody watches.
+class ProgressLine {
+ public:
+  void after_tick(const runtime::LockstepProgress& progress) {
+    if (!watched_ || ++ticks_ % 50 != 0) return;
+    std::cerr << fmt::format("\r{:6.1f} / {:.1f} s  {:8} {:<60.60}", progress.time_s, progress.duration_s,
+                             runtime::to_string(progress.result.mode), progress.step.text)
+              << std::flush;
+  }
+  void end() const {
+    if (watched_) std::cerr << '\r' << std::string(90, ' ') << '\r' << std::flush;
+  }
+
+ private:
+  bool watched_ = isatty(STDERR_FILENO) == 1;
+  std::int64_t ticks_ = 0;
+};
+
+void report(const runtime::LockstepOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
+  const runtime::TrackingSummary& tracking = outcome.tracking;
+  std::cout << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}\n",
+                           summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
+                           summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall")
+            << fmt::format("tracking over {:.1f} s: velocity {:.3f} m/s, yaw {:.3f} rad/s, pitch {:.3f} rad, roll {:.3f} rad, "
+                           "height {:.3f} m\n",
+                           tracking.followed_s, tracking.lin_vel_mae_m_s, tracking.yaw_vel_mae_rad_s,
+                           tracking.pitch_mae_rad, tracking.roll_mae_rad, tracking.height_mae_m)
+            << fmt::format("reference slip: single support {:.4f} m/s at most, double support {:.4f} m/s mean, {:.4f} m/s p95\n",
+                           outcome.reference_slip.single_support_max_m_s, outcome.reference_slip.double_support_mean_m_s,
+                           outcome.reference_slip.double_support_p95_m_s);
+  if (outcome.diverged) std::cout << "the simulation diverged\n";
+  for (const auto& fault : summary["faults"]) {
+    std::cout << fmt::format("fault at {:.2f} s: {}\n", fault["t_s"].get<double>(), fault["text"].get<std::string>());
+  }
+  std::cout << fmt::format("results in {}\n", out.string());
+}
+
+int simulate(const Arguments& arguments) {
+  require(arguments.scenario, "--scenario");
+  // Everything that input can spoil comes first: nothing is written for bad input.
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  const runtime::Scenario scenario = runtime::load_scenario(arguments.scenario);
+  const fs::path clips = arguments.clips.empty() ? robot.directory / "clips" : arguments.clips;
+  ClipLibrary library = model::load_clip_library(clips, robot);
+  std::unique_ptr<policy::Policy> policy = load_policy(arguments.policy, robot);
+  const runtime::TickOptions tick_options = runtime::tick_options(robot);
+  runtime::LockstepOptions lockstep_options;
+  lockstep_options.balanced_by_policy = arguments.policy != "none";
+  lockstep_options.always_hoisted = arguments.gantry;
+  if (arguments.print_config) {
+    std::cout << config_json(arguments, robot, clips, tick_options, lockstep_options).dump(2) << '\n';
+    return kOk;
+  }
+  require(arguments.out, "--out");
+  sim::World world(robot, world_options(arguments));
+  const io::WallClock wall_clock;
+  runtime::Tick tick(robot, std::move(library), std::move(policy), wall_clock, tick_options);
+  hal::SilHal bus(world);
+  runtime::WorldPlant plant(world);
+
+  fs::create_directories(arguments.out);
+  io::LogWriter log_file(arguments.out / "log.lcm");
+  runtime::TickLog log(log_file, robot, 1.0 / tick_options.dt_s);
+  std::optional<Film> film;
+  if (arguments.video) film.emplace(world, arguments.out / "video.mp4");
+  ProgressLine progress;
+  runtime::Lockstep lockstep(robot, bus, plant, tick, scenario, &log, lockstep_options);
+  lockstep.interrupted = [] { return interrupt_requested != 0; };
+  lockstep.after_tick = [&](const runtime::LockstepProgress& now) {
+    if (film) film->after_tick(now);
+    progress.after_tick(now);
+  };
+
+  const std::int64_t start_ns = wall_clock.now_ns();
+  const runtime::LockstepOutcome outcome = lockstep.run();
+  const double wall_s = static_cast<double>(wall_clock.now_ns() - start_ns) * 1e-9;
+  progress.end();
+  log_file.flush();
+  if (film) film->close();
+  lockstep.timing().write_csv(arguments.out / "timing.csv");
+  const auto summary = runtime::summary_json(
+      {robot.name, scenario.name, arguments.policy, arguments.seed, wall_s}, outcome, lockstep.timing(), robot);
+  runtime::write_json(arguments.out / "summary.json", summary);
+  if (arguments.json) {
+    std::cout << summary.dump(2) << '\n';
+  } else {
+    report(outcome, summary, arguments.out);
+  }
+  if (outcome.interrupted) return kInterrupted;
+  return outcome.fell || outcome.diverged || !outcome.faults.empty() ? kFellOrFault : kOk;
+}
+
+int export_mjcf(const Arguments& arguments) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  const std::string text = sim::mjcf(robot, world_options(arguments));
+  std::ofstream out(arguments.export_mjcf);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(arguments.export_mjcf.string() + ": can't be written");
+  return kOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs the controller against a MuJoCo simulation, in lockstep, playing a scenario.", "pmg_sil");
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  std::signal(SIGINT, on_interrupt);
+  try {
+    return arguments.export_mjcf.empty() ? simulate(arguments) : export_mjcf(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_sil: " << error.what() << '\n';
+    return kBadInput;
+  }
+}

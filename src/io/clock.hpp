@@ -1,0 +1,34 @@
+// What time it is, as an argument: the wall clock on the robot, the simulation's own in lockstep.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace pmg::io {
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  /// Nanoseconds since an arbitrary start, never decreasing.
+  virtual std::int64_t now_ns() const noexcept = 0;
+};
+
+class WallClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
+};
+
+/// Stands still until whoever advances the simulation says how far it has come.
+class SimulationClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void advance_to(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace pmg::io

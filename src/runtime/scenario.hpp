@@ -1,0 +1,53 @@
+// A scripted operator: config/scenarios/*.yaml, what to ask of the controller and when.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pmg/command.hpp"
+#include "runtime/mode.hpp"
+
+namespace pmg::runtime {
+
+/// One stretch of a scenario. The command ramps by itself: the generator limits its rates.
+struct ScenarioStep {
+  double start_s = 0.0;
+  double duration_s = 0.0;
+  std::string text;  ///< for people: progress line, video
+  Mode mode = Mode::kStand;
+  Command command;  ///< channels that the file doesn't name are zero
+  /// The gantry carries the robot through this step unless a policy balances it.
+  bool hoist_without_policy = false;
+};
+
+struct Scenario {
+  std::string name;
+  std::vector<ScenarioStep> steps;  ///< at least one, back to back from 0
+
+  double duration_s() const;
+  const ScenarioStep& at(double time_s) const;  ///< the last step stays in force at and after the end
+};
+
+/// Reads a scenario (docs/file-formats.md). mode and hoist_without_policy hold on until a later step changes them; a command
+/// belongs to its step alone. Throws model::ConfigError with file, line and column.
+Scenario load_scenario(const std::filesystem::path& file);
+
+/// Speaks a scenario as an operator would: in every tick a fresh command and the mode it wants.
+class ScenarioPlayer {
+ public:
+  explicit ScenarioPlayer(const Scenario& scenario);
+
+  void step(double time_s) noexcept;
+  const ScenarioStep& current() const noexcept { return *current_; }
+  const DriveMessage& drive() const noexcept { return drive_; }
+  const ModeRequest& request() const noexcept { return request_; }
+
+ private:
+  const Scenario& scenario_;
+  const ScenarioStep* current_ = nullptr;
+  DriveMessage drive_;
+  ModeRequest request_;
+};
+
+}  // namespace pmg::runtime

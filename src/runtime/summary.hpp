@@ -1,0 +1,26 @@
+// summary.json: one run in figures, for people and for CI.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "runtime/lockstep.hpp"
+
+namespace pmg::runtime {
+
+/// What was run: everything that the figures depend on besides the code.
+struct RunIdentity {
+  std::string robot, scenario, policy;
+  std::uint64_t seed = 0;
+  double wall_s = 0.0;
+};
+
+nlohmann::ordered_json summary_json(const RunIdentity& run, const LockstepOutcome& outcome, const StageTiming& timing,
+                                    const model::RobotModel& robot);
+
+/// Throws std::runtime_error.
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
+
+}  // namespace pmg::runtime
