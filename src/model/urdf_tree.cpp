@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -25,6 +26,35 @@ class Listener final : public console_bridge::OutputHandler {
   }
   std::string said;
 };
+
+Place place_in(const UrdfTree& tree, std::size_t at) {
+  const std::size_t newline = at == 0 ? std::string::npos : tree.text.rfind('\n', at - 1);
+  const auto lines = std::count(tree.text.begin(), tree.text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  return {tree.file.string(), static_cast<int>(lines) + 1,
+          static_cast<int>(newline == std::string::npos ? at : at - newline - 1) + 1};
+}
+
+/// urdfdom takes `nan`, and says of other slips only that some element couldn't be parsed: look at the numbers ourselves.
+void check_numbers(const UrdfTree& tree) {
+  for (const std::string name : {"value", "xyz", "rpy", "lower", "upper", "effort", "velocity", "ixx", "ixy", "ixz", "iyy",
+                                 "iyz", "izz", "radius", "length", "size", "rgba"}) {
+    const std::string opening = " " + name + "=\"";
+    for (std::size_t at = tree.text.find(opening); at != std::string::npos; at = tree.text.find(opening, at + 1)) {
+      const std::size_t start = at + opening.size(), end = tree.text.find('"', start);
+      const std::string text = tree.text.substr(start, end - start);
+      std::istringstream words(text);
+      for (std::string word; words >> word;) {
+        const char* first = word.data() + (word.front() == '+' ? 1 : 0);
+        const char* last = word.data() + word.size();
+        double value = 0.0;
+        const auto [stop, error] = std::from_chars(first, last, value);
+        if (error != std::errc() || stop != last || !std::isfinite(value)) {
+          raise(place_in(tree, at + 1), name, fmt::format("is '{}'", text), "finite numbers");
+        }
+      }
+    }
+  }
+}
 
 KDL::Vector to_kdl(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -105,10 +135,7 @@ Place UrdfTree::place(const std::string& element, const std::string& name) const
   for (std::size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at + 1)) {
     const std::string tag = text.substr(at, text.find('>', at) - at);
     if (tag.find("name=\"" + name + "\"") == std::string::npos) continue;
-    const std::size_t line_start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
-    const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    const std::size_t column = line_start == std::string::npos ? at : at - line_start - 1;
-    return {file.string(), static_cast<int>(lines) + 1, static_cast<int>(column) + 1};
+    return place_in(*this, at);
   }
   return {file.string()};
 }
@@ -122,6 +149,7 @@ UrdfTree read_urdf(const std::filesystem::path& file) {
     raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a URDF file");
   }
   tree.text = text.str();
+  check_numbers(tree);
 
   Listener listener;
   tree.urdf = urdf::parseURDF(tree.text);
