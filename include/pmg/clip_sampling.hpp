@@ -37,15 +37,22 @@ class ClipCurve {
   }
 
   /// Adds g q(phi) to q and its time derivative, g dq/dphi dphi/dt + dg/dt q(phi), to dq: four multiply-adds of a joint
-  /// vector each, because gains and Hermite weights are multiplied first.
+  /// vector each, because gains and Hermite weights are multiplied first. q and dq are different vectors.
   void add_blended(double phase, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
                    JointVector& dq) const noexcept {
     const Segment s = segment(phase);
     const Eigen::Vector4d a = gain * s.value;
     const Eigen::Vector4d b = gain * phase_rate_per_s * s.slope + gain_rate_per_s * s.value;
-    const auto x = knots_.middleCols<4>(s.column);
-    q.noalias() += a[0] * x.col(0) + a[1] * x.col(1) + a[2] * x.col(2) + a[3] * x.col(3);
-    dq.noalias() += b[0] * x.col(0) + b[1] * x.col(1) + b[2] * x.col(2) + b[3] * x.col(3);
+    // One pass that reads each knot once for both sums; Eigen's expressions would take two, and half as long again.
+    const Eigen::Index joints = knots_.rows();
+    const double* const x = knots_.data() + s.column * joints;
+    double* __restrict const q_out = q.data();
+    double* __restrict const dq_out = dq.data();
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      const double x0 = x[i], x1 = x[i + joints], x2 = x[i + 2 * joints], x3 = x[i + 3 * joints];
+      q_out[i] += a[0] * x0 + a[1] * x1 + a[2] * x2 + a[3] * x3;
+      dq_out[i] += b[0] * x0 + b[1] * x1 + b[2] * x2 + b[3] * x3;
+    }
   }
 
   /// Largest and smallest value of each joint over all phases [rad], exact for the interpolated curve.

@@ -1,0 +1,43 @@
+#include "generator_core/allocation_count.hpp"
+
+#include <atomic>
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+
+long pmg::test::allocation_count() noexcept { return -1; }
+
+#else
+
+namespace {
+std::atomic<long> count{0};
+}
+
+long pmg::test::allocation_count() noexcept { return count; }
+
+// glibc lets a program replace malloc and still reach its own under these names.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t items, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t items, std::size_t size) {
+  ++count;
+  return __libc_calloc(items, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  ++count;
+  return __libc_realloc(memory, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+}
+
+#endif
