@@ -231,23 +231,25 @@ def looks(side):
     foot_x = 0.5 * FOOT_LENGTH_m - HEEL_TO_ANKLE_m
     hand = length("hand")
     visual = {
-        "pelvis": rounded_box((0, 0, 0.045), (0.13, 0.20, 0.075), 0.035, "shell")
+        "pelvis": rounded_box((0, 0, 0.062), (0.13, 0.21, 0.05), 0.045, "shell")
+        + rounded_box((0, 0, 0.030), (0.11, 0.13, 0.05), 0.040, "shell")
         + [box((0, 0, -0.005), (0.08, 0.07, 0.06), "graphite"), cylinder((0, 0, 0.08), (0, 0, WAIST - 0.03), 0.055, "graphite")],
         "waist_yaw_link": [hub(Z, 0.02, 0.058, "metal", (0, 0, -0.015))],
         "waist_roll_link": [hub(X, 0.05, 0.036, "graphite")],
         "torso": [hub(Y, 0.065, 0.034, "metal")]
-        + rounded_box((0, 0, 0.075), (0.13, 0.17, 0.09), 0.04, "graphite")
-        + rounded_box((0, 0, 0.205), (0.17, 0.235, 0.17), 0.055, "shell")
-        + rounded_box((0, 0, 0.30), (0.135, 0.20, 0.03), 0.05, "shell")
-        + [box((0.083, 0, 0.235), (0.008, 0.10, 0.022), "accent"), box((-0.09, 0, 0.205), (0.03, 0.15, 0.14), "graphite"),
-           cylinder((0, 0, 0.31), (0, 0, NECK - 0.01), 0.035, "graphite")]
+        + rounded_box((0, 0, 0.070), (0.12, 0.15, 0.08), 0.045, "graphite")
+        + rounded_box((0, 0, 0.130), (0.145, 0.195, 0.04), 0.055, "shell")
+        + rounded_box((0, 0, 0.215), (0.17, 0.24, 0.14), 0.065, "shell")
+        + rounded_box((0, 0, 0.297), (0.14, 0.20, 0.026), 0.060, "shell")
+        + [box((0.087, 0, 0.250), (0.008, 0.09, 0.016), "accent"), cylinder((0.080, 0, 0.205), (0.092, 0, 0.205), 0.020, "graphite"),
+           cylinder((0.086, 0, 0.205), (0.0935, 0, 0.205), 0.013, "accent"), cylinder((0, 0, 0.31), (0, 0, NECK - 0.01), 0.035, "graphite")]
+        + rounded_box((-0.085, 0, 0.210), (0.05, 0.16, 0.13), 0.020, "graphite")
         + [hub(Y, 0.025, 0.036, "graphite", (0, s * (SHOULDER_Y_m - 0.045), SHOULDER)) for s in (1, -1)],
         "head_yaw_link": [hub(Z, 0.018, 0.040, "metal")],
-        "head": [hub(Y, 0.045, 0.026, "graphite")]
-        + capsule((0, 0, TOP - 0.09), (0, 0, TOP - 0.085), 0.085, "shell")
-        + [cylinder((0, 0, 0.03), (0, 0, TOP - 0.10), 0.060, "shell"), sphere((0.022, 0, TOP - 0.098), 0.071, "visor"),
-           box((0.012, 0, TOP - 0.135), (0.11, 0.10, 0.035), "shell")]
-        + [hub(Y, 0.012, 0.028, "accent", (0, s * 0.080, TOP - 0.095)) for s in (1, -1)],
+        "head": [hub(Y, 0.045, 0.026, "graphite"), sphere((0, 0, TOP - 0.085), 0.085, "shell"),
+                 cylinder((0, 0, 0.035), (0, 0, TOP - 0.085), 0.062, "shell"), sphere((0.018, 0, TOP - 0.135), 0.055, "shell"),
+                 cylinder((0.014, 0, TOP - 0.108), (0.014, 0, TOP - 0.062), 0.079, "visor")]
+        + [hub(Y, 0.012, 0.026, "accent", (-0.010, s * 0.078, TOP - 0.090)) for s in (1, -1)],
         "hip_pitch_link": [hub(Y, 0.032, 0.047, "metal")],
         "hip_roll_link": [hub(X, 0.052, 0.040, "graphite")],
         "hip_yaw_link": capsule((0, 0, -0.085), (0, 0, -THIGH + 0.075), 0.054, "shell")
@@ -261,7 +263,7 @@ def looks(side):
         + rounded_box((foot_x, 0, -ANKLE_HEIGHT_m + 0.006), (FOOT_LENGTH_m, FOOT_WIDTH_m, 0.012), 0.040, "graphite")
         + rounded_box((foot_x - 0.004, 0, -ANKLE_HEIGHT_m + 0.021), (FOOT_LENGTH_m - 0.02, FOOT_WIDTH_m - 0.012, 0.018), 0.036, "shell"),
         "shoulder_pitch_link": [hub(Y, 0.032, 0.042, "metal")],
-        "shoulder_roll_link": [hub(X, 0.042, 0.036, "graphite"), sphere((0, side * 0.012, 0.0), 0.043, "shell")],
+        "shoulder_roll_link": [sphere((0, side * 0.010, 0.006), 0.046, "shell"), hub(X, 0.049, 0.024, "metal")],
         "shoulder_yaw_link": capsule((0, 0, -0.065), (0, 0, -UPPER_ARM + 0.055), 0.036, "shell")
         + [cylinder((0, 0, -0.02), (0, 0, -0.07), 0.030, "graphite"), cylinder((0, 0, -UPPER_ARM + 0.05), (0, 0, -UPPER_ARM + 0.01), 0.028, "graphite")],
         "elbow_link": [hub(Y, 0.034, 0.033, "metal"), hub(Y, 0.038, 0.019, "accent")]
