@@ -1,0 +1,191 @@
+// pmg_sil as its users see it: exit codes, messages, and files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/log_reader.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kStand = "config/scenarios/stand.yaml";
+
+struct Run {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+class PmgSil : public testing::Test {
+ protected:
+  PmgSil() { fs::create_directories(folder_); }
+  ~PmgSil() override { fs::remove_all(folder_); }
+
+  Run run(const std::string& arguments) {
+    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
+    const std::string command =
+        std::string(PMG_BIN_DIR) + "/pmg_sil " + arguments + " >" + out.string() + " 2>" + err.string();
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
+  }
+  static std::string text(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  std::string out_folder() const { return (folder_ / "run").string(); }
+  fs::path scenario(const std::string& yaml) {
+    const fs::path file = folder_ / "scenario.yaml";
+    std::ofstream(file) << yaml;
+    return file;
+  }
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Run refused = run(arguments + " --out " + out_folder());
+    EXPECT_EQ(refused.exit_code, 2) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr(message));
+    EXPECT_EQ(refused.out, "");
+    EXPECT_FALSE(fs::exists(out_folder())) << "bad input writes nothing";
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("pmg_sil_test_" + std::to_string(getpid()));
+};
+
+TEST_F(PmgSil, HelpHasAnExampleAndTheExitCodes) {
+  const Run help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, HasSubstr("Example:"));
+  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0"));
+  EXPECT_THAT(help.out, HasSubstr("130"));
+}
+
+TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
+  const Run stand = run(std::string("--scenario ") + kStand + " --out " + out_folder() + " --json");
+  ASSERT_EQ(stand.exit_code, 0) << stand.out << stand.err;
+  const auto summary = nlohmann::json::parse(stand.out);
+  EXPECT_EQ(summary, nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json")));
+  EXPECT_EQ(summary["fell"], false);
+  EXPECT_EQ(summary["robot"], "z1");
+  EXPECT_EQ(summary["policy"], "none");
+  EXPECT_TRUE(summary["faults"].empty());
+  EXPECT_NEAR(summary["duration_s"].get<double>(), 5.0, 1e-9);
+  EXPECT_GT(summary["realtime_factor"].get<double>(), 0.0);
+  for (const char* key : {"lin_vel_mae_m_s", "yaw_vel_mae_rad_s", "roll_mae_rad", "pitch_mae_rad", "height_mae_m"}) {
+    EXPECT_TRUE(summary["tracking"][key].is_number()) << key;
+  }
+  for (const char* key : {"before_mean_m_s", "single_support_max_m_s", "double_support_mean_m_s", "double_support_p95_m_s"}) {
+    EXPECT_TRUE(summary["reference_slip"][key].is_number()) << key;
+  }
+  for (const char* key : {"tick", "generator", "gco", "policy"}) {
+    EXPECT_TRUE(summary["timing_us"][key]["p99"].is_number()) << key;
+  }
+  EXPECT_THAT(text(fs::path(out_folder()) / "timing.csv"), HasSubstr("time_s,tick_us"));
+  io::LogReader log(fs::path(out_folder()) / "log.lcm");
+  std::int64_t last_ns = 0;
+  int events = 0;
+  while (log.next()) {
+    EXPECT_GE(log.stamp_ns(), 0);
+    last_ns = std::max(last_ns, log.stamp_ns());
+    ++events;
+  }
+  EXPECT_GT(events, 500 * 5);
+  EXPECT_LE(last_ns, 5'000'000'000) << "simulation time, not the wall's";
+}
+
+TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
+  const fs::path file = scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
+  for (const char* name : {"a", "b"}) {
+    const Run walk = run("--gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
+    ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
+  }
+  ASSERT_GT(fs::file_size(folder_ / "a/log.lcm"), 100'000u);
+  EXPECT_TRUE(text(folder_ / "a/log.lcm") == text(folder_ / "b/log.lcm"));
+}
+
+TEST_F(PmgSil, AFallExitsWithOne) {
+  const fs::path file = scenario("name: limp\nsteps:\n  - {for_s: 4.0, text: drives off, mode: passive}\n");
+  const Run limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
+  EXPECT_EQ(limp.exit_code, 1);
+  EXPECT_EQ(nlohmann::json::parse(limp.out)["fell"], true);
+}
+
+TEST_F(PmgSil, BadInputExitsWithTwoAndSaysWhat) {
+  expect_refused("", "--scenario is missing");
+  expect_refused("--scenario absent.yaml", "absent.yaml");
+  expect_refused("--robot nobody --scenario " + std::string(kStand), "nobody");
+  expect_refused("--policy runner --scenario " + std::string(kStand), "--policy runner");
+  expect_refused("--clips " + (folder_ / "empty").string() + " --scenario " + kStand, "empty");
+  expect_refused("--scenario " + scenario("name: x\nsteps:\n  - {for_s: 1, text: a, speed: 2}\n").string(),
+                 "scenario.yaml:3:");
+  expect_refused("--seed many --scenario " + std::string(kStand), "--seed");
+  expect_refused("--frobnicate --scenario " + std::string(kStand), "--frobnicate");
+  const Run no_out = run(std::string("--scenario ") + kStand);
+  EXPECT_EQ(no_out.exit_code, 2);
+  EXPECT_THAT(no_out.err, HasSubstr("--out is missing"));
+}
+
+TEST_F(PmgSil, AnOutputFolderThatCannotBeMadeIsRefused) {
+  std::ofstream(folder_ / "file") << "in the way";
+  const Run refused = run(std::string("--scenario ") + kStand + " --out " + (folder_ / "file/run").string());
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("file"));
+}
+
+TEST_F(PmgSil, ConfigInForceIsPrinted) {
+  const Run printed = run(std::string("--print-config --seed 3 --scenario ") + kStand);
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const auto config = nlohmann::json::parse(printed.out);
+  EXPECT_EQ(config["seed"], 3);
+  EXPECT_EQ(config["control_period_s"], 0.01);
+  EXPECT_GT(config["command"]["upper"]["vx_m_s"], 0.0);
+}
+
+TEST_F(PmgSil, MjcfIsExported) {
+  const fs::path file = folder_ / "z1.xml";
+  const Run exported = run("--export-mjcf " + file.string());
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_THAT(text(file), HasSubstr("<mujoco"));
+}
+
+TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
+  // Ten minutes of standing: long enough to be caught on any machine; the signal follows the first bytes of the log.
+  const fs::path file = scenario("name: long\nsteps:\n  - {for_s: 600.0, text: stand, mode: stand}\n");
+  const fs::path log = fs::path(out_folder()) / "log.lcm";
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const std::string program = std::string(PMG_BIN_DIR) + "/pmg_sil";
+    execl(program.c_str(), "pmg_sil", "--scenario", file.c_str(), "--out", out_folder().c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  std::error_code ignored;
+  while (!fs::exists(log) || fs::file_size(log, ignored) == 0) {
+    ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended by itself";
+    sched_yield();
+  }
+  kill(child, SIGINT);
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const auto summary = nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json"));
+  EXPECT_EQ(summary["interrupted"], true);
+  EXPECT_LT(summary["duration_s"], 600.0);
+  io::LogReader reader(log);
+  int events = 0;
+  while (reader.next()) ++events;
+  EXPECT_GT(events, 10);
+}
+
+}  // namespace
+}  // namespace pmg

@@ -1,0 +1,136 @@
+// What the runtime's tests share: robots, a bus without physics, a policy that can be made to fail.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "hal/hal.hpp"
+#include "io/clock.hpp"
+#include "model/clip_library_file.hpp"
+#include "model/robot_model.hpp"
+#include "runtime/plant.hpp"
+#include "runtime/tick.hpp"
+
+namespace pmg::test {
+
+inline const model::RobotModel& biped() {
+  static const model::RobotModel robot =
+      model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "test/data/robots/biped");
+  return robot;
+}
+
+inline const model::RobotModel& z1() {
+  static const model::RobotModel robot = model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "config/robots/z1");
+  return robot;
+}
+
+inline ClipLibrary clips(const model::RobotModel& robot) {
+  return model::load_clip_library(robot.directory / "clips", robot);
+}
+
+/// Standing still, everything well.
+inline model::RobotState standing_state(const model::RobotModel& robot) {
+  const int n = robot.joint_index.size();
+  model::RobotState state;
+  state.q = robot.q_stand();
+  state.dq = state.tau = JointVector::Zero(n);
+  state.temperature_degC = JointVector::Constant(n, 35.0);
+  state.acceleration_m_s2 = {0.0, 0.0, 9.81};
+  // The IMU's link upright: R_WI = R_LI.
+  state.orientation_WI = Eigen::Quaterniond(robot.imu.T_LI.linear());
+  return state;
+}
+
+/// Drives that follow at once, in a world where nothing ever falls.
+class IdealBus final : public hal::Hal {
+ public:
+  explicit IdealBus(const model::RobotModel& robot) : state_(standing_state(robot)) {}
+
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
+    state_.bus_sample += 1;
+    state_.stamp_ns = static_cast<std::int64_t>(state_.bus_sample) * 2'000'000;
+    if (command.kp.sum() > 0.0) state_.q = command.q;
+    state = state_;
+    last_command = command;
+    return status;
+  }
+
+  hal::BusStatus status = hal::BusStatus::kOk;
+  model::JointCommand last_command;
+
+ private:
+  model::RobotState state_;
+};
+
+/// A plant whose truth is whatever a test wants.
+class ScriptedPlant final : public runtime::Plant {
+ public:
+  sim::Truth truth() const noexcept override { return value; }
+  bool diverged() const noexcept override { return false; }
+  void set_hoist(double lift_m, double engaged) noexcept override {
+    lift = lift_m;
+    hold = engaged;
+  }
+  sim::Truth value;
+  double lift = 0.0, hold = 0.0;
+};
+
+/// Follows the reference until told to break.
+class BreakablePolicy final : public policy::Policy {
+ public:
+  enum class Break { kNone, kStatus, kNan, kHeap };
+  policy::Status act(const model::RobotState&, const Reference& reference, const Command&,
+                     JointVector& q_des) noexcept override {
+    q_des = reference.q;
+    if (how == Break::kNan) q_des[0] = std::numeric_limits<double>::quiet_NaN();
+    if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
+    return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;
+  }
+  Break how = Break::kNone;
+
+ private:
+  std::unique_ptr<double> heap_;
+};
+
+/// A tick with its operator: sends a fresh command and a request every time.
+struct DrivenTick {
+  explicit DrivenTick(const model::RobotModel& robot)
+      : state(standing_state(robot)),
+        policy(new BreakablePolicy),
+        tick(robot, clips(robot), std::unique_ptr<policy::Policy>(policy), clock, runtime::tick_options(robot)) {
+    drive.source = request.source = runtime::Source::make("test", 1);
+    drive.lease_s = 0.5;
+  }
+
+  /// One tick later, with drives that follow at once.
+  const runtime::TickResult& step(bool speaking = true) {
+    now_ns += 10'000'000;
+    state.stamp_ns = now_ns;
+    state.bus_sample += 5;
+    ++drive.sequence;
+    ++request.sequence;
+    const runtime::TickResult& result = tick.step({.state = state,
+                                                   .bus = bus,
+                                                   .now_ns = now_ns,
+                                                   .drive = speaking ? &drive : nullptr,
+                                                   .request = speaking ? &request : nullptr});
+    if (result.command.kp.sum() > 0.0) state.q = result.command.q;
+    return result;
+  }
+  const runtime::TickResult& run(double duration_s, bool speaking = true) {
+    for (int k = 0; k < static_cast<int>(duration_s * 100.0 + 0.5); ++k) step(speaking);
+    return tick.result();
+  }
+
+  io::SimulationClock clock;
+  model::RobotState state;
+  BreakablePolicy* policy;
+  runtime::Tick tick;
+  hal::BusStatus bus = hal::BusStatus::kOk;
+  std::int64_t now_ns = 0;
+  runtime::DriveMessage drive;
+  runtime::ModeRequest request;
+};
+
+}  // namespace pmg::test

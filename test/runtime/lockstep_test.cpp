@@ -1,0 +1,223 @@
+#include "runtime/lockstep.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fixtures.hpp"
+#include "hal/sil_hal.hpp"
+#include "io/log_reader.hpp"
+#include "runtime/summary.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+Scenario walk(double duration_s, bool hoist = false) {
+  Scenario scenario;
+  scenario.name = "walk";
+  ScenarioStep step;
+  step.duration_s = duration_s;
+  step.mode = Mode::kWalk;
+  step.hoist_without_policy = hoist;
+  step.command = Command{{0.5, 0.0, 0.2, 0.1, 0.0, -0.03}};
+  scenario.steps.push_back(step);
+  return scenario;
+}
+
+class LockstepRun : public testing::Test {
+ protected:
+  LockstepRun() { std::filesystem::create_directories(folder_); }
+  ~LockstepRun() override { std::filesystem::remove_all(folder_); }
+
+  Tick make_tick(const model::RobotModel& robot) {
+    return Tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock_, tick_options(robot));
+  }
+  std::string bytes(const std::string& name) {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  }
+  /// A whole simulated run with a log.
+  LockstepOutcome simulate(const model::RobotModel& robot, const Scenario& scenario, const std::string& log_name,
+                           std::uint64_t seed) {
+    sim::WorldOptions options;
+    options.seed = seed;
+    options.encoder_noise_rad = 0.0004;
+    options.gyro_noise_rad_s = 0.01;
+    sim::World world(robot, options);
+    hal::SilHal bus(world);
+    WorldPlant plant(world);
+    Tick tick = make_tick(robot);
+    io::LogWriter writer(folder_ / log_name);
+    TickLog log(writer, robot, 100.0);
+    return Lockstep(robot, bus, plant, tick, scenario, &log, {}).run();
+  }
+
+  io::SimulationClock clock_;
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("pmg_lockstep_test_" + std::to_string(getpid()));
+};
+
+TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  Tick tick = make_tick(robot);
+  const Scenario scenario = walk(2.0);
+  Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
+  std::uint64_t ticks = 0;
+  JointVector commanded = robot.q_stand();
+  lockstep.after_tick = [&](const LockstepProgress& progress) {
+    ++ticks;
+    EXPECT_EQ(progress.result.command.bus_sample, 5 * ticks);
+    // During the five steps before this tick the bus was given what the tick before had computed.
+    EXPECT_EQ(bus.last_command.bus_sample, 5 * (ticks - 1));
+    EXPECT_EQ(bus.last_command.q, commanded);
+    commanded = progress.result.command.q;
+  };
+  const LockstepOutcome outcome = lockstep.run();
+  EXPECT_EQ(ticks, 200u);
+  EXPECT_NEAR(outcome.duration_s, 2.0, 1e-9);
+  EXPECT_FALSE(outcome.fell);
+}
+
+TEST_F(LockstepRun, SameSeedSameLogByteForByte) {
+  const Scenario scenario = walk(3.0, true);
+  simulate(test::z1(), scenario, "a.lcm", 7);
+  simulate(test::z1(), scenario, "b.lcm", 7);
+  simulate(test::z1(), scenario, "c.lcm", 8);
+  ASSERT_GT(bytes("a.lcm").size(), 500'000u);
+  EXPECT_TRUE(bytes("a.lcm") == bytes("b.lcm"));
+  EXPECT_FALSE(bytes("a.lcm") == bytes("c.lcm")) << "the seed must matter";
+}
+
+TEST_F(LockstepRun, AnotherRobotNeedsNoOtherCode) {
+  const LockstepOutcome outcome = simulate(test::biped(), walk(4.0, true), "biped.lcm", 0);
+  EXPECT_FALSE(outcome.diverged);
+  EXPECT_TRUE(outcome.faults.empty());
+  EXPECT_GT(outcome.hoisted_s, 3.9);
+}
+
+TEST_F(LockstepRun, TheTruthOfTheSimulationReachesNoDrive) {
+  const model::RobotModel& robot = test::z1();
+  const auto commands = [&](double truth) {
+    test::IdealBus bus(robot);
+    test::ScriptedPlant plant;
+    plant.value.p_WB.setConstant(truth);
+    plant.value.v_WB_W.setConstant(truth);
+    plant.value.omega_WB_B.setConstant(truth);
+    plant.value.q_WB.coeffs().setConstant(truth);
+    plant.value.q_WT.coeffs().setConstant(truth);
+    plant.value.foot_force_N.fill(truth);
+    plant.value.foot_slip_m_s.fill(truth);
+    Tick tick = make_tick(robot);
+    const Scenario scenario = walk(3.0);
+    Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
+    std::vector<double> all;
+    lockstep.after_tick = [&](const LockstepProgress& progress) {
+      const model::JointCommand& command = progress.result.command;
+      for (const JointVector* values : {&command.q, &command.dq, &command.kp, &command.kd, &command.tau_ff}) {
+        all.insert(all.end(), values->data(), values->data() + values->size());
+      }
+    };
+    lockstep.run();
+    return all;
+  };
+  const std::vector<double> plain = commands(0.5);
+  EXPECT_EQ(plain.size(), 300u * 5u * 31u);
+  EXPECT_EQ(plain, commands(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST_F(LockstepRun, GantryTimeIsReportedAndNotJudged) {
+  const model::RobotModel& robot = test::z1();
+  Scenario scenario = walk(3.0, true);
+  ScenarioStep down = scenario.steps[0];
+  down.start_s = 3.0;
+  down.hoist_without_policy = false;
+  down.command = Command{};
+  scenario.steps.push_back(down);
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  for (const bool policy : {false, true}) {
+    test::IdealBus bus(robot);
+    Tick tick = make_tick(robot);
+    const LockstepOutcome outcome =
+        Lockstep(robot, bus, plant, tick, scenario, nullptr, {.balanced_by_policy = policy}).run();
+    // Three seconds, and the two that it takes to set the robot down.
+    EXPECT_NEAR(outcome.hoisted_s, policy ? 0.0 : 5.0, 0.03);
+    EXPECT_NEAR(outcome.tracking.followed_s, policy ? 6.0 : 1.0, 0.05);
+    EXPECT_EQ(plant.hold, 0.0);
+  }
+}
+
+TEST_F(LockstepRun, InterruptionKeepsWhatWasDone) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  test::ScriptedPlant plant;
+  Tick tick = make_tick(robot);
+  const Scenario scenario = walk(3.0);
+  Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
+  int asked = 0;
+  lockstep.interrupted = [&] { return ++asked > 100; };
+  const LockstepOutcome outcome = lockstep.run();
+  EXPECT_TRUE(outcome.interrupted);
+  EXPECT_NEAR(outcome.duration_s, 1.0, 1e-9);
+}
+
+TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  bus.status = hal::BusStatus::kLost;
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  Tick tick = make_tick(robot);
+  const Scenario scenario = walk(0.5);
+  LockstepOutcome outcome;
+  {
+    io::LogWriter writer(folder_ / "fault.lcm");
+    TickLog log(writer, robot, 100.0);
+    Lockstep lockstep(robot, bus, plant, tick, scenario, &log, {});
+    outcome = lockstep.run();
+    const auto summary = summary_json({robot.name, scenario.name, "none", 0, 0.1}, outcome, lockstep.timing(), robot);
+    ASSERT_EQ(summary["faults"].size(), 1u);
+    EXPECT_EQ(summary["faults"][0]["code"], "bus_lost");
+    for (const char* key : {"fell", "duration_s", "realtime_factor", "tracking", "reference_slip", "timing_us"}) {
+      EXPECT_TRUE(summary.contains(key)) << key;
+    }
+  }
+  ASSERT_EQ(outcome.faults.size(), 1u);
+  int faults = 0, states = 0;
+  io::LogReader reader(folder_ / "fault.lcm");
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.channel(), "ROBOT_INFO");
+  while (reader.next()) {
+    faults += reader.channel() == "FAULT" ? 1 : 0;
+    states += reader.channel() == "STATE" ? 1 : 0;
+  }
+  EXPECT_EQ(faults, 1);
+  EXPECT_EQ(states, 50);
+}
+
+TEST_F(LockstepRun, OnTheGroundTheTourDoesNotFall) {
+  Scenario ground = load_scenario(std::filesystem::path(PMG_SOURCE_DIR) / "config/scenarios/tour.yaml");
+  std::erase_if(ground.steps, [](const ScenarioStep& step) { return step.hoist_without_policy || step.start_s > 30.0; });
+  const LockstepOutcome outcome = simulate(test::z1(), ground, "tour.lcm", 0);
+  EXPECT_GT(outcome.duration_s, 15.0);
+  EXPECT_FALSE(outcome.fell) << "at " << outcome.fell_at_s << " s";
+  EXPECT_TRUE(outcome.faults.empty());
+}
+
+TEST(StageTiming, PercentilesAreNearestRanksOverTicksThatRan) {
+  StageTiming timing;
+  for (int k = 1; k <= 100; ++k) timing.add(0.01 * k, {.tick_ns = 1000 * k, .generator_ns = 10, .gco_ns = 0, .policy_ns = 0});
+  timing.add(2.0, {.tick_ns = 9'000'000});  // released drives: no stage ran
+  EXPECT_DOUBLE_EQ(timing.percentiles(&StageTimes::tick_ns).p50_us, 50.0);
+  EXPECT_DOUBLE_EQ(timing.percentiles(&StageTimes::tick_ns).p99_us, 99.0);
+  EXPECT_DOUBLE_EQ(StageTiming().percentiles(&StageTimes::tick_ns).p99_us, 0.0);
+}
+
+}  // namespace
+}  // namespace pmg::runtime

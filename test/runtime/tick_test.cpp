@@ -1,0 +1,160 @@
+#include "runtime/tick.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "fixtures.hpp"
+#include "generator_core/allocation_count.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+constexpr double kTick_s = 0.01;
+
+TEST(Tick, BeforeAnyRequestTheDrivesGiveNoTorque) {
+  test::DrivenTick driven(test::z1());
+  const TickResult& result = driven.step(false);
+  EXPECT_EQ(result.mode, Mode::kPassive);
+  EXPECT_EQ(result.command.kp.sum(), 0.0);
+  EXPECT_EQ(result.command.kd.sum(), 0.0);
+  EXPECT_EQ(result.command.tau_ff.sum(), 0.0);
+}
+
+TEST(Tick, DampingBrakesWithoutPosition) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kDamping;
+  const TickResult& result = driven.run(0.05);
+  EXPECT_EQ(result.mode, Mode::kDamping);
+  EXPECT_EQ(result.command.kp.sum(), 0.0);
+  EXPECT_GT(result.command.kd.minCoeff(), 0.0);
+}
+
+TEST(Tick, StandIsEnteredFromTheMeasuredPostureWithoutAJump) {
+  test::DrivenTick driven(test::z1());
+  std::mt19937_64 random(3);
+  for (Eigen::Index i = 0; i < driven.state.q.size(); ++i) {
+    driven.state.q[i] += 0.3 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
+  }
+  const model::RobotModel& robot = test::z1();
+  driven.state.q = driven.state.q.cwiseMax(robot.q_lower()).cwiseMin(robot.q_upper());
+  driven.request.mode = Mode::kStand;
+  JointVector previous = driven.state.q;
+  for (int k = 0; k < 300; ++k) {
+    const TickResult& result = driven.step();
+    if (result.mode != Mode::kStand) continue;
+    // 0.5 rad/s on average, half as much again in the middle of the smooth step.
+    ASSERT_LE((result.command.q - previous).cwiseAbs().maxCoeff(), 0.75 * kTick_s + 1e-9) << "tick " << k;
+    previous = result.command.q;
+  }
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
+  EXPECT_LT((previous - robot.q_stand()).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Tick, StandIgnoresCommandsAndWalkFollowsAllSix) {
+  test::DrivenTick driven(test::z1());
+  driven.drive.command = Command{{0.4, 0.1, 0.2, 0.1, 0.05, -0.04}};
+  driven.request.mode = Mode::kStand;
+  driven.run(2.0);
+  EXPECT_EQ(driven.tick.result().user, Command{});
+  EXPECT_LT((driven.tick.result().command.q - test::z1().q_stand()).cwiseAbs().maxCoeff(), 1e-9);
+  driven.request.mode = Mode::kWalk;
+  const TickResult& result = driven.run(3.0);
+  EXPECT_EQ(result.mode, Mode::kWalk);
+  EXPECT_EQ(result.user, driven.drive.command);
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    EXPECT_GT(result.reference.command.u[i] * driven.drive.command.u[i], 0.0) << kChannelNames[i];
+  }
+  EXPECT_GT(result.reference.phase_rate_per_s, 0.0);
+  EXPECT_EQ(result.command.kd, driven.tick.result().command.kd);
+  EXPECT_EQ(result.command.dq.cwiseAbs().maxCoeff(), 0.0) << "the drives' own damping only";
+}
+
+TEST(Tick, ASilentOperatorBringsTheRobotToAStandstillWithinItsTime) {
+  test::DrivenTick driven(test::z1());
+  driven.drive.command[kVx] = 0.8;
+  driven.request.mode = Mode::kWalk;
+  driven.run(4.0);
+  ASSERT_GT(driven.tick.result().reference.gain, 0.9);
+  driven.run(0.2, false);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
+  // 0.2 s until it is stale, 0.5 s to stop, and two ticks of which one notices and one changes the mode.
+  driven.run(0.52, false);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
+  EXPECT_NEAR(driven.tick.result().reference.gain, 0.0, 1e-9);
+}
+
+TEST(Tick, DampingComesInTheTickThatAsksForItEvenFromAStranger) {
+  test::DrivenTick driven(test::z1());
+  driven.drive.command[kVx] = 0.8;
+  driven.request.mode = Mode::kWalk;
+  driven.run(3.0);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kWalk);
+  driven.request.source = Source::make("bystander", 9);
+  driven.request.mode = Mode::kDamping;
+  const TickResult& result = driven.step();
+  EXPECT_EQ(result.mode, Mode::kDamping);
+  EXPECT_EQ(result.command.kp.sum(), 0.0);
+  EXPECT_GT(result.command.kd.minCoeff(), 0.0);
+  EXPECT_EQ(result.last_request.source, Source::make("bystander", 9)) << "and it is acknowledged";
+}
+
+TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
+  for (const auto how : {test::BreakablePolicy::Break::kNan, test::BreakablePolicy::Break::kStatus}) {
+    test::DrivenTick driven(test::z1());
+    driven.request.mode = Mode::kWalk;
+    driven.run(2.0);
+    driven.policy->how = how;
+    const TickResult& result = driven.step();
+    EXPECT_EQ(result.mode, Mode::kFault);
+    EXPECT_EQ(result.fault.code, FaultCode::kPolicyNotFinite);
+    EXPECT_EQ(result.command.kp.sum(), 0.0) << "in the very tick that failed";
+    EXPECT_TRUE(result.command.q.allFinite());
+  }
+}
+
+TEST(Tick, ABrokenStateGivesAFiniteDampingCommand) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kWalk;
+  driven.run(2.0);
+  driven.state.q.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const TickResult& result = driven.step();
+  EXPECT_EQ(result.mode, Mode::kFault);
+  EXPECT_TRUE(result.command.q.allFinite());
+  EXPECT_EQ(result.command.kp.sum(), 0.0);
+  EXPECT_GT(result.command.kd.minCoeff(), 0.0);
+}
+
+TEST(Tick, CommandsSayWhichSampleTheyWereComputedFrom) {
+  test::DrivenTick driven(test::z1());
+  driven.step();
+  EXPECT_EQ(driven.tick.result().command.bus_sample, driven.state.bus_sample);
+}
+
+/// Heap allocations of a stretch with every mode change, a walk with all channels, and a fault.
+long allocations_of_a_run(test::BreakablePolicy::Break how) {
+  test::DrivenTick driven(test::z1());
+  driven.drive.command = Command{{0.4, 0.1, 0.2, 0.1, 0.05, -0.04}};
+  driven.policy->how = how;
+  const long before = test::allocation_count();
+  driven.request.mode = Mode::kWalk;
+  driven.run(3.0);
+  driven.request.mode = Mode::kStand;
+  driven.run(1.0);
+  driven.request.mode = Mode::kDamping;
+  driven.run(0.1);
+  driven.state.q[3] = std::numeric_limits<double>::quiet_NaN();
+  driven.run(0.1);
+  return test::allocation_count() - before;
+}
+
+TEST(Tick, NeverUsesTheHeap) {
+  if (test::allocation_count() < 0) GTEST_SKIP() << "allocations can't be counted in this build";
+  EXPECT_EQ(allocations_of_a_run(test::BreakablePolicy::Break::kNone), 0);
+  EXPECT_GT(allocations_of_a_run(test::BreakablePolicy::Break::kHeap), 300) << "the count must see one that does";
+}
+
+}  // namespace
+}  // namespace pmg::runtime
