@@ -24,10 +24,10 @@ constexpr const char* kScene = R"(
   <statistic center="0 0 {look_height}" extent="{extent}"/>
   <visual>
     <global offwidth="1280" offheight="720" fovy="38"/>
-    <quality shadowsize="4096" offsamples="4"/>
-    <headlight ambient="0.34 0.34 0.36" diffuse="0.30 0.30 0.31" specular="0.05 0.05 0.05"/>
-    <map znear="0.02" zfar="40" fogstart="5" fogend="16" shadowclip="1.6"/>
-    <rgba fog="0.80 0.84 0.89 1" haze="0.80 0.84 0.89 1"/>
+    <quality shadowsize="2048" offsamples="4" numslices="20" numstacks="12"/>
+    <headlight ambient="0.36 0.37 0.40" diffuse="0.22 0.22 0.23" specular="0.04 0.04 0.04"/>
+    <map znear="0.02" zfar="40" fogstart="3" fogend="11" shadowclip="0.9"/>
+    <rgba fog="0.76 0.83 0.90 1" haze="0.76 0.83 0.90 1"/>
   </visual>
   <default>
     <geom friction="{friction} 0.005 0.0001"/>
@@ -37,9 +37,9 @@ constexpr const char* kScene = R"(
     <default class="sole"><geom group="3" contype="0" conaffinity="1" condim="3"/></default>
   </default>
   <asset>
-    <texture type="skybox" builtin="gradient" rgb1="0.60 0.70 0.82" rgb2="0.93 0.95 0.97" width="256" height="1536"/>
-    <texture name="floor" type="2d" builtin="checker" mark="edge" rgb1="0.72 0.74 0.76" rgb2="0.67 0.69 0.715"
-             markrgb="0.60 0.62 0.645" width="512" height="512"/>
+    <texture type="skybox" builtin="gradient" rgb1="0.36 0.52 0.72" rgb2="0.76 0.83 0.90" width="256" height="1536"/>
+    <texture name="floor" type="2d" builtin="checker" mark="edge" rgb1="0.64 0.68 0.72" rgb2="0.58 0.62 0.665"
+             markrgb="0.52 0.56 0.61" width="512" height="512"/>
     <material name="floor" texture="floor" texrepeat="1 1" texuniform="true" specular="0.1" shininess="0.2"/>
     <material name="shell" specular="0.35" shininess="0.45"/>
   </asset>
@@ -52,7 +52,7 @@ constexpr const char* kFloor =
 /// Directional, above and in front, following the robot so that its shadow stays inside the shadow map.
 constexpr const char* kLight =
     R"(<light mode="trackcom" directional="true" castshadow="true" pos="1.2 1.0 3.2" dir="-0.34 -0.28 -0.9" )"
-    R"(diffuse="0.62 0.61 0.58" specular="0.25 0.25 0.25" ambient="0 0 0"/>)";
+    R"(diffuse="0.66 0.64 0.60" specular="0.30 0.30 0.30" ambient="0 0 0"/>)";
 
 class MjcfText {
  public:

@@ -80,6 +80,16 @@ struct Renderer::Impl {
     last_time_s = data->time;
   }
 
+  void add(const Rope& rope) {
+    if (scene.ngeom >= scene.maxgeom) return;
+    constexpr double kRadius_m = 0.006;
+    constexpr float kColour[4] = {0.12F, 0.13F, 0.15F, 1.0F};
+    mjvGeom& geom = scene.geoms[scene.ngeom++];
+    mjv_initGeom(&geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, kColour);
+    const Eigen::Vector3d &a = rope.bottom_W, &b = rope.top_W;
+    mjv_makeConnector(&geom, mjGEOM_CAPSULE, kRadius_m, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+  }
+
   RendererOptions options;
   const mjModel* model;
   GlContext gl;  // before everything that lives in it
@@ -96,10 +106,11 @@ Renderer::Renderer(const mjModel* model, const RendererOptions& options) : impl_
 
 Renderer::~Renderer() = default;
 
-const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::string& text) {
+const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::string& text, const std::optional<Rope>& rope) {
   Impl& r = *impl_;
   r.follow(data);
   mjv_updateScene(r.model, data, &r.visible, nullptr, &r.camera, mjCAT_ALL, &r.scene);
+  if (rope) r.add(*rope);
   mjr_render(r.viewport, &r.scene, &r.context);
   if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, r.viewport, text.c_str(), nullptr, &r.context);
   mjr_readPixels(r.rows.data(), nullptr, r.viewport, &r.context);

@@ -3,11 +3,13 @@
 
 #include <mujoco/mujoco.h>
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "sim/world.hpp"
 
 namespace pmg::sim {
 
@@ -30,7 +32,8 @@ class Renderer {
 
   /// width * height RGB triples, from the top left. The camera follows body 1, the robot's base. text is laid over the
   /// picture's top left corner.
-  const std::vector<std::uint8_t>& render(mjData* data, const std::string& text = "");
+  const std::vector<std::uint8_t>& render(mjData* data, const std::string& text = "",
+                                          const std::optional<Rope>& rope = std::nullopt);
 
   int width() const;
   int height() const;

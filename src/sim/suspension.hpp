@@ -22,6 +22,9 @@ class Suspension {
   /// Adds the suspension's force and torque on the torso to mjData.xfrc_applied.
   void apply(const mjModel* model, mjData* data, int torso_body) noexcept;
 
+  bool engaged() const { return engaged_ > 0.0; }
+  const Eigen::Vector3d& anchor_W() const { return anchor_W_; }
+
  private:
   double stiffness_z_N_m_, damping_z_N_s_m_;
   double stiffness_xy_N_m_, damping_xy_N_s_m_;

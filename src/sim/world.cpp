@@ -13,6 +13,7 @@ namespace pmg::sim {
 namespace {
 
 constexpr double kGantryLift_m = 0.2;           // of a world that starts hanging
+constexpr double kRopeLength_m = 4.0;           // as drawn
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
 struct FreeModel {
@@ -224,6 +225,14 @@ bool World::diverged() const noexcept { return impl_->diverged; }
 double World::time_s() const noexcept { return static_cast<double>(impl_->steps) * impl_->options.timestep_s; }
 
 void World::set_hoist(double lift_m, double engaged) noexcept { impl_->suspension.set(lift_m, engaged); }
+
+std::optional<Rope> World::gantry_rope() const {
+  if (!impl_->suspension.engaged()) return std::nullopt;
+  Rope rope;
+  rope.bottom_W = Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * impl_->torso_body);
+  rope.top_W = impl_->suspension.anchor_W() + kRopeLength_m * Eigen::Vector3d::UnitZ();
+  return rope;
+}
 
 void World::set_push(const Eigen::Vector3d& force_W_N) noexcept { impl_->push_W_N = force_W_N; }
 

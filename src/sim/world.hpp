@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "model/robot_io.hpp"
@@ -30,6 +31,12 @@ struct Truth {
   Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  ///< torso link
   std::array<double, 2> foot_force_N{};                     ///< normal force, left and right
   std::array<double, 2> foot_slip_m_s{};                    ///< horizontal speed of the contact point, 0 when in the air
+};
+
+/// The gantry's rope, for pictures.
+struct Rope {
+  Eigen::Vector3d bottom_W = Eigen::Vector3d::Zero();  ///< on the torso [m]
+  Eigen::Vector3d top_W = Eigen::Vector3d::Zero();     ///< out of the picture [m]
 };
 
 /// The MJCF text of this robot in this world. Deterministic: same input, same bytes. Its actuators are position servos
@@ -59,6 +66,8 @@ class World {
   /// weight. engaged: 0 free, 1 held, in between a share of the stiffness. The anchor's place and heading are taken from the
   /// torso when it is engaged from 0. Takes effect at the next step, so the caller ramps it.
   void set_hoist(double lift_m, double engaged) noexcept;
+
+  std::optional<Rope> gantry_rope() const;  ///< nothing while the gantry is not engaged
 
   /// A force on the torso link's centre of mass, in the world frame [N], until it is set again or reset.
   void set_push(const Eigen::Vector3d& force_W_N) noexcept;
