@@ -19,8 +19,9 @@ template <int kUnknowns>
 typename Solver<kUnknowns>::Options solver_options() {
   typename Solver<kUnknowns>::Options options;
   // With 5 unknowns the problem is linear: an undamped first step is the solution, the second evaluation confirms it.
-  options.initial_trust_region_radius = 1e14;
-  options.max_num_iterations = kUnknowns == 5 ? 8 : 20;
+  // With 7 the trust region has work to do.
+  options.initial_trust_region_radius = kUnknowns == 5 ? 1e14 : 1e4;
+  options.max_num_iterations = kUnknowns == 5 ? 8 : 50;
   options.gradient_tolerance = 1e-10;  // 1e-4 m/s where only the prior of 1e-3^2 acts, 1e-10 m/s where a foot does
   options.function_tolerance = 1e-18;  // absolute in TinySolver: (1e-9 m/s)^2
   return options;
