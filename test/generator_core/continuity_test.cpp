@@ -86,7 +86,7 @@ TEST(Generator, JointVelocityIsTheTimeDerivativeOfTheReference) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   Command user;
   JointVector q_before = generator.reference().q, q_here = q_before, dq_here = generator.reference().dq;
-  Command rate_before, rate_here;
+  Command command_before, command_here, rate_here;
   int smooth = 0, moving_gains = 0;
   for (int tick = 0; tick < 60000; ++tick) {
     if (tick % 6000 == 0) {
@@ -96,21 +96,25 @@ TEST(Generator, JointVelocityIsTheTimeDerivativeOfTheReference) {
     // Smooth: all rates the same in both ticks, so that no limiter started or ended a ramp and no contact edge slows
     // one.
     double jump = 0.0, moving = 0.0;
+    bool turns = false;
     for (std::size_t c = 0; c < kChannels; ++c) {
       jump = std::max(jump, std::abs(r.command_rate.u[c] - rate_here.u[c]));
       moving = std::max(moving, std::abs(rate_here.u[c]));
+      turns = turns || std::signbit(r.command.u[c]) != std::signbit(command_before.u[c]);  // another clip: a kink
     }
-    if (jump < 1e-3 && tick > 2) {
+    if (jump < 1e-3 && !turns && tick > 2) {
       ++smooth;
       moving_gains += moving > 0.1 ? 1 : 0;
       const JointVector central = (r.q - q_before) / (2.0 * kFine_s);
-      // Third derivatives below 1e4 rad/s^3 give 1e4 dt^2 / 6 = 2e-5; gains' rates may differ by 1e-3 of rad/s between
-      // ticks.
-      ASSERT_LT((central - dq_here).cwiseAbs().maxCoeff(), 2e-2) << tick;
+      // Where knots meet, second derivatives of up to 50 rad/s^2 jump: 50 dt / 2 = 2.5e-3 rad/s. All else is smaller:
+      // third derivatives dt^2 / 6, and rates that may differ by 1e-3 between ticks times an excursion of 0.5 rad.
+      ASSERT_LT((central - dq_here).cwiseAbs().maxCoeff(), 5e-3) << tick;
     }
     q_before = q_here;
     q_here = r.q;
     dq_here = r.dq;
+    command_before = command_here;
+    command_here = r.command;
     rate_here = r.command_rate;
   }
   EXPECT_GT(smooth, 30000);
