@@ -17,7 +17,8 @@ class CeresCost : public ceres::SizedCostFunction<ContactProblem<kUnknowns>::NUM
     Eigen::Matrix<double, kRows, kUnknowns> J;
     if (!problem_(parameters[0], residuals, J.data())) return false;
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, kRows, kUnknowns, Eigen::RowMajor>>(jacobians[0]) = J;
+      Eigen::Map<Eigen::Matrix<double, kRows, kUnknowns, Eigen::RowMajor>> row_major(jacobians[0]);
+      row_major = J;
     }
     return true;
   }
