@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "generator/gait_measure.hpp"
@@ -12,18 +13,39 @@ namespace pmg::generator {
 namespace {
 
 constexpr std::size_t kKnots = 24;       // even, so that half a cycle is a whole number of knots
-constexpr double kEdgeBeyond = 0.03;     // cycles around double support in which the feet already have the same height
-constexpr int kVelocityCorrections = 3;  // solves: each moves the target by what the mean velocity missed
+constexpr double kEdgeBeyond = 0.005;     // cycles: clips in a mixture differ by as much in their duty factors
+constexpr double kAboveGround_m = 0.001;  // asked of a foot at the very ends of its swing
+constexpr int kRounds = 4;                // solves; between them the velocity targets move by what the means missed
 
 /// Which knots a leg uses and how: the right leg of a symmetric gait borrows the left one's.
 struct KnotTable {
   std::vector<std::array<double, kLegJoints>> left, right;
+  PerFoot<std::array<double, kLegJoints>> bias{};  // of the mean posture against the reference's
   bool symmetric;
 
   explicit KnotTable(bool is_symmetric) : left(kKnots), right(is_symmetric ? 0 : kKnots), symmetric(is_symmetric) {}
   double* knot(Foot foot, std::size_t i) {
     return (foot == kRight && !symmetric) ? right[i].data() : left[i].data();
   }
+};
+
+/// The other residuals pull the mean velocity away from its target; this moves the target until the mean is right, by the
+/// secant of the last two solves.
+struct VelocityTarget {
+  Eigen::Vector3d correction = Eigen::Vector3d::Zero();
+
+  void correct(const Eigen::Vector3d& missed) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double won = missed_before_[i] - missed[i];
+      const double ratio = step_[i] != 0.0 && won / step_[i] > 0.2 ? std::min(step_[i] / won, 5.0) : 1.5;
+      step_[i] = ratio * missed[i];
+    }
+    missed_before_ = missed;
+    correction += step_;
+  }
+
+ private:
+  Eigen::Vector3d step_ = Eigen::Vector3d::Zero(), missed_before_ = Eigen::Vector3d::Zero();
 };
 
 double own_phase(double phase, Foot foot, bool symmetric) { return (foot == kRight && symmetric) ? phase + 0.5 : phase; }
@@ -43,7 +65,7 @@ void start_from_reference(const RobotLegs& legs, const GaitTask& task, KnotTable
   }
 }
 
-void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vector<Eigen::Vector3d>& correction,
+void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vector<VelocityTarget>& targets,
                    KnotTable& table, ceres::Problem& problem) {
   for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
     for (std::size_t sample = 0; sample < kClipSamples; ++sample) {
@@ -57,7 +79,7 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
       using Cost = ceres::AutoDiffCostFunction<GroundResiduals, kGroundResiduals, kLegJoints, kLegJoints, kLegJoints,
                                                kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
       problem.AddResidualBlock(
-          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, correction[s])), nullptr, blocks);
+          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)), nullptr, blocks);
     }
   }
   for (const Foot foot : {kLeft, kRight}) {
@@ -67,11 +89,14 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
     for (std::size_t sample = 0; sample < kClipSamples; ++sample) {
       const double phase = static_cast<double>(sample) / static_cast<double>(kClipSamples);
       const SplineBasis basis = spline_basis(phase, kKnots);
-      using Cost = ceres::AutoDiffCostFunction<PostureResiduals, 2 * kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
+      using Cost = ceres::AutoDiffCostFunction<PostureResiduals, 2 * kLegJoints, kLegJoints, kLegJoints, kLegJoints,
+                                               kLegJoints, kLegJoints>;
       problem.AddResidualBlock(new Cost(new PostureResiduals(legs, task, foot, sample, kKnots)), nullptr,
                                table.knot(foot, basis.knot[0]), table.knot(foot, basis.knot[1]),
-                               table.knot(foot, basis.knot[2]), table.knot(foot, basis.knot[3]));
+                               table.knot(foot, basis.knot[2]), table.knot(foot, basis.knot[3]), table.bias[foot].data());
     }
+    using BiasCost = ceres::AutoDiffCostFunction<BiasResiduals, kLegJoints, kLegJoints>;
+    problem.AddResidualBlock(new BiasCost(new BiasResiduals{task.weights.bias}), nullptr, table.bias[foot].data());
     for (std::size_t i = 0; i < kKnots; ++i) {
       using Cost = ceres::AutoDiffCostFunction<SmoothResiduals, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
       const double per_knot = task.weights.smooth * static_cast<double>(kKnots * kKnots);
@@ -153,7 +178,7 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
     const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
     const double rise = std::sin(std::numbers::pi * swing);
-    clearance_m_[foot] = scenario.gain * task.clearance_m * rise * rise;
+    clearance_m_[foot] = rise > 0.0 ? kAboveGround_m + scenario.gain * task.clearance_m * rise * rise : 0.0;
   }
   near_both_ = std::sqrt(wide[kLeft] * wide[kRight]);
   scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
@@ -176,15 +201,15 @@ PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, 
 GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
   KnotTable table(task.symmetric);
   start_from_reference(legs, task, table);
-  std::vector<Eigen::Vector3d> correction(task.scenarios.size(), Eigen::Vector3d::Zero());
+  std::vector<VelocityTarget> targets(task.scenarios.size());
   GaitSolution solution;
-  for (int round = 0; round < kVelocityCorrections; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     ceres::Problem problem;
-    add_residuals(legs, task, correction, table, problem);
+    add_residuals(legs, task, targets, table, problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = round == 0 ? 60 : 15;
-    options.function_tolerance = 1e-5;
+    options.max_num_iterations = round == 0 ? 40 : 12;
+    options.function_tolerance = 1e-4;
     options.num_threads = 1;  // the same bytes every time
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
@@ -194,8 +219,11 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
     solution.legs = sample_legs(legs, task.symmetric, table);
     for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
       const Scenario& scenario = task.scenarios[s];
-      correction[s] += scenario.gain * task.velocity + scenario.addition.velocity -
-                       measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor)).mean_velocity;
+      if (scenario.addition.q.empty()) {  // under a posture or in a mixture the mean is wished for, not promised
+        const Eigen::Vector3d mean =
+            measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor)).mean_velocity;
+        targets[s].correct(scenario.gain * task.velocity - mean);
+      }
     }
   }
   return solution;

@@ -11,7 +11,7 @@
 
 namespace pmg::generator {
 
-inline constexpr int kGroundResiduals = 19;
+inline constexpr int kGroundResiduals = 20;
 
 /// One phase sample of one scenario. Parameters: four knots of the left leg, then four of the right, each kLegJoints
 /// deviations from stand. The base is level; its velocity is what the stance feet say, weighted by their contact.
@@ -72,7 +72,9 @@ class GroundResiduals {
     residual[i++] = scale_ * w.slip * both * (base[kLeft].x() - base[kRight].x());
     residual[i++] = scale_ * w.slip * both * (base[kLeft].y() - base[kRight].y());
     residual[i++] = scale_ * w.slip_yaw * both * (foot[kLeft].omega_BF.z() - foot[kRight].omega_BF.z());
-    residual[i++] = scale_ * w.step_height * near_both_ * (contact[kLeft].p.z() - contact[kRight].p.z());
+    const T step = contact[kLeft].p.z() - contact[kRight].p.z();
+    residual[i++] = scale_ * w.step_height_inside * near_both_ * step;
+    residual[i++] = scale_ * w.step_height * near_both_ * beyond(step, w.step_height_free_m);
     residual[i++] = scale_ * w.velocity * (v.x() - velocity_.x());
     residual[i++] = scale_ * w.velocity * (v.y() - velocity_.y());
     residual[i++] = scale_ * w.velocity_up * v.z();
@@ -86,6 +88,15 @@ class GroundResiduals {
     }
     residual[i++] = scale_ * w.foot_gap * short_of(gap(foot), task_.foot_gap_m);
     residual[i++] = scale_ * w.slip * 0.1 * both * (base[kLeft].z() - base[kRight].z());
+  }
+
+  /// The part of a length that exceeds what is free, either way.
+  template <typename T>
+  static T beyond(const T& length, double free_m) {
+    if (length > free_m) {
+      return length - free_m;
+    }
+    return length < -free_m ? T(length + free_m) : T(0.0);
   }
 
   /// need - have where have falls short, rounded over a millimetre so that its slope is continuous.
@@ -131,20 +142,21 @@ class GroundResiduals {
   Eigen::Vector3d velocity_;
 };
 
-/// Stay near the reference and inside the joint limits: one sample of one leg, linear in four knots.
+/// Keep the reference's shape and stay inside the joint limits: one sample of one leg, linear in four knots and the bias of
+/// the leg's mean posture.
 class PostureResiduals {
  public:
   PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample, std::size_t knots);
 
   template <typename T>
-  bool operator()(const T* k0, const T* k1, const T* k2, const T* k3, T* residual) const {
+  bool operator()(const T* k0, const T* k1, const T* k2, const T* k3, const T* bias, T* residual) const {
     const std::array<const T*, 4> knots = {k0, k1, k2, k3};
     for (Eigen::Index i = 0; i < kLegJoints; ++i) {
       T q = T(stand_[i]);
       for (std::size_t k = 0; k < 4; ++k) {
         q += basis_.value[k] * knots[k][i];
       }
-      residual[i] = reference_weight_[i] * (q - reference_[i]);
+      residual[i] = reference_weight_[i] * (q - reference_[i] - bias[i]);
       T beyond = T(0.0);
       if (q < lower_[i]) {
         beyond = lower_[i] - q;
@@ -161,6 +173,19 @@ class PostureResiduals {
   SplineBasis basis_;
   LegVector<double> stand_, reference_, reference_weight_, lower_, upper_;
   double limit_weight_;
+};
+
+/// Keeps the mean posture near the reference's.
+struct BiasResiduals {
+  LegVector<double> weight;
+
+  template <typename T>
+  bool operator()(const T* bias, T* residual) const {
+    for (Eigen::Index i = 0; i < kLegJoints; ++i) {
+      residual[i] = weight[i] * bias[i];
+    }
+    return true;
+  }
 };
 
 /// Second difference of the knots of one leg.

@@ -37,7 +37,9 @@ struct Scenario {
 struct GaitWeights {
   double slip = 20.0;          ///< per m/s, feet against each other in double support
   double slip_yaw = 5.0;       ///< per rad/s
-  double step_height = 200.0;  ///< per m, feet against each other in double support
+  double step_height = 600.0;  ///< per m beyond step_height_free_m, feet against each other in double support
+  double step_height_free_m = 0.006;  ///< what the lower foot's ground contact leaves to the other anyway
+  double step_height_inside = 30.0;   ///< per m, all of it
   double velocity = 3.0;       ///< per m/s, base against the steady velocity
   double velocity_yaw = 3.0;   ///< per rad/s
   double velocity_up = 0.5;    ///< per m/s
@@ -45,7 +47,8 @@ struct GaitWeights {
   double clearance = 150.0;    ///< per m short of it
   double foot_flat = 10.0;     ///< per rad
   double foot_gap = 60.0;      ///< per m short of it
-  LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad
+  LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad, shape of the joint curves
+  LegVector<double> bias = LegVector<double>::Constant(1.0);       ///< per rad, of their means
   double limit = 50.0;         ///< per rad beyond
   double smooth = 2e-4;        ///< per rad/cycle^2
 };

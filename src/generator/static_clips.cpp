@@ -13,7 +13,7 @@ namespace {
 constexpr double kAngleStep_rad = 0.02;
 constexpr double kHeightStep_m = 0.005;
 constexpr double kStraightKnee_rad = 0.12;     // a squat's highest row bends the knees at least this much
-constexpr double kPelvisShareOfPitch = 0.4;    // the rest bends the waist; people share alike
+
 constexpr double kLeanCompensation = 0.4;      // part of the lean's sideways centre of mass that the pelvis takes back
 constexpr double kSquatArms_rad_per_m = 1.75;  // arms forward as counterweight
 
@@ -93,7 +93,6 @@ Eigen::Matrix3d pitched(double angle) { return Eigen::AngleAxisd(angle, Eigen::V
 
 StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs) {
   const JointVector q_stand = robot.q_stand();
-  const double com_x = center_of_mass(robot, q_stand).x();
   const double pelvis_share = roles.waist_pitch ? kPelvisShareOfPitch : 1.0;
   return rows(robot.command_limits.lower[kPitch], robot.command_limits.upper[kPitch],
               [](double) { return kAngleStep_rad; }, q_stand, [&](double pitch, const JointVector& near) {
@@ -101,8 +100,10 @@ StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, co
                 if (roles.waist_pitch) {
                   q[*roles.waist_pitch] = q_stand[*roles.waist_pitch] + (1.0 - pelvis_share) * pitch;
                 }
-                return balance(robot, roles, legs, pitched(pelvis_share * pitch), Eigen::Vector3d::Zero(),
-                               Eigen::Vector3d::UnitX(), com_x, q);
+                // About the hips' own axis, so the legs stay as they are: moving the hips back would turn both legs alike,
+                // and in a stride lift one foot off the ground. The centre of mass stays well over the feet.
+                place_base(roles, legs, pitched(pelvis_share * pitch), Eigen::Vector3d::Zero(), q);
+                return q;
               });
 }
 

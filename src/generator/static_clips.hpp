@@ -8,7 +8,10 @@
 
 namespace pmg::generator {
 
-/// Torso pitch (+ forward) over the robot's command range; base height as it stands, hips going back.
+/// The part of a bend that the pelvis takes where the waist can take the rest; people share alike.
+inline constexpr double kPelvisShareOfPitch = 0.4;
+
+/// Torso pitch (+ forward) over the robot's command range: pelvis about the hips and waist; the legs stand as they are.
 StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
 /// Torso roll (+ right); base level, moved a little to the other side.
 StaticClip make_lean(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);

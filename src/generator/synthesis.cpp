@@ -22,7 +22,15 @@ struct Making {
 
 Addition posture_addition(const Making& making, Channel channel, double command) {
   Addition addition;
-  addition.q = {leg_offset(making.posture[channel - kPitch], making.roles, making.legs, command)};
+  const StaticClip& clip = making.posture[channel - kPitch];
+  addition.q = {leg_offset(clip, making.roles, making.legs, command)};
+  if (channel == kPitch) {
+    // The optimisation sees a level base; the pelvis' part of the pitch is undone by the hips, the chain's first joints.
+    const double pelvis_pitch = kPelvisShareOfPitch * command;
+    for (const Foot foot : {kLeft, kRight}) {
+      addition.q[0][foot][kHipPitch] += pelvis_pitch;
+    }
+  }
   addition.height_m = channel == kHeight ? command : 0.0;
   return addition;
 }
