@@ -6,8 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 constexpr const char* kStand = "config/scenarios/stand.yaml";
 
-struct Run {
+struct Finished {
   int exit_code = -1;
   std::string out, err;
 };
@@ -33,7 +33,7 @@ class PmgSil : public testing::Test {
   PmgSil() { fs::create_directories(folder_); }
   ~PmgSil() override { fs::remove_all(folder_); }
 
-  Run run(const std::string& arguments) {
+  Finished run(const std::string& arguments) {
     const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
     const std::string command =
         std::string(PMG_BIN_DIR) + "/pmg_sil " + arguments + " >" + out.string() + " 2>" + err.string();
@@ -51,7 +51,7 @@ class PmgSil : public testing::Test {
     return file;
   }
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Run refused = run(arguments + " --out " + out_folder());
+    const Finished refused = run(arguments + " --out " + out_folder());
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
     EXPECT_THAT(refused.err, HasSubstr(message));
     EXPECT_EQ(refused.out, "");
@@ -62,7 +62,7 @@ class PmgSil : public testing::Test {
 };
 
 TEST_F(PmgSil, HelpHasAnExampleAndTheExitCodes) {
-  const Run help = run("--help");
+  const Finished help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, HasSubstr("Example:"));
   EXPECT_THAT(help.out, HasSubstr("Exit codes: 0"));
@@ -70,7 +70,7 @@ TEST_F(PmgSil, HelpHasAnExampleAndTheExitCodes) {
 }
 
 TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
-  const Run stand = run(std::string("--scenario ") + kStand + " --out " + out_folder() + " --json");
+  const Finished stand = run(std::string("--scenario ") + kStand + " --out " + out_folder() + " --json");
   ASSERT_EQ(stand.exit_code, 0) << stand.out << stand.err;
   const auto summary = nlohmann::json::parse(stand.out);
   EXPECT_EQ(summary, nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json")));
@@ -105,7 +105,7 @@ TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
 TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
   const fs::path file = scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
   for (const char* name : {"a", "b"}) {
-    const Run walk = run("--gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
+    const Finished walk = run("--gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
     ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
   }
   ASSERT_GT(fs::file_size(folder_ / "a/log.lcm"), 100'000u);
@@ -114,7 +114,7 @@ TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
 
 TEST_F(PmgSil, AFallExitsWithOne) {
   const fs::path file = scenario("name: limp\nsteps:\n  - {for_s: 4.0, text: drives off, mode: passive}\n");
-  const Run limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
+  const Finished limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
   EXPECT_EQ(limp.exit_code, 1);
   EXPECT_EQ(nlohmann::json::parse(limp.out)["fell"], true);
 }
@@ -129,20 +129,20 @@ TEST_F(PmgSil, BadInputExitsWithTwoAndSaysWhat) {
                  "scenario.yaml:3:");
   expect_refused("--seed many --scenario " + std::string(kStand), "--seed");
   expect_refused("--frobnicate --scenario " + std::string(kStand), "--frobnicate");
-  const Run no_out = run(std::string("--scenario ") + kStand);
+  const Finished no_out = run(std::string("--scenario ") + kStand);
   EXPECT_EQ(no_out.exit_code, 2);
   EXPECT_THAT(no_out.err, HasSubstr("--out is missing"));
 }
 
 TEST_F(PmgSil, AnOutputFolderThatCannotBeMadeIsRefused) {
   std::ofstream(folder_ / "file") << "in the way";
-  const Run refused = run(std::string("--scenario ") + kStand + " --out " + (folder_ / "file/run").string());
+  const Finished refused = run(std::string("--scenario ") + kStand + " --out " + (folder_ / "file/run").string());
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("file"));
 }
 
 TEST_F(PmgSil, ConfigInForceIsPrinted) {
-  const Run printed = run(std::string("--print-config --seed 3 --scenario ") + kStand);
+  const Finished printed = run(std::string("--print-config --seed 3 --scenario ") + kStand);
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   const auto config = nlohmann::json::parse(printed.out);
   EXPECT_EQ(config["seed"], 3);
@@ -152,7 +152,7 @@ TEST_F(PmgSil, ConfigInForceIsPrinted) {
 
 TEST_F(PmgSil, MjcfIsExported) {
   const fs::path file = folder_ / "z1.xml";
-  const Run exported = run("--export-mjcf " + file.string());
+  const Finished exported = run("--export-mjcf " + file.string());
   EXPECT_EQ(exported.exit_code, 0) << exported.err;
   EXPECT_THAT(text(file), HasSubstr("<mujoco"));
 }
