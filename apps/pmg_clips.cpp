@@ -4,10 +4,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/config_error.hpp"
@@ -35,11 +38,95 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   posture("squat", kHeight);
 }
 
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Interrupted {};
+
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
+  const ClipLibrary library = generator::synthesize(robot, [](const std::string& clip) {
+    if (interrupted != 0) {
+      throw Interrupted{};
+    }
+    std::cerr << "making " << clip << "\n";
+  });
   std::filesystem::create_directories(out);
-  const ClipLibrary library = generator::synthesize(robot, [](const std::string& clip) { std::cerr << clip << "\n"; });
   write_library(out, library, robot);
+  return 0;
+}
+
+struct ShowOptions {
+  std::string robot = "z1";
+  std::filesystem::path clips, norms;
+  bool json = false;
+};
+
+void print_table(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
+  std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance mm  gap mm\n" << std::fixed;
+  for (const generator::ClipReport& clip : clips) {
+    for (const generator::GainReport& at : clip.gains) {
+      const generator::GroundMeasure& g = at.ground;
+      std::cout << std::left << std::setw(10) << clip.name << std::right << std::setprecision(1) << std::setw(5) << at.gain
+                << std::setprecision(3) << std::setw(9) << g.mean_velocity.x() << std::setw(9) << g.mean_velocity.y()
+                << std::setw(11) << g.mean_velocity.z() << std::setw(7) << at.velocity_error.cwiseAbs().maxCoeff()
+                << std::setprecision(1) << std::setw(10) << 100.0 * g.slip_mean_m_s << " (" << 100.0 * g.slip_p95_m_s << ")"
+                << std::setw(9) << 1000.0 * g.other_foot_height_m << std::setw(14) << 1000.0 * g.clearance_m << std::setw(8)
+                << 1000.0 * g.foot_gap_m << "\n";
+    }
+    std::cout << "           T " << std::setprecision(2) << clip.period_s << " s, r " << clip.duty_factor << ", joint speed "
+              << std::setprecision(0) << 100.0 * clip.joint_speed_share << " % of limits, " << std::setprecision(3)
+              << clip.limit_margin_rad << " rad from limits: " << (clip.failure.empty() ? "ok" : clip.failure) << "\n";
+  }
+  for (const generator::NormReport& norm : norms) {
+    std::cout << "forward " << norm.curve << ": correlation " << std::setprecision(3) << norm.correlation << ", RMS "
+              << std::setprecision(1) << norm.rms_deg << " degrees from the norm\n";
+  }
+}
+
+void print_json(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
+  nlohmann::json out;
+  for (const generator::ClipReport& clip : clips) {
+    nlohmann::json& entry = out["clips"][clip.name];
+    entry = {{"period_s", clip.period_s},           {"duty_factor", clip.duty_factor},
+             {"joint_speed_share", clip.joint_speed_share}, {"limit_margin_rad", clip.limit_margin_rad},
+             {"failure", clip.failure}};
+    for (const generator::GainReport& at : clip.gains) {
+      const generator::GroundMeasure& g = at.ground;
+      entry["gains"].push_back({{"gain", at.gain},
+                                {"vx_m_s", g.mean_velocity.x()},
+                                {"vy_m_s", g.mean_velocity.y()},
+                                {"omega_rad_s", g.mean_velocity.z()},
+                                {"velocity_error", at.velocity_error.cwiseAbs().maxCoeff()},
+                                {"slip_mean_m_s", g.slip_mean_m_s},
+                                {"slip_p95_m_s", g.slip_p95_m_s},
+                                {"other_foot_height_m", g.other_foot_height_m},
+                                {"clearance_m", g.clearance_m},
+                                {"lowest_swing_m", g.lowest_swing_m},
+                                {"foot_gap_m", g.foot_gap_m}});
+    }
+  }
+  for (const generator::NormReport& norm : norms) {
+    out["norms"][norm.curve] = {{"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}};
+  }
+  std::cout << out.dump(2) << "\n";
+}
+
+int show(const ShowOptions& options) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
+  const ClipLibrary library =
+      model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
+  const std::vector<generator::ClipReport> clips = generator::report(robot, library);
+  std::vector<generator::NormReport> norms;
+  if (!options.norms.empty() && library.positive[kVx]) {
+    norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
+  }
+  options.json ? print_json(clips, norms) : print_table(clips, norms);
+  for (const generator::ClipReport& clip : clips) {
+    if (!clip.failure.empty()) {
+      std::cerr << clip.name << ": " << clip.failure << "\n";
+      return 1;
+    }
+  }
   return 0;
 }
 
@@ -48,20 +135,32 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
 int main(int argc, char** argv) {
   CLI::App app{"Makes and shows clip libraries."};
   app.require_subcommand(1);
+  app.footer(
+      "Example: pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show --robot z1\n"
+      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 130 interrupted (nothing is written).");
   std::string robot = "z1";
   std::filesystem::path out;
   CLI::App* synth_command = app.add_subcommand("synth", "Make a clip library from published gait figures");
   synth_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
   synth_command->add_option("--out", out, "directory for the clips")->required();
+  ShowOptions options;
+  CLI::App* show_command = app.add_subcommand("show", "Check a library's clips against the ground at gains from 0.1 to 1");
+  show_command->add_option("--robot", options.robot, "robot's name, or its directory")->capture_default_str();
+  show_command->add_option("--clips", options.clips, "directory of the clips; the robot's own if left out");
+  show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with");
+  show_command->add_flag("--json", options.json, "for machines");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  std::signal(SIGINT, [](int) { interrupted = 1; });
   try {
-    return synth(robot, out);
+    return synth_command->parsed() ? synth(robot, out) : show(options);
   } catch (const model::ConfigError& error) {
     std::cerr << error.what() << "\n";
     return 2;
+  } catch (const Interrupted&) {
+    return 130;
   }
 }

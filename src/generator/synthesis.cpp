@@ -53,16 +53,29 @@ Addition clip_addition(const Making& making, const LegTrajectory& legs, const Ga
   return addition;
 }
 
-std::vector<Scenario> scenarios(const Making& making) {
+/// posture_weight: of walking in a posture against plain walking.
+std::vector<Scenario> scenarios(const Making& making, double posture_weight) {
   std::vector<Scenario> list;
   for (const double gain : {0.12, 0.3, 0.55, 0.8, 1.0}) {
     list.push_back({gain, 1.0, {}});
   }
-  list.push_back({0.3, 0.7, posture_addition(making, kHeight, -0.09)});
-  list.push_back({0.6, 0.7, posture_addition(making, kHeight, -0.09)});
-  list.push_back({0.5, 0.5, posture_addition(making, kRoll, 0.12)});
-  list.push_back({0.5, 0.5, posture_addition(making, kPitch, 0.25)});
+  list.push_back({0.3, posture_weight, posture_addition(making, kHeight, -0.09)});
+  list.push_back({0.6, posture_weight, posture_addition(making, kHeight, -0.09)});
+  list.push_back({0.5, posture_weight, posture_addition(making, kRoll, 0.12)});
   return list;
+}
+
+/// Scales one joint's curve about its mean, both legs alike.
+void shrink(std::vector<LegPose>& reference, LegRole role, double factor) {
+  for (const Foot foot : {kLeft, kRight}) {
+    double mean = 0.0;
+    for (const LegPose& pose : reference) {
+      mean += pose[foot][role] / static_cast<double>(reference.size());
+    }
+    for (LegPose& pose : reference) {
+      pose[foot][role] = mean + factor * (pose[foot][role] - mean);
+    }
+  }
 }
 
 GaitTask forward_task(const Making& making) {
@@ -75,9 +88,22 @@ GaitTask forward_task(const Making& making) {
   task.clearance_m = 0.035;
   task.flat_from = 0.18;
   task.flat_to = 0.55;
+  // The robot's stride is 1.2 leg lengths, the published one 1.55: a little less of hip and ankle.
   task.reference = published_reference(making.legs);
-  task.weights.reference << 4.0, 1.5, 1.5, 4.0, 4.0, 0.5;
-  task.scenarios = scenarios(making);
+  shrink(task.reference, kHipPitch, 0.95);
+  shrink(task.reference, kAnklePitch, 0.9);
+  // Published feet bend at the toes, and rise by 35 degrees in double support; a rigid one that is also to stay level
+  // with the other foot at half amplitude can't. The ankle gives way first.
+  task.weights.reference << 22.4, 6.0, 6.0, 16.0, 30.4, 2.0;
+  task.weights.bias << 6.0, 6.0, 6.0, 6.0, 9.0, 6.0;
+  task.weights.slip = 6.0;
+  task.weights.step_height = 900.0;
+  task.weights.step_height_free_m = 0.0055;
+  task.weights.velocity = 12.0;
+  task.weights.foot_flat = 6.0;
+  task.weights.clearance = 200.0;
+  task.weights.smooth = 3e-4;
+  task.scenarios = scenarios(making, 0.06);
   return task;
 }
 
@@ -93,7 +119,9 @@ GaitTask backward_task(const Making& making, const LegTrajectory& forward, const
   const double scale = (0.5 * task.period_s) / (0.8 * forward_task.period_s);
   task.reference = reversed_reference(making.legs, forward, forward_task.duty_factor, scale);
   task.weights.reference << 2.0, 1.5, 1.5, 2.0, 2.0, 0.5;
-  task.scenarios = scenarios(making);
+  task.weights.velocity = 12.0;
+  task.weights.velocity_yaw = 6.0;
+  task.scenarios = scenarios(making, 0.5);
   return task;
 }
 
@@ -108,7 +136,9 @@ GaitTask lateral_task(const Making& making) {
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.035;
   task.weights.reference = LegVector<double>::Constant(1.5);
-  task.scenarios = scenarios(making);
+  task.weights.velocity = 12.0;
+  task.weights.velocity_yaw = 6.0;
+  task.scenarios = scenarios(making, 0.3);
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
   // Feet 0.31 m apart on average: the closing foot then keeps clear of the other.
   task.reference = stepping_reference(making.legs, task, {.half_width_m = 0.155, .lift_m = 0.05, .height_m = -0.02});
@@ -128,7 +158,9 @@ GaitTask turn_task(const Making& making) {
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.03;
   task.weights.reference = LegVector<double>::Constant(1.5);
-  task.scenarios = scenarios(making);
+  task.weights.velocity = 12.0;
+  task.weights.velocity_yaw = 6.0;
+  task.scenarios = scenarios(making, 0.3);
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
   task.reference = stepping_reference(making.legs, task,
                                       {.half_width_m = 0.115, .toe_out_rad = 0.08, .lift_m = 0.05, .height_m = -0.01});

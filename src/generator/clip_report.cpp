@@ -1,0 +1,186 @@
+#include "generator/clip_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "generator/joint_roles.hpp"
+#include "model/config_error.hpp"
+
+namespace pmg::generator {
+namespace {
+
+LegTrajectory legs_of(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
+  LegTrajectory legs;
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    LegPose q;
+    LegPose dq;
+    for (const Foot foot : {kLeft, kRight}) {
+      for (std::size_t role = 0; role < kLegJoints; ++role) {
+        const int joint = roles.leg[foot][role];
+        const auto i = static_cast<Eigen::Index>(role);
+        q[foot][i] = q_stand[joint] + gain * (clip.q[k][joint] - q_stand[joint]);
+        dq[foot][i] = gain * clip.dq_dphi[k][joint];
+      }
+    }
+    legs.q.push_back(q);
+    legs.dq_dphi.push_back(dq);
+  }
+  return legs;
+}
+
+/// The base's pitch when the torso stands upright over it.
+double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
+  if (!roles.waist_pitch) {
+    return 0.0;
+  }
+  double mean = 0.0;
+  for (const JointVector& q : clip.q) {
+    mean += q[*roles.waist_pitch] / static_cast<double>(clip.q.size());
+  }
+  return -gain * (mean - q_stand[*roles.waist_pitch]);
+}
+
+std::string judge(const ClipReport& clip) {
+  for (const GainReport& at : clip.gains) {
+    const std::string where = " at gain " + std::to_string(at.gain).substr(0, 4);
+    if (at.ground.slip_mean_m_s > 0.03 || at.ground.slip_p95_m_s > 0.10) {
+      return "feet slip in double support" + where;
+    }
+    if (at.ground.other_foot_height_m > 0.01) {
+      return "stance feet differ in height" + where;
+    }
+    if (at.velocity_error.cwiseAbs().maxCoeff() > 0.05) {
+      return "mean velocity is off" + where;
+    }
+    if (at.ground.foot_gap_m < 0.02) {
+      return "feet come too close" + where;
+    }
+  }
+  return clip.joint_speed_share > 0.6 ? "a joint is too fast" : "";
+}
+
+ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs, const std::string& name,
+                       const DynamicClip& clip) {
+  ClipReport out;
+  out.name = name;
+  out.period_s = clip.period_s;
+  out.duty_factor = clip.duty_factor[kLeft];
+  const JointVector q_stand = robot.q_stand();
+  const GaitTiming when{clip.period_s, clip.contact_center, clip.duty_factor};
+  const Eigen::Vector3d full(clip.mean_velocity[0], clip.mean_velocity[1], clip.mean_velocity[2]);
+  for (int tenth = 1; tenth <= 10; ++tenth) {
+    GainReport at;
+    at.gain = 0.1 * tenth;
+    const Eigen::Matrix3d R_HB =
+        Eigen::AngleAxisd(pelvis_tilt(clip, roles, at.gain, q_stand), Eigen::Vector3d::UnitY()).toRotationMatrix();
+    at.ground = measure(legs, legs_of(clip, roles, at.gain, q_stand), when, R_HB);
+    at.velocity_error = at.ground.mean_velocity - at.gain * full;
+    out.gains.push_back(at);
+  }
+  out.limit_margin_rad = 1e9;
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const model::Joint& joint = robot.joints[j];
+      out.limit_margin_rad = std::min({out.limit_margin_rad, clip.q[k][i] - joint.lower_rad, joint.upper_rad - clip.q[k][i]});
+      out.joint_speed_share =
+          std::max(out.joint_speed_share, std::abs(clip.dq_dphi[k][i]) / clip.period_s / joint.velocity_limit_rad_s);
+    }
+  }
+  out.failure = judge(out);
+  return out;
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) {
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// One column of a norms file, without its last row (100 % is 0 % again).
+std::vector<double> read_column(const std::filesystem::path& file, const std::string& name) {
+  std::ifstream in(file);
+  std::vector<double> values;
+  std::ptrdiff_t column = -1;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line.front() == '#') {
+      continue;
+    }
+    const std::vector<std::string> cells = split(line);
+    if (column < 0) {
+      column = std::find(cells.begin(), cells.end(), name) - cells.begin();
+    } else if (column < std::ssize(cells)) {
+      values.push_back(std::strtod(cells[static_cast<std::size_t>(column)].c_str(), nullptr));
+    }
+  }
+  if (values.size() != 101) {
+    throw model::ConfigError(file.string() + ": " + name + ": " + std::to_string(values.size()) +
+                             " values; expected a column of 101, 0 to 100 % of the cycle");
+  }
+  values.pop_back();
+  return values;
+}
+
+NormReport compare(const std::string& curve, const std::vector<double>& ours, const std::vector<double>& published) {
+  const auto n = static_cast<Eigen::Index>(ours.size());
+  const Eigen::Map<const Eigen::ArrayXd> a(ours.data(), n);
+  const Eigen::Map<const Eigen::ArrayXd> b(published.data(), n);
+  const Eigen::ArrayXd da = a - a.mean();
+  const Eigen::ArrayXd db = b - b.mean();
+  return {curve, (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()), std::sqrt((a - b).square().mean())};
+}
+
+}  // namespace
+
+std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library) {
+  const JointRoles roles = find_joint_roles(robot);
+  const RobotLegs legs = robot_legs(robot, roles);
+  constexpr std::array<const char*, kVelocityChannels> kPositive = {"forward", "lateral", "turn"};
+  constexpr std::array<const char*, kVelocityChannels> kNegative = {"backward", "lateral_right", "turn_right"};
+  std::vector<ClipReport> reports;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    if (library.positive[channel]) {
+      reports.push_back(report_clip(robot, roles, legs, kPositive[channel], *library.positive[channel]));
+    }
+    if (library.negative[channel]) {
+      reports.push_back(report_clip(robot, roles, legs, kNegative[channel], *library.negative[channel]));
+    }
+  }
+  return reports;
+}
+
+std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
+                                           const std::filesystem::path& norms) {
+  const JointRoles roles = find_joint_roles(robot);
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kDegree;
+  std::vector<double> hip_deg;
+  std::vector<double> thigh_deg;
+  std::vector<double> knee_deg;
+  std::vector<double> ankle_deg;
+  const std::size_t n = forward.q.size();
+  for (std::size_t k = 0; k < 100; ++k) {
+    const JointVector& q = forward.q[k * n / 100];
+    hip_deg.push_back(-q[roles.leg[kLeft][kHipPitch]] / kDegree);
+    thigh_deg.push_back(hip_deg.back() - tilt_deg);
+    knee_deg.push_back(q[roles.leg[kLeft][kKnee]] / kDegree);
+    ankle_deg.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kDegree);
+  }
+  const std::vector<double> published_hip = read_column(norms, "hip_flexion_mean");
+  const std::vector<double> published_tilt = read_column(norms, "pelvis_tilt_ant+_mean");
+  std::vector<double> published_thigh;
+  for (std::size_t k = 0; k < published_hip.size(); ++k) {
+    published_thigh.push_back(published_hip[k] - published_tilt[k]);
+  }
+  return {compare("hip", hip_deg, published_hip), compare("thigh", thigh_deg, published_thigh),
+          compare("knee", knee_deg, read_column(norms, "knee_flexion_mean")),
+          compare("ankle", ankle_deg, read_column(norms, "ankle_dorsiflexion_mean"))};
+}
+
+}  // namespace pmg::generator

@@ -1,0 +1,46 @@
+// What a bench engineer reads about a clip library before it goes to a robot.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "generator/gait_measure.hpp"
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+
+namespace pmg::generator {
+
+/// A dynamic clip, blended with standing at one gain.
+struct GainReport {
+  double gain = 1.0;
+  GroundMeasure ground;
+  Eigen::Vector3d velocity_error = Eigen::Vector3d::Zero();  ///< mean velocity - gain * full velocity: m/s, m/s, rad/s
+};
+
+struct ClipReport {
+  std::string name;
+  double period_s = 0.0, duty_factor = 0.0;
+  std::vector<GainReport> gains;
+  double joint_speed_share = 0.0;   ///< of the joints' limits, largest
+  double limit_margin_rad = 0.0;    ///< smallest distance from a joint limit
+  std::string failure;              ///< empty when the clip can be walked by
+};
+
+/// Every dynamic clip at gains 0.1 .. 1. Failures: double-support slip over 3 cm/s on average or 10 cm/s at the 95th percentile,
+/// stance feet more than 1 cm apart in height, mean velocity off by more than 0.05 (m/s, rad/s), soles closer than 2 cm,
+/// joints faster than 60 % of their limits.
+std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
+
+/// Agreement of the forward clip with a published mean.
+struct NormReport {
+  std::string curve;
+  double correlation = 0.0, rms_deg = 0.0;
+};
+
+/// norms: CSV of 101 rows (0 .. 100 % of the cycle) with columns hip_flexion_mean, knee_flexion_mean, ankle_dorsiflexion_mean and
+/// pelvis_tilt_ant+_mean, in degrees. Throws model::ConfigError.
+std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
+                                           const std::filesystem::path& norms);
+
+}  // namespace pmg::generator
