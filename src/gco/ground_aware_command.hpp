@@ -12,9 +12,11 @@
 namespace pmg::gco {
 
 struct Options {
-  double prior_weight = 1e-3;          ///< of residuals towards the command, relative to the contact residuals' 1
-  bool optimise_roll_pitch = false;    ///< 7 unknowns instead of 5
-  double attitude_prior_weight = 0.1;  ///< the same as prior_weight for pitch and roll [per rad], only with 7 unknowns
+  double prior_weight = 1e-3;        ///< of residuals towards the command, relative to the contact residuals' 1
+  bool optimise_roll_pitch = false;  ///< 7 unknowns instead of 5
+  /// The same as prior_weight for pitch and roll [per rad], only with 7 unknowns. Gauss-Newton needs it well above the
+  /// square root of residual times leg speed, of the order of 0.1: below, it crawls.
+  double attitude_prior_weight = 0.3;
 };
 
 enum class Status {

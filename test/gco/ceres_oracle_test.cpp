@@ -86,15 +86,16 @@ TEST_P(CeresOracleOf, AgreesOnSevenUnknownsInTwoHundredStates) {
   test::TermsOf terms_of(robot);
   GroundAwareCommand gco(robot, options);
   for (int i = 0; i < 200; ++i) {
-    Reference reference = next_state(references, i);
-    reference.dq *= 0.1;  // disagreements as a blend has them, where there is one minimum
+    const Reference reference = test::mild(next_state(references, i), robot);
     gco.reset();
     const Result& result = gco.solve(reference);
     ASSERT_EQ(result.status, Status::kConverged) << i;
     const auto tiny = test::unknowns_of(result);
     const auto oracle = solve_with_ceres<7>(terms_of.with_attitude(reference, options.attitude_prior_weight));
+    // TinySolver stops at cost changes of 1e-15; pitch and roll are held by as little as 0.1^2: sqrt(1e-15 / 0.01) a
+    // step.
     for (std::size_t n = 0; n < kMaxUnknowns; ++n) {
-      ASSERT_NEAR(tiny[n], oracle[n], 1e-6) << "state " << i << ", unknown " << n;
+      ASSERT_NEAR(tiny[n], oracle[n], 1e-5) << "state " << i << ", unknown " << n;
     }
   }
 }

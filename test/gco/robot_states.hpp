@@ -43,6 +43,14 @@ inline void set_contact(Reference& reference, double left, double right) {
   reference.contact = {left >= 0.5, right >= 0.5};
 }
 
+/// The same with feet that disagree as they do in a blend of clips: centimetres and centimetres a second. The nonlinear
+/// problem with roll and pitch free needn't converge where feet are decimetres apart.
+inline Reference mild(Reference reference, const model::RobotModel& robot) {
+  reference.q = robot.q_stand() + 0.2 * (reference.q - robot.q_stand());
+  reference.dq *= 0.1;
+  return reference;
+}
+
 class RandomReferences {
  public:
   RandomReferences(const model::RobotModel& robot, unsigned seed) : robot_(robot), generator_(seed) {}
