@@ -24,7 +24,7 @@ constexpr const char* kScene = R"(
   <statistic center="0 0 {look_height}" extent="{extent}"/>
   <visual>
     <global offwidth="1280" offheight="720" fovy="38"/>
-    <quality shadowsize="2048" offsamples="4" numslices="20" numstacks="12"/>
+    <quality shadowsize="1024" offsamples="0" numslices="14" numstacks="8"/>
     <headlight ambient="0.36 0.37 0.40" diffuse="0.22 0.22 0.23" specular="0.04 0.04 0.04"/>
     <map znear="0.02" zfar="40" fogstart="3" fogend="11" shadowclip="0.9"/>
     <rgba fog="0.76 0.83 0.90 1" haze="0.76 0.83 0.90 1"/>
