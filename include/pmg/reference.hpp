@@ -15,7 +15,7 @@ struct Reference {
   PerFoot<double> contact_center{};    ///< mu
   PerFoot<double> duty_factor{};       ///< r; 1 at rest
   PerFoot<bool> contact{};             ///< |wrap(phi - mu)| <= r / 2
-  PerFoot<double> contact_weight{};    ///< the same with cosine edges, in [0, 1] (design: 0.04 of a cycle wide)
+  PerFoot<double> contact_weight{};    ///< the same with cosine edges inside the stance, in [0, 1]
   Command command;                     ///< the admissible, rate-limited command that q_ref realises
   Command command_rate;                ///< its time derivative [unit/s]
   bool command_limited = false;        ///< the user's command lay outside the admissible set

@@ -33,14 +33,11 @@ ContactPoint contact_point(const std::array<Eigen::Vector3d, 4>& sole_B, const E
 }
 
 PerFoot<double> height_shares(const PerFoot<double>& height_m, const PerFoot<double>& weight) noexcept {
+  const bool left = weight[kLeft] > 0.0, right = weight[kRight] > 0.0;
+  if (left != right) return {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+  if (!left) return {0.5, 0.5};
   const double softmin_left = 1.0 / (1.0 + std::exp((height_m[kLeft] - height_m[kRight]) / kFootScale_m));
-  const double softmin_right = 1.0 - softmin_left;
-  const double heaviest = std::max(weight[kLeft], weight[kRight]);
-  if (heaviest <= 0.0) return {0.5, 0.5};
-  const double present_left = std::min(1.0, 2.0 * weight[kLeft] / heaviest);
-  const double present_right = std::min(1.0, 2.0 * weight[kRight] / heaviest);
-  return {softmin_left * present_left + softmin_right * (1.0 - present_right),
-          softmin_right * present_right + softmin_left * (1.0 - present_left)};
+  return {softmin_left, 1.0 - softmin_left};
 }
 
 }  // namespace pmg::gco

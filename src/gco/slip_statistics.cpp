@@ -26,18 +26,17 @@ void SlipStatistics::add(const Reference& reference, const Result& result) noexc
     return;
   }
   if (!left && !right) return;
+  add_heights(left, right, result);
+  if (reference.gain == 0.0) return;
   for (const Foot foot : {kLeft, kRight}) {
     if (!reference.contact[foot]) continue;
     before_sum_m_s_ += result.foot[foot].before_m_s;
     ++before_samples_;
   }
-  const double left_m = result.foot[kLeft].height_m;
-  const double right_m = result.foot[kRight].height_m;
   if (!(left && right)) {
-    const Foot foot = left ? kLeft : kRight;
     ++extremes_.single_support_ticks;
-    extremes_.single_support_max_m_s = std::max(extremes_.single_support_max_m_s, result.foot[foot].after_m_s);
-    extremes_.lower_foot_height_max_m = std::max(extremes_.lower_foot_height_max_m, std::abs(left ? left_m : right_m));
+    extremes_.single_support_max_m_s =
+        std::max(extremes_.single_support_max_m_s, result.foot[left ? kLeft : kRight].after_m_s);
     return;
   }
   ++extremes_.double_support_ticks;
@@ -47,8 +46,16 @@ void SlipStatistics::add(const Reference& reference, const Result& result) noexc
     ++double_support_histogram_[bin_of(foot.after_m_s)];
     ++double_support_samples_;
   }
-  extremes_.lower_foot_height_max_m = std::max(extremes_.lower_foot_height_max_m, std::abs(std::min(left_m, right_m)));
-  extremes_.other_foot_height_max_m = std::max(extremes_.other_foot_height_max_m, std::abs(std::max(left_m, right_m)));
+}
+
+void SlipStatistics::add_heights(bool left, bool right, const Result& result) noexcept {
+  const double left_m = result.foot[kLeft].height_m;
+  const double right_m = result.foot[kRight].height_m;
+  const double lower_m = left && right ? std::min(left_m, right_m) : (left ? left_m : right_m);
+  extremes_.lower_foot_height_max_m = std::max(extremes_.lower_foot_height_max_m, std::abs(lower_m));
+  if (left && right) {
+    extremes_.other_foot_height_max_m = std::max(extremes_.other_foot_height_max_m, std::abs(std::max(left_m, right_m)));
+  }
 }
 
 SlipSummary SlipStatistics::summary() const noexcept {

@@ -10,6 +10,7 @@ namespace {
 Reference supported_by(bool left, bool right) {
   Reference reference;
   reference.contact = {left, right};
+  reference.gain = 0.5;
   return reference;
 }
 
@@ -43,6 +44,22 @@ TEST(SlipStatistics, SplitTheSupportPhases) {
   EXPECT_EQ(summary.other_foot_height_max_m, 5e-3);
   EXPECT_EQ(summary.single_support_ticks, 2);
   EXPECT_EQ(summary.double_support_ticks, 1);
+}
+
+TEST(SlipStatistics, AreNotDilutedByStanding) {
+  SlipStatistics statistics;
+  Result result;
+  result.foot = {slip(0.4, 0.02, 2e-4), slip(0.4, 0.02, 3e-3)};
+  statistics.add(supported_by(true, true), result);
+  Reference standing = supported_by(true, true);
+  standing.gain = 0.0;
+  result.foot = {slip(0.0, 0.0, 5e-4), slip(0.0, 0.0, 6e-3)};
+  for (int i = 0; i < 99; ++i) statistics.add(standing, result);
+  const SlipSummary summary = statistics.summary();
+  EXPECT_NEAR(summary.double_support_mean_m_s, 0.02, 1e-15);
+  EXPECT_NEAR(summary.before_mean_m_s, 0.4, 1e-15);
+  EXPECT_EQ(summary.lower_foot_height_max_m, 5e-4) << "heights count in every tick";
+  EXPECT_EQ(summary.other_foot_height_max_m, 6e-3);
 }
 
 TEST(SlipStatistics, FindTheLowerFootWhicheverItIs) {

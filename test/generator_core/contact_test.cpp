@@ -17,16 +17,26 @@ TEST(Contact, HoldsWithinHalfTheDutyFactorOfItsCentreAcrossTheWrap) {
   for (int i = 0; i < 1000; ++i) EXPECT_TRUE(in_contact(i / 1000.0, 0.8, 1.0));
 }
 
-TEST(ContactWeight, HasCosineEdgesCentredOnTheBoundaries) {
+TEST(ContactWeight, HasCosineEdgesInsideTheStance) {
   for (const double boundary : {0.1, 0.5}) {  // mu = 0.3, r = 0.4
     const double inwards = boundary < 0.3 ? 1.0 : -1.0;
-    EXPECT_NEAR(contact_weight(boundary, 0.3, 0.4, kEdge), 0.5, 1e-12);
-    EXPECT_NEAR(contact_weight(boundary + inwards * 0.02, 0.3, 0.4, kEdge), 1.0, 1e-12);
-    EXPECT_NEAR(contact_weight(boundary - inwards * 0.02, 0.3, 0.4, kEdge), 0.0, 1e-12);
-    EXPECT_NEAR(contact_weight(boundary + inwards * 0.01, 0.3, 0.4, kEdge), 0.5 + std::sqrt(0.125), 1e-12);
+    EXPECT_NEAR(contact_weight(boundary, 0.3, 0.4, kEdge), 0.0, 1e-12);
+    EXPECT_NEAR(contact_weight(boundary + inwards * 0.02, 0.3, 0.4, kEdge), 0.5, 1e-12);
+    EXPECT_NEAR(contact_weight(boundary + inwards * 0.03, 0.3, 0.4, kEdge), 0.5 + std::sqrt(0.125), 1e-12);
+    EXPECT_NEAR(contact_weight(boundary + inwards * 0.04, 0.3, 0.4, kEdge), 1.0, 1e-12);
+    EXPECT_EQ(contact_weight(boundary - inwards * 1e-3, 0.3, 0.4, kEdge), 0.0);
   }
   EXPECT_EQ(contact_weight(0.3, 0.3, 0.4, kEdge), 1.0);
   EXPECT_EQ(contact_weight(0.8, 0.3, 0.4, kEdge), 0.0);
+}
+
+TEST(ContactWeight, IsPositiveOnlyForAFootInContactWhileWalking) {
+  for (const double r : {0.5, 0.6, 0.85}) {
+    for (int i = 0; i < 1000; ++i) {
+      if (contact_weight(i / 1000.0, 0.3, r, kEdge) == 0.0) continue;
+      EXPECT_TRUE(in_contact(i / 1000.0, 0.3, r)) << r << " " << i;
+    }
+  }
 }
 
 TEST(ContactWeight, StaysOneWhereTheFootNeverLeavesTheGround) {
@@ -34,8 +44,8 @@ TEST(ContactWeight, StaysOneWhereTheFootNeverLeavesTheGround) {
 }
 
 TEST(ContactWeight, IsContinuousInPhaseAndInDutyFactor) {
-  // A cosine edge is at most pi / 2 / width steep in its boundary; the boundary moves with r by 1 (0.5, and 0.5 more
-  // where the edges move apart).
+  // A cosine edge is at most pi / 2 / width steep in its boundary; the boundary moves with r by at most 1 (0.5,
+  // and 0.5 more where it moves outwards).
   constexpr double kSteepest = 0.5 * 3.1416 / kEdge;
   constexpr double kStep = 1e-4;
   for (double r = 0.5; r + kStep <= 1.0; r += 10 * kStep) {
