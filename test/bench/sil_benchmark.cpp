@@ -1,0 +1,99 @@
+// The whole of pmg_sil, headless and with its log, against bare mj_step calls on the same model: how much of the simulation's
+// speed the controller leaves. CPU time of the thread, because other programs' load is not the matter.
+#include <benchmark/benchmark.h>
+#include <mujoco/mujoco.h>
+#include <time.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "generator_core/allocation_count.hpp"
+#include "hal/sil_hal.hpp"
+#include "io/clock.hpp"
+#include "io/log_writer.hpp"
+#include "model/clip_library_file.hpp"
+#include "model/robot_model.hpp"
+#include "policy/policy.hpp"
+#include "runtime/lockstep.hpp"
+#include "runtime/tick_log.hpp"
+#include "sim/robots.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::test {
+namespace {
+
+constexpr double kDuration_s = 2.0;
+
+double thread_cpu_s() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// On the ground, where contacts cost the most, in Walk mode, with every part of the tick at work.
+runtime::Scenario scenario() {
+  runtime::ScenarioStep step;
+  step.duration_s = kDuration_s;
+  step.text = "crouch and bend";
+  step.mode = runtime::Mode::kWalk;
+  step.command[kHeight] = -0.05;
+  step.command[kPitch] = 0.1;
+  runtime::Scenario scenario;
+  scenario.name = "benchmark";
+  scenario.steps = {step};
+  return scenario;
+}
+
+void BM_sil(benchmark::State& state) {
+  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
+  const runtime::Scenario played = scenario();
+  const runtime::TickOptions options = runtime::tick_options(robot);
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "pmg_sil_benchmark.lcm";
+  const io::WallClock clock;
+  constexpr int kTicks = 200, kSettledTicks = 100;
+  long allocations = 0;
+  for (auto _ : state) {
+    sim::World world(robot, {});
+    runtime::Tick tick(robot, library, std::make_unique<policy::ReferencePolicy>(), clock, options);
+    hal::SilHal bus(world);
+    runtime::WorldPlant plant(world);
+    io::LogWriter writer(file);
+    runtime::TickLog log(writer, robot, 1.0 / options.dt_s);
+    runtime::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
+    int ticks = 0;
+    long settled = 0;
+    lockstep.after_tick = [&](const runtime::LockstepProgress&) {
+      if (++ticks == kSettledTicks) settled = allocation_count();
+      if (ticks == kTicks) allocations = allocation_count() - settled;
+    };
+    const double start_s = thread_cpu_s();
+    const runtime::LockstepOutcome outcome = lockstep.run();
+    state.SetIterationTime(thread_cpu_s() - start_s);
+    if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
+  }
+  state.counters["allocations_per_call"] = static_cast<double>(allocations) / (kTicks - kSettledTicks);  // a call is a tick
+  std::filesystem::remove(file);
+}
+
+void BM_sil_floor(benchmark::State& state) {
+  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const sim::WorldOptions options;
+  for (auto _ : state) {
+    sim::World world(robot, options);
+    world.step(standing_command(robot));  // leaves the drives' targets in ctrl
+    const int steps = static_cast<int>(kDuration_s / options.timestep_s);
+    const double start_s = thread_cpu_s();
+    for (int i = 0; i < steps; ++i) mj_step(world.mj_model(), world.mj_data());
+    state.SetIterationTime(thread_cpu_s() - start_s);
+    if (world.diverged()) state.SkipWithError("the simulation diverged");
+  }
+}
+
+BENCHMARK(BM_sil)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_sil_floor)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace pmg::test
+
+BENCHMARK_MAIN();
