@@ -49,7 +49,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")->capture_default_str();
   app.add_option("--scenario", arguments.scenario, "scenario to play (YAML)");
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
-  app.add_option("--policy", arguments.policy, "policy's name below the robot's policies/, or none: drives follow the reference")
+  app.add_option("--policy", arguments.policy,
+                 "policy's name below the robot's policies/, or none: drives follow the reference")
       ->capture_default_str();
   app.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
@@ -65,15 +66,16 @@ void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 /// A flag's absence that CLI11 can't judge, because --export-mjcf and --print-config need less.
 void require(const fs::path& value, const char* option) {
-  if (value.empty()) throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
+  if (value.empty())
+    throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
 }
 
 std::unique_ptr<policy::Policy> load_policy(const std::string& name, const model::RobotModel& robot) {
   if (name == "none") return std::make_unique<policy::ReferencePolicy>();
   const fs::path file = robot.directory / "policies" / (name + ".onnx");
   if (!fs::exists(file)) {
-    throw std::invalid_argument(fmt::format("--policy {}: there is no {}; expected the name of a policy there, or none",
-                                            name, file.string()));
+    throw std::invalid_argument(
+        fmt::format("--policy {}: there is no {}; expected the name of a policy there, or none", name, file.string()));
   }
   throw std::invalid_argument(fmt::format("--policy {}: this build can't run ONNX policies yet; expected none", name));
 }
@@ -106,7 +108,9 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const model::Robo
           {"bus_period_s", lockstep.bus_period_s},
           {"control_period_s", tick.dt_s},
           {"sensor_noise",
-           {{"gyro_rad_s", kGyroNoise_rad_s}, {"encoder_rad", kEncoderNoise_rad}, {"orientation_rad", kOrientationNoise_rad}}},
+           {{"gyro_rad_s", kGyroNoise_rad_s},
+            {"encoder_rad", kEncoderNoise_rad},
+            {"orientation_rad", kOrientationNoise_rad}}},
           {"command",
            {{"lower", channels_json(tick.generator.limits.lower)},
             {"upper", channels_json(tick.generator.limits.upper)},
@@ -139,8 +143,8 @@ class Film {
 
   void after_tick(const runtime::LockstepProgress& progress) {
     if (++ticks_ % kTicksPerFrame != 0) return;
-    const std::string text = fmt::format("{:6.1f} s  {}\n{}", progress.time_s, runtime::to_string(progress.result.mode),
-                                         progress.step.text);
+    const std::string text =
+        fmt::format("{:6.1f} s  {}\n{}", progress.time_s, runtime::to_string(progress.result.mode), progress.step.text);
     writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
   }
   void close() { writer_.close(); }
@@ -175,16 +179,19 @@ class ProgressLine {
 
 void report(const runtime::LockstepOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
   const runtime::TrackingSummary& tracking = outcome.tracking;
-  std::cout << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}\n",
-                           summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
-                           summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall")
-            << fmt::format("tracking over {:.1f} s: velocity {:.3f} m/s, yaw {:.3f} rad/s, pitch {:.3f} rad, roll {:.3f} rad, "
-                           "height {:.3f} m\n",
-                           tracking.followed_s, tracking.lin_vel_mae_m_s, tracking.yaw_vel_mae_rad_s,
-                           tracking.pitch_mae_rad, tracking.roll_mae_rad, tracking.height_mae_m)
-            << fmt::format("reference slip: single support {:.4f} m/s at most, double support {:.4f} m/s mean, {:.4f} m/s p95\n",
-                           outcome.reference_slip.single_support_max_m_s, outcome.reference_slip.double_support_mean_m_s,
-                           outcome.reference_slip.double_support_p95_m_s);
+  std::cout
+      << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}\n",
+                     summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
+                     summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall")
+      << fmt::format(
+             "tracking over {:.1f} s: velocity {:.3f} m/s, yaw {:.3f} rad/s, pitch {:.3f} rad, roll {:.3f} rad, "
+             "height {:.3f} m\n",
+             tracking.followed_s, tracking.lin_vel_mae_m_s, tracking.yaw_vel_mae_rad_s, tracking.pitch_mae_rad,
+             tracking.roll_mae_rad, tracking.height_mae_m)
+      << fmt::format(
+             "reference slip: single support {:.4f} m/s at most, double support {:.4f} m/s mean, {:.4f} m/s p95\n",
+             outcome.reference_slip.single_support_max_m_s, outcome.reference_slip.double_support_mean_m_s,
+             outcome.reference_slip.double_support_p95_m_s);
   if (outcome.diverged) std::cout << "the simulation diverged\n";
   for (const auto& fault : summary["faults"]) {
     std::cout << fmt::format("fault at {:.2f} s: {}\n", fault["t_s"].get<double>(), fault["text"].get<std::string>());
@@ -235,8 +242,8 @@ int simulate(const Arguments& arguments) {
   log_file.flush();
   if (film) film->close();
   lockstep.timing().write_csv(arguments.out / "timing.csv");
-  const auto summary = runtime::summary_json(
-      {robot.name, scenario.name, arguments.policy, arguments.seed, wall_s}, outcome, lockstep.timing(), robot);
+  const auto summary = runtime::summary_json({robot.name, scenario.name, arguments.policy, arguments.seed, wall_s},
+                                             outcome, lockstep.timing(), robot);
   runtime::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';

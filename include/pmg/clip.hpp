@@ -11,15 +11,16 @@
 
 namespace pmg {
 
-/// One gait cycle of a single-direction movement. Sample k of N is at phase k/N; the end is not repeated; phase 0 is the left
-/// foot's initial contact.
+/// One gait cycle of a single-direction movement. Sample k of N is at phase k/N; the end is not repeated; phase 0 is
+/// the left foot's initial contact.
 struct DynamicClip {
-  std::vector<JointVector> q;      ///< N samples [rad]
+  std::vector<JointVector> q;        ///< N samples [rad]
   std::vector<JointVector> dq_dphi;  ///< N samples: derivative with respect to phase [rad per cycle]
-  double period_s = 0.0;           ///< T
+  double period_s = 0.0;             ///< T
   PerFoot<double> contact_center{};  ///< mu, phase in [0, 1)
   PerFoot<double> duty_factor{};     ///< r in (0, 1]
-  std::array<double, kVelocityChannels> mean_velocity{};  ///< vx, vy [m/s], omega [rad/s] of the stance feet's kinematics
+  std::array<double, kVelocityChannels>
+      mean_velocity{};  ///< vx, vy [m/s], omega [rad/s] of the stance feet's kinematics
 };
 
 /// A posture channel's joint angles over its command, piecewise linear between rows.

@@ -7,8 +7,8 @@
 namespace pmg {
 
 /// The channels of a command. The first three are u_d (velocity of the pelvis in its heading frame H), the last three
-/// u_s (posture). Heights are deviations from the standing height, positive up; pitch is positive forward, roll positive
-/// to the right, both of the torso link in H.
+/// u_s (posture). Heights are deviations from the standing height, positive up; pitch is positive forward, roll
+/// positive to the right, both of the torso link in H.
 enum Channel : std::size_t { kVx = 0, kVy, kOmega, kPitch, kRoll, kHeight };
 inline constexpr std::size_t kChannels = 6;
 inline constexpr std::size_t kVelocityChannels = 3;
@@ -26,8 +26,8 @@ struct Command {
 
 /// What a command may be and how fast it may change.
 struct CommandLimits {
-  std::array<double, kChannels> lower{};        ///< same units as Command
-  std::array<double, kChannels> upper{};        ///< same units as Command
+  std::array<double, kChannels> lower{};       ///< same units as Command
+  std::array<double, kChannels> upper{};       ///< same units as Command
   std::array<double, kChannels> rate_per_s{};  ///< largest |du/dt|
 };
 

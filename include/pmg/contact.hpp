@@ -14,10 +14,10 @@ inline bool in_contact(double phase, double contact_center, double duty_factor) 
   return std::abs(wrap_half_cycle(phase - contact_center)) <= 0.5 * duty_factor;
 }
 
-/// The same as a weight in [0, 1] with cosine edges, edge_cycle wide, inside the stance: 0 on its boundaries and outside,
-/// so that the other foot alone determines the base in single support, 1 from edge_cycle inwards. A swing shorter than two
-/// edges is on its way to standing: there the boundaries move outwards until at r = 1 the weight is 1 everywhere, so that
-/// the weight is continuous in the duty factor too.
+/// The same as a weight in [0, 1] with cosine edges, edge_cycle wide, inside the stance: 0 on its boundaries and
+/// outside, so that the other foot alone determines the base in single support, 1 from edge_cycle inwards. A swing
+/// shorter than two edges is on its way to standing: there the boundaries move outwards until at r = 1 the weight is 1
+/// everywhere, so that the weight is continuous in the duty factor too.
 inline double contact_weight(double phase, double contact_center, double duty_factor, double edge_cycle) noexcept {
   const double distance = std::abs(wrap_half_cycle(phase - contact_center));
   const double boundary = 0.5 * duty_factor + std::max(0.0, edge_cycle - 0.5 * (1.0 - duty_factor));

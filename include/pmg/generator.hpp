@@ -41,7 +41,7 @@ struct GeneratorOptions {
   std::array<double, kVelocityChannels> scale_positive{};  ///< u_max_i for positive commands
   std::array<double, kVelocityChannels> scale_negative{};  ///< u_max_i for negative commands, positive numbers
   double limit_margin_rad = 0.0349066;                     ///< 2 degrees
-  double contact_edge_cycle = 0.04;                        ///< width of the contact weights' cosine edges, inside the stance
+  double contact_edge_cycle = 0.04;  ///< width of the contact weights' cosine edges, inside the stance
   double rest_before_freeze_s = 0.5;
   StanceRule stance_rule = StanceRule::kRestRamp;
   double stance_ramp_s = 0.2;

@@ -20,10 +20,10 @@ struct ContactPoint {
 /// in B [m]; R_HB: attitude of the base in the heading frame H.
 ContactPoint contact_point(const std::array<Eigen::Vector3d, 4>& sole_B, const Eigen::Matrix3d& R_HB) noexcept;
 
-/// How much each foot says about the base height; sums to 1. Of two feet in contact the lower one carries (softmin, scale
-/// 0.5 mm; never the average of two heights), however little its contact weight: no reference puts a loaded foot into the
-/// ground, at the price of a step in height, as large as the feet disagree, when the lower one lifts off. height_m: of the
-/// contact points above the base origin; weight: contact weights in [0, 1].
+/// How much each foot says about the base height; sums to 1. Of two feet in contact the lower one carries (softmin,
+/// scale 0.5 mm; never the average of two heights), however little its contact weight: no reference puts a loaded foot
+/// into the ground, at the price of a step in height, as large as the feet disagree, when the lower one lifts off.
+/// height_m: of the contact points above the base origin; weight: contact weights in [0, 1].
 PerFoot<double> height_shares(const PerFoot<double>& height_m, const PerFoot<double>& weight) noexcept;
 
 }  // namespace pmg::gco

@@ -21,8 +21,8 @@ FootTerms foot_terms(const model::FootKinematics& foot, const ContactPoint& cont
   return terms;
 }
 
-/// 0 while the feet carry at least half a contact weight, 1 without any: the prior takes over within half an edge of the
-/// contact weights, instead of within the instant in which they pass its 1e-6.
+/// 0 while the feet carry at least half a contact weight, 1 without any: the prior takes over within half an edge of
+/// the contact weights, instead of within the instant in which they pass its 1e-6.
 double flight(double total_weight) noexcept {
   const double missing = std::max(0.0, 1.0 - 2.0 * total_weight);
   return missing * missing;

@@ -54,7 +54,8 @@ void SlipStatistics::add_heights(bool left, bool right, const Result& result) no
   const double lower_m = left && right ? std::min(left_m, right_m) : (left ? left_m : right_m);
   extremes_.lower_foot_height_max_m = std::max(extremes_.lower_foot_height_max_m, std::abs(lower_m));
   if (left && right) {
-    extremes_.other_foot_height_max_m = std::max(extremes_.other_foot_height_max_m, std::abs(std::max(left_m, right_m)));
+    extremes_.other_foot_height_max_m =
+        std::max(extremes_.other_foot_height_max_m, std::abs(std::max(left_m, right_m)));
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace pmg::gco {
 
-/// Speeds [m/s] of stance feet's contact points while the gait runs (standing would only dilute them), heights [m] of their
-/// lowest points in every tick. Zero where there was no sample.
+/// Speeds [m/s] of stance feet's contact points while the gait runs (standing would only dilute them), heights [m] of
+/// their lowest points in every tick. Zero where there was no sample.
 struct SlipSummary {
   double before_mean_m_s = 0.0;          ///< all stance feet, base moving by the user's command
   double single_support_max_m_s = 0.0;   ///< optimised
@@ -20,7 +20,7 @@ struct SlipSummary {
   double lower_foot_height_max_m = 0.0;  ///< largest |height| of the lower stance foot
   double other_foot_height_max_m = 0.0;  ///< largest |height| of the higher one in double support
   std::int64_t single_support_ticks = 0, double_support_ticks = 0;  ///< while the gait runs
-  std::int64_t not_converged_ticks = 0;  ///< left out of everything above
+  std::int64_t not_converged_ticks = 0;                             ///< left out of everything above
 };
 
 /// Accumulates ticks. Support phases are those of Reference::contact.

@@ -10,8 +10,8 @@
 
 namespace pmg::io {
 
-/// Events carry the stamp that they are given (simulation time in SIL), never the time of writing: the same run gives the
-/// same bytes. Not for a real-time thread.
+/// Events carry the stamp that they are given (simulation time in SIL), never the time of writing: the same run gives
+/// the same bytes. Not for a real-time thread.
 class LogWriter {
  public:
   explicit LogWriter(const std::filesystem::path& path);  ///< throws std::runtime_error if the file can't be made
@@ -21,7 +21,8 @@ class LogWriter {
   void write(const std::string& channel, std::int64_t stamp_ns, const Message& message) {
     const int size = message.getEncodedSize();
     if (static_cast<int>(buffer_.size()) < size) buffer_.resize(static_cast<std::size_t>(size));
-    if (message.encode(buffer_.data(), 0, size) != size) throw std::runtime_error(channel + ": message can't be encoded");
+    if (message.encode(buffer_.data(), 0, size) != size)
+      throw std::runtime_error(channel + ": message can't be encoded");
     append(channel, stamp_ns, size);
   }
 

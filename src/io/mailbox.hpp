@@ -8,8 +8,8 @@
 
 namespace pmg::io {
 
-/// One writer thread, one reader thread. Three slots: one belongs to the writer, one to the reader, and the third changes
-/// hands by a single atomic exchange, so neither side ever waits, retries or sees half a value.
+/// One writer thread, one reader thread. Three slots: one belongs to the writer, one to the reader, and the third
+/// changes hands by a single atomic exchange, so neither side ever waits, retries or sees half a value.
 template <typename T>
 class Mailbox {
   static_assert(std::is_nothrow_copy_assignable_v<T>, "both ends run in real-time threads");

@@ -10,8 +10,8 @@
 
 namespace pmg::model {
 
-/// Forward kinematics of a chain of fixed and revolute joints. KDL's own position and Jacobian solvers walk the chain once
-/// each; this walks it once for both. No heap after construction.
+/// Forward kinematics of a chain of fixed and revolute joints. KDL's own position and Jacobian solvers walk the chain
+/// once each; this walks it once for both. No heap after construction.
 class ChainKinematics {
  public:
   /// joints: index in the robot's joint order of each moving joint of the chain, from the base on.
@@ -21,10 +21,10 @@ class ChainKinematics {
 
   std::size_t size() const noexcept { return joints_.size(); }
   int joint(std::size_t i) const noexcept { return joints_[i]; }
-  const Eigen::Vector3d& axis(std::size_t i) const noexcept { return axes_[i]; }      ///< unit vector, in the base frame
+  const Eigen::Vector3d& axis(std::size_t i) const noexcept { return axes_[i]; }  ///< unit vector, in the base frame
   const Eigen::Vector3d& origin(std::size_t i) const noexcept { return origins_[i]; }  ///< a point on the axis [m]
-  const Eigen::Matrix3d& R() const noexcept { return R_; }                            ///< of the chain's end
-  const Eigen::Vector3d& p() const noexcept { return p_; }                            ///< of the chain's end [m]
+  const Eigen::Matrix3d& R() const noexcept { return R_; }                             ///< of the chain's end
+  const Eigen::Vector3d& p() const noexcept { return p_; }                             ///< of the chain's end [m]
 
  private:
   KDL::Chain chain_;

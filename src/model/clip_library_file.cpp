@@ -50,8 +50,8 @@ void read_mean_velocity(DynamicClip& clip, ConfigReader reader, std::size_t chan
   reader.finish();
 }
 
-DynamicClip read_dynamic(const fs::path& directory, const std::string& name, const RobotModel& robot, std::size_t channel,
-                         double direction) {
+DynamicClip read_dynamic(const fs::path& directory, const std::string& name, const RobotModel& robot,
+                         std::size_t channel, double direction) {
   DynamicClip clip;
   ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
   reader.one_of("kind", {"dynamic"});
@@ -84,8 +84,8 @@ void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
   std::size_t above = 0;
   while (above < table.command.size() && table.command[above] < 0.0) ++above;
   if (above == table.command.size() || (above == 0 && table.command[0] > 0.0)) {
-    raise({table.file.string()}, "command", fmt::format("goes from {} to {}", table.command.front(), table.command.back()),
-          "0 in its range");
+    raise({table.file.string()}, "command",
+          fmt::format("goes from {} to {}", table.command.front(), table.command.back()), "0 in its range");
   }
   const std::size_t below = table.command[above] == 0.0 ? above : above - 1;
   const double span = table.command[above] - table.command[below];
@@ -100,7 +100,8 @@ void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
   }
 }
 
-StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot, std::size_t channel) {
+StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot,
+                       std::size_t channel) {
   ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
   reader.one_of("kind", {"static"});
   reader.required<std::string>("source");
@@ -125,7 +126,8 @@ struct NamedClip {
   PerFoot<double> contact_center;
 };
 
-/// Every clip that the generator may blend, with the mirrored ones it makes of positive clips without a negative partner.
+/// Every clip that the generator may blend, with the mirrored ones it makes of positive clips without a negative
+/// partner.
 std::vector<NamedClip> blended_clips(const ClipLibrary& library) {
   std::vector<NamedClip> clips;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -147,12 +149,15 @@ void check_contact_centers(const fs::path& directory, const ClipLibrary& library
   for (const NamedClip& clip : clips) {
     for (const NamedClip& other : clips) {
       for (const Foot foot : {kLeft, kRight}) {
-        if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= kMaxContactCenterSpread) continue;
+        if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= kMaxContactCenterSpread)
+          continue;
         const fs::path file = yaml(directory, clip.name);
         ConfigReader reader = ConfigReader::from_file(file);
-        reader.map("contact").map(kFootNames[foot]).fail(
-            "center", fmt::format("is {}, and {} in {}", clip.contact_center[foot], other.contact_center[foot], other.name),
-            fmt::format("at most {} of a cycle between a library's clips", kMaxContactCenterSpread));
+        reader.map("contact")
+            .map(kFootNames[foot])
+            .fail("center",
+                  fmt::format("is {}, and {} in {}", clip.contact_center[foot], other.contact_center[foot], other.name),
+                  fmt::format("at most {} of a cycle between a library's clips", kMaxContactCenterSpread));
       }
     }
   }
@@ -234,8 +239,8 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   return library;
 }
 
-void write_dynamic_clip(const fs::path& directory, const std::string& name, const DynamicClip& clip, const RobotModel& robot,
-                        const std::string& source) {
+void write_dynamic_clip(const fs::path& directory, const std::string& name, const DynamicClip& clip,
+                        const RobotModel& robot, const std::string& source) {
   std::string text = fmt::format("kind: dynamic\nsource: {}\nperiod_s: {}\ncontact:\n", quoted(source), clip.period_s);
   for (const Foot foot : {kLeft, kRight}) {
     text += fmt::format("  {}: {{center: {}, duty_factor: {}}}\n", kFootNames[foot], clip.contact_center[foot],

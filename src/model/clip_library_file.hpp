@@ -1,4 +1,5 @@
-// Reads and writes clip libraries: CSV with one column a joint by name (SI) and a YAML beside each (docs/file-formats.md).
+// Reads and writes clip libraries: CSV with one column a joint by name (SI) and a YAML beside each
+// (docs/file-formats.md).
 #pragma once
 
 #include <filesystem>
@@ -14,17 +15,17 @@ inline constexpr double kMaxContactCenterSpread = 0.15;
 inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< the periods of all dynamic clips together stay below
 
 /// Reads DIRECTORY/{forward,backward,lateral,turn}.{csv,yaml} (backward, lateral_right and turn_right optional) and
-/// {bend,lean,squat}.{csv,yaml} for this robot. Throws ConfigError with file and line: wrong or missing joint columns, NaN,
-/// contact centres of one foot that differ by more than 0.15, static commands that don't increase, dynamic clips of ten
-/// seconds or more in total, samples outside joint limits, mean velocities in the wrong direction, a posture that at command
-/// 0 isn't the standing one.
+/// {bend,lean,squat}.{csv,yaml} for this robot. Throws ConfigError with file and line: wrong or missing joint columns,
+/// NaN, contact centres of one foot that differ by more than 0.15, static commands that don't increase, dynamic clips
+/// of ten seconds or more in total, samples outside joint limits, mean velocities in the wrong direction, a posture
+/// that at command 0 isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
 
 /// dq/dphi [rad per cycle] at N equidistant samples of one cycle: the slopes of the periodic cubic spline through them.
 std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q);
 
-/// Writes NAME.csv and NAME.yaml into the directory, so that load_clip_library reads back the same numbers (dq_dphi isn't
-/// written: it is periodic_spline_slopes of q). Throws ConfigError when a file can't be written.
+/// Writes NAME.csv and NAME.yaml into the directory, so that load_clip_library reads back the same numbers (dq_dphi
+/// isn't written: it is periodic_spline_slopes of q). Throws ConfigError when a file can't be written.
 void write_dynamic_clip(const std::filesystem::path& directory, const std::string& name, const DynamicClip& clip,
                         const RobotModel& robot, const std::string& source);
 void write_static_clip(const std::filesystem::path& directory, const std::string& name, Channel channel,

@@ -31,7 +31,8 @@ std::vector<Cell> split(std::string_view line) {
 }
 
 /// What each column is: a joint's index, or kCommandColumn.
-std::vector<int> read_header(const std::string& file, std::string_view line, const JointIndex& joints, bool with_command) {
+std::vector<int> read_header(const std::string& file, std::string_view line, const JointIndex& joints,
+                             bool with_command) {
   std::vector<int> columns;
   for (const Cell& cell : split(line)) {
     const Place place{file, 1, cell.column};
@@ -43,10 +44,12 @@ std::vector<int> read_header(const std::string& file, std::string_view line, con
             columns.empty() && with_command ? "`command`" : "the name of one of the robot's joints");
     }
     const int what = command ? kCommandColumn : *joint;
-    if (std::find(columns.begin(), columns.end(), what) != columns.end()) raise(place, name, "is there twice", "it once");
+    if (std::find(columns.begin(), columns.end(), what) != columns.end())
+      raise(place, name, "is there twice", "it once");
     columns.push_back(what);
   }
-  if (with_command && columns.front() != kCommandColumn) raise({file, 1, 1}, "command", "is missing", "it as the first column");
+  if (with_command && columns.front() != kCommandColumn)
+    raise({file, 1, 1}, "command", "is missing", "it as the first column");
   for (int joint = 0; joint < joints.size(); ++joint) {
     if (std::find(columns.begin(), columns.end(), joint) == columns.end()) {
       raise({file, 1}, joints.name(joint), "is missing", "a column for every joint of the robot");
@@ -85,7 +88,8 @@ ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& j
     if (line.empty()) continue;
     const std::vector<Cell> cells = split(line);
     if (cells.size() != columns.size()) {
-      raise({file.string(), number}, "", fmt::format("has {} columns", cells.size()), fmt::format("{}", columns.size()));
+      raise({file.string(), number}, "", fmt::format("has {} columns", cells.size()),
+            fmt::format("{}", columns.size()));
     }
     JointVector q(joints.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -20,8 +20,8 @@ struct ClipTable {
   Place place(std::size_t row) const { return {file.string(), line[row]}; }
 };
 
-/// The columns are every joint by name, in any order, and `command` first where it is asked for. Throws ConfigError on a
-/// missing, unknown or repeated column, a row of another length, and what isn't a finite number.
+/// The columns are every joint by name, in any order, and `command` first where it is asked for. Throws ConfigError on
+/// a missing, unknown or repeated column, a row of another length, and what isn't a finite number.
 ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& joints, bool with_command);
 
 /// The text that read_clip_table reads back to the same numbers. command: empty, or one a row.

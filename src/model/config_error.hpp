@@ -6,8 +6,8 @@
 
 namespace pmg::model {
 
-/// what() is one line: "FILE:LINE:COLUMN: KEY: what is wrong; expected what". Line and column are left out where the input
-/// has none.
+/// what() is one line: "FILE:LINE:COLUMN: KEY: what is wrong; expected what". Line and column are left out where the
+/// input has none.
 class ConfigError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -43,9 +43,15 @@ std::optional<double> plain_number(const YAML::Node& node) {
 
 }  // namespace
 
-NumberCheck any_number() { return {"a finite number", [](double) { return true; }}; }
-NumberCheck positive() { return {"a number above 0", [](double x) { return x > 0.0; }}; }
-NumberCheck non_negative() { return {"a number of at least 0", [](double x) { return x >= 0.0; }}; }
+NumberCheck any_number() {
+  return {"a finite number", [](double) { return true; }};
+}
+NumberCheck positive() {
+  return {"a number above 0", [](double x) { return x > 0.0; }};
+}
+NumberCheck non_negative() {
+  return {"a number of at least 0", [](double x) { return x >= 0.0; }};
+}
 NumberCheck in_range(double lower, double upper) {
   return {fmt::format("a number from {} to {}", lower, upper), [=](double x) { return x >= lower && x <= upper; }};
 }
@@ -146,17 +152,29 @@ void ConfigReader::finish() const {
 }
 
 template <>
-std::string ConfigReader::describe<double>() { return "a number"; }
+std::string ConfigReader::describe<double>() {
+  return "a number";
+}
 template <>
-std::string ConfigReader::describe<int>() { return "a whole number"; }
+std::string ConfigReader::describe<int>() {
+  return "a whole number";
+}
 template <>
-std::string ConfigReader::describe<bool>() { return "true or false"; }
+std::string ConfigReader::describe<bool>() {
+  return "true or false";
+}
 template <>
-std::string ConfigReader::describe<std::string>() { return "a string"; }
+std::string ConfigReader::describe<std::string>() {
+  return "a string";
+}
 template <>
-std::string ConfigReader::describe<std::vector<double>>() { return "a list of numbers"; }
+std::string ConfigReader::describe<std::vector<double>>() {
+  return "a list of numbers";
+}
 template <>
-std::string ConfigReader::describe<std::vector<std::string>>() { return "a list of strings"; }
+std::string ConfigReader::describe<std::vector<std::string>>() {
+  return "a list of strings";
+}
 
 template <>
 double ConfigReader::read(const std::string& key, const YAML::Node& node, const NumberCheck& check) const {

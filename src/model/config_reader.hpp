@@ -24,14 +24,16 @@ NumberCheck positive();
 NumberCheck non_negative();
 NumberCheck in_range(double lower, double upper);  ///< both ends included
 
-/// One YAML mapping of a file. Ask for its keys, then call finish(): keys that nobody asked for are errors, as are repeated
-/// ones. Every error is a ConfigError that names file, line, column and the key's path ("joints.left_knee.kp_Nm_per_rad").
+/// One YAML mapping of a file. Ask for its keys, then call finish(): keys that nobody asked for are errors, as are
+/// repeated ones. Every error is a ConfigError that names file, line, column and the key's path
+/// ("joints.left_knee.kp_Nm_per_rad").
 class ConfigReader {
  public:
   /// Reads the file. Throws ConfigError when it is missing, isn't YAML, or isn't one mapping.
   static ConfigReader from_file(const std::filesystem::path& file);
 
-  /// T: double, int, bool, std::string, std::vector<double>, std::vector<std::string>. The check applies to each number.
+  /// T: double, int, bool, std::string, std::vector<double>, std::vector<std::string>. The check applies to each
+  /// number.
   template <typename T>
   T required(const std::string& key, const NumberCheck& check = any_number()) {
     return read<T>(key, child(key, describe<T>()), check);
@@ -45,15 +47,15 @@ class ConfigReader {
   /// A list of exactly this many numbers.
   std::vector<double> numbers(const std::string& key, std::size_t count, const NumberCheck& check = any_number());
 
-  ConfigReader map(const std::string& key);                           ///< a nested mapping
-  std::vector<ConfigReader> maps(const std::string& key);             ///< a list of mappings
+  ConfigReader map(const std::string& key);                ///< a nested mapping
+  std::vector<ConfigReader> maps(const std::string& key);  ///< a list of mappings
   std::string one_of(const std::string& key, const std::vector<std::string>& choices);
 
   bool has(const std::string& key) const { return entries_.contains(key); }
-  const std::vector<std::string>& keys() const { return order_; }     ///< in the file's order
-  Place place() const { return place_; }                              ///< of the mapping itself
-  Place place(const std::string& key) const;                          ///< of the key's value, or of the mapping
-  std::string path(const std::string& key) const;                     ///< the key with what it lies in
+  const std::vector<std::string>& keys() const { return order_; }  ///< in the file's order
+  Place place() const { return place_; }                           ///< of the mapping itself
+  Place place(const std::string& key) const;                       ///< of the key's value, or of the mapping
+  std::string path(const std::string& key) const;                  ///< the key with what it lies in
 
   /// Throws at the key's place.
   [[noreturn]] void fail(const std::string& key, const std::string& wrong, const std::string& expected) const;
@@ -83,10 +85,10 @@ class ConfigReader {
 };
 
 // The types that exist; everything else doesn't link.
-#define PMG_CONFIG_TYPE(...)                                                                                 \
-  template <>                                                                                                \
-  std::string ConfigReader::describe<__VA_ARGS__>();                                                         \
-  template <>                                                                                                \
+#define PMG_CONFIG_TYPE(...)                         \
+  template <>                                        \
+  std::string ConfigReader::describe<__VA_ARGS__>(); \
+  template <>                                        \
   __VA_ARGS__ ConfigReader::read(const std::string& key, const YAML::Node& node, const NumberCheck& check) const
 PMG_CONFIG_TYPE(double);
 PMG_CONFIG_TYPE(int);

@@ -33,7 +33,8 @@ std::filesystem::path find_robot(const std::string& name) {
     }
   }
   std::sort(known.begin(), known.end());
-  raise({name}, "robot", "is neither known nor a directory", fmt::format("one of {}, or a robot's directory", fmt::join(known, ", ")));
+  raise({name}, "robot", "is neither known nor a directory",
+        fmt::format("one of {}, or a robot's directory", fmt::join(known, ", ")));
 }
 
 }  // namespace pmg::model

@@ -40,8 +40,8 @@ const PerFoot<FootKinematics>& LegKinematics::compute(const JointVector& q, cons
 
 BaseAttitude::BaseAttitude(const RobotModel& robot) : torso_(robot.torso_chain, robot.torso_joints) {}
 
-BaseAttitude::Result BaseAttitude::compute(const JointVector& q, const JointVector& dq, double pitch_rad, double roll_rad,
-                                           double pitch_rate_rad_s, double roll_rate_rad_s) noexcept {
+BaseAttitude::Result BaseAttitude::compute(const JointVector& q, const JointVector& dq, double pitch_rad,
+                                           double roll_rad, double pitch_rate_rad_s, double roll_rate_rad_s) noexcept {
   torso_.compute(q);
   const Eigen::Matrix3d R_pitch = Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::Matrix3d R_roll = Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
@@ -57,8 +57,8 @@ BaseAttitude::Result BaseAttitude::compute(const JointVector& q, const JointVect
   Result result;
   result.R_HB = R_yaw * R_turned;
 
-  // omega_HT = yaw rate * z + Rz(yaw) (pitch rate * y + Ry(pitch) roll rate * x), and omega_HB = omega_HT - omega_BT. The
-  // free yaw rate is what makes the z component of omega_HB zero; it doesn't touch the other two.
+  // omega_HT = yaw rate * z + Rz(yaw) (pitch rate * y + Ry(pitch) roll rate * x), and omega_HB = omega_HT - omega_BT.
+  // The free yaw rate is what makes the z component of omega_HB zero; it doesn't touch the other two.
   const Eigen::Vector3d omega_HT =
       R_yaw * (pitch_rate_rad_s * Eigen::Vector3d::UnitY() + roll_rate_rad_s * R_pitch.col(0));
   Eigen::Vector3d omega_BT_B = Eigen::Vector3d::Zero();

@@ -17,7 +17,8 @@ inline constexpr int kMaxLegJoints = 8;
 struct FootKinematics {
   Eigen::Matrix3d R_BF = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_BF = Eigen::Vector3d::Zero();  ///< foot link origin [m]
-  /// 6 x n: rows 0-2 linear velocity of the foot link's origin [m/rad], rows 3-5 angular velocity, both in B, for the leg's joints.
+  /// 6 x n: rows 0-2 linear velocity of the foot link's origin [m/rad], rows 3-5 angular velocity, both in B, for the
+  /// leg's joints.
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxLegJoints> J;
   Eigen::Vector3d v_BF = Eigen::Vector3d::Zero();      ///< J * dq, linear [m/s], in B
   Eigen::Vector3d omega_BF = Eigen::Vector3d::Zero();  ///< J * dq, angular [rad/s], in B
@@ -37,8 +38,8 @@ class LegKinematics {
   PerFoot<FootKinematics> feet_;
 };
 
-/// Orientation of the base in the heading frame H when the torso has this pitch and roll there: R_HB such that the torso
-/// link's attitude is Rz(yaw) Ry(pitch) Rx(roll) and the base's own yaw is zero. q: all joints [rad]; no heap.
+/// Orientation of the base in the heading frame H when the torso has this pitch and roll there: R_HB such that the
+/// torso link's attitude is Rz(yaw) Ry(pitch) Rx(roll) and the base's own yaw is zero. q: all joints [rad]; no heap.
 /// With all torso joints at zero it is Ry(pitch) Rx(roll).
 class BaseAttitude {
  public:
@@ -47,8 +48,8 @@ class BaseAttitude {
     Eigen::Matrix3d R_HB = Eigen::Matrix3d::Identity();
     Eigen::Vector3d omega_HB_H = Eigen::Vector3d::Zero();  ///< pitch and roll rates, z component zero [rad/s]
   };
-  Result compute(const JointVector& q, const JointVector& dq, double pitch_rad, double roll_rad, double pitch_rate_rad_s,
-                 double roll_rate_rad_s) noexcept;
+  Result compute(const JointVector& q, const JointVector& dq, double pitch_rad, double roll_rad,
+                 double pitch_rate_rad_s, double roll_rate_rad_s) noexcept;
 
  private:
   ChainKinematics torso_;

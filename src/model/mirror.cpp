@@ -7,8 +7,8 @@
 namespace pmg::model {
 namespace {
 
-constexpr double kParallel = 1e-3;      // 1 - |cos| of the axes: under 3 degrees
-constexpr double kSamePlace_m = 1e-3;   // exports from CAD differ by less
+constexpr double kParallel = 1e-3;       // 1 - |cos| of the axes: under 3 degrees
+constexpr double kSamePlace_m = 1e-3;    // exports from CAD differ by less
 constexpr double kSameAngle_rad = 1e-6;  // limits and postures are typed in, both sides alike
 
 std::string partner_name(const std::string& name) {
@@ -44,7 +44,8 @@ MirrorMap find_mirror(const RobotModel& robot, const UrdfTree& tree) {
     const Axis mine = axis_of(robot, tree, i), theirs = axis_of(robot, tree, *found);
     const KDL::Vector seen(-mine.direction.x(), mine.direction.y(), -mine.direction.z());
     const double cosine = KDL::dot(seen, theirs.direction);
-    if (1.0 - std::abs(cosine) > kParallel) raise(place, key + " axis", "isn't mirrored by " + other_name, "a parallel one");
+    if (1.0 - std::abs(cosine) > kParallel)
+      raise(place, key + " axis", "isn't mirrored by " + other_name, "a parallel one");
     const KDL::Vector image(mine.origin.x(), -mine.origin.y(), mine.origin.z());
     if ((image - theirs.origin).Norm() > kSamePlace_m) {
       raise(place, key + " origin", "isn't mirrored by " + other_name, "the same place within 1 mm");
@@ -53,7 +54,8 @@ MirrorMap find_mirror(const RobotModel& robot, const UrdfTree& tree) {
     const double lower = sign > 0.0 ? joint.lower_rad : -joint.upper_rad;
     const double upper = sign > 0.0 ? joint.upper_rad : -joint.lower_rad;
     if (std::abs(other.lower_rad - lower) > kSameAngle_rad || std::abs(other.upper_rad - upper) > kSameAngle_rad) {
-      raise(place, key + " limit", fmt::format("isn't mirrored by {}: {} to {}", other_name, other.lower_rad, other.upper_rad),
+      raise(place, key + " limit",
+            fmt::format("isn't mirrored by {}: {} to {}", other_name, other.lower_rad, other.upper_rad),
             fmt::format("{} to {} there", lower, upper));
     }
     if (std::abs(other.stand_rad - sign * joint.stand_rad) > kSameAngle_rad) {

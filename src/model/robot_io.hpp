@@ -1,4 +1,5 @@
-// What crosses the bus: the state that the robot reports and the command it is given. Fixed capacity, trivially exchangeable.
+// What crosses the bus: the state that the robot reports and the command it is given. Fixed capacity, trivially
+// exchangeable.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +12,18 @@ namespace pmg::model {
 
 /// What a robot has: no true base velocity, height or contact force.
 struct RobotState {
-  std::int64_t stamp_ns = 0;      ///< by the Clock of the run
-  std::uint64_t bus_sample = 0;   ///< counts bus cycles
-  JointVector q, dq, tau;         ///< [rad], [rad/s], [Nm]
+  std::int64_t stamp_ns = 0;     ///< by the Clock of the run
+  std::uint64_t bus_sample = 0;  ///< counts bus cycles
+  JointVector q, dq, tau;        ///< [rad], [rad/s], [Nm]
   JointVector temperature_degC;
-  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();               ///< in the IMU frame
-  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();        ///< specific force, in the IMU frame
-  Eigen::Quaterniond orientation_WI = Eigen::Quaterniond::Identity(); ///< the IMU's own estimate
+  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero();                ///< in the IMU frame
+  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();         ///< specific force, in the IMU frame
+  Eigen::Quaterniond orientation_WI = Eigen::Quaterniond::Identity();  ///< the IMU's own estimate
 };
 
 /// What the drives are given: tau = kp (q - q_meas) + kd (dq - dq_meas) + tau_ff, held until the next.
 struct JointCommand {
-  std::uint64_t bus_sample = 0;  ///< of the state that it was computed from
+  std::uint64_t bus_sample = 0;       ///< of the state that it was computed from
   JointVector q, dq, kp, kd, tau_ff;  ///< [rad], [rad/s], [Nm/rad], [Nm s/rad], [Nm]
 };
 

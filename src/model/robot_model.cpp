@@ -40,9 +40,10 @@ ImuModel read_imu(ConfigReader reader, const UrdfTree& tree) {
   imu.link = link_name(reader, "link", tree);
   imu.T_LI.translation() = vector3(reader, "position_m");
   const Eigen::Vector3d rpy = vector3(reader, "rpy_rad");
-  imu.T_LI.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                       Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-                          .toRotationMatrix();
+  imu.T_LI.linear() =
+      (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
   reader.finish();
   return imu;
 }
@@ -82,7 +83,8 @@ Joint read_joint(ConfigReader reader, const std::string& name, const UrdfTree& t
 void read_joints(RobotModel& robot, ConfigReader reader, const UrdfTree& tree) {
   for (const std::string& name : reader.keys()) robot.joints.push_back(read_joint(reader.map(name), name, tree));
   if (robot.joints.empty() || robot.joints.size() > static_cast<std::size_t>(kMaxJoints)) {
-    raise(reader.place(), "joints", fmt::format("has {} joints", robot.joints.size()), fmt::format("1 to {}", kMaxJoints));
+    raise(reader.place(), "joints", fmt::format("has {} joints", robot.joints.size()),
+          fmt::format("1 to {}", kMaxJoints));
   }
   robot.joint_index = JointIndex(reader.keys());
   for (const auto& [name, joint] : tree.urdf->joints_) {
@@ -130,7 +132,8 @@ std::vector<int> find_chain(const RobotModel& robot, const std::string& link, KD
   robot.tree.getChain(robot.base_link, link, chain);
   std::vector<int> joints;
   for (const KDL::Segment& segment : chain.segments) {
-    if (segment.getJoint().getType() != KDL::Joint::Fixed) joints.push_back(robot.joint_index.at(segment.getJoint().getName()));
+    if (segment.getJoint().getType() != KDL::Joint::Fixed)
+      joints.push_back(robot.joint_index.at(segment.getJoint().getName()));
   }
   return joints;
 }
@@ -175,7 +178,8 @@ JointVector collect(const std::vector<Joint>& joints, Get get) {
 std::array<Eigen::Vector3d, 4> FootModel::sole_corners_F() const {
   const Eigen::Vector3d& h = box_half_size_m;
   return {box_center_F + Eigen::Vector3d(h.x(), h.y(), -h.z()), box_center_F + Eigen::Vector3d(h.x(), -h.y(), -h.z()),
-          box_center_F + Eigen::Vector3d(-h.x(), h.y(), -h.z()), box_center_F + Eigen::Vector3d(-h.x(), -h.y(), -h.z())};
+          box_center_F + Eigen::Vector3d(-h.x(), h.y(), -h.z()),
+          box_center_F + Eigen::Vector3d(-h.x(), -h.y(), -h.z())};
 }
 
 JointVector RobotModel::q_stand() const {

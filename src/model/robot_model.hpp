@@ -64,9 +64,9 @@ struct RobotModel {
   CommandLimits command_limits;
   std::array<double, kVelocityChannels> velocity_scale_negative{}, velocity_scale_positive{};  ///< u_max_i per sign
   urdf::ModelInterfaceSharedPtr urdf;
-  KDL::Tree tree;                  ///< rooted at base_link, inertias included (the root's own: base_inertia)
+  KDL::Tree tree;  ///< rooted at base_link, inertias included (the root's own: base_inertia)
   KDL::RigidBodyInertia base_inertia;
-  PerFoot<KDL::Chain> leg_chain;   ///< base_link -> foot link
+  PerFoot<KDL::Chain> leg_chain;         ///< base_link -> foot link
   PerFoot<std::vector<int>> leg_joints;  ///< joint order index of each joint of leg_chain, from the base down
   std::vector<int> torso_joints;         ///< joints between base_link and torso_link, from the base up
   KDL::Chain torso_chain;                ///< base_link -> torso_link

@@ -34,10 +34,11 @@ Place place_in(const UrdfTree& tree, std::size_t at) {
           static_cast<int>(newline == std::string::npos ? at : at - newline - 1) + 1};
 }
 
-/// urdfdom takes `nan`, and says of other slips only that some element couldn't be parsed: look at the numbers ourselves.
+/// urdfdom takes `nan`, and says of other slips only that some element couldn't be parsed: look at the numbers
+/// ourselves.
 void check_numbers(const UrdfTree& tree) {
-  for (const std::string name : {"value", "xyz", "rpy", "lower", "upper", "effort", "velocity", "ixx", "ixy", "ixz", "iyy",
-                                 "iyz", "izz", "radius", "length", "size", "rgba"}) {
+  for (const std::string name : {"value", "xyz", "rpy", "lower", "upper", "effort", "velocity", "ixx", "ixy", "ixz",
+                                 "iyy", "iyz", "izz", "radius", "length", "size", "rgba"}) {
     const std::string opening = " " + name + "=\"";
     for (std::size_t at = tree.text.find(opening); at != std::string::npos; at = tree.text.find(opening, at + 1)) {
       const std::size_t start = at + opening.size(), end = tree.text.find('"', start);
@@ -65,7 +66,8 @@ KDL::Frame to_kdl(const urdf::Pose& pose) {
 
 KDL::RigidBodyInertia to_kdl(const urdf::Inertial& inertial) {
   const KDL::Frame origin = to_kdl(inertial.origin);
-  const KDL::RotationalInertia at_com(inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz);
+  const KDL::RotationalInertia at_com(inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz,
+                                      inertial.iyz);
   // KDL turns a RigidBodyInertia into other axes, but not a RotationalInertia: turn one without mass.
   const KDL::RigidBodyInertia turned = origin.M * KDL::RigidBodyInertia(0.0, KDL::Vector::Zero(), at_com);
   return KDL::RigidBodyInertia(inertial.mass, origin.p, turned.getRotationalInertia());
@@ -76,7 +78,8 @@ KDL::Joint to_kdl(const urdf::Joint& joint, const KDL::Frame& origin) {
   return {joint.name, origin.p, origin.M * to_kdl(joint.axis), KDL::Joint::RotAxis};
 }
 
-/// Positive mass, and principal moments that obey the triangle inequality: what no mass distribution has is a typing error.
+/// Positive mass, and principal moments that obey the triangle inequality: what no mass distribution has is a typing
+/// error.
 void check_inertia(const UrdfTree& tree, const urdf::Link& link) {
   const Place place = tree.place("link", link.name);
   const std::string key = "link " + link.name + " inertial";
@@ -88,9 +91,11 @@ void check_inertia(const UrdfTree& tree, const urdf::Link& link) {
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
   if (!inertia.allFinite()) raise(place, key + " inertia", "isn't finite", "finite numbers");
-  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (moments[0] <= 0.0 || moments[0] + moments[1] < moments[2] * (1.0 - 1e-6)) {
-    raise(place, key + " inertia", fmt::format("has the principal moments {}, {}, {}", moments[0], moments[1], moments[2]),
+    raise(place, key + " inertia",
+          fmt::format("has the principal moments {}, {}, {}", moments[0], moments[1], moments[2]),
           "three positive ones, none above the sum of the others");
   }
 }
@@ -154,7 +159,8 @@ UrdfTree read_urdf(const std::filesystem::path& file) {
   Listener listener;
   tree.urdf = urdf::parseURDF(tree.text);
   if (!tree.urdf || !tree.urdf->getRoot()) {
-    raise({file.string()}, "", listener.said.empty() ? "isn't a robot" : listener.said, "a URDF robot with one root link");
+    raise({file.string()}, "", listener.said.empty() ? "isn't a robot" : listener.said,
+          "a URDF robot with one root link");
   }
   const urdf::Link& root = *tree.urdf->getRoot();
   check_inertia(tree, root);

@@ -1,4 +1,5 @@
-// Faults: what ends motion until the operator resets it. Limiting is not a fault (limiter.hpp). Reactions: docs/safety.md.
+// Faults: what ends motion until the operator resets it. Limiting is not a fault (limiter.hpp). Reactions:
+// docs/safety.md.
 #pragma once
 
 #include <array>
@@ -41,12 +42,12 @@ const char* to_string(FaultCode code) noexcept;
 std::string describe(const Fault& fault, const model::RobotModel& robot);
 
 struct FaultLimits {
-  double stale_state_s = 0.02;            ///< two control ticks without news from the bus
-  double temperature_degC = 90.0;         ///< windings survive 120: assumption, no data sheet of these drives is published
-  double joint_limit_margin_rad = 0.10;   ///< beyond the URDF's range: what hard stops give under impact
-  double velocity_factor = 1.5;           ///< of the URDF's speed limit
-  double torque_factor = 1.2;             ///< of the URDF's effort limit
-  double tilt_rad = 1.0;                  ///< of the IMU's link from upright
+  double stale_state_s = 0.02;     ///< two control ticks without news from the bus
+  double temperature_degC = 90.0;  ///< windings survive 120: assumption, no data sheet of these drives is published
+  double joint_limit_margin_rad = 0.10;  ///< beyond the URDF's range: what hard stops give under impact
+  double velocity_factor = 1.5;          ///< of the URDF's speed limit
+  double torque_factor = 1.2;            ///< of the URDF's effort limit
+  double tilt_rad = 1.0;                 ///< of the IMU's link from upright
   int persist_ticks = 3;  ///< limit, velocity, torque and tilt must hold so long: one glitch of a sensor is no fault
 };
 

@@ -7,8 +7,8 @@ namespace pmg::runtime {
 
 class Hoist {
  public:
-  static constexpr double kLift_m = 0.20;     ///< feet well clear of the ground, toes pointing down included
-  static constexpr double kTravel_s = 2.0;    ///< up or down
+  static constexpr double kLift_m = 0.20;       ///< feet well clear of the ground, toes pointing down included
+  static constexpr double kTravel_s = 2.0;      ///< up or down
   static constexpr double kEngageShare = 0.25;  ///< of the travel: straps are tightened before the lift
 
   /// One tick towards carrying or not.

@@ -8,7 +8,8 @@
 namespace pmg::runtime {
 
 struct LimiterOptions {
-  /// A target may move by this many times the joint's speed limit: a spring ahead of the joint moves faster than the joint.
+  /// A target may move by this many times the joint's speed limit: a spring ahead of the joint moves faster than the
+  /// joint.
   double target_rate_factor = 3.0;
 };
 
@@ -25,9 +26,9 @@ class Limiter {
 
   void start_from(const JointVector& q) noexcept;  ///< the posture that targets move away from [rad]
 
-  /// Limits q_des in place: first its rate, then the torque that it asks for at this state, last its range, which always
-  /// holds. Between two of them that can't both hold (joint beyond its range, braking harder than the drive can) range wins
-  /// and the drive's own effort limit remains.
+  /// Limits q_des in place: first its rate, then the torque that it asks for at this state, last its range, which
+  /// always holds. Between two of them that can't both hold (joint beyond its range, braking harder than the drive can)
+  /// range wins and the drive's own effort limit remains.
   LimitReport apply(const model::RobotState& state, JointVector& q_des) noexcept;
 
  private:

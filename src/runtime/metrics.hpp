@@ -11,9 +11,9 @@ namespace pmg::runtime {
 
 /// Mean absolute errors against the user's command over all ticks that were followed.
 struct TrackingSummary {
-  double lin_vel_mae_m_s = 0.0;        ///< norm of the xy error in H, averaged over a gait period
-  double lin_vel_raw_mae_m_s = 0.0;    ///< the same without the averaging
-  double yaw_vel_mae_rad_s = 0.0;      ///< averaged over a gait period
+  double lin_vel_mae_m_s = 0.0;      ///< norm of the xy error in H, averaged over a gait period
+  double lin_vel_raw_mae_m_s = 0.0;  ///< the same without the averaging
+  double yaw_vel_mae_rad_s = 0.0;    ///< averaged over a gait period
   double yaw_vel_raw_mae_rad_s = 0.0;
   double roll_mae_rad = 0.0, pitch_mae_rad = 0.0;  ///< torso link in H
   double height_mae_m = 0.0;                       ///< pelvis origin above ground
@@ -28,8 +28,8 @@ class Metrics {
 
   Metrics(double standing_height_m, double dt_s);
 
-  /// One tick. The heading frame H has its x along the pelvis' yaw averaged over one gait period. After a fall velocity and
-  /// height count as zero and attitude as measured.
+  /// One tick. The heading frame H has its x along the pelvis' yaw averaged over one gait period. After a fall velocity
+  /// and height count as zero and attitude as measured.
   void add(const sim::Truth& truth, const Command& user, double gait_period_s);
 
   /// A tick that isn't judged (on the gantry, drives released before standing). Averages start anew after it.
@@ -41,7 +41,7 @@ class Metrics {
 
  private:
   struct Sample {
-    double cos_yaw = 1.0, sin_yaw = 0.0;                    // pelvis
+    double cos_yaw = 1.0, sin_yaw = 0.0;  // pelvis
     double error_x_m_s = 0.0, error_y_m_s = 0.0, error_yaw_rad_s = 0.0;
   };
   void watch_for_fall(const sim::Truth& truth);
@@ -59,7 +59,8 @@ class Metrics {
   TrackingSummary sums_;
 };
 
-/// Roll and pitch of an attitude R_WT = Rz(yaw) Ry(pitch) Rx(roll): pitch positive forward, roll positive to the right [rad].
+/// Roll and pitch of an attitude R_WT = Rz(yaw) Ry(pitch) Rx(roll): pitch positive forward, roll positive to the right
+/// [rad].
 struct RollPitch {
   double roll_rad = 0.0, pitch_rad = 0.0;
 };

@@ -20,7 +20,7 @@ double rank_us(std::vector<std::int64_t>& sorted_ns, double share) {
 
 }  // namespace
 
-Percentiles StageTiming::percentiles(std::int64_t StageTimes::* stage) const {
+Percentiles StageTiming::percentiles(std::int64_t StageTimes::*stage) const {
   std::vector<std::int64_t> times_ns;
   times_ns.reserve(rows_.size());
   for (const Row& row : rows_) {

@@ -1,4 +1,5 @@
-// Wall times of the control tick's stages: timing.csv and its percentiles. Never part of a log, which must be reproducible.
+// Wall times of the control tick's stages: timing.csv and its percentiles. Never part of a log, which must be
+// reproducible.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ class StageTiming {
   void add(double time_s, const StageTimes& times) { rows_.push_back({time_s, times}); }
 
   /// Nearest rank over the ticks in which the stage ran; zero if there were none.
-  Percentiles percentiles(std::int64_t StageTimes::* stage) const;
+  Percentiles percentiles(std::int64_t StageTimes::*stage) const;
 
   void write_csv(const std::filesystem::path& file) const;  ///< throws std::runtime_error
 

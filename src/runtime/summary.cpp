@@ -9,10 +9,14 @@ namespace pmg::runtime {
 namespace {
 
 nlohmann::ordered_json tracking_json(const TrackingSummary& tracking) {
-  return {{"lin_vel_mae_m_s", tracking.lin_vel_mae_m_s},         {"lin_vel_raw_mae_m_s", tracking.lin_vel_raw_mae_m_s},
-          {"yaw_vel_mae_rad_s", tracking.yaw_vel_mae_rad_s},     {"yaw_vel_raw_mae_rad_s", tracking.yaw_vel_raw_mae_rad_s},
-          {"roll_mae_rad", tracking.roll_mae_rad},               {"pitch_mae_rad", tracking.pitch_mae_rad},
-          {"height_mae_m", tracking.height_mae_m},               {"foot_slip_mean_m_s", tracking.foot_slip_mean_m_s},
+  return {{"lin_vel_mae_m_s", tracking.lin_vel_mae_m_s},
+          {"lin_vel_raw_mae_m_s", tracking.lin_vel_raw_mae_m_s},
+          {"yaw_vel_mae_rad_s", tracking.yaw_vel_mae_rad_s},
+          {"yaw_vel_raw_mae_rad_s", tracking.yaw_vel_raw_mae_rad_s},
+          {"roll_mae_rad", tracking.roll_mae_rad},
+          {"pitch_mae_rad", tracking.pitch_mae_rad},
+          {"height_mae_m", tracking.height_mae_m},
+          {"foot_slip_mean_m_s", tracking.foot_slip_mean_m_s},
           {"followed_s", tracking.followed_s}};
 }
 
@@ -26,7 +30,7 @@ nlohmann::ordered_json slip_json(const gco::SlipSummary& slip) {
           {"not_converged_ticks", slip.not_converged_ticks}};
 }
 
-nlohmann::ordered_json stage_json(const StageTiming& timing, std::int64_t StageTimes::* stage) {
+nlohmann::ordered_json stage_json(const StageTiming& timing, std::int64_t StageTimes::*stage) {
   const Percentiles times = timing.percentiles(stage);
   return {{"p50", times.p50_us}, {"p99", times.p99_us}};
 }

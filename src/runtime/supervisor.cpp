@@ -69,7 +69,8 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
     case Mode::kStand:
       if (*wanted_ == Mode::kWalk) {
         if (!input.entry_done) return;  // the request waits for the ramp
-        // Without somebody who drives it would stop at once; and walking must not begin by itself when a link comes back.
+        // Without somebody who drives it would stop at once; and walking must not begin by itself when a link comes
+        // back.
         if (input.command_age_s <= options_.stale_command_s) mode_ = Mode::kWalk;
       }
       wanted_.reset();

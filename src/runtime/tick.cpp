@@ -93,8 +93,7 @@ bool Tick::drive(const TickInput& input) noexcept {
   lap(times.gco_ns);
 
   model::JointCommand& command = result_.command;
-  const policy::Status status =
-      policy_->act(input.state, result_.reference, result_.optimised.command, command.q);
+  const policy::Status status = policy_->act(input.state, result_.reference, result_.optimised.command, command.q);
   lap(times.policy_ns);
   if (status != policy::Status::kOk || command.q.size() != kp_.size() || !command.q.allFinite()) {
     supervisor_.raise({.code = FaultCode::kPolicyNotFinite, .stamp_ns = input.now_ns});

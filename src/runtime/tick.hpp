@@ -1,5 +1,5 @@
-// One control tick, 100 Hz: command -> supervisor -> generator -> GCO -> policy -> limiter -> drives. The same object runs in
-// lockstep with a simulation and in the robot's control thread.
+// One control tick, 100 Hz: command -> supervisor -> generator -> GCO -> policy -> limiter -> drives. The same object
+// runs in lockstep with a simulation and in the robot's control thread.
 #pragma once
 
 #include <cstdint>
@@ -48,10 +48,10 @@ struct StageTimes {
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
-  Fault fault;                 ///< kNone unless mode is kFault
-  Command user;                ///< the driving source's command as far as the mode admits it
-  Reference reference;         ///< of this tick in Stand and Walk; otherwise of the last such tick
-  gco::Result optimised;       ///< likewise
+  Fault fault;            ///< kNone unless mode is kFault
+  Command user;           ///< the driving source's command as far as the mode admits it
+  Reference reference;    ///< of this tick in Stand and Walk; otherwise of the last such tick
+  gco::Result optimised;  ///< likewise
   LimitReport limited;
   double command_age_s = 0.0;  ///< infinite before the first command
   Source driving;              ///< empty when nobody drives
@@ -61,7 +61,7 @@ struct TickResult {
 
 class Tick {
  public:
-  /// Keeps a reference to the stopwatch; the robot must outlive it too (GCO refers to its chains). Throws std::invalid_argument when library and robot don't fit together.
+  /// Keeps a reference to the stopwatch. Throws std::invalid_argument when library and robot don't fit together.
   Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<policy::Policy> policy,
        const io::Clock& stopwatch, const TickOptions& options);
 

@@ -17,8 +17,9 @@
 
 namespace pmg::runtime {
 
-/// Channels: ROBOT_INFO once, then STATE, COMMAND, MODE, REFERENCE, MOTOR_COMMAND, STATUS a tick, GROUND_TRUTH in simulation, FAULT
-/// when one latches. Keeps its message buffers, so a tick allocates nothing once they have grown. Not for a real-time thread.
+/// Channels: ROBOT_INFO once, then STATE, COMMAND, MODE, REFERENCE, MOTOR_COMMAND, STATUS a tick, GROUND_TRUTH in
+/// simulation, FAULT when one latches. Keeps its message buffers, so a tick allocates nothing once they have grown. Not
+/// for a real-time thread.
 class TickLog {
  public:
   TickLog(io::LogWriter& writer, const model::RobotModel& robot, double control_rate_Hz);

@@ -1,5 +1,5 @@
-// The robot model and its world as MJCF text for MuJoCo 2.2.2, which has no <frame>, no position kv, no actuatorfrcrange,
-// and wants `limited` beside every range.
+// The robot model and its world as MJCF text for MuJoCo 2.2.2, which has no <frame>, no position kv, no
+// actuatorfrcrange, and wants `limited` beside every range.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,9 @@ namespace pmg::sim {
 
 namespace {
 
-// Contact classes: soles touch the floor only, bodies touch the floor and each other. Two geoms collide when one's contype
-// meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2), whose sole is its floor contact.
+// Contact classes: soles touch the floor only, bodies touch the floor and each other. Two geoms collide when one's
+// contype meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2), whose sole is its
+// floor contact.
 constexpr const char* kScene = R"(
   <compiler angle="radian" inertiafromgeom="false" balanceinertia="false"/>
   <option timestep="{timestep}" integrator="implicit" gravity="0 0 -9.81"/>
@@ -60,8 +61,9 @@ class MjcfText {
 
   std::string build() {
     text_ = fmt::format("<mujoco model=\"{}\">", xml_escaped(robot_.name));
-    text_ += fmt::format(kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("friction", options_.floor_friction),
-                         fmt::arg("look_height", robot_.standing_height_m), fmt::arg("extent", 2.0 * robot_.standing_height_m));
+    text_ += fmt::format(
+        kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("friction", options_.floor_friction),
+        fmt::arg("look_height", robot_.standing_height_m), fmt::arg("extent", 2.0 * robot_.standing_height_m));
     text_ += "  <worldbody>\n";
     text_ += kFloor;
     write_body(*robot_.urdf->getRoot(), nullptr, "", 2);
@@ -98,16 +100,18 @@ class MjcfText {
     }
     if (link.name == robot_.imu.link)
       line(depth + 1, fmt::format(R"(<site name="imu" group="4" size="0.01" {}/>)", pose_attributes(robot_.imu.T_LI)));
-    for (const auto& child : children_in_joint_order(link)) write_body(*child, child->parent_joint.get(), colliding_ancestor, depth + 1);
+    for (const auto& child : children_in_joint_order(link))
+      write_body(*child, child->parent_joint.get(), colliding_ancestor, depth + 1);
     line(depth, "</body>");
   }
 
   void write_joint(const std::string& name, int depth) {
     const model::Joint& joint = robot_.joints[static_cast<std::size_t>(robot_.joint_index.at(name))];
-    line(depth, fmt::format(R"(<joint name="{}" type="hinge" axis="{} {} {}" limited="true" range="{} {}" armature="{}" )"
-                            R"(damping="{}" frictionloss="{}"/>)",
-                            xml_escaped(name), joint.axis.x(), joint.axis.y(), joint.axis.z(), joint.lower_rad,
-                            joint.upper_rad, joint.armature_kg_m2, joint.damping_Nm_s_per_rad, joint.friction_Nm));
+    line(depth,
+         fmt::format(R"(<joint name="{}" type="hinge" axis="{} {} {}" limited="true" range="{} {}" armature="{}" )"
+                     R"(damping="{}" frictionloss="{}"/>)",
+                     xml_escaped(name), joint.axis.x(), joint.axis.y(), joint.axis.z(), joint.lower_rad,
+                     joint.upper_rad, joint.armature_kg_m2, joint.damping_Nm_s_per_rad, joint.friction_Nm));
   }
 
   void write_visuals(const urdf::Link& link, int depth) {
@@ -119,7 +123,8 @@ class MjcfText {
         const urdf::Color& c = visual->material->color;
         colour = fmt::format(R"( rgba="{} {} {} {}")", c.r, c.g, c.b, c.a);
       }
-      line(depth, fmt::format(R"(<geom class="visual" {} {}{}/>)", *shape, pose_attributes(isometry(visual->origin)), colour));
+      line(depth,
+           fmt::format(R"(<geom class="visual" {} {}{}/>)", *shape, pose_attributes(isometry(visual->origin)), colour));
     }
   }
 
@@ -155,8 +160,8 @@ class MjcfText {
     return first;
   }
 
-  /// Links next to each other overlap at their joint by design; MuJoCo leaves out direct parents only, but the small links
-  /// inside a compound joint carry no shapes.
+  /// Links next to each other overlap at their joint by design; MuJoCo leaves out direct parents only, but the small
+  /// links inside a compound joint carry no shapes.
   void write_exclusions() {
     text_ += "  <contact>\n";
     for (const auto& [above, below] : neighbours_)
@@ -208,6 +213,8 @@ class MjcfText {
 
 }  // namespace
 
-std::string mjcf(const model::RobotModel& robot, const WorldOptions& options) { return MjcfText(robot, options).build(); }
+std::string mjcf(const model::RobotModel& robot, const WorldOptions& options) {
+  return MjcfText(robot, options).build();
+}
 
 }  // namespace pmg::sim

@@ -22,8 +22,8 @@ std::string inertial_element(const urdf::Inertial& inertial);
 /// `type="..." size="..."`; nothing for a mesh.
 std::optional<std::string> visual_shape(const urdf::Geometry& geometry);
 
-/// The same for collisions, with a cylinder as the capsule inside it: MuJoCo's capsules collide in closed form and have no
-/// edges to catch on.
+/// The same for collisions, with a cylinder as the capsule inside it: MuJoCo's capsules collide in closed form and have
+/// no edges to catch on.
 std::optional<std::string> collision_shape(const urdf::Geometry& geometry);
 
 }  // namespace pmg::sim

@@ -19,7 +19,8 @@ constexpr int kMaxGeoms = 2000;
 class GlContext {
  public:
   GlContext() : context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr)) {
-    if (context_ == nullptr || OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == GL_FALSE) {
+    if (context_ == nullptr ||
+        OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == GL_FALSE) {
       OSMesaDestroyContext(context_);
       throw std::runtime_error("OSMesa gives no OpenGL context");
     }
@@ -102,11 +103,13 @@ struct Renderer::Impl {
   std::optional<double> last_time_s;
 };
 
-Renderer::Renderer(const mjModel* model, const RendererOptions& options) : impl_(std::make_unique<Impl>(model, options)) {}
+Renderer::Renderer(const mjModel* model, const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(model, options)) {}
 
 Renderer::~Renderer() = default;
 
-const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::string& text, const std::optional<Rope>& rope) {
+const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::string& text,
+                                                  const std::optional<Rope>& rope) {
   Impl& r = *impl_;
   r.follow(data);
   mjv_updateScene(r.model, data, &r.visible, nullptr, &r.camera, mjCAT_ALL, &r.scene);

@@ -10,8 +10,8 @@
 
 namespace pmg::sim {
 
-/// Standard normal numbers by Marsaglia's polar method (SIAM Review 6:260, 1964): std::normal_distribution may differ from
-/// one standard library to the next, the engine may not.
+/// Standard normal numbers by Marsaglia's polar method (SIAM Review 6:260, 1964): std::normal_distribution may differ
+/// from one standard library to the next, the engine may not.
 class NormalSource {
  public:
   explicit NormalSource(std::uint64_t seed) : engine_(seed) {}

@@ -8,7 +8,7 @@ namespace pmg::sim {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
-constexpr double kSway_m = 0.06;         // horizontal give under a force equal to the robot's weight
+constexpr double kSway_m = 0.06;  // horizontal give under a force equal to the robot's weight
 constexpr double kDampingRatio = 0.7;
 constexpr double kRotationDamping_s = 0.15;  // damping over stiffness: at rest again within about half a second
 

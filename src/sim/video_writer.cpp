@@ -18,9 +18,31 @@ namespace pmg::sim {
 namespace {
 
 std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& path, int width, int height, int frames_per_s) {
-  return {"ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", fmt::format("{}x{}", width, height),
-          "-r", fmt::format("{}", frames_per_s), "-i", "pipe:0", "-an", "-c:v", "libx264", "-preset", "veryfast", "-crf", "21",
-          "-pix_fmt", "yuv420p", "-movflags", "+faststart",
+  return {"ffmpeg",
+          "-y",
+          "-loglevel",
+          "error",
+          "-f",
+          "rawvideo",
+          "-pix_fmt",
+          "rgb24",
+          "-s",
+          fmt::format("{}x{}", width, height),
+          "-r",
+          fmt::format("{}", frames_per_s),
+          "-i",
+          "pipe:0",
+          "-an",
+          "-c:v",
+          "libx264",
+          "-preset",
+          "veryfast",
+          "-crf",
+          "21",
+          "-pix_fmt",
+          "yuv420p",
+          "-movflags",
+          "+faststart",
           std::filesystem::absolute(path).string()};  // absolute: no path is taken for an option or a protocol
 }
 
@@ -42,8 +64,8 @@ pid_t spawn(const std::vector<std::string>& arguments, int& socket) {
   ::close(ends[1]);
   if (error != 0) {
     ::close(ends[0]);
-    throw std::runtime_error(fmt::format("video: ffmpeg doesn't start ({}); install ffmpeg or leave the video out",
-                                         std::strerror(error)));
+    throw std::runtime_error(
+        fmt::format("video: ffmpeg doesn't start ({}); install ffmpeg or leave the video out", std::strerror(error)));
   }
   socket = ends[0];
   return pid;

@@ -12,8 +12,8 @@ namespace pmg::sim {
 
 namespace {
 
-constexpr double kGantryLift_m = 0.2;           // of a world that starts hanging
-constexpr double kRopeLength_m = 4.0;           // as drawn
+constexpr double kGantryLift_m = 0.2;            // of a world that starts hanging
+constexpr double kRopeLength_m = 4.0;            // as drawn
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
 struct FreeModel {
@@ -23,10 +23,12 @@ struct FreeData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-/// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in mjData.
+/// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in
+/// mjData.
 void silence_warnings(const char*) {}
 
-/// mju_error doesn't expect its handler to return. A step that ends this way leaves a state that only a reset makes whole.
+/// mju_error doesn't expect its handler to return. A step that ends this way leaves a state that only a reset makes
+/// whole.
 [[noreturn]] void throw_error(const char* message) { throw std::runtime_error(std::string("MuJoCo: ") + message); }
 
 std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
@@ -38,7 +40,8 @@ std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
   mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(xml.size()));
   std::memcpy(files->filedata[mj_findFileVFS(files.get(), kName)], xml.data(), xml.size());
   std::array<char, 1000> error{};
-  std::unique_ptr<mjModel, FreeModel> model(mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())));
+  std::unique_ptr<mjModel, FreeModel> model(
+      mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())));
   mj_deleteVFS(files.get());
   if (!model) throw std::runtime_error(std::string("MuJoCo refuses the robot: ") + error.data());
   return model;
@@ -75,8 +78,8 @@ struct World::Impl {
     gyro_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_gyro")];
     accelerometer_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_accelerometer")];
     orientation_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_orientation")];
-    // The exported model's actuators are position servos. Here ctrl carries kp q_des + kd dq_des + tau_ff whole, because
-    // a drive that only damps has kp = 0.
+    // The exported model's actuators are position servos. Here ctrl carries kp q_des + kd dq_des + tau_ff whole,
+    // because a drive that only damps has kp = 0.
     for (int a = 0; a < model->nu; ++a) model->actuator_gainprm[a * mjNGAIN] = 1.0;
   }
 
@@ -125,7 +128,8 @@ void World::reset() {
 }
 
 // mj_step in two halves, so that positions, velocities and the sensors of both belong to the new state when the step is
-// over; mj_step itself leaves them one step behind. Forces, and with them the accelerometer, are those of the step done.
+// over; mj_step itself leaves them one step behind. Forces, and with them the accelerometer, are those of the step
+// done.
 void World::step(const model::JointCommand& command) noexcept {
   Impl& w = *impl_;
   if (w.diverged) return;

@@ -15,10 +15,10 @@
 namespace pmg::sim {
 
 struct WorldOptions {
-  double timestep_s = 0.002;    ///< one physics step a bus cycle
-  bool gantry = false;          ///< hang the torso in a soft suspension, feet clear of the ground
+  double timestep_s = 0.002;  ///< one physics step a bus cycle
+  bool gantry = false;        ///< hang the torso in a soft suspension, feet clear of the ground
   double floor_friction = 0.8;
-  std::uint64_t seed = 0;       ///< of the sensor noise
+  std::uint64_t seed = 0;                                                               ///< of the sensor noise
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
 };
 
@@ -29,8 +29,8 @@ struct Truth {
   Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d omega_WB_B = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  ///< torso link
-  std::array<double, 2> foot_force_N{};                     ///< normal force, left and right
-  std::array<double, 2> foot_slip_m_s{};                    ///< horizontal speed of the contact point, 0 when in the air
+  std::array<double, 2> foot_force_N{};                      ///< normal force, left and right
+  std::array<double, 2> foot_slip_m_s{};  ///< horizontal speed of the contact point, 0 when in the air
 };
 
 /// The gantry's rope, for pictures.
@@ -62,9 +62,9 @@ class World {
   double time_s() const noexcept;
 
   /// The gantry's soft suspension of the torso. lift_m: how far the torso's anchor is above its place in the standing
-  /// posture on the ground; the feet are clear from about 0.03 m on, because the suspension gives 0.02 m under the robot's
-  /// weight. engaged: 0 free, 1 held, in between a share of the stiffness. The anchor's place and heading are taken from the
-  /// torso when it is engaged from 0. Takes effect at the next step, so the caller ramps it.
+  /// posture on the ground; the feet are clear from about 0.03 m on, because the suspension gives 0.02 m under the
+  /// robot's weight. engaged: 0 free, 1 held, in between a share of the stiffness. The anchor's place and heading are
+  /// taken from the torso when it is engaged from 0. Takes effect at the next step, so the caller ramps it.
   void set_hoist(double lift_m, double engaged) noexcept;
 
   std::optional<Rope> gantry_rope() const;  ///< nothing while the gantry is not engaged

@@ -83,7 +83,8 @@ TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
   for (const char* key : {"lin_vel_mae_m_s", "yaw_vel_mae_rad_s", "roll_mae_rad", "pitch_mae_rad", "height_mae_m"}) {
     EXPECT_TRUE(summary["tracking"][key].is_number()) << key;
   }
-  for (const char* key : {"before_mean_m_s", "single_support_max_m_s", "double_support_mean_m_s", "double_support_p95_m_s"}) {
+  for (const char* key :
+       {"before_mean_m_s", "single_support_max_m_s", "double_support_mean_m_s", "double_support_p95_m_s"}) {
     EXPECT_TRUE(summary["reference_slip"][key].is_number()) << key;
   }
   for (const char* key : {"tick", "generator", "gco", "policy"}) {
@@ -103,7 +104,8 @@ TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
 }
 
 TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
-  const fs::path file = scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
+  const fs::path file =
+      scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
   for (const char* name : {"a", "b"}) {
     const Finished walk = run("--gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
     ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
@@ -165,7 +167,8 @@ TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     const std::string program = std::string(PMG_BIN_DIR) + "/pmg_sil";
-    execl(program.c_str(), "pmg_sil", "--scenario", file.c_str(), "--out", out_folder().c_str(), static_cast<char*>(nullptr));
+    execl(program.c_str(), "pmg_sil", "--scenario", file.c_str(), "--out", out_folder().c_str(),
+          static_cast<char*>(nullptr));
     _exit(127);
   }
   int status = 0;

@@ -1,5 +1,5 @@
-// The whole of pmg_sil, headless and with its log, against bare mj_step calls on the same model: how much of the simulation's
-// speed the controller leaves. CPU time of the thread, because other programs' load is not the matter.
+// The whole of pmg_sil, headless and with its log, against bare mj_step calls on the same model: how much of the
+// simulation's speed the controller leaves. CPU time of the thread, because other programs' load is not the matter.
 #include <benchmark/benchmark.h>
 #include <mujoco/mujoco.h>
 #include <time.h>
@@ -72,7 +72,8 @@ void BM_sil(benchmark::State& state) {
     state.SetIterationTime(thread_cpu_s() - start_s);
     if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
   }
-  state.counters["allocations_per_call"] = static_cast<double>(allocations) / (kTicks - kSettledTicks);  // a call is a tick
+  state.counters["allocations_per_call"] =
+      static_cast<double>(allocations) / (kTicks - kSettledTicks);  // a call is a tick
   std::filesystem::remove(file);
 }
 
@@ -90,8 +91,14 @@ void BM_sil_floor(benchmark::State& state) {
   }
 }
 
-BENCHMARK(BM_sil)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_sil_floor)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_sil)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(
+    benchmark::kMillisecond);
+BENCHMARK(BM_sil_floor)
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Repetitions(9)
+    ->ReportAggregatesOnly()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace pmg::test

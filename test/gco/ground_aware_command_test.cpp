@@ -220,7 +220,8 @@ TEST_P(GroundAwareCommandOf, CommandIsContinuousAsContactWeightsFade) {
         const Result& result = gco.solve(reference);
         ASSERT_NE(result.status, Status::kNotConverged);
         if (k == 0) first = result;
-        // When a foot's contact ends the height goes to the other foot at once: the lower of two loaded feet carries it.
+        // When a foot's contact ends the height goes to the other foot at once: the lower of two loaded feet carries
+        // it.
         if (phase == 0 && k == kSteps) break;
         if (k > 0) jump = std::max(jump, distance(result, last));
         range = std::max(range, distance(result, first));

@@ -29,7 +29,8 @@ TEST(SilHal, CommandFromSampleKActsInTheStepToSampleKPlusOne) {
   const int elbow = z1().joint_index.at("left_elbow");
   command.q[elbow] -= 0.1;
   hal.exchange(command, next);
-  const double torque_Nm = command.kp[elbow] * (command.q[elbow] - sample_k.q[elbow]) - command.kd[elbow] * sample_k.dq[elbow];
+  const double torque_Nm =
+      command.kp[elbow] * (command.q[elbow] - sample_k.q[elbow]) - command.kd[elbow] * sample_k.dq[elbow];
   EXPECT_NEAR(next.tau[elbow], torque_Nm, 1e-9);
   EXPECT_LT(next.dq[elbow], sample_k.dq[elbow] - 0.01) << "and it moves at once";
 }

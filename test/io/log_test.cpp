@@ -27,7 +27,8 @@ pmg_msgs::motor_command_t motor_command(int joints) {
   message.stamp_ns = 5;
   message.bus_sample = 9;
   message.joint_count = joints;
-  for (auto* values : {&message.q_rad, &message.dq_rad_s, &message.kp_Nm_per_rad, &message.kd_Nm_s_per_rad, &message.torque_ff_Nm}) {
+  for (auto* values :
+       {&message.q_rad, &message.dq_rad_s, &message.kp_Nm_per_rad, &message.kd_Nm_s_per_rad, &message.torque_ff_Nm}) {
     for (int i = 0; i < joints; ++i) values->push_back(0.1 * i + 1.0 / 3.0);
   }
   return message;

@@ -134,13 +134,19 @@ class RefusedClips : public ::testing::Test {
 
 TEST_F(RefusedClips, TheUnspoiledOnesAreNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }
 
-TEST_F(RefusedClips, UnknownKey) { expect_changed("turn.yaml", "period_s:", "speed: 1\nperiod_s:", "speed", "is unknown"); }
+TEST_F(RefusedClips, UnknownKey) {
+  expect_changed("turn.yaml", "period_s:", "speed: 1\nperiod_s:", "speed", "is unknown");
+}
 TEST_F(RefusedClips, MissingKey) {
   copy_.replace("clips/turn.yaml", "period_s: 0.7\n", "");
   expect("turn.yaml", 1, "period_s", "is missing");
 }
-TEST_F(RefusedClips, WrongType) { expect_changed("turn.yaml", "period_s: 0.7", "period_s: [0.7]", "period_s", "is a list"); }
-TEST_F(RefusedClips, NotANumber) { expect_changed("turn.yaml", "period_s: 0.7", "period_s: .inf", "period_s", "is '.inf'; expected a number above 0"); }
+TEST_F(RefusedClips, WrongType) {
+  expect_changed("turn.yaml", "period_s: 0.7", "period_s: [0.7]", "period_s", "is a list");
+}
+TEST_F(RefusedClips, NotANumber) {
+  expect_changed("turn.yaml", "period_s: 0.7", "period_s: .inf", "period_s", "is '.inf'; expected a number above 0");
+}
 TEST_F(RefusedClips, ContactCenterOutsideTheCycle) {
   expect_changed("turn.yaml", "left: {center: 0.3", "left: {center: 1.0", "contact.left.center", "is '1.0'");
 }
@@ -170,7 +176,9 @@ TEST_F(RefusedClips, TenSecondsInTotal) {
   const int line = copy_.replace("clips/turn.yaml", "period_s: 0.7", "period_s: 7.7");
   expect("turn.yaml", line, "period_s", "expected less than 10 s in total");
 }
-TEST_F(RefusedClips, WrongKind) { expect_changed("turn.yaml", "kind: dynamic", "kind: static", "kind", "expected one of dynamic"); }
+TEST_F(RefusedClips, WrongKind) {
+  expect_changed("turn.yaml", "kind: dynamic", "kind: static", "kind", "expected one of dynamic");
+}
 TEST_F(RefusedClips, WrongChannel) {
   expect_changed("bend.yaml", "channel: pitch_rad", "channel: roll_rad", "channel", "expected one of pitch_rad");
 }
@@ -186,7 +194,9 @@ TEST_F(RefusedClips, HalfAnOptionalClip) {
   std::filesystem::remove(copy_.file("clips/backward.csv"));
   EXPECT_THAT(refusal(), StartsWith(copy_.file("clips/backward.csv").string() + ": cannot be read"));
 }
-TEST_F(RefusedClips, UnknownColumn) { expect_changed("turn.csv", "waist_pitch", "tail", "tail", "is an unknown column"); }
+TEST_F(RefusedClips, UnknownColumn) {
+  expect_changed("turn.csv", "waist_pitch", "tail", "tail", "is an unknown column");
+}
 TEST_F(RefusedClips, MissingColumn) {
   std::istringstream in(copy_.read("clips/turn.csv"));
   std::string out;
@@ -194,8 +204,12 @@ TEST_F(RefusedClips, MissingColumn) {
   copy_.write("clips/turn.csv", out);
   expect("turn.csv", 1, "waist_pitch", "is missing");
 }
-TEST_F(RefusedClips, RepeatedColumn) { expect_changed("turn.csv", "waist_pitch", "right_knee", "right_knee", "is there twice"); }
-TEST_F(RefusedClips, StaticClipWithoutCommand) { expect_changed("bend.csv", "command,", "", "command", "is missing; expected it as the first"); }
+TEST_F(RefusedClips, RepeatedColumn) {
+  expect_changed("turn.csv", "waist_pitch", "right_knee", "right_knee", "is there twice");
+}
+TEST_F(RefusedClips, StaticClipWithoutCommand) {
+  expect_changed("bend.csv", "command,", "", "command", "is missing; expected it as the first");
+}
 TEST_F(RefusedClips, RowOfAnotherLength) {
   set_cell("turn.csv", 3, 0, "0,0");
   EXPECT_THAT(refusal(), StartsWith(copy_.file("clips/turn.csv").string() + ":4: has 12 columns; expected 11"));

@@ -53,7 +53,8 @@ class EveryRobotsKinematics : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Robots, EveryRobotsKinematics, ::testing::Values(kZ1, kBiped),
                          [](const auto& robot) { return std::filesystem::path(robot.param).filename().string(); });
 
-// The knees' frames of this robot are turned about z and its right hip rolls about -x: a mistake in the conversion shows.
+// The knees' frames of this robot are turned about z and its right hip rolls about -x: a mistake in the conversion
+// shows.
 TEST(LegKinematics, AgreesWithTheBipedsLegWrittenByHand) {
   const RobotModel robot = load_robot(kBiped);
   std::mt19937 random(3);
@@ -99,7 +100,7 @@ TEST_P(EveryRobotsKinematics, AgreeWithKdlsOwnSolvers) {
 
 TEST_P(EveryRobotsKinematics, JacobianIsTheDerivativeOfThePose) {
   LegKinematics legs(robot_);
-  const double h = 1e-5;       // central differences: truncation h^2 = 1e-10, round-off 1e-16/h = 1e-11
+  const double h = 1e-5;  // central differences: truncation h^2 = 1e-10, round-off 1e-16/h = 1e-11
   const double tolerance = 1e-6;
   for (int trial = 0; trial < 20; ++trial) {
     const Motion motion = random_motion(robot_, random_);
@@ -112,7 +113,8 @@ TEST_P(EveryRobotsKinematics, JacobianIsTheDerivativeOfThePose) {
       EXPECT_LT((feet[foot].v_BF - v).norm(), tolerance) << "seed 11, trial " << trial;
       EXPECT_LT((feet[foot].omega_BF - omega).norm(), tolerance) << "seed 11, trial " << trial;
       Eigen::VectorXd dq(feet[foot].J.cols());
-      for (Eigen::Index i = 0; i < dq.size(); ++i) dq[i] = motion.dq[robot_.leg_joints[foot][static_cast<std::size_t>(i)]];
+      for (Eigen::Index i = 0; i < dq.size(); ++i)
+        dq[i] = motion.dq[robot_.leg_joints[foot][static_cast<std::size_t>(i)]];
       EXPECT_LT((feet[foot].J.topRows<3>() * dq - feet[foot].v_BF).norm(), 1e-12);
       EXPECT_LT((feet[foot].J.bottomRows<3>() * dq - feet[foot].omega_BF).norm(), 1e-12);
     }
@@ -177,7 +179,7 @@ TEST_P(Attitude, GivesTheTorsoItsPitchAndRollAndTheBaseNoYaw) {
 TEST_P(Attitude, RatesTurnTheBaseSoThatTheTorsoPitchesAndRollsAsAsked) {
   BaseAttitude attitude(robot_);
   std::uniform_real_distribution<double> angle(-0.4, 0.4), rate(-1.0, 1.0);
-  const double h = 1e-5;          // as above; joint rates of 3 rad/s make the truncation 1e-9
+  const double h = 1e-5;  // as above; joint rates of 3 rad/s make the truncation 1e-9
   const double tolerance = 1e-6;
   for (int trial = 0; trial < 50; ++trial) {
     const Motion motion = random_motion(robot_, random_);

@@ -48,9 +48,12 @@ class RefusedRobot : public ::testing::Test {
 
 TEST_F(RefusedRobot, TheUnspoiledOneIsNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }
 
-TEST_F(RefusedRobot, UnknownKey) { expect_yaml("torso_link:", "torso_lnk: torso\ntorso_link:", "torso_lnk", "is unknown"); }
+TEST_F(RefusedRobot, UnknownKey) {
+  expect_yaml("torso_link:", "torso_lnk: torso\ntorso_link:", "torso_lnk", "is unknown");
+}
 TEST_F(RefusedRobot, UnknownKeyOfAJoint) {
-  expect_yaml("{stand_rad: 0, kp_Nm_per_rad: 120", "{ki: 1, stand_rad: 0, kp_Nm_per_rad: 120", "joints.waist_pitch.ki", "is unknown");
+  expect_yaml("{stand_rad: 0, kp_Nm_per_rad: 120", "{ki: 1, stand_rad: 0, kp_Nm_per_rad: 120", "joints.waist_pitch.ki",
+              "is unknown");
 }
 TEST_F(RefusedRobot, MissingKey) {
   const int first = copy_.line_of("robot.yaml", "name: biped");
@@ -60,12 +63,15 @@ TEST_F(RefusedRobot, MissingKey) {
 TEST_F(RefusedRobot, MissingKeyOfAJoint) {
   expect_yaml("friction_Nm: 0.1, ", "", "joints.waist_pitch.friction_Nm", "is missing");
 }
-TEST_F(RefusedRobot, WrongType) { expect_yaml("kp_Nm_per_rad: 120", "kp_Nm_per_rad: stiff", "joints.waist_pitch.kp_Nm_per_rad", "'stiff'"); }
+TEST_F(RefusedRobot, WrongType) {
+  expect_yaml("kp_Nm_per_rad: 120", "kp_Nm_per_rad: stiff", "joints.waist_pitch.kp_Nm_per_rad", "'stiff'");
+}
 TEST_F(RefusedRobot, NotANumber) {
   expect_yaml("kd_Nm_s_per_rad: 4", "kd_Nm_s_per_rad: .nan", "joints.waist_pitch.kd_Nm_s_per_rad", "is '.nan'");
 }
 TEST_F(RefusedRobot, GainThatIsNotPositive) {
-  expect_yaml("kp_Nm_per_rad: 120", "kp_Nm_per_rad: 0", "joints.waist_pitch.kp_Nm_per_rad", "expected a number above 0");
+  expect_yaml("kp_Nm_per_rad: 120", "kp_Nm_per_rad: 0", "joints.waist_pitch.kp_Nm_per_rad",
+              "expected a number above 0");
 }
 TEST_F(RefusedRobot, StandingPostureOutsideTheLimits) {
   expect_yaml("stand_rad: 0,", "stand_rad: 1.0,", "joints.waist_pitch.stand_rad", "expected a number from -0.4 to 0.9");
@@ -85,24 +91,46 @@ TEST_F(RefusedRobot, JointThatOnlyTheUrdfHas) {
   copy_.write("robot.yaml", text.substr(0, start) + text.substr(end + 1));
   expect("robot.yaml", copy_.line_of("robot.yaml", "  right_hip_yaw:"), "joints.waist_pitch", "is missing");
 }
-TEST_F(RefusedRobot, FixedJointInTheList) { expect_yaml("  waist_pitch: {", "  imu_mount: {", "joints.imu_mount", "isn't a moving joint"); }
-TEST_F(RefusedRobot, RepeatedJoint) { expect_yaml("  right_hip_roll:", "  right_hip_yaw:", "joints.right_hip_yaw", "is there twice"); }
-TEST_F(RefusedRobot, SharedBusAddress) { expect_yaml("node: 2}", "node: 1}", "joints.right_hip_yaw", "has the bus address of waist_pitch"); }
-TEST_F(RefusedRobot, UnknownDrive) { expect_yaml("drive: position_pd", "drive: steam", "joints.waist_pitch.drive", "expected one of position_pd"); }
-TEST_F(RefusedRobot, FootLinkThatIsNone) { expect_yaml("link: left_foot", "link: left_hoof", "feet.left.link", "'left_hoof' isn't a link"); }
-TEST_F(RefusedRobot, FootWithoutSize) { expect_yaml("box_size_m: [0.2, 0.08", "box_size_m: [0.0, 0.08", "feet.left.box_size_m", "above 0"); }
-TEST_F(RefusedRobot, ImuLinkThatIsNone) { expect_yaml("link: imu_plate", "link: nowhere", "imu.link", "'nowhere' isn't a link"); }
-TEST_F(RefusedRobot, BaseThatIsNotTheRoot) { expect_yaml("base_link: base", "base_link: torso", "base_link", "isn't the root"); }
+TEST_F(RefusedRobot, FixedJointInTheList) {
+  expect_yaml("  waist_pitch: {", "  imu_mount: {", "joints.imu_mount", "isn't a moving joint");
+}
+TEST_F(RefusedRobot, RepeatedJoint) {
+  expect_yaml("  right_hip_roll:", "  right_hip_yaw:", "joints.right_hip_yaw", "is there twice");
+}
+TEST_F(RefusedRobot, SharedBusAddress) {
+  expect_yaml("node: 2}", "node: 1}", "joints.right_hip_yaw", "has the bus address of waist_pitch");
+}
+TEST_F(RefusedRobot, UnknownDrive) {
+  expect_yaml("drive: position_pd", "drive: steam", "joints.waist_pitch.drive", "expected one of position_pd");
+}
+TEST_F(RefusedRobot, FootLinkThatIsNone) {
+  expect_yaml("link: left_foot", "link: left_hoof", "feet.left.link", "'left_hoof' isn't a link");
+}
+TEST_F(RefusedRobot, FootWithoutSize) {
+  expect_yaml("box_size_m: [0.2, 0.08", "box_size_m: [0.0, 0.08", "feet.left.box_size_m", "above 0");
+}
+TEST_F(RefusedRobot, ImuLinkThatIsNone) {
+  expect_yaml("link: imu_plate", "link: nowhere", "imu.link", "'nowhere' isn't a link");
+}
+TEST_F(RefusedRobot, BaseThatIsNotTheRoot) {
+  expect_yaml("base_link: base", "base_link: torso", "base_link", "isn't the root");
+}
 TEST_F(RefusedRobot, FootThatIsTheBase) {
   copy_.replace("robot.yaml", "link: left_foot", "link: base");
   expect("robot.yaml", copy_.line_of("robot.yaml", "  left: {link"), "feet", "base hangs on 0 joints");
 }
-TEST_F(RefusedRobot, CommandRangeReversed) { expect_yaml("range: [-0.3, 0.4]", "range: [0.4, -0.3]", "command.vx_m_s.range", "0 between"); }
-TEST_F(RefusedRobot, CommandRateOfZero) { expect_yaml("rate_per_s: 0.6", "rate_per_s: 0", "command.vx_m_s.rate_per_s", "above 0"); }
+TEST_F(RefusedRobot, CommandRangeReversed) {
+  expect_yaml("range: [-0.3, 0.4]", "range: [0.4, -0.3]", "command.vx_m_s.range", "0 between");
+}
+TEST_F(RefusedRobot, CommandRateOfZero) {
+  expect_yaml("rate_per_s: 0.6", "rate_per_s: 0", "command.vx_m_s.rate_per_s", "above 0");
+}
 TEST_F(RefusedRobot, VelocityScaleOfAPosture) {
   expect_yaml("pitch_rad: {", "pitch_rad: {velocity_scale: [1, 1], ", "command.pitch_rad.velocity_scale", "is unknown");
 }
-TEST_F(RefusedRobot, PolicyJointThatIsNone) { expect_yaml("policy_joints: [left_hip_yaw", "policy_joints: [tail", "policy_joints", "'tail' isn't a joint"); }
+TEST_F(RefusedRobot, PolicyJointThatIsNone) {
+  expect_yaml("policy_joints: [left_hip_yaw", "policy_joints: [tail", "policy_joints", "'tail' isn't a joint");
+}
 TEST_F(RefusedRobot, YamlThatIsNone) {
   const int line = copy_.replace("robot.yaml", "name: biped", "name: [biped");
   EXPECT_THAT(refusal(), StartsWith(fmt::format("{}:{}:", copy_.file("robot.yaml").string(), line + 1)));
@@ -117,24 +145,26 @@ TEST_F(RefusedRobot, MissingUrdf) {
 }
 
 TEST_F(RefusedRobot, UrdfLimitsReversed) {
-  expect_urdf("lower=\"-0.4\" upper=\"0.9\"", "lower=\"0.9\" upper=\"-0.4\"", "<joint name=\"waist_pitch\"", "joint waist_pitch limit",
-              "expected lower < upper");
+  expect_urdf("lower=\"-0.4\" upper=\"0.9\"", "lower=\"0.9\" upper=\"-0.4\"", "<joint name=\"waist_pitch\"",
+              "joint waist_pitch limit", "expected lower < upper");
 }
 TEST_F(RefusedRobot, UrdfLimitsThatAreNotSymmetric) {
-  expect_urdf("lower=\"-1.8\"", "lower=\"-1.9\"", "<joint name=\"right_hip_pitch\"", "joint right_hip_pitch limit", "isn't mirrored");
+  expect_urdf("lower=\"-1.8\"", "lower=\"-1.9\"", "<joint name=\"right_hip_pitch\"", "joint right_hip_pitch limit",
+              "isn't mirrored");
 }
 TEST_F(RefusedRobot, UrdfJointWithoutAPartner) {
   copy_.replace("robot.yaml", "  left_knee:", "  leftish_knee:");
   copy_.replace("robot.yaml", "left_hip_pitch, left_knee, ", "left_hip_pitch, ");
-  expect_urdf("<joint name=\"left_knee\"", "<joint name=\"leftish_knee\"", "<joint name=\"right_knee\"", "joint right_knee",
-              "expected a joint left_knee");
+  expect_urdf("<joint name=\"left_knee\"", "<joint name=\"leftish_knee\"", "<joint name=\"right_knee\"",
+              "joint right_knee", "expected a joint left_knee");
 }
 TEST_F(RefusedRobot, UrdfJointAtAnotherPlaceThanItsPartner) {
   expect_urdf("xyz=\"0 0 -0.2\" rpy=\"0 0 1.57", "xyz=\"0 0 -0.21\" rpy=\"0 0 1.57", "<joint name=\"right_knee\"",
               "joint right_knee origin", "isn't mirrored by left_knee");
 }
 TEST_F(RefusedRobot, UrdfLinkWithoutMass) {
-  expect_urdf("<mass value=\"0.4\"/>", "<mass value=\"0\"/>", "<link name=\"left_foot\"", "link left_foot inertial mass", "above 0 kg");
+  expect_urdf("<mass value=\"0.4\"/>", "<mass value=\"0\"/>", "<link name=\"left_foot\"",
+              "link left_foot inertial mass", "above 0 kg");
 }
 TEST_F(RefusedRobot, UrdfLinkWithoutInertial) {
   const std::string text = copy_.read("biped.urdf");
@@ -144,7 +174,8 @@ TEST_F(RefusedRobot, UrdfLinkWithoutInertial) {
   expect("biped.urdf", copy_.line_of("biped.urdf", "<link name=\"torso\""), "link torso inertial", "is missing");
 }
 TEST_F(RefusedRobot, UrdfInertiaThatNoBodyHas) {
-  expect_urdf("ixx=\"0.0004\"", "ixx=\"0.0001\"", "<link name=\"left_foot\"", "link left_foot inertia", "none above the sum");
+  expect_urdf("ixx=\"0.0004\"", "ixx=\"0.0001\"", "<link name=\"left_foot\"", "link left_foot inertia",
+              "none above the sum");
 }
 TEST_F(RefusedRobot, UrdfNumberThatIsNone) {
   const int line = copy_.replace("biped.urdf", "<mass value=\"0.4\"/>", "<mass value=\"nan\"/>");
@@ -155,14 +186,16 @@ TEST_F(RefusedRobot, UrdfNumberWithATail) {
   expect("biped.urdf", line, "xyz", "is '0 0 -0.2m'");
 }
 TEST_F(RefusedRobot, UrdfAxisThatIsNotAUnitVector) {
-  expect_urdf("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 2\"/>", "<joint name=\"left_hip_yaw\"", "joint left_hip_yaw axis", "a unit vector");
+  expect_urdf("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 2\"/>", "<joint name=\"left_hip_yaw\"",
+              "joint left_hip_yaw axis", "a unit vector");
 }
 TEST_F(RefusedRobot, UrdfSlidingJoint) {
-  expect_urdf("name=\"waist_pitch\" type=\"revolute\"", "name=\"waist_pitch\" type=\"prismatic\"", "<joint name=\"waist_pitch\"",
-              "joint waist_pitch type", "revolute or fixed");
+  expect_urdf("name=\"waist_pitch\" type=\"revolute\"", "name=\"waist_pitch\" type=\"prismatic\"",
+              "<joint name=\"waist_pitch\"", "joint waist_pitch type", "revolute or fixed");
 }
 TEST_F(RefusedRobot, UrdfEffortOfZero) {
-  expect_urdf("effort=\"40\"", "effort=\"0\"", "<joint name=\"left_hip_yaw\"", "joint left_hip_yaw limit effort", "above 0");
+  expect_urdf("effort=\"40\"", "effort=\"0\"", "<joint name=\"left_hip_yaw\"", "joint left_hip_yaw limit effort",
+              "above 0");
 }
 // The parser gives no line for these two.
 TEST_F(RefusedRobot, UrdfThatIsNone) {

@@ -35,7 +35,8 @@ KDL::Frame link_pose(const RobotModel& robot, const std::string& link, const Joi
 JointVector random_posture(const RobotModel& robot, std::mt19937& random) {
   JointVector q(robot.joint_index.size());
   for (const Joint& joint : robot.joints) {
-    q[robot.joint_index.at(joint.name)] = std::uniform_real_distribution<double>(joint.lower_rad, joint.upper_rad)(random);
+    q[robot.joint_index.at(joint.name)] =
+        std::uniform_real_distribution<double>(joint.lower_rad, joint.upper_rad)(random);
   }
   return q;
 }
@@ -67,7 +68,8 @@ TEST(Z1, StandsWithFeetUnderItsCentreOfMass) {
   KDL::Vector moment = robot.base_inertia.getMass() * robot.base_inertia.getCOG();
   for (const auto& [name, element] : robot.tree.getSegments()) {
     const KDL::RigidBodyInertia& inertia = GetTreeElementSegment(element).getInertia();
-    if (inertia.getMass() > 0.0) moment = moment + inertia.getMass() * (link_pose(robot, name, robot.q_stand()) * inertia.getCOG());
+    if (inertia.getMass() > 0.0)
+      moment = moment + inertia.getMass() * (link_pose(robot, name, robot.q_stand()) * inertia.getCOG());
   }
   const KDL::Vector com = moment / robot.total_mass_kg;
   const KDL::Frame foot = link_pose(robot, robot.feet[kLeft].link, robot.q_stand());
@@ -136,7 +138,8 @@ TEST_P(EveryRobot, IsSymmetricInMassAndKinematics) {
                                                              : name;
       const KDL::Vector mine = link_pose(robot, name, q).p;
       const KDL::Vector theirs = link_pose(robot, other, mirrored).p;
-      EXPECT_NEAR((KDL::Vector(mine.x(), -mine.y(), mine.z()) - theirs).Norm(), 0.0, 1e-9) << name << ", seed 7, trial " << trial;
+      EXPECT_NEAR((KDL::Vector(mine.x(), -mine.y(), mine.z()) - theirs).Norm(), 0.0, 1e-9)
+          << name << ", seed 7, trial " << trial;
       EXPECT_EQ(link->inertial->mass, robot.urdf->getLink(other)->inertial->mass) << name;
     }
   }
@@ -165,7 +168,9 @@ TEST(Biped, IsReadWithItsOwnOrderAndConventions) {
   const RobotModel robot = load_robot(kBiped);
   EXPECT_EQ(robot.joint_index.name(0), "waist_pitch");
   EXPECT_EQ(robot.joint_index.name(1), "right_hip_yaw");
-  const auto sign = [&](const char* name) { return robot.mirror.sign[static_cast<std::size_t>(robot.joint_index.at(name))]; };
+  const auto sign = [&](const char* name) {
+    return robot.mirror.sign[static_cast<std::size_t>(robot.joint_index.at(name))];
+  };
   EXPECT_EQ(sign("left_hip_yaw"), -1.0);
   EXPECT_EQ(sign("left_hip_roll"), 1.0) << "the right one turns about -x";
   EXPECT_EQ(sign("left_hip_pitch"), 1.0);

@@ -1,6 +1,6 @@
-#include "policy/policy.hpp"
-
 #include <gtest/gtest.h>
+
+#include "policy/policy.hpp"
 
 namespace pmg::policy {
 namespace {

@@ -62,7 +62,8 @@ TEST(Limiter, TargetsMoveNoFasterThanAllowed) {
   model::RobotState state = test::standing_state(robot);
   limiter.start_from(state.q);
   const int joint = robot.joint_index.at("left_elbow");
-  const double step_rad = robot.joints[static_cast<std::size_t>(joint)].velocity_limit_rad_s * options.target_rate_factor * kDt_s;
+  const double step_rad =
+      robot.joints[static_cast<std::size_t>(joint)].velocity_limit_rad_s * options.target_rate_factor * kDt_s;
   JointVector q_des = state.q;
   q_des[joint] -= 10.0 * step_rad;
   const JointVector wanted = q_des;

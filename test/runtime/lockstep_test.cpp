@@ -208,7 +208,8 @@ TEST_F(LockstepRun, TheTourDoesNotFallAndItsReferenceKeepsTheFeetOnTheGround) {
   EXPECT_TRUE(outcome.faults.empty());
   EXPECT_GT(outcome.duration_s - outcome.hoisted_s, 15.0) << "on its own feet";
   EXPECT_GT(outcome.hoisted_s, 60.0) << "walking on the gantry";
-  // The project's promise for the ground-aware optimisation, postures, walking in every direction, turning and mixtures.
+  // The project's promise for the ground-aware optimisation, postures, walking in every direction, turning and
+  // mixtures.
   const gco::SlipSummary& slip = outcome.reference_slip;
   EXPECT_LE(slip.single_support_max_m_s, 1e-3);
   EXPECT_LE(slip.double_support_mean_m_s, 0.03);
@@ -223,7 +224,8 @@ TEST_F(LockstepRun, TheTourDoesNotFallAndItsReferenceKeepsTheFeetOnTheGround) {
 
 TEST(StageTiming, PercentilesAreNearestRanksOverTicksThatRan) {
   StageTiming timing;
-  for (int k = 1; k <= 100; ++k) timing.add(0.01 * k, {.tick_ns = 1000 * k, .generator_ns = 10, .gco_ns = 0, .policy_ns = 0});
+  for (int k = 1; k <= 100; ++k)
+    timing.add(0.01 * k, {.tick_ns = 1000 * k, .generator_ns = 10, .gco_ns = 0, .policy_ns = 0});
   timing.add(2.0, {.tick_ns = 9'000'000});  // released drives: no stage ran
   EXPECT_DOUBLE_EQ(timing.percentiles(&StageTimes::tick_ns).p50_us, 50.0);
   EXPECT_DOUBLE_EQ(timing.percentiles(&StageTimes::tick_ns).p99_us, 99.0);

@@ -77,7 +77,8 @@ TEST(Metrics, HeadingIsThePelvisYawAveragedOverAGaitPeriod) {
     truth.v_WB_W = {0.5, 0.0, 0.0};
     metrics.add(truth, user, kPeriod_s);
   }
-  // Against the momentary yaw the raw error would be 0.5 times the mean of |yaw|, 0.064; only the first second of 20 has it.
+  // Against the momentary yaw the raw error would be 0.5 times the mean of |yaw|, 0.064; only the first second of 20
+  // has it.
   EXPECT_LT(metrics.summary().lin_vel_raw_mae_m_s, 0.01);
 }
 

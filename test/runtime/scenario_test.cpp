@@ -71,7 +71,8 @@ TEST_F(ScenarioFile, RefusalsNameFileLineAndKey) {
   expect_refusal("name: x\nsteps:\n  - {for_s: soon, text: a}\n", ":3:", "for_s");
   expect_refusal("name: x\nsteps:\n  - {for_s: 1, text: a, mode: run}\n", ":3:", "mode");
   expect_refusal("name: x\nsteps:\n  - {for_s: 1, text: a, mode: fault}\n", ":3:", "mode");
-  expect_refusal("name: x\nsteps:\n  - {for_s: 1, text: a, hoist_without_policy: maybe}\n", ":3:", "hoist_without_policy");
+  expect_refusal("name: x\nsteps:\n  - {for_s: 1, text: a, hoist_without_policy: maybe}\n",
+                 ":3:", "hoist_without_policy");
   expect_refusal("name: x\nsteps:\n  - {for_s: 1, text: a, command: {height_m: .inf}}\n", ":3:", "height_m");
   expect_refusal("steps:\n  - {for_s: 1, text: a}\n", ":", "name");
   expect_refusal("name: x\n", ":", "steps");

@@ -171,8 +171,8 @@ struct Row {
 
 const std::vector<Row> kRows = {
     {"NanInQ", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.q[1] = kNan; }, 1, true},
-    {"InfInDq", FaultCode::kStateNotFinite,
-     [](auto& s, auto&) { s.dq[1] = std::numeric_limits<double>::infinity(); }, 1, true},
+    {"InfInDq", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.dq[1] = std::numeric_limits<double>::infinity(); },
+     1, true},
     {"NanInTorque", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.tau[0] = kNan; }, 1, true},
     {"NanInGyro", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.gyro_rad_s.x() = kNan; }, 1, true},
     {"NanInAcceleration", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.acceleration_m_s2.z() = kNan; }, 1, true},
@@ -191,14 +191,10 @@ const std::vector<Row> kRows = {
     {"TooMuchTorque", FaultCode::kJointTorque,
      [](auto& s, auto& robot) { s.tau[3] = 1.21 * robot.joints[3].effort_limit_Nm; }, 3, false},
     {"TiltedForward", FaultCode::kTilt,
-     [](auto& s, auto&) {
-       s.orientation_WI = Eigen::AngleAxisd(1.01, Eigen::Vector3d::UnitY()) * s.orientation_WI;
-     },
-     3, false},
+     [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(1.01, Eigen::Vector3d::UnitY()) * s.orientation_WI; }, 3,
+     false},
     {"TiltedAside", FaultCode::kTilt,
-     [](auto& s, auto&) {
-       s.orientation_WI = Eigen::AngleAxisd(-1.01, Eigen::Vector3d::UnitX()) * s.orientation_WI;
-     },
+     [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(-1.01, Eigen::Vector3d::UnitX()) * s.orientation_WI; },
      3, false},
 };
 

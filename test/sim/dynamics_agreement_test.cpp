@@ -26,7 +26,8 @@ class DynamicsAgreement : public testing::TestWithParam<const model::RobotModel*
       mj_joint.push_back(mj_name2id(world.mj_model(), mjOBJ_JOINT, joint.name.c_str()));
   }
 
-  /// Base at the world's origin, unrotated, at rest: there MuJoCo's floating base and KDL's fixed one have the same numbers.
+  /// Base at the world's origin, unrotated, at rest: there MuJoCo's floating base and KDL's fixed one have the same
+  /// numbers.
   void take_posture(const JointVector& q) {
     const mjModel* m = world.mj_model();
     mjData* d = world.mj_data();
@@ -91,7 +92,8 @@ TEST_P(DynamicsAgreement, MassMatricesAreTheSame) {
       ASSERT_EQ(dynamics.CartToJnt(q_kdl, zero, unit, {}, torques), 0);
       for (std::size_t row = 0; row < mj_joint.size(); ++row) {
         const double rotor = row == column ? robot.joints[row].armature_kg_m2 : 0.0;  // KDL's tree has no rotors
-        EXPECT_NEAR(M[static_cast<std::size_t>(dof(row) * nv + dof(column))] - rotor, torques(kdl_index[row]), kTolerance)
+        EXPECT_NEAR(M[static_cast<std::size_t>(dof(row) * nv + dof(column))] - rotor, torques(kdl_index[row]),
+                    kTolerance)
             << robot.joints[row].name << ", " << robot.joints[column].name;
       }
     }

@@ -12,7 +12,8 @@ namespace {
 std::atomic<long> allocations = 0;
 }
 
-// glibc's own entry points; libmujoco's calls are resolved to these definitions as well. Sanitizers bring their own malloc.
+// glibc's own entry points; libmujoco's calls are resolved to these definitions as well. Sanitizers bring their own
+// malloc.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define PMG_COUNTS_ALLOCATIONS 1
 extern "C" {

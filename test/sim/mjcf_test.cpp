@@ -12,7 +12,8 @@ namespace {
 struct Loaded {
   explicit Loaded(const std::string& xml) {
     const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / (testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".xml"));
+        std::filesystem::path(testing::TempDir()) /
+        (testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".xml"));
     std::ofstream(path) << xml;
     std::array<char, 500> error{};
     model = mj_loadXML(path.c_str(), nullptr, error.data(), static_cast<int>(error.size()));

@@ -21,7 +21,8 @@ using Rgb = std::vector<std::uint8_t>;
 
 std::size_t differing_pixels(const Rgb& a, const Rgb& b, int first_row, int rows) {
   std::size_t count = 0;
-  for (std::size_t i = 3 * 320 * static_cast<std::size_t>(first_row); i < 3 * 320 * static_cast<std::size_t>(first_row + rows); i += 3)
+  for (std::size_t i = 3 * 320 * static_cast<std::size_t>(first_row);
+       i < 3 * 320 * static_cast<std::size_t>(first_row + rows); i += 3)
     count += !std::equal(a.begin() + static_cast<std::ptrdiff_t>(i), a.begin() + static_cast<std::ptrdiff_t>(i + 3),
                          b.begin() + static_cast<std::ptrdiff_t>(i));
   return count;
@@ -66,7 +67,8 @@ TEST(VideoWriter, WritesAnMp4) {
     sim::VideoWriter video(path, 64, 48);
     Rgb frame(64 * 48 * 3);
     for (int i = 0; i < 20; ++i) {
-      for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 7 + static_cast<std::size_t>(i) * 5);
+      for (std::size_t k = 0; k < frame.size(); ++k)
+        frame[k] = static_cast<std::uint8_t>(k * 7 + static_cast<std::size_t>(i) * 5);
       video.write(frame);
     }
     video.close();

@@ -119,8 +119,8 @@ TEST(World, DriveLawIsHeldToRoundingAndClippedAtEffort) {
     world.read(after);
     for (int j = 0; j < command.q.size(); ++j) {
       const double limit = z1().joints[static_cast<std::size_t>(j)].effort_limit_Nm;
-      const double torque = command.kp[j] * (command.q[j] - before.q[j]) + command.kd[j] * (command.dq[j] - before.dq[j]) +
-                            command.tau_ff[j];
+      const double torque = command.kp[j] * (command.q[j] - before.q[j]) +
+                            command.kd[j] * (command.dq[j] - before.dq[j]) + command.tau_ff[j];
       ASSERT_NEAR(after.tau[j], std::clamp(torque, -limit, limit), 1e-9) << z1().joint_index.name(j);
       (std::abs(torque) > limit ? clipped : free) += 1;
     }

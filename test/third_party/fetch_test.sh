@@ -15,7 +15,7 @@ fetch && fail "an empty cache and no network must be an error"
 grep -q "could not download mujoco 2.2.2" "$tmp/said" || fail "the message doesn't name what is missing: $(cat "$tmp/said")"
 [ ! -e "$tmp/third_party/prefix" ] || fail "something was left half-made"
 
-cp -r "${XDG_CACHE_HOME:-$HOME/.cache}/pmg" "$tmp/cache/pmg"
+cp "${XDG_CACHE_HOME:-$HOME/.cache}"/pmg/* "$tmp/cache/pmg/"
 fetch || fail "a filled cache must be enough: $(cat "$tmp/said")"
 [ -f "$tmp/third_party/prefix/mujoco/lib/libmujoco.so.2.2.2" ] || fail "MuJoCo wasn't unpacked"
 
