@@ -1,4 +1,6 @@
 // Makes and shows clip libraries.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <csignal>
@@ -9,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
@@ -42,8 +45,21 @@ volatile std::sig_atomic_t interrupted = 0;
 
 struct Interrupted {};
 
+/// Throws model::ConfigError unless the directory, or the one that it would be made in, takes new files. Makes nothing.
+void require_writable(const std::filesystem::path& directory) {
+  std::filesystem::path existing = std::filesystem::absolute(directory);
+  std::error_code error;
+  while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) {
+    existing = existing.parent_path();
+  }
+  if (!std::filesystem::is_directory(existing, error) || access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw model::ConfigError(directory.string() + ": can't be written to; expected a directory, or a place to make one in");
+  }
+}
+
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
+  require_writable(out);  // now, not after a minute's work
   const ClipLibrary library = generator::synthesize(robot, [](const std::string& clip) {
     if (interrupted != 0) {
       throw Interrupted{};

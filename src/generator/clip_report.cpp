@@ -8,6 +8,7 @@
 
 #include "generator/joint_roles.hpp"
 #include "model/config_error.hpp"
+#include "model/leg_kinematics.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -43,6 +44,22 @@ double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain
   return -gain * (mean - q_stand[*roles.waist_pitch]);
 }
 
+/// The base under an upright torso.
+std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain) {
+  model::BaseAttitude attitude(robot);
+  const JointVector q_stand = robot.q_stand();
+  std::vector<BaseMotion> base;
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    const JointVector q = q_stand + gain * (clip.q[k] - q_stand);
+    const JointVector dq = gain / clip.period_s * clip.dq_dphi[k];
+    const model::BaseAttitude::Result at = attitude.compute(q, dq, 0.0, 0.0, 0.0, 0.0);
+    base.push_back({at.R_HB, at.omega_HB_H});
+  }
+  return base;
+}
+
+constexpr double kClearance_m = 0.025;  // of the robot's feet on a floor that isn't quite flat
+
 std::string judge(const ClipReport& clip) {
   for (const GainReport& at : clip.gains) {
     const std::string where = " at gain " + std::to_string(at.gain).substr(0, 4);
@@ -55,9 +72,15 @@ std::string judge(const ClipReport& clip) {
     if (at.velocity_error.cwiseAbs().maxCoeff() > 0.05) {
       return "mean velocity is off" + where;
     }
+    if (at.ground.lowest_swing_m < -0.002) {
+      return "a swinging foot goes through the ground" + where;
+    }
     if (at.ground.foot_gap_m < 0.02) {
       return "feet come too close" + where;
     }
+  }
+  if (clip.gains.back().ground.clearance_m < kClearance_m) {
+    return "feet are hardly lifted at full gain";
   }
   return clip.joint_speed_share > 0.6 ? "a joint is too fast" : "";
 }
@@ -74,9 +97,7 @@ ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, 
   for (int tenth = 1; tenth <= 10; ++tenth) {
     GainReport at;
     at.gain = 0.1 * tenth;
-    const Eigen::Matrix3d R_HB =
-        Eigen::AngleAxisd(pelvis_tilt(clip, roles, at.gain, q_stand), Eigen::Vector3d::UnitY()).toRotationMatrix();
-    at.ground = measure(legs, legs_of(clip, roles, at.gain, q_stand), when, R_HB);
+    at.ground = measure(legs, legs_of(clip, roles, at.gain, q_stand), when, base_of(robot, clip, at.gain));
     at.velocity_error = at.ground.mean_velocity - at.gain * full;
     out.gains.push_back(at);
   }

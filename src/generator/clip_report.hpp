@@ -28,8 +28,8 @@ struct ClipReport {
 };
 
 /// Every dynamic clip at gains 0.1 .. 1. Failures: double-support slip over 3 cm/s on average or 10 cm/s at the 95th percentile,
-/// stance feet more than 1 cm apart in height, mean velocity off by more than 0.05 (m/s, rad/s), soles closer than 2 cm,
-/// joints faster than 60 % of their limits.
+/// stance feet more than 1 cm apart in height, mean velocity off by more than 0.05 (m/s, rad/s), a swinging sole
+/// more than 2 mm below the ground, or less than 2.5 cm above it in mid swing at full gain, soles closer than 2 cm, joints faster than 60 % of their limits.
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
 
 /// Agreement of the forward clip with a published mean.

@@ -40,13 +40,14 @@ struct SampleState {
 };
 
 SampleState evaluate(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing, std::size_t sample,
-                     const Eigen::Matrix3d& R_HB) {
+                     const BaseMotion& base) {
   SampleState state;
   const double phase = static_cast<double>(sample) / static_cast<double>(trajectory.q.size());
   for (const Foot f : {kLeft, kRight}) {
     FootMotion<double>& foot = state.foot[f];
     foot = foot_motion<double>(legs.geometry[f], trajectory.q[sample][f], trajectory.dq_dphi[sample][f] / timing.period_s);
-    foot = {R_HB * foot.R_BF, R_HB * foot.p_BF, R_HB * foot.v_BF, R_HB * foot.omega_BF};
+    const Eigen::Vector3d p = base.R_HB * foot.p_BF;
+    foot = {base.R_HB * foot.R_BF, p, base.R_HB * foot.v_BF + base.omega_HB.cross(p), base.R_HB * foot.omega_BF + base.omega_HB};
     state.contact[f] = sole_contact<double>(legs.geometry[f], foot, kSoftness_m);
     state.lowest[f] = lowest_height(legs.geometry[f], foot);
     state.stance_phase[f] = wrapped(phase - timing.contact_center[f]);
@@ -78,6 +79,16 @@ GaitTiming timing(double period_s, double duty_factor) {
   return {period_s, {0.5 * duty_factor, 0.5 + 0.5 * duty_factor}, {duty_factor, duty_factor}};
 }
 
+std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain) {
+  std::vector<BaseMotion> base(kClipSamples);
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    const Roll roll = hike(task, static_cast<double>(k) / static_cast<double>(kClipSamples));
+    base[k].R_HB = Eigen::AngleAxisd(gain * roll.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    base[k].omega_HB = gain * roll.slope_rad / task.period_s * Eigen::Vector3d::UnitX();
+  }
+  return base;
+}
+
 LegTrajectory blend(const RobotLegs& legs, const LegTrajectory& clip, const Scenario& scenario) {
   LegTrajectory out = clip;
   const Addition& addition = scenario.addition;
@@ -97,11 +108,11 @@ LegTrajectory blend(const RobotLegs& legs, const LegTrajectory& clip, const Scen
 }
 
 GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
-                      const Eigen::Matrix3d& R_HB) {
+                      const std::vector<BaseMotion>& base) {
   const std::size_t n = trajectory.q.size();
   std::vector<SampleState> states;
   for (std::size_t k = 0; k < n; ++k) {
-    states.push_back(evaluate(legs, trajectory, timing, k, R_HB));
+    states.push_back(evaluate(legs, trajectory, timing, k, base.empty() ? BaseMotion{} : base[k]));
   }
   GroundMeasure m;
   m.clearance_m = m.lowest_swing_m = m.foot_gap_m = m.height_min_m = std::numeric_limits<double>::max();
@@ -132,7 +143,9 @@ GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, co
         const double r = timing.duty_factor[f];
         const double since = s.stance_phase[f] > 0 ? s.stance_phase[f] - 0.5 * r : s.stance_phase[f] + 1.0 - 0.5 * r;
         const double swing = since / (1.0 - r);
-        m.lowest_swing_m = std::min(m.lowest_swing_m, s.lowest[f] - s.ground_z);
+        const double above = s.lowest[f] - s.ground_z;
+        const double held = std::min(1.0, 2.0 * s.weight[f]);
+        m.lowest_swing_m = std::min(m.lowest_swing_m, above < 0.0 ? (1.0 - held) * above : above);
         if (swing >= 0.3 && swing <= 0.7) {
           m.clearance_m = std::min(m.clearance_m, s.lowest[f] - s.ground_z);
         }

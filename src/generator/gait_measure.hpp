@@ -22,6 +22,15 @@ GaitTiming timing(double period_s, double duty_factor);
 /// q = q_stand + gain (q_clip - q_stand) + addition, at every sample.
 LegTrajectory blend(const RobotLegs& legs, const LegTrajectory& clip, const Scenario& scenario);
 
+/// Attitude of the base in the heading frame and its rate [rad/s, in that frame].
+struct BaseMotion {
+  Eigen::Matrix3d R_HB = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d omega_HB = Eigen::Vector3d::Zero();
+};
+
+/// The base of a task's clip at this gain, one entry a sample.
+std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain);
+
 struct GroundMeasure {
   Eigen::Vector3d mean_velocity = Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]
   Eigen::Vector3d velocity_range = Eigen::Vector3d::Zero();  ///< largest deviation from the mean
@@ -34,8 +43,10 @@ struct GroundMeasure {
   double height_mean_m = 0.0, height_min_m = 0.0, height_max_m = 0.0;  ///< base, deviation from stand
 };
 
-/// R_HB: base attitude in the heading frame, constant. Contact edges as in the generator (0.04 of a cycle).
+/// base: one entry a sample, or none for a level base. Contact edges as in the generator (0.04 of a cycle). In swing the
+/// ground is where the ground-aware optimisation has it: while a foot's contact weight fades, it still holds its share of
+/// the height.
 GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
-                      const Eigen::Matrix3d& R_HB = Eigen::Matrix3d::Identity());
+                      const std::vector<BaseMotion>& base = {});
 
 }  // namespace pmg::generator

@@ -3,6 +3,8 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "generator/gait_measure.hpp"
@@ -14,7 +16,7 @@ namespace {
 
 constexpr std::size_t kKnots = 24;       // even, so that half a cycle is a whole number of knots
 constexpr double kEdgeBeyond = 0.005;     // cycles: clips in a mixture differ by as much in their duty factors
-constexpr double kAboveGround_m = 0.001;  // asked of a foot at the very ends of its swing
+constexpr double kClearanceGrowth = 1.6;  // power of the gain: at half of it a third of the clearance
 constexpr int kRounds = 4;                // solves; between them the velocity targets move by what the means missed
 
 /// Which knots a leg uses and how: the right leg of a symmetric gait borrows the left one's.
@@ -65,6 +67,72 @@ void start_from_reference(const RobotLegs& legs, const GaitTask& task, KnotTable
   }
 }
 
+/// 0 while there is room, 1:1 when far beyond, smooth over this width; with its slope.
+std::pair<double, double> beyond(double excess, double width) {
+  const double z = excess / width;
+  return {width * (z > 30.0 ? z : std::log1p(std::exp(z))), 1.0 / (1.0 + std::exp(-z))};
+}
+
+/// Correlation of one joint's curve with the reference, and RMS distance from it: two residuals of all the left leg's knots.
+class ShapeCost : public ceres::CostFunction {
+ public:
+  ShapeCost(const RobotLegs& legs, const GaitTask& task, const ShapeGoal& goal)
+      : goal_(goal), weights_(task.weights), stand_(legs.stand[kLeft][static_cast<Eigen::Index>(goal.role)]) {
+    set_num_residuals(2);
+    mutable_parameter_block_sizes()->assign(kKnots, kLegJoints);
+    for (std::size_t k = 0; k < kClipSamples; ++k) {
+      reference_[static_cast<Eigen::Index>(k)] = task.reference[k][kLeft][static_cast<Eigen::Index>(goal.role)];
+      const SplineBasis basis = spline_basis(static_cast<double>(k) / static_cast<double>(kClipSamples), kKnots);
+      for (std::size_t i = 0; i < 4; ++i) {
+        basis_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(basis.knot[i])) += basis.value[i];
+      }
+    }
+  }
+
+  bool Evaluate(const double* const* knots, double* residual, double** jacobian) const override {
+    Eigen::Matrix<double, kKnots, 1> knot;
+    for (std::size_t i = 0; i < kKnots; ++i) {
+      knot[static_cast<Eigen::Index>(i)] = knots[i][goal_.role];
+    }
+    const Curve q = (basis_ * knot).array() + stand_;
+    const Curve e = q - reference_;
+    const double rms = std::sqrt(e.squaredNorm() / static_cast<double>(kClipSamples));
+    const Curve a = q.array() - q.mean();
+    const Curve b = reference_.array() - reference_.mean();
+    const double norms = a.norm() * b.norm();
+    const double correlation = a.dot(b) / norms;
+    constexpr double kCorrelationWidth = 0.0015;
+    constexpr double kRmsWidth_rad = 0.003;
+    const auto [short_of, short_slope] = beyond(goal_.correlation - correlation, kCorrelationWidth);
+    const auto [over, over_slope] = beyond(rms - goal_.rms_rad, kRmsWidth_rad);
+    residual[0] = weights_.correlation * short_of;
+    residual[1] = weights_.rms * over;
+    if (jacobian != nullptr) {
+      const Curve slope = b / norms - correlation / a.squaredNorm() * a;  // has mean zero
+      const Eigen::Matrix<double, kKnots, 1> d0 = -weights_.correlation * short_slope * (basis_.transpose() * slope);
+      const Eigen::Matrix<double, kKnots, 1> d1 =
+          weights_.rms * over_slope / (rms * static_cast<double>(kClipSamples)) * (basis_.transpose() * e);
+      for (std::size_t i = 0; i < kKnots; ++i) {
+        if (jacobian[i] != nullptr) {
+          Eigen::Map<Eigen::Matrix<double, 2, kLegJoints, Eigen::RowMajor>> J(jacobian[i]);
+          J.setZero();
+          J(0, static_cast<Eigen::Index>(goal_.role)) = d0[static_cast<Eigen::Index>(i)];
+          J(1, static_cast<Eigen::Index>(goal_.role)) = d1[static_cast<Eigen::Index>(i)];
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  using Curve = Eigen::Matrix<double, kClipSamples, 1>;
+  ShapeGoal goal_;
+  GaitWeights weights_;
+  double stand_;
+  Curve reference_ = Curve::Zero();
+  Eigen::Matrix<double, kClipSamples, kKnots> basis_ = Eigen::Matrix<double, kClipSamples, kKnots>::Zero();
+};
+
 void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vector<VelocityTarget>& targets,
                    KnotTable& table, ceres::Problem& problem) {
   for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
@@ -81,6 +149,13 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
       problem.AddResidualBlock(
           new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)), nullptr, blocks);
     }
+  }
+  for (const ShapeGoal& goal : task.shape) {
+    std::vector<double*> blocks;
+    for (std::size_t i = 0; i < kKnots; ++i) {
+      blocks.push_back(table.knot(kLeft, i));
+    }
+    problem.AddResidualBlock(new ShapeCost(legs, task, goal), nullptr, blocks);
   }
   for (const Foot foot : {kLeft, kRight}) {
     if (foot == kRight && task.symmetric) {
@@ -104,6 +179,12 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
                                table.knot(foot, i), table.knot(foot, (i + 1) % kKnots));
     }
   }
+}
+
+/// 0 at both ends of the swing, 1 from 0.3 to 0.7 of it.
+double raised(double swing) {
+  const double rise = std::sin(std::numbers::pi * swing) / std::sin(0.3 * std::numbers::pi);
+  return std::min(rise * rise, 1.0);
 }
 
 LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& table) {
@@ -177,9 +258,12 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     const double in_stance = s / r + 0.5;
     flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
     const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
-    const double rise = std::sin(std::numbers::pi * swing);
-    clearance_m_[foot] = rise > 0.0 ? kAboveGround_m + scenario.gain * task.clearance_m * rise * rise : 0.0;
+    lifted_[foot] = std::abs(s) > 0.5 * r ? 1.0 - 2.0 * contact_[foot] : 0.0;
+    clearance_m_[foot] = std::pow(scenario.gain, kClearanceGrowth) * task.clearance_m * raised(swing);
   }
+  const Roll roll = hike(task, phase);
+  R_HB_ = Eigen::AngleAxisd(scenario.gain * roll.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  omega_HB_ = scenario.gain * roll.slope_rad / task.period_s * Eigen::Vector3d::UnitX();
   near_both_ = std::sqrt(wide[kLeft] * wide[kRight]);
   scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
   height_m_ = legs.standing_height_m + scenario.gain * task.height_m + scenario.addition.height_m;
@@ -208,7 +292,7 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
     add_residuals(legs, task, targets, table, problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = round == 0 ? 40 : 12;
+    options.max_num_iterations = round == 0 ? 80 : 16;
     options.function_tolerance = 1e-4;
     options.num_threads = 1;  // the same bytes every time
     options.logging_type = ceres::SILENT;
@@ -221,7 +305,8 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
       const Scenario& scenario = task.scenarios[s];
       if (scenario.addition.q.empty()) {  // under a posture or in a mixture the mean is wished for, not promised
         const Eigen::Vector3d mean =
-            measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor)).mean_velocity;
+            measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor),
+                    hiking_base(task, scenario.gain)).mean_velocity;
         targets[s].correct(scenario.gain * task.velocity - mean);
       }
     }

@@ -11,7 +11,7 @@
 
 namespace pmg::generator {
 
-inline constexpr int kGroundResiduals = 20;
+inline constexpr int kGroundResiduals = 22;
 
 /// One phase sample of one scenario. Parameters: four knots of the left leg, then four of the right, each kLegJoints
 /// deviations from stand. The base is level; its velocity is what the stance feet say, weighted by their contact.
@@ -41,7 +41,7 @@ class GroundResiduals {
         q[i] = base_q_[f][i] + scenario_.gain * sign * value;
         dq[i] = (base_dq_dphi_[f][i] + scenario_.gain * sign * slope) / task_.period_s;
       }
-      foot[f] = foot_motion<T>(legs_.geometry[f], q, dq);
+      foot[f] = seen_from_heading(foot_motion<T>(legs_.geometry[f], q, dq));
       contact[f] = sole_contact<T>(legs_.geometry[f], foot[f], kSoftness_m);
     }
     ground(foot, contact, residual);
@@ -49,7 +49,17 @@ class GroundResiduals {
   }
 
  private:
-  static constexpr double kSoftness_m = 0.001;  ///< a fifth of a degree over the length of a foot
+  /// A foot in the heading frame, whose origin is the base's.
+  template <typename T>
+  FootMotion<T> seen_from_heading(const FootMotion<T>& foot) const {
+    const Matrix3<T> R = R_HB_.cast<T>();
+    const Vector3<T> omega = omega_HB_.cast<T>();
+    const Vector3<T> p = R * foot.p_BF;
+    return {R * foot.R_BF, p, R * foot.v_BF + omega.cross(p), R * foot.omega_BF + omega};
+  }
+
+  static constexpr double kSoftness_m = 0.001;     ///< a fifth of a degree over the length of a foot
+  static constexpr double kAboveGround_m = 0.001;  ///< asked of a foot all through its swing
 
   template <typename T>
   void ground(const PerFoot<FootMotion<T>>& foot, const PerFoot<SoleContact<T>>& contact, T* residual) const {
@@ -81,7 +91,10 @@ class GroundResiduals {
     residual[i++] = scale_ * w.velocity_yaw * (omega - velocity_.z());
     residual[i++] = scale_ * w.height * (-ground_z - height_m_);
     for (const Foot f : {kLeft, kRight}) {
-      residual[i++] = scale_ * w.clearance * short_of(T(contact[f].p.z() - ground_z), clearance_m_[f]);
+      // In swing the other foot is the one that says where the ground is.
+      const T above = contact[f].p.z() - contact[f == kLeft ? kRight : kLeft].p.z();
+      residual[i++] = scale_ * w.clearance * short_of(above, clearance_m_[f]);
+      residual[i++] = scale_ * w.above_ground * lifted_[f] * short_of(above, kAboveGround_m);
       residual[i++] = scale_ * w.foot_flat * contact_[f] * foot[f].R_BF(2, 1);
       residual[i++] = scale_ * w.foot_flat * flat_[f] * foot[f].R_BF(2, 0);
       residual[i++] = scale_ * w.foot_flat * 0.1 * (1.0 - contact_[f]) * foot[f].R_BF(2, 1);
@@ -136,6 +149,9 @@ class GroundResiduals {
   PerFoot<SplineBasis> basis_;
   PerFoot<LegVector<double>> sign_, base_q_, base_dq_dphi_;
   PerFoot<double> contact_{}, clearance_m_{}, flat_{};
+  PerFoot<double> lifted_{};  ///< 0 in stance and 1 in swing, where the foot has stopped to carry the height
+  Eigen::Matrix3d R_HB_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d omega_HB_ = Eigen::Vector3d::Zero();
   double near_both_ = 0.0;
   double height_m_ = 0.0;
   double scale_ = 1.0;

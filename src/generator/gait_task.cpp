@@ -11,6 +11,13 @@ double stance_phase(double phase, Foot foot, double duty_factor) {
   return s - std::floor(s + 0.5);
 }
 
+Roll hike(const GaitTask& task, double phase) {
+  // Highest on the left early in its swing, where a foot that has just left the ground needs the room.
+  const double left_peak = task.duty_factor + 0.03;
+  const double angle = 2.0 * std::numbers::pi * (phase - left_peak);
+  return {task.hike_rad * std::cos(angle), -2.0 * std::numbers::pi * task.hike_rad * std::sin(angle)};
+}
+
 double contact_weight(double stance_phase, double duty_factor, double edge_cycle) {
   const double inside = 0.5 * duty_factor - std::abs(stance_phase);
   if (inside >= 0.5 * edge_cycle) {

@@ -27,6 +27,13 @@ struct Addition {
   double height_m = 0.0;                                         ///< what it does to the base height
 };
 
+/// How closely a joint's curve has to follow the reference's.
+struct ShapeGoal {
+  LegRole role = kKnee;
+  double correlation = 0.95;  ///< at least
+  double rms_rad = 0.1;       ///< at most
+};
+
 /// The clip at one gain, with or without something added: one set of ground residuals.
 struct Scenario {
   double gain = 1.0;
@@ -45,10 +52,13 @@ struct GaitWeights {
   double velocity_up = 0.5;    ///< per m/s
   double height = 3.0;         ///< per m, base against height_m
   double clearance = 150.0;    ///< per m short of it
+  double above_ground = 400.0;  ///< per m that the swinging sole lies below the ground
   double foot_flat = 10.0;     ///< per rad
   double foot_gap = 60.0;      ///< per m short of it
   LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad, shape of the joint curves
   LegVector<double> bias = LegVector<double>::Constant(1.0);       ///< per rad, of their means
+  double correlation = 20.0;   ///< per 1 short of a ShapeGoal
+  double rms = 6.0;            ///< per rad beyond a ShapeGoal
   double limit = 50.0;         ///< per rad beyond
   double smooth = 2e-4;        ///< per rad/cycle^2
 };
@@ -59,18 +69,26 @@ struct GaitTask {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s] at full gain
   bool symmetric = true;       ///< the right leg is the left one mirrored, half a cycle later
   double sway_m = 0.0;         ///< the base moves this far towards the stance foot at full gain
+  double hike_rad = 0.0;       ///< the base rolls this far at full gain, up on the swinging side
   double height_m = 0.0;       ///< mean base height at full gain, deviation from stand
-  double clearance_m = 0.04;   ///< of the lowest sole point in mid swing
+  double clearance_m = 0.04;   ///< of the lowest sole point in the middle of the swing (0.3 .. 0.7 of it) at full gain
   double flat_from = 0.0;      ///< part of the stance in which the sole lies flat, fractions of the stance
   double flat_to = 1.0;
   double foot_gap_m = 0.03;    ///< between the soles, sideways
   std::vector<LegPose> reference;  ///< kClipSamples joint angles to stay near [rad]
+  std::vector<ShapeGoal> shape;    ///< of the left leg
   std::vector<Scenario> scenarios;
   GaitWeights weights;
 };
 
 /// Phase of the foot relative to the middle of its stance, in [-0.5, 0.5). Stance lasts |s| <= duty_factor / 2.
 double stance_phase(double phase, Foot foot, double duty_factor);
+
+/// Roll of the base at full gain, positive to the right, and its slope [rad per cycle].
+struct Roll {
+  double angle_rad = 0.0, slope_rad = 0.0;
+};
+Roll hike(const GaitTask& task, double phase);
 
 /// 1 in stance, 0 in swing, with cosine edges of this width around touch-down and lift-off (design: 0.04 of a cycle).
 double contact_weight(double stance_phase, double duty_factor, double edge_cycle = 0.04);

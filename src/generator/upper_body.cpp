@@ -33,9 +33,11 @@ void move_upper_body(const JointRoles& roles, const UpperBody& body, double phas
     swing_arm(roles, body, side, side == kLeft ? phase : phase + 0.5, q);
   }
   // The torso is upright in the heading frame, turned by its yaw; the waist joints are what the tilted pelvis leaves:
-  // R_BT = Ry(-tilt) Rz(yaw) = Rz(a) Rx(b) Ry(c).
+  // R_BT = Ry(-tilt) Rx(-roll) Rz(yaw) = Rz(a) Rx(b) Ry(c).
   const double yaw = body.torso_yaw_rad * std::cos(2.0 * std::numbers::pi * phase);
+  const double roll = body.pelvis_roll_rad ? body.pelvis_roll_rad(phase) : 0.0;
   const Eigen::Matrix3d R_BT = (Eigen::AngleAxisd(-body.pelvis_tilt_rad, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX()) *
                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))
                                    .toRotationMatrix();
   if (roles.waist_yaw && roles.waist_roll && roles.waist_pitch) {
