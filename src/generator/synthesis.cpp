@@ -93,8 +93,9 @@ GaitTask forward_task(const Making& making) {
   task.weights.rms = 200.0;
   task.weights.velocity_yaw = 4.0;
   task.weights.limit = 300.0;
-  task.weights.smooth = 6e-5;
+  task.weights.smooth = 1.5e-4;
   task.scenarios = scenarios(making, 0.36);
+  task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
   return task;
 }
 
@@ -120,7 +121,7 @@ GaitTask backward_task(const Making& making, const LegTrajectory& forward, const
 GaitTask lateral_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.02;
-  task.duty_factor = 0.58;
+  task.duty_factor = 0.61;  // with walking's windows: mixtures of the two then agree about the ground
   task.velocity = {0.0, 0.35, 0.0};
   task.symmetric = false;
   task.height_m = -0.02;
@@ -129,7 +130,7 @@ GaitTask lateral_task(const Making& making) {
   task.weights.reference = LegVector<double>::Constant(1.5);
   task.weights.velocity = 12.0;
   task.weights.velocity_yaw = 6.0;
-  task.scenarios = scenarios(making, 0.3);
+  task.scenarios = scenarios(making, 0.6);
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
   // Feet 0.31 m apart on average: the closing foot then keeps clear of the other.
   task.reference = stepping_reference(making.legs, task, {.half_width_m = 0.155, .lift_m = 0.05, .height_m = -0.02});
@@ -141,20 +142,20 @@ GaitTask lateral_task(const Making& making) {
 GaitTask turn_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.18;
-  task.duty_factor = 0.59;
+  task.duty_factor = 0.61;
   task.velocity = {0.0, 0.0, 0.8};
   task.symmetric = false;
   task.sway_m = 0.012;
-  task.height_m = -0.01;
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.03;
   task.weights.reference = LegVector<double>::Constant(1.5);
   task.weights.velocity = 12.0;
   task.weights.velocity_yaw = 6.0;
-  task.scenarios = scenarios(making, 0.3);
+  task.scenarios = scenarios(making, 0.6);
+  task.scenarios.push_back({0.6, 8.0, posture_addition(making, kHeight, -0.05)});
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
   task.reference = stepping_reference(making.legs, task,
-                                      {.half_width_m = 0.115, .toe_out_rad = 0.08, .lift_m = 0.05, .height_m = -0.01});
+                                      {.half_width_m = 0.115, .toe_out_rad = 0.08, .lift_m = 0.05, .height_m = 0.0});
   return task;
 }
 
@@ -226,13 +227,13 @@ ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(
 
   progress("lateral");
   GaitTask lateral = lateral_task(making);
-  lateral.scenarios.push_back({0.5, 0.7, clip_addition(making, forward_legs, forward, 0.5, lateral.period_s)});
+  lateral.scenarios.push_back({0.53, 3.0, clip_addition(making, forward_legs, forward, 0.47, lateral.period_s)});
   const LegTrajectory lateral_legs = optimize_gait(making.legs, lateral).legs;
   library.positive[kVy] = assemble(making, lateral, lateral_legs, {.pelvis_tilt_rad = 2.0 * kDegree});
 
   progress("turn");
   GaitTask turn = turn_task(making);
-  turn.scenarios.push_back({0.5, 0.7, clip_addition(making, forward_legs, forward, 0.5, turn.period_s)});
+  turn.scenarios.push_back({0.45, 4.0, clip_addition(making, forward_legs, forward, 0.55, turn.period_s)});
   const LegTrajectory turn_legs = optimize_gait(making.legs, turn).legs;
   library.positive[kOmega] = assemble(making, turn, turn_legs,
                                       {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
