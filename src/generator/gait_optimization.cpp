@@ -261,9 +261,10 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     lifted_[foot] = std::abs(s) > 0.5 * r ? 1.0 - 2.0 * contact_[foot] : 0.0;
     clearance_m_[foot] = std::pow(scenario.gain, kClearanceGrowth) * task.clearance_m * raised(swing);
   }
-  const Roll roll = hike(task, phase);
-  R_HB_ = Eigen::AngleAxisd(scenario.gain * roll.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  omega_HB_ = scenario.gain * roll.slope_rad / task.period_s * Eigen::Vector3d::UnitX();
+  const Roll own = hike(task, phase);
+  const Roll added = scenario.addition.roll.empty() ? Roll{} : scenario.addition.roll[sample];
+  R_HB_ = Eigen::AngleAxisd(scenario.gain * own.angle_rad + added.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  omega_HB_ = (scenario.gain * own.slope_rad + added.slope_rad) / task.period_s * Eigen::Vector3d::UnitX();
   near_both_ = std::sqrt(wide[kLeft] * wide[kRight]);
   scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
   height_m_ = legs.standing_height_m + scenario.gain * task.height_m + scenario.addition.height_m;

@@ -19,12 +19,18 @@ struct LegTrajectory {
   std::vector<LegPose> q, dq_dphi;
 };
 
+/// Roll of the base positive to the right, and its slope [rad per cycle].
+struct Roll {
+  double angle_rad = 0.0, slope_rad = 0.0;
+};
+
 /// Joint angles that the generator adds to this clip's, with the velocity that they make: a posture offset (constant) or
 /// another clip in a mixture. Empty trajectories mean none.
 struct Addition {
   std::vector<LegPose> q, dq_dphi;                               ///< one entry (constant) or one a sample; deviation from stand
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< vx, vy [m/s], omega [rad/s]
   double height_m = 0.0;                                         ///< what it does to the base height
+  std::vector<Roll> roll;                                        ///< what it does to the base's, one a sample
 };
 
 /// How closely a joint's curve has to follow the reference's.
@@ -84,10 +90,7 @@ struct GaitTask {
 /// Phase of the foot relative to the middle of its stance, in [-0.5, 0.5). Stance lasts |s| <= duty_factor / 2.
 double stance_phase(double phase, Foot foot, double duty_factor);
 
-/// Roll of the base at full gain, positive to the right, and its slope [rad per cycle].
-struct Roll {
-  double angle_rad = 0.0, slope_rad = 0.0;
-};
+/// The base's roll at full gain.
 Roll hike(const GaitTask& task, double phase);
 
 /// 1 in stance, 0 in swing, with cosine edges of this width around touch-down and lift-off (design: 0.04 of a cycle).

@@ -47,6 +47,8 @@ Addition clip_addition(const Making& making, const LegTrajectory& legs, const Ga
     }
     addition.q.push_back(q);
     addition.dq_dphi.push_back(dq);
+    const Roll roll = hike(task, static_cast<double>(k) / static_cast<double>(kClipSamples));
+    addition.roll.push_back({gain * roll.angle_rad, gain * roll.slope_rad});
   }
   addition.velocity = gain * task.velocity * (task.period_s / period_s);
   addition.height_m = gain * task.height_m;
