@@ -144,7 +144,7 @@ GaitTask lateral_task(const Making& making) {
 GaitTask turn_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.18;
-  task.duty_factor = 0.61;
+  task.duty_factor = 0.61;  // as in lateral_task
   task.velocity = {0.0, 0.0, 0.8};
   task.symmetric = false;
   task.sway_m = 0.012;

@@ -1,0 +1,64 @@
+// What pmg_clips promises to whoever calls it from a shell.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace pmg::generator {
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string errors;
+};
+
+Outcome run(const std::string& arguments, const std::filesystem::path& scratch) {
+  const std::filesystem::path errors = scratch / "stderr.txt";
+  const int status =
+      std::system((PMG_BIN_DIR "/pmg_clips " + arguments + " > /dev/null 2> '" + errors.string() + "'").c_str());
+  std::stringstream text;
+  text << std::ifstream(errors).rdbuf();
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+}
+
+class PmgClips : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "pmg_clips_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    scratch_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(scratch_); }
+
+  std::filesystem::path scratch_;
+};
+
+TEST_F(PmgClips, RefusesAnUnknownRobotAndWritesNothing) {
+  const Outcome outcome = run("synth --robot nobody --out '" + (scratch_ / "clips").string() + "'", scratch_);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.errors.find("nobody"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "clips"));
+}
+
+TEST_F(PmgClips, RefusesAnOutputThatIsNoDirectoryBeforeItWorks) {
+  const std::filesystem::path file = scratch_ / "a_file";
+  std::ofstream(file) << "mine";
+  const Outcome outcome = run("synth --robot z1 --out '" + (file / "clips").string() + "'", scratch_);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.errors.find("a_file"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+  std::string content;
+  std::ifstream(file) >> content;
+  EXPECT_EQ(content, "mine");
+}
+
+TEST_F(PmgClips, RefusesAMissingOption) { EXPECT_EQ(run("synth --robot z1", scratch_).exit_code, 2); }
+
+}  // namespace
+}  // namespace pmg::generator
