@@ -30,7 +30,8 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
     }
   };
   const auto posture = [&](const std::string& name, Channel channel) {
-    model::write_static_clip(directory, name, channel, library.posture[channel - kPitch], robot, generator::clip_source(name));
+    model::write_static_clip(directory, name, channel, library.posture[channel - kPitch], robot,
+                             generator::clip_source(name));
   };
   dynamic("forward", library.positive[kVx]);
   dynamic("backward", library.negative[kVx]);
@@ -53,7 +54,8 @@ void require_writable(const std::filesystem::path& directory) {
     existing = existing.parent_path();
   }
   if (!std::filesystem::is_directory(existing, error) || access(existing.c_str(), W_OK | X_OK) != 0) {
-    throw model::ConfigError(directory.string() + ": can't be written to; expected a directory, or a place to make one in");
+    throw model::ConfigError(directory.string() +
+                             ": can't be written to; expected a directory, or a place to make one in");
   }
 }
 
@@ -78,20 +80,23 @@ struct ShowOptions {
 };
 
 void print_table(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
-  std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance mm  gap mm\n" << std::fixed;
+  std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance mm  gap mm\n"
+            << std::fixed;
   for (const generator::ClipReport& clip : clips) {
     for (const generator::GainReport& at : clip.gains) {
       const generator::GroundMeasure& g = at.ground;
-      std::cout << std::left << std::setw(10) << clip.name << std::right << std::setprecision(1) << std::setw(5) << at.gain
-                << std::setprecision(3) << std::setw(9) << g.mean_velocity.x() << std::setw(9) << g.mean_velocity.y()
-                << std::setw(11) << g.mean_velocity.z() << std::setw(7) << at.velocity_error.cwiseAbs().maxCoeff()
-                << std::setprecision(1) << std::setw(10) << 100.0 * g.slip_mean_m_s << " (" << 100.0 * g.slip_p95_m_s << ")"
-                << std::setw(9) << 1000.0 * g.other_foot_height_m << std::setw(14) << 1000.0 * g.clearance_m << std::setw(8)
+      std::cout << std::left << std::setw(10) << clip.name << std::right << std::setprecision(1) << std::setw(5)
+                << at.gain << std::setprecision(3) << std::setw(9) << g.mean_velocity.x() << std::setw(9)
+                << g.mean_velocity.y() << std::setw(11) << g.mean_velocity.z() << std::setw(7)
+                << at.velocity_error.cwiseAbs().maxCoeff() << std::setprecision(1) << std::setw(10)
+                << 100.0 * g.slip_mean_m_s << " (" << 100.0 * g.slip_p95_m_s << ")" << std::setw(9)
+                << 1000.0 * g.other_foot_height_m << std::setw(14) << 1000.0 * g.clearance_m << std::setw(8)
                 << 1000.0 * g.foot_gap_m << "\n";
     }
-    std::cout << "           T " << std::setprecision(2) << clip.period_s << " s, r " << clip.duty_factor << ", joint speed "
-              << std::setprecision(0) << 100.0 * clip.joint_speed_share << " % of limits, " << std::setprecision(3)
-              << clip.limit_margin_rad << " rad from limits: " << (clip.failure.empty() ? "ok" : clip.failure) << "\n";
+    std::cout << "           T " << std::setprecision(2) << clip.period_s << " s, r " << clip.duty_factor
+              << ", joint speed " << std::setprecision(0) << 100.0 * clip.joint_speed_share << " % of limits, "
+              << std::setprecision(3) << clip.limit_margin_rad
+              << " rad from limits: " << (clip.failure.empty() ? "ok" : clip.failure) << "\n";
   }
   for (const generator::NormReport& norm : norms) {
     std::cout << "forward " << norm.curve << ": correlation " << std::setprecision(3) << norm.correlation << ", RMS "
@@ -103,8 +108,10 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
   nlohmann::json out;
   for (const generator::ClipReport& clip : clips) {
     nlohmann::json& entry = out["clips"][clip.name];
-    entry = {{"period_s", clip.period_s},           {"duty_factor", clip.duty_factor},
-             {"joint_speed_share", clip.joint_speed_share}, {"limit_margin_rad", clip.limit_margin_rad},
+    entry = {{"period_s", clip.period_s},
+             {"duty_factor", clip.duty_factor},
+             {"joint_speed_share", clip.joint_speed_share},
+             {"limit_margin_rad", clip.limit_margin_rad},
              {"failure", clip.failure}};
     for (const generator::GainReport& at : clip.gains) {
       const generator::GroundMeasure& g = at.ground;
@@ -160,7 +167,8 @@ int main(int argc, char** argv) {
   synth_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
   synth_command->add_option("--out", out, "directory for the clips")->required();
   ShowOptions options;
-  CLI::App* show_command = app.add_subcommand("show", "Check a library's clips against the ground at gains from 0.1 to 1");
+  CLI::App* show_command =
+      app.add_subcommand("show", "Check a library's clips against the ground at gains from 0.1 to 1");
   show_command->add_option("--robot", options.robot, "robot's name, or its directory")->capture_default_str();
   show_command->add_option("--clips", options.clips, "directory of the clips; the robot's own if left out");
   show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with");

@@ -13,6 +13,10 @@
 namespace pmg::generator {
 namespace {
 
+/// Two stance feet may differ by a centimetre. When the lower one lifts off the base sinks onto the other, and the foot
+/// that has just left is that much below the ground: at small gains, for the first ticks of its swing.
+constexpr double kSwingBelowGround_m = 0.006;
+
 LegTrajectory legs_of(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
   LegTrajectory legs;
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
@@ -72,7 +76,7 @@ std::string judge(const ClipReport& clip) {
     if (at.velocity_error.cwiseAbs().maxCoeff() > 0.05) {
       return "mean velocity is off" + where;
     }
-    if (at.ground.lowest_swing_m < -0.002) {
+    if (at.ground.lowest_swing_m < -kSwingBelowGround_m) {
       return "a swinging foot goes through the ground" + where;
     }
     if (at.ground.foot_gap_m < 0.02) {
@@ -85,8 +89,8 @@ std::string judge(const ClipReport& clip) {
   return clip.joint_speed_share > 0.6 ? "a joint is too fast" : "";
 }
 
-ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs, const std::string& name,
-                       const DynamicClip& clip) {
+ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs,
+                       const std::string& name, const DynamicClip& clip) {
   ClipReport out;
   out.name = name;
   out.period_s = clip.period_s;
@@ -106,7 +110,8 @@ ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, 
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       const model::Joint& joint = robot.joints[j];
-      out.limit_margin_rad = std::min({out.limit_margin_rad, clip.q[k][i] - joint.lower_rad, joint.upper_rad - clip.q[k][i]});
+      out.limit_margin_rad =
+          std::min({out.limit_margin_rad, clip.q[k][i] - joint.lower_rad, joint.upper_rad - clip.q[k][i]});
       out.joint_speed_share =
           std::max(out.joint_speed_share, std::abs(clip.dq_dphi[k][i]) / clip.period_s / joint.velocity_limit_rad_s);
     }
@@ -154,7 +159,8 @@ NormReport compare(const std::string& curve, const std::vector<double>& ours, co
   const Eigen::Map<const Eigen::ArrayXd> b(published.data(), n);
   const Eigen::ArrayXd da = a - a.mean();
   const Eigen::ArrayXd db = b - b.mean();
-  return {curve, (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()), std::sqrt((a - b).square().mean())};
+  return {curve, (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()),
+          std::sqrt((a - b).square().mean())};
 }
 
 }  // namespace

@@ -39,15 +39,17 @@ struct SampleState {
   double ground_z = 0.0;
 };
 
-SampleState evaluate(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing, std::size_t sample,
-                     const BaseMotion& base) {
+SampleState evaluate(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
+                     std::size_t sample, const BaseMotion& base) {
   SampleState state;
   const double phase = static_cast<double>(sample) / static_cast<double>(trajectory.q.size());
   for (const Foot f : {kLeft, kRight}) {
     FootMotion<double>& foot = state.foot[f];
-    foot = foot_motion<double>(legs.geometry[f], trajectory.q[sample][f], trajectory.dq_dphi[sample][f] / timing.period_s);
+    foot =
+        foot_motion<double>(legs.geometry[f], trajectory.q[sample][f], trajectory.dq_dphi[sample][f] / timing.period_s);
     const Eigen::Vector3d p = base.R_HB * foot.p_BF;
-    foot = {base.R_HB * foot.R_BF, p, base.R_HB * foot.v_BF + base.omega_HB.cross(p), base.R_HB * foot.omega_BF + base.omega_HB};
+    foot = {base.R_HB * foot.R_BF, p, base.R_HB * foot.v_BF + base.omega_HB.cross(p),
+            base.R_HB * foot.omega_BF + base.omega_HB};
     state.contact[f] = sole_contact<double>(legs.geometry[f], foot, kSoftness_m);
     state.lowest[f] = lowest_height(legs.geometry[f], foot);
     state.stance_phase[f] = wrapped(phase - timing.contact_center[f]);
@@ -136,7 +138,8 @@ GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, co
     for (const Foot f : {kLeft, kRight}) {
       if (stance[kLeft] && stance[kRight]) {
         const SoleContact<double>& c = s.contact[f];
-        slips.push_back(std::hypot(c.v.x() + s.base.x() - s.base.z() * c.p.y(), c.v.y() + s.base.y() + s.base.z() * c.p.x()));
+        slips.push_back(
+            std::hypot(c.v.x() + s.base.x() - s.base.z() * c.p.y(), c.v.y() + s.base.y() + s.base.z() * c.p.x()));
         m.yaw_slip_max_rad_s = std::max(m.yaw_slip_max_rad_s, std::abs(s.foot[f].omega_BF.z() + s.base.z()));
         m.other_foot_height_m = std::max(m.other_foot_height_m, s.lowest[f] - s.ground_z);
       } else if (!stance[f]) {

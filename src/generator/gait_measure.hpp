@@ -32,20 +32,21 @@ struct BaseMotion {
 std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain);
 
 struct GroundMeasure {
-  Eigen::Vector3d mean_velocity = Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]
+  Eigen::Vector3d mean_velocity =
+      Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]
   Eigen::Vector3d velocity_range = Eigen::Vector3d::Zero();  ///< largest deviation from the mean
-  double slip_mean_m_s = 0.0, slip_p95_m_s = 0.0;           ///< each foot in double support after the best base motion
-  double yaw_slip_max_rad_s = 0.0;                          ///< the same for its turning
-  double other_foot_height_m = 0.0;    ///< largest height of the higher stance foot in double support
-  double clearance_m = 0.0;            ///< lowest sole point in the middle of the swing (0.3 .. 0.7 of it), smaller foot
-  double lowest_swing_m = 0.0;         ///< lowest sole point anywhere in swing, negative below ground
-  double foot_gap_m = 0.0;             ///< smallest width between the soles, along the base's y axis
+  double slip_mean_m_s = 0.0, slip_p95_m_s = 0.0;            ///< each foot in double support after the best base motion
+  double yaw_slip_max_rad_s = 0.0;                           ///< the same for its turning
+  double other_foot_height_m = 0.0;  ///< largest height of the higher stance foot in double support
+  double clearance_m = 0.0;          ///< lowest sole point in the middle of the swing (0.3 .. 0.7 of it), smaller foot
+  double lowest_swing_m = 0.0;       ///< lowest sole point anywhere in swing, negative below ground
+  double foot_gap_m = 0.0;           ///< smallest width between the soles, along the base's y axis
   double height_mean_m = 0.0, height_min_m = 0.0, height_max_m = 0.0;  ///< base, deviation from stand
 };
 
-/// base: one entry a sample, or none for a level base. Contact edges as in the generator (0.04 of a cycle). In swing the
-/// ground is where the ground-aware optimisation has it: while a foot's contact weight fades, it still holds its share of
-/// the height.
+/// base: one entry a sample, or none for a level base. Contact edges as in the generator (0.04 of a cycle). In swing
+/// the ground is where the ground-aware optimisation has it: while a foot's contact weight fades, it still holds its
+/// share of the height.
 GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
                       const std::vector<BaseMotion>& base = {});
 

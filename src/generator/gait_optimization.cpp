@@ -14,7 +14,7 @@
 namespace pmg::generator {
 namespace {
 
-constexpr std::size_t kKnots = 24;       // even, so that half a cycle is a whole number of knots
+constexpr std::size_t kKnots = 24;        // even, so that half a cycle is a whole number of knots
 constexpr double kEdgeBeyond = 0.005;     // cycles: clips in a mixture differ by as much in their duty factors
 constexpr double kClearanceGrowth = 1.6;  // power of the gain: at half of it a third of the clearance
 constexpr int kRounds = 4;                // solves; between them the velocity targets move by what the means missed
@@ -26,13 +26,11 @@ struct KnotTable {
   bool symmetric;
 
   explicit KnotTable(bool is_symmetric) : left(kKnots), right(is_symmetric ? 0 : kKnots), symmetric(is_symmetric) {}
-  double* knot(Foot foot, std::size_t i) {
-    return (foot == kRight && !symmetric) ? right[i].data() : left[i].data();
-  }
+  double* knot(Foot foot, std::size_t i) { return (foot == kRight && !symmetric) ? right[i].data() : left[i].data(); }
 };
 
-/// The other residuals pull the mean velocity away from its target; this moves the target until the mean is right, by the
-/// secant of the last two solves.
+/// The other residuals pull the mean velocity away from its target; this moves the target until the mean is right, by
+/// the secant of the last two solves.
 struct VelocityTarget {
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
 
@@ -50,7 +48,9 @@ struct VelocityTarget {
   Eigen::Vector3d step_ = Eigen::Vector3d::Zero(), missed_before_ = Eigen::Vector3d::Zero();
 };
 
-double own_phase(double phase, Foot foot, bool symmetric) { return (foot == kRight && symmetric) ? phase + 0.5 : phase; }
+double own_phase(double phase, Foot foot, bool symmetric) {
+  return (foot == kRight && symmetric) ? phase + 0.5 : phase;
+}
 
 void start_from_reference(const RobotLegs& legs, const GaitTask& task, KnotTable& table) {
   for (const Foot foot : {kLeft, kRight}) {
@@ -73,7 +73,8 @@ std::pair<double, double> beyond(double excess, double width) {
   return {width * (z > 30.0 ? z : std::log1p(std::exp(z))), 1.0 / (1.0 + std::exp(-z))};
 }
 
-/// Correlation of one joint's curve with the reference, and RMS distance from it: two residuals of all the left leg's knots.
+/// Correlation of one joint's curve with the reference, and RMS distance from it: two residuals of all the left leg's
+/// knots.
 class ShapeCost : public ceres::CostFunction {
  public:
   ShapeCost(const RobotLegs& legs, const GaitTask& task, const ShapeGoal& goal)
@@ -147,7 +148,8 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
       using Cost = ceres::AutoDiffCostFunction<GroundResiduals, kGroundResiduals, kLegJoints, kLegJoints, kLegJoints,
                                                kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
       problem.AddResidualBlock(
-          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)), nullptr, blocks);
+          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)),
+          nullptr, blocks);
     }
   }
   for (const ShapeGoal& goal : task.shape) {
@@ -168,15 +170,17 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
                                                kLegJoints, kLegJoints>;
       problem.AddResidualBlock(new Cost(new PostureResiduals(legs, task, foot, sample, kKnots)), nullptr,
                                table.knot(foot, basis.knot[0]), table.knot(foot, basis.knot[1]),
-                               table.knot(foot, basis.knot[2]), table.knot(foot, basis.knot[3]), table.bias[foot].data());
+                               table.knot(foot, basis.knot[2]), table.knot(foot, basis.knot[3]),
+                               table.bias[foot].data());
     }
     using BiasCost = ceres::AutoDiffCostFunction<BiasResiduals, kLegJoints, kLegJoints>;
     problem.AddResidualBlock(new BiasCost(new BiasResiduals{task.weights.bias}), nullptr, table.bias[foot].data());
     for (std::size_t i = 0; i < kKnots; ++i) {
       using Cost = ceres::AutoDiffCostFunction<SmoothResiduals, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
       const double per_knot = task.weights.smooth * static_cast<double>(kKnots * kKnots);
-      problem.AddResidualBlock(new Cost(new SmoothResiduals{per_knot}), nullptr, table.knot(foot, (i + kKnots - 1) % kKnots),
-                               table.knot(foot, i), table.knot(foot, (i + 1) % kKnots));
+      problem.AddResidualBlock(new Cost(new SmoothResiduals{per_knot}), nullptr,
+                               table.knot(foot, (i + kKnots - 1) % kKnots), table.knot(foot, i),
+                               table.knot(foot, (i + 1) % kKnots));
     }
   }
 }
@@ -197,8 +201,9 @@ LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& tabl
       const SplineBasis basis = spline_basis(own_phase(phase, foot, symmetric), kKnots);
       for (std::size_t k = 0; k < 4; ++k) {
         const Eigen::Map<const LegVector<double>> knot(table.knot(foot, basis.knot[k]));
-        const LegVector<double> signed_knot =
-            foot == kRight && symmetric ? LegVector<double>(knot.cwiseProduct(legs.mirror_sign)) : LegVector<double>(knot);
+        const LegVector<double> signed_knot = foot == kRight && symmetric
+                                                  ? LegVector<double>(knot.cwiseProduct(legs.mirror_sign))
+                                                  : LegVector<double>(knot);
         q[foot] += basis.value[k] * signed_knot;
         dq[foot] += basis.slope[k] * signed_knot;
       }
@@ -263,7 +268,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
   }
   const Roll own = hike(task, phase);
   const Roll added = scenario.addition.roll.empty() ? Roll{} : scenario.addition.roll[sample];
-  R_HB_ = Eigen::AngleAxisd(scenario.gain * own.angle_rad + added.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  R_HB_ =
+      Eigen::AngleAxisd(scenario.gain * own.angle_rad + added.angle_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
   omega_HB_ = (scenario.gain * own.slope_rad + added.slope_rad) / task.period_s * Eigen::Vector3d::UnitX();
   near_both_ = std::sqrt(wide[kLeft] * wide[kRight]);
   scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
@@ -274,7 +280,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
   velocity_.y() -= scenario.gain * task.sway_m * 2.0 * std::numbers::pi / task.period_s * std::sin(angle);
 }
 
-PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample, std::size_t knots)
+PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample,
+                                   std::size_t knots)
     : basis_(spline_basis(static_cast<double>(sample) / static_cast<double>(kClipSamples), knots)),
       stand_(legs.stand[foot]),
       reference_(task.reference[sample][foot]),
@@ -305,9 +312,9 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
     for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
       const Scenario& scenario = task.scenarios[s];
       if (scenario.addition.q.empty()) {  // under a posture or in a mixture the mean is wished for, not promised
-        const Eigen::Vector3d mean =
-            measure(legs, blend(legs, solution.legs, scenario), timing(task.period_s, task.duty_factor),
-                    hiking_base(task, scenario.gain)).mean_velocity;
+        const Eigen::Vector3d mean = measure(legs, blend(legs, solution.legs, scenario),
+                                             timing(task.period_s, task.duty_factor), hiking_base(task, scenario.gain))
+                                         .mean_velocity;
         targets[s].correct(scenario.gain * task.velocity - mean);
       }
     }

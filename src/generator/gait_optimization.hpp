@@ -1,5 +1,5 @@
-// Makes the legs' part of a dynamic clip by nonlinear least squares, so that it stays consistent with the ground at every
-// gain at which the generator blends it with standing.
+// Makes the legs' part of a dynamic clip by nonlinear least squares, so that it stays consistent with the ground at
+// every gain at which the generator blends it with standing.
 #pragma once
 
 #include "generator/gait_task.hpp"
@@ -10,9 +10,9 @@ namespace pmg::generator {
 
 struct RobotLegs {
   PerFoot<LegGeometry> geometry;
-  LegPose stand, lower, upper;                   ///< [rad]
-  LegVector<double> mirror_sign;                 ///< q_right = mirror_sign * q_left of the mirrored posture
-  double standing_height_m = 0.0;                ///< base above the soles
+  LegPose stand, lower, upper;     ///< [rad]
+  LegVector<double> mirror_sign;   ///< q_right = mirror_sign * q_left of the mirrored posture
+  double standing_height_m = 0.0;  ///< base above the soles
 };
 
 /// Throws model::ConfigError when the legs aren't mirror images.
@@ -24,8 +24,9 @@ struct GaitSolution {
   int iterations = 0;
 };
 
-/// The generator blends in joint space: q = q_stand + g (q_clip - q_stand) + addition. Unknown are the knots of a periodic
-/// cubic spline of each leg joint's deviation from stand; see gait_residuals.hpp for what is asked of it. Deterministic.
+/// The generator blends in joint space: q = q_stand + g (q_clip - q_stand) + addition. Unknown are the knots of a
+/// periodic cubic spline of each leg joint's deviation from stand; see gait_residuals.hpp for what is asked of it.
+/// Deterministic.
 GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task);
 
 }  // namespace pmg::generator

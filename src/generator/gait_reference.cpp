@@ -85,7 +85,7 @@ std::vector<LegPose> stepping_reference(const RobotLegs& legs, const GaitTask& t
         const PlanarPose before = place(r - 1e-4);
         const PlanarPose after = place(1e-4);
         const double scale = (1.0 - r) / 1e-4;
-        const auto swing = [&](double PlanarPose::* c) {
+        const auto swing = [&](double PlanarPose::*c) {
           return hermite(from.*c, to.*c, (from.*c - before.*c) * scale, (after.*c - to.*c) * scale, s);
         };
         pose = {swing(&PlanarPose::x), swing(&PlanarPose::y), swing(&PlanarPose::yaw)};
@@ -117,8 +117,7 @@ LegVector<double> reach(const LegGeometry& leg, const Eigen::Matrix3d& R_BF, con
     if (error.head<3>().norm() < 1e-8 && error.tail<3>().norm() < 1e-8) {
       return q;
     }
-    const Eigen::Matrix<double, 6, 6> damped =
-        J.transpose() * J + 1e-8 * Eigen::Matrix<double, 6, 6>::Identity();
+    const Eigen::Matrix<double, 6, 6> damped = J.transpose() * J + 1e-8 * Eigen::Matrix<double, 6, 6>::Identity();
     LegVector<double> step = damped.ldlt().solve(J.transpose() * error);
     const double largest = step.cwiseAbs().maxCoeff();
     q += largest > 0.2 ? LegVector<double>(step * (0.2 / largest)) : step;

@@ -1,4 +1,5 @@
-// Joint curves that a clip's optimisation starts from and stays near: published ones where there are any, stepping otherwise.
+// Joint curves that a clip's optimisation starts from and stays near: published ones where there are any, stepping
+// otherwise.
 #pragma once
 
 #include <vector>
@@ -11,9 +12,9 @@ namespace pmg::generator {
 /// Hip (without the pelvis' tilt), knee and ankle as published for adults; the other joints as they stand.
 std::vector<LegPose> published_reference(const RobotLegs& legs);
 
-/// Walking backward is nearly walking forward with time reversed (A. Thorstensson, Acta Physiol. Scand. 128, 1986; D. Winter,
-/// N. Pluck, J. Yang, J. Mot. Behav. 21, 1989): the forward clip reversed, scaled about the standing posture, and shifted
-/// so that its left initial contact is at phase 0.
+/// Walking backward is nearly walking forward with time reversed (A. Thorstensson, Acta Physiol. Scand. 128, 1986; D.
+/// Winter, N. Pluck, J. Yang, J. Mot. Behav. 21, 1989): the forward clip reversed, scaled about the standing posture,
+/// and shifted so that its left initial contact is at phase 0.
 std::vector<LegPose> reversed_reference(const RobotLegs& legs, const LegTrajectory& forward, double forward_duty_factor,
                                         double scale);
 
@@ -26,8 +27,8 @@ struct Stepping {
 };
 std::vector<LegPose> stepping_reference(const RobotLegs& legs, const GaitTask& task, const Stepping& stepping);
 
-/// Joint angles that put a foot there; Gauss-Newton from the start, damped. Throws std::runtime_error when it can't be reached to
-/// 0.1 mm and 1e-4 rad.
+/// Joint angles that put a foot there; Gauss-Newton from the start, damped. Throws std::runtime_error when it can't be
+/// reached to 0.1 mm and 1e-4 rad.
 LegVector<double> reach(const LegGeometry& leg, const Eigen::Matrix3d& R_BF, const Eigen::Vector3d& p_BF,
                         const LegVector<double>& start);
 

@@ -17,12 +17,12 @@ inline constexpr int kGroundResiduals = 22;
 /// deviations from stand. The base is level; its velocity is what the stance feet say, weighted by their contact.
 class GroundResiduals {
  public:
-  GroundResiduals(const RobotLegs& legs, const GaitTask& task, const Scenario& scenario, double phase, std::size_t sample,
-                  std::size_t knots, const Eigen::Vector3d& velocity_correction);
+  GroundResiduals(const RobotLegs& legs, const GaitTask& task, const Scenario& scenario, double phase,
+                  std::size_t sample, std::size_t knots, const Eigen::Vector3d& velocity_correction);
 
   template <typename T>
-  bool operator()(const T* l0, const T* l1, const T* l2, const T* l3, const T* r0, const T* r1, const T* r2, const T* r3,
-                  T* residual) const {
+  bool operator()(const T* l0, const T* l1, const T* l2, const T* l3, const T* r0, const T* r1, const T* r2,
+                  const T* r3, T* residual) const {
     const PerFoot<std::array<const T*, 4>> knots = {std::array<const T*, 4>{l0, l1, l2, l3},
                                                     std::array<const T*, 4>{r0, r1, r2, r3}};
     PerFoot<FootMotion<T>> foot;
@@ -158,8 +158,8 @@ class GroundResiduals {
   Eigen::Vector3d velocity_;
 };
 
-/// Keep the reference's shape and stay inside the joint limits: one sample of one leg, linear in four knots and the bias of
-/// the leg's mean posture.
+/// Keep the reference's shape and stay inside the joint limits: one sample of one leg, linear in four knots and the
+/// bias of the leg's mean posture.
 class PostureResiduals {
  public:
   PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample, std::size_t knots);

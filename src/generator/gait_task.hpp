@@ -24,13 +24,13 @@ struct Roll {
   double angle_rad = 0.0, slope_rad = 0.0;
 };
 
-/// Joint angles that the generator adds to this clip's, with the velocity that they make: a posture offset (constant) or
-/// another clip in a mixture. Empty trajectories mean none.
+/// Joint angles that the generator adds to this clip's, with the velocity that they make: a posture offset (constant)
+/// or another clip in a mixture. Empty trajectories mean none.
 struct Addition {
-  std::vector<LegPose> q, dq_dphi;                               ///< one entry (constant) or one a sample; deviation from stand
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< vx, vy [m/s], omega [rad/s]
-  double height_m = 0.0;                                         ///< what it does to the base height
-  std::vector<Roll> roll;                                        ///< what it does to the base's, one a sample
+  std::vector<LegPose> q, dq_dphi;                     ///< one entry (constant) or one a sample; deviation from stand
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s]
+  double height_m = 0.0;                               ///< what it does to the base height
+  std::vector<Roll> roll;                              ///< what it does to the base's, one a sample
 };
 
 /// How closely a joint's curve has to follow the reference's.
@@ -48,39 +48,39 @@ struct Scenario {
 };
 
 struct GaitWeights {
-  double slip = 20.0;          ///< per m/s, feet against each other in double support
-  double slip_yaw = 5.0;       ///< per rad/s
-  double step_height = 600.0;  ///< per m beyond step_height_free_m, feet against each other in double support
+  double slip = 20.0;                 ///< per m/s, feet against each other in double support
+  double slip_yaw = 5.0;              ///< per rad/s
+  double step_height = 600.0;         ///< per m beyond step_height_free_m, feet against each other in double support
   double step_height_free_m = 0.006;  ///< what the lower foot's ground contact leaves to the other anyway
   double step_height_inside = 30.0;   ///< per m, all of it
-  double velocity = 3.0;       ///< per m/s, base against the steady velocity
-  double velocity_yaw = 3.0;   ///< per rad/s
-  double velocity_up = 0.5;    ///< per m/s
-  double height = 3.0;         ///< per m, base against height_m
-  double clearance = 150.0;    ///< per m short of it
-  double above_ground = 400.0;  ///< per m that the swinging sole lies below the ground
-  double foot_flat = 10.0;     ///< per rad
-  double foot_gap = 60.0;      ///< per m short of it
+  double velocity = 3.0;              ///< per m/s, base against the steady velocity
+  double velocity_yaw = 3.0;          ///< per rad/s
+  double velocity_up = 0.5;           ///< per m/s
+  double height = 3.0;                ///< per m, base against height_m
+  double clearance = 150.0;           ///< per m short of it
+  double above_ground = 400.0;        ///< per m that the swinging sole lies below the ground
+  double foot_flat = 10.0;            ///< per rad
+  double foot_gap = 60.0;             ///< per m short of it
   LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad, shape of the joint curves
   LegVector<double> bias = LegVector<double>::Constant(1.0);       ///< per rad, of their means
-  double correlation = 20.0;   ///< per 1 short of a ShapeGoal
-  double rms = 6.0;            ///< per rad beyond a ShapeGoal
-  double limit = 50.0;         ///< per rad beyond
-  double smooth = 2e-4;        ///< per rad/cycle^2
+  double correlation = 20.0;                                       ///< per 1 short of a ShapeGoal
+  double rms = 6.0;                                                ///< per rad beyond a ShapeGoal
+  double limit = 50.0;                                             ///< per rad beyond
+  double smooth = 2e-4;                                            ///< per rad/cycle^2
 };
 
 struct GaitTask {
   double period_s = 1.0;
   double duty_factor = 0.6;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s] at full gain
-  bool symmetric = true;       ///< the right leg is the left one mirrored, half a cycle later
-  double sway_m = 0.0;         ///< the base moves this far towards the stance foot at full gain
-  double hike_rad = 0.0;       ///< the base rolls this far at full gain, up on the swinging side
-  double height_m = 0.0;       ///< mean base height at full gain, deviation from stand
-  double clearance_m = 0.04;   ///< of the lowest sole point in the middle of the swing (0.3 .. 0.7 of it) at full gain
-  double flat_from = 0.0;      ///< part of the stance in which the sole lies flat, fractions of the stance
+  bool symmetric = true;                               ///< the right leg is the left one mirrored, half a cycle later
+  double sway_m = 0.0;                                 ///< the base moves this far towards the stance foot at full gain
+  double hike_rad = 0.0;      ///< the base rolls this far at full gain, up on the swinging side
+  double height_m = 0.0;      ///< mean base height at full gain, deviation from stand
+  double clearance_m = 0.04;  ///< of the lowest sole point in the middle of the swing (0.3 .. 0.7 of it) at full gain
+  double flat_from = 0.0;     ///< part of the stance in which the sole lies flat, fractions of the stance
   double flat_to = 1.0;
-  double foot_gap_m = 0.03;    ///< between the soles, sideways
+  double foot_gap_m = 0.03;        ///< between the soles, sideways
   std::vector<LegPose> reference;  ///< kClipSamples joint angles to stay near [rad]
   std::vector<ShapeGoal> shape;    ///< of the left leg
   std::vector<Scenario> scenarios;

@@ -27,9 +27,9 @@ JointRoles find_joint_roles(const model::RobotModel& robot) {
       roles.leg[foot][role] = leg_joint(robot, foot, kLegRoleNames[role]);
     }
     if (robot.leg_joints[foot].size() != kLegJoints) {
-      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": feet: the leg to " + robot.feet[foot].link +
-                               " has " + std::to_string(robot.leg_joints[foot].size()) + " joints; expected " +
-                               std::to_string(kLegJoints));
+      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": feet: the leg to " +
+                               robot.feet[foot].link + " has " + std::to_string(robot.leg_joints[foot].size()) +
+                               " joints; expected " + std::to_string(kLegJoints));
     }
     const std::string side = kSide[foot];
     roles.shoulder_pitch[foot] = robot.joint_index.find(side + "shoulder_pitch");

@@ -1,4 +1,5 @@
-// Which joint of a robot plays which part of the human body, found by name: "left_knee", "right_hip_roll", "waist_yaw", ...
+// Which joint of a robot plays which part of the human body, found by name: "left_knee", "right_hip_roll", "waist_yaw",
+// ...
 #pragma once
 
 #include <array>

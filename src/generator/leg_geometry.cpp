@@ -40,8 +40,9 @@ LegGeometry leg_geometry(const model::RobotModel& robot, const JointRoles& roles
     }
     const auto role = std::find(roles.leg[foot].begin(), roles.leg[foot].end(), robot.joint_index.at(joint->name));
     if (role == roles.leg[foot].end() || found == leg.segments.size()) {
-      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": " + joint->name +
-                               ": has no part in a leg; expected hip_pitch, hip_roll, hip_yaw, knee, ankle_pitch or ankle_roll");
+      throw model::ConfigError(
+          (robot.directory / "robot.yaml").string() + ": " + joint->name +
+          ": has no part in a leg; expected hip_pitch, hip_roll, hip_yaw, knee, ankle_pitch or ankle_roll");
     }
     LegGeometry::Segment& segment = leg.segments[found++];
     segment.R = since_last_joint.linear();

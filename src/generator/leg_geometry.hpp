@@ -1,4 +1,5 @@
-// A leg's kinematics for any scalar: the optimiser differentiates it automatically (KDL, used elsewhere, is double only).
+// A leg's kinematics for any scalar: the optimiser differentiates it automatically (KDL, used elsewhere, is double
+// only).
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +29,8 @@ struct LegGeometry {
     std::size_t role = 0;                             ///< LegRole of this joint
   };
   std::array<Segment, kLegJoints> segments;
-  std::array<Eigen::Vector3d, 4> sole;  ///< corners [m] in the last joint's frame: front-left, front-right, rear-left, rear-right
+  std::array<Eigen::Vector3d, 4>
+      sole;  ///< corners [m] in the last joint's frame: front-left, front-right, rear-left, rear-right
 };
 
 LegGeometry leg_geometry(const model::RobotModel& robot, const JointRoles& roles, Foot foot);

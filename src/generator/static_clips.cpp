@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kAngleStep_rad = 0.02;
 constexpr double kHeightStep_m = 0.005;
-constexpr double kStraightKnee_rad = 0.12;     // a squat's highest row bends the knees at least this much
+constexpr double kStraightKnee_rad = 0.12;  // a squat's highest row bends the knees at least this much
 
 constexpr double kLeanCompensation = 0.4;      // part of the lean's sideways centre of mass that the pelvis takes back
 constexpr double kSquatArms_rad_per_m = 1.75;  // arms forward as counterweight
 
-/// Both feet stay where they stand while the base moves to `base` (deviation from its standing place, x forward, y left, z up)
-/// with attitude R_WB. Fills the legs of q.
-void place_base(const JointRoles& roles, const RobotLegs& legs, const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& base,
-                JointVector& q) {
+/// Both feet stay where they stand while the base moves to `base` (deviation from its standing place, x forward, y
+/// left, z up) with attitude R_WB. Fills the legs of q.
+void place_base(const JointRoles& roles, const RobotLegs& legs, const Eigen::Matrix3d& R_WB,
+                const Eigen::Vector3d& base, JointVector& q) {
   for (const Foot foot : {kLeft, kRight}) {
     LegVector<double> start;
     for (std::size_t role = 0; role < kLegJoints; ++role) {
@@ -36,7 +36,8 @@ void place_base(const JointRoles& roles, const RobotLegs& legs, const Eigen::Mat
   }
 }
 
-/// Moves the base along `direction` until the centre of mass is `target_m` along it (from the standing base); secant method.
+/// Moves the base along `direction` until the centre of mass is `target_m` along it (from the standing base); secant
+/// method.
 JointVector balance(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs,
                     const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& base, const Eigen::Vector3d& direction,
                     double target_m, const JointVector& start) {
@@ -94,31 +95,35 @@ Eigen::Matrix3d pitched(double angle) { return Eigen::AngleAxisd(angle, Eigen::V
 StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs) {
   const JointVector q_stand = robot.q_stand();
   const double pelvis_share = roles.waist_pitch ? kPelvisShareOfPitch : 1.0;
-  return rows(robot.command_limits.lower[kPitch], robot.command_limits.upper[kPitch],
-              [](double) { return kAngleStep_rad; }, q_stand, [&](double pitch, const JointVector& near) {
-                JointVector q = near;
-                if (roles.waist_pitch) {
-                  q[*roles.waist_pitch] = q_stand[*roles.waist_pitch] + (1.0 - pelvis_share) * pitch;
-                }
-                // About the hips' own axis, so the legs stay as they are: moving the hips back would turn both legs alike,
-                // and in a stride lift one foot off the ground. The centre of mass stays well over the feet.
-                place_base(roles, legs, pitched(pelvis_share * pitch), Eigen::Vector3d::Zero(), q);
-                return q;
-              });
+  return rows(
+      robot.command_limits.lower[kPitch], robot.command_limits.upper[kPitch], [](double) { return kAngleStep_rad; },
+      q_stand,
+      [&](double pitch, const JointVector& near) {
+        JointVector q = near;
+        if (roles.waist_pitch) {
+          q[*roles.waist_pitch] = q_stand[*roles.waist_pitch] + (1.0 - pelvis_share) * pitch;
+        }
+        // About the hips' own axis, so the legs stay as they are: moving the hips back would turn both legs alike,
+        // and in a stride lift one foot off the ground. The centre of mass stays well over the feet.
+        place_base(roles, legs, pitched(pelvis_share * pitch), Eigen::Vector3d::Zero(), q);
+        return q;
+      });
 }
 
 StaticClip make_lean(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs) {
   const JointVector q_stand = robot.q_stand();
-  return rows(robot.command_limits.lower[kRoll], robot.command_limits.upper[kRoll], [](double) { return kAngleStep_rad; },
-              q_stand, [&](double roll, const JointVector& near) {
-                JointVector q = near;
-                if (roles.waist_roll) {
-                  q[*roles.waist_roll] = q_stand[*roles.waist_roll] + roll;
-                }
-                const Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
-                const double com_y = (1.0 - kLeanCompensation) * center_of_mass(robot, q).y();
-                return balance(robot, roles, legs, level, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY(), com_y, q);
-              });
+  return rows(
+      robot.command_limits.lower[kRoll], robot.command_limits.upper[kRoll], [](double) { return kAngleStep_rad; },
+      q_stand,
+      [&](double roll, const JointVector& near) {
+        JointVector q = near;
+        if (roles.waist_roll) {
+          q[*roles.waist_roll] = q_stand[*roles.waist_roll] + roll;
+        }
+        const Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
+        const double com_y = (1.0 - kLeanCompensation) * center_of_mass(robot, q).y();
+        return balance(robot, roles, legs, level, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY(), com_y, q);
+      });
 }
 
 StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs) {
@@ -151,8 +156,9 @@ StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, c
     highest += kFineStep_m;
   }
   // Knee angle over height is steep near the straight leg: finer rows there.
-  return rows(robot.command_limits.lower[kHeight], highest,
-              [](double height) { return height > -0.01 ? kFineStep_m : kHeightStep_m; }, q_stand, posture);
+  return rows(
+      robot.command_limits.lower[kHeight], highest,
+      [](double height) { return height > -0.01 ? kFineStep_m : kHeightStep_m; }, q_stand, posture);
 }
 
 LegPose leg_offset(const StaticClip& clip, const JointRoles& roles, const RobotLegs& legs, double command) {

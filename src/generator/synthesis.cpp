@@ -25,7 +25,8 @@ Addition posture_addition(const Making& making, Channel channel, double command)
   const StaticClip& clip = making.posture[channel - kPitch];
   addition.q = {leg_offset(clip, making.roles, making.legs, command)};
   if (channel == kPitch) {
-    // The optimisation sees a level base; the pelvis' part of the pitch is undone by the hips, the chain's first joints.
+    // The optimisation sees a level base; the pelvis' part of the pitch is undone by the hips, the chain's first
+    // joints.
     const double pelvis_pitch = kPelvisShareOfPitch * command;
     for (const Foot foot : {kLeft, kRight}) {
       addition.q[0][foot][kHipPitch] += pelvis_pitch;
@@ -36,7 +37,8 @@ Addition posture_addition(const Making& making, Channel channel, double command)
 }
 
 /// A finished clip as a part of a mixture.
-Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain, double period_s) {
+Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain,
+                       double period_s) {
   Addition addition;
   for (std::size_t k = 0; k < kClipSamples; ++k) {
     LegPose q;
@@ -77,25 +79,26 @@ GaitTask forward_task(const Making& making) {
   task.flat_from = 0.25;
   task.flat_to = 0.55;
   // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid one that at half
-  // amplitude shall neither leave the other foot in the air nor scrape the ground can't: joints follow the published curves
-  // as far as that allows, and the pelvis lifts the swinging side.
+  // amplitude shall neither leave the other foot in the air nor scrape the ground can't: joints follow the published
+  // curves as far as that allows, and the pelvis lifts the swinging side.
   task.hike_rad = 0.11;
   task.reference = published_reference(making.legs);
-  task.shape = {{kHipPitch, 0.956, 5.75 * kDegree}, {kKnee, 0.953, 5.75 * kDegree}, {kAnklePitch, 0.953, 5.75 * kDegree}};
+  task.shape = {
+      {kHipPitch, 0.956, 5.75 * kDegree}, {kKnee, 0.953, 5.75 * kDegree}, {kAnklePitch, 0.953, 5.75 * kDegree}};
   task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
   task.weights.bias << 1.0, 6.0, 6.0, 1.0, 1.0, 6.0;
-  task.weights.slip = 11.0;
+  task.weights.slip = 16.0;
   task.weights.step_height = 900.0;
-  task.weights.step_height_free_m = 0.008;
-  task.weights.velocity = 6.0;
+  task.weights.step_height_free_m = 0.007;
+  task.weights.velocity = 12.0;
   task.weights.foot_flat = 3.0;
   task.weights.clearance = 200.0;
-  task.weights.above_ground = 3000.0;
+  task.weights.above_ground = 1000.0;
   task.weights.correlation = 300.0;
   task.weights.rms = 200.0;
   task.weights.velocity_yaw = 4.0;
   task.weights.limit = 300.0;
-  task.weights.smooth = 1.5e-4;
+  task.weights.smooth = 4e-3;
   task.scenarios = scenarios(making, 0.36);
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
   return task;
@@ -119,7 +122,7 @@ GaitTask backward_task(const Making& making, const LegTrajectory& forward, const
   return task;
 }
 
-// Timing: mean of the four sidesteps of CMU subject 69 (mocap.cs.cmu.edu): 1.00 .. 1.03 s a cycle, 53 .. 65 % stance.
+// Timing: the four sidesteps of CMU subject 69 (mocap.cs.cmu.edu): 1.00 .. 1.03 s a cycle, 53 .. 65 % stance.
 GaitTask lateral_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.02;
@@ -139,8 +142,8 @@ GaitTask lateral_task(const Making& making) {
   return task;
 }
 
-// Timing: steady turning in circle walks of CMU subject 69 (1.17 .. 1.20 s, 58 .. 60 % stance). The same subject's turns in place
-// are quarter turns that stop in between, 84 % stance: such windows can't be blended with walking.
+// Timing: steady turning in circle walks of CMU subject 69 (1.17 .. 1.20 s, 58 .. 60 % stance). The same subject's
+// turns in place are quarter turns that stop in between, 84 % stance: such windows can't be blended with walking.
 GaitTask turn_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.18;
@@ -218,14 +221,16 @@ ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(
   progress("forward");
   const GaitTask forward = forward_task(making);
   const LegTrajectory forward_legs = optimize_gait(making.legs, forward).legs;
-  library.positive[kVx] = assemble(making, forward, forward_legs,
-                                   {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+  library.positive[kVx] =
+      assemble(making, forward, forward_legs,
+               {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
 
   progress("backward");
   const GaitTask backward = backward_task(making, forward_legs, forward);
   const LegTrajectory backward_legs = optimize_gait(making.legs, backward).legs;
-  library.negative[kVx] = assemble(making, backward, backward_legs,
-                                   {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+  library.negative[kVx] =
+      assemble(making, backward, backward_legs,
+               {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
 
   progress("lateral");
   GaitTask lateral = lateral_task(making);
@@ -237,8 +242,8 @@ ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(
   GaitTask turn = turn_task(making);
   turn.scenarios.push_back({0.45, 4.0, clip_addition(making, forward_legs, forward, 0.55, turn.period_s)});
   const LegTrajectory turn_legs = optimize_gait(making.legs, turn).legs;
-  library.positive[kOmega] = assemble(making, turn, turn_legs,
-                                      {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  library.positive[kOmega] =
+      assemble(making, turn, turn_legs, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
   return library;
 }
 

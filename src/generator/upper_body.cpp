@@ -26,8 +26,7 @@ void swing_arm(const JointRoles& roles, const UpperBody& body, Foot side, double
 
 }  // namespace
 
-void move_upper_body(const JointRoles& roles, const UpperBody& body, double phase,
-                     JointVector& q) {
+void move_upper_body(const JointRoles& roles, const UpperBody& body, double phase, JointVector& q) {
   for (const Foot side : {kLeft, kRight}) {
     q[roles.leg[side][kHipPitch]] -= body.pelvis_tilt_rad;
     swing_arm(roles, body, side, side == kLeft ? phase : phase + 0.5, q);
@@ -36,10 +35,10 @@ void move_upper_body(const JointRoles& roles, const UpperBody& body, double phas
   // R_BT = Ry(-tilt) Rx(-roll) Rz(yaw) = Rz(a) Rx(b) Ry(c).
   const double yaw = body.torso_yaw_rad * std::cos(2.0 * std::numbers::pi * phase);
   const double roll = body.pelvis_roll_rad ? body.pelvis_roll_rad(phase) : 0.0;
-  const Eigen::Matrix3d R_BT = (Eigen::AngleAxisd(-body.pelvis_tilt_rad, Eigen::Vector3d::UnitY()) *
-                                Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX()) *
-                                Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))
-                                   .toRotationMatrix();
+  const Eigen::Matrix3d R_BT =
+      (Eigen::AngleAxisd(-body.pelvis_tilt_rad, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
   if (roles.waist_yaw && roles.waist_roll && roles.waist_pitch) {
     q[*roles.waist_yaw] += std::atan2(-R_BT(0, 1), R_BT(1, 1));
     q[*roles.waist_roll] += std::asin(R_BT(2, 1));

@@ -58,7 +58,8 @@ TEST(Reach, PutsTheFootWhereItIsAsked) {
   const FootMotion<double> standing = foot_motion<double>(leg, stand, LegVector<double>::Zero());
   const Eigen::Vector3d target = standing.p_BF + Eigen::Vector3d(0.1, 0.05, 0.08);
   const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const FootMotion<double> reached = foot_motion<double>(leg, reach(leg, turned, target, stand), LegVector<double>::Zero());
+  const FootMotion<double> reached =
+      foot_motion<double>(leg, reach(leg, turned, target, stand), LegVector<double>::Zero());
   EXPECT_LT((reached.p_BF - target).norm(), 1e-7);  // ten times what reach() stops at
   EXPECT_LT((reached.R_BF - turned).norm(), 1e-7);
 }

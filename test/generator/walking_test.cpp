@@ -1,5 +1,5 @@
-// The clips of Z1 as the robot walks by them: the generator's references on the ground that the ground-aware optimisation
-// finds, in steady state.
+// The clips of Z1 as the robot walks by them: the generator's references on the ground that the ground-aware
+// optimisation finds, in steady state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace pmg::generator {
 namespace {
 
 constexpr double kTick_s = 0.01;
-constexpr double kSettle_s = 4.0;   // commands at their rate limits, height of the ground-aware optimisation
-constexpr int kCycles = 4;          // ticks fall on other phases in each
+constexpr double kSettle_s = 4.0;  // commands at their rate limits, height of the ground-aware optimisation
+constexpr int kCycles = 4;         // ticks fall on other phases in each
 
 struct Walk {
   gco::SlipSummary slip;
