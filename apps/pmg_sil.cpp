@@ -40,6 +40,7 @@ struct Arguments {
   std::string robot = "z1";
   fs::path scenario, out, clips, export_mjcf;
   std::string policy = "none";
+  std::string blend = "gain";
   std::uint64_t seed = 0;
   bool gantry = false, video = false, json = false, print_config = false;
 };
@@ -51,6 +52,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
   app.add_option("--policy", arguments.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference")
+      ->capture_default_str();
+  app.add_option("--blend", arguments.blend,
+                 "how clips are mixed: gain, or paper for the paper's weights to the letter")
+      ->check(CLI::IsMember({"gain", "paper"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
@@ -103,6 +108,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const model::Robo
           {"clips", clips.string()},
           {"scenario", arguments.scenario.string()},
           {"policy", arguments.policy},
+          {"blend", arguments.blend},
           {"seed", arguments.seed},
           {"gantry", arguments.gantry},
           {"bus_period_s", lockstep.bus_period_s},
@@ -207,7 +213,8 @@ int simulate(const Arguments& arguments) {
   const fs::path clips = arguments.clips.empty() ? robot.directory / "clips" : arguments.clips;
   ClipLibrary library = model::load_clip_library(clips, robot);
   std::unique_ptr<policy::Policy> policy = load_policy(arguments.policy, robot);
-  const runtime::TickOptions tick_options = runtime::tick_options(robot);
+  runtime::TickOptions tick_options = runtime::tick_options(robot);
+  tick_options.generator.blend = arguments.blend == "paper" ? Blend::kPaper : Blend::kGain;
   runtime::LockstepOptions lockstep_options;
   lockstep_options.balanced_by_policy = arguments.policy != "none";
   lockstep_options.always_hoisted = arguments.gantry;

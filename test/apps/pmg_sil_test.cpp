@@ -129,6 +129,7 @@ TEST_F(PmgSil, BadInputExitsWithTwoAndSaysWhat) {
   expect_refused("--clips " + (folder_ / "empty").string() + " --scenario " + kStand, "empty");
   expect_refused("--scenario " + scenario("name: x\nsteps:\n  - {for_s: 1, text: a, speed: 2}\n").string(),
                  "scenario.yaml:3:");
+  expect_refused("--blend both --scenario " + std::string(kStand), "--blend");
   expect_refused("--seed many --scenario " + std::string(kStand), "--seed");
   expect_refused("--frobnicate --scenario " + std::string(kStand), "--frobnicate");
   const Finished no_out = run(std::string("--scenario ") + kStand);
@@ -144,10 +145,11 @@ TEST_F(PmgSil, AnOutputFolderThatCannotBeMadeIsRefused) {
 }
 
 TEST_F(PmgSil, ConfigInForceIsPrinted) {
-  const Finished printed = run(std::string("--print-config --seed 3 --scenario ") + kStand);
+  const Finished printed = run(std::string("--print-config --seed 3 --blend paper --scenario ") + kStand);
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   const auto config = nlohmann::json::parse(printed.out);
   EXPECT_EQ(config["seed"], 3);
+  EXPECT_EQ(config["blend"], "paper");
   EXPECT_EQ(config["control_period_s"], 0.01);
   EXPECT_GT(config["command"]["upper"]["vx_m_s"], 0.0);
 }
