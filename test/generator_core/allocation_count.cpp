@@ -34,6 +34,11 @@ void* realloc(void* memory, std::size_t size) {
   ++count;
   return __libc_realloc(memory, size);
 }
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  ++count;
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr;
+}
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
   ++count;
   return __libc_memalign(alignment, size);

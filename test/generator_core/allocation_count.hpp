@@ -3,7 +3,7 @@
 
 namespace pmg::test {
 
-/// Calls of malloc, calloc, realloc and aligned_alloc so far, from any thread. Negative where they can't be counted
+/// Calls of malloc, calloc, realloc, posix_memalign and aligned_alloc so far, from any thread. Negative where they can't be counted
 /// (sanitizers bring their own malloc).
 long allocation_count() noexcept;
 
