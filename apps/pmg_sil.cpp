@@ -102,7 +102,7 @@ nlohmann::ordered_json channels_json(const std::array<double, kChannels>& values
 }
 
 nlohmann::ordered_json config_json(const Arguments& arguments, const model::RobotModel& robot, const fs::path& clips,
-                                   const runtime::TickOptions& tick, const runtime::LockstepOptions& lockstep) {
+                                   const runtime::TickOptions& tick) {
   const runtime::FaultLimits& faults = tick.supervisor.fault_limits;
   return {{"robot", robot.directory.string()},
           {"clips", clips.string()},
@@ -111,7 +111,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const model::Robo
           {"blend", arguments.blend},
           {"seed", arguments.seed},
           {"gantry", arguments.gantry},
-          {"bus_period_s", lockstep.bus_period_s},
+          {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9},
           {"control_period_s", tick.dt_s},
           {"sensor_noise",
            {{"gyro_rad_s", kGyroNoise_rad_s},
@@ -219,7 +219,7 @@ int simulate(const Arguments& arguments) {
   lockstep_options.balanced_by_policy = arguments.policy != "none";
   lockstep_options.always_hoisted = arguments.gantry;
   if (arguments.print_config) {
-    std::cout << config_json(arguments, robot, clips, tick_options, lockstep_options).dump(2) << '\n';
+    std::cout << config_json(arguments, robot, clips, tick_options).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");

@@ -4,16 +4,14 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <type_traits>
 
 namespace pmg::io {
 
 /// One writer thread, one reader thread. Three slots: one belongs to the writer, one to the reader, and the third
-/// changes hands by a single atomic exchange, so neither side ever waits, retries or sees half a value.
+/// changes hands by a single atomic exchange, so neither side ever waits, retries or sees half a value. T's assignment
+/// must neither allocate nor throw (fixed-capacity Eigen types keep that, though they don't declare it).
 template <typename T>
 class Mailbox {
-  static_assert(std::is_nothrow_copy_assignable_v<T>, "both ends run in real-time threads");
-
  public:
   /// Writer only.
   void put(const T& value) noexcept {

@@ -5,44 +5,41 @@
 namespace pmg::runtime {
 
 namespace {
+constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
 constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
-}
+}  // namespace
 
 Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, Tick& tick, const Scenario& scenario,
                    TickLog* log, const LockstepOptions& options)
-    : robot_(robot),
-      bus_(bus),
-      plant_(plant),
+    : plant_(plant),
       tick_(tick),
       scenario_(scenario),
       log_(log),
       options_(options),
-      tick_period_s_(options.bus_period_s * options.bus_steps_per_tick),
+      inbox_(link_.stop),
+      bus_cycle_(bus, link_, robot, clock_),
+      control_cycle_(tick, link_, inbox_, clock_),
       player_(scenario),
-      metrics_(robot.standing_height_m, tick_period_s_),
+      metrics_(robot.standing_height_m, kTickPeriod_s),
       gait_period_s_(kGaitPeriodBeforeWalking_s) {}
 
 LockstepOutcome Lockstep::run() {
-  const auto ticks = static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / tick_period_s_ - 1e-9));
+  const auto ticks = static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / kTickPeriod_s - 1e-9));
   timing_.reserve(static_cast<std::size_t>(ticks));
-  model::RobotState state;
   for (std::int64_t k = 0; k < ticks; ++k) {
     if (interrupted && interrupted()) {
       outcome_.interrupted = true;
       break;
     }
-    hal::BusStatus status = hal::BusStatus::kOk;
-    for (int step = 0; step < options_.bus_steps_per_tick; ++step) {
-      status = bus_.exchange(tick_.result().command, state);
-    }
+    advance();
     if (plant_.diverged()) {
       outcome_.diverged = true;
       break;
     }
-    const double time_s = static_cast<double>(k) * tick_period_s_;
-    control(state, status, time_s);
+    const double time_s = static_cast<double>(k) * kTickPeriod_s;
+    control(time_s);
     measure(time_s);
-    outcome_.duration_s = time_s + tick_period_s_;
+    outcome_.duration_s = time_s + kTickPeriod_s;
     if (after_tick) after_tick({time_s, scenario_.duration_s(), player_.current(), tick_.result()});
   }
   outcome_.fell = metrics_.fell();
@@ -52,21 +49,27 @@ LockstepOutcome Lockstep::run() {
   return outcome_;
 }
 
-void Lockstep::control(const model::RobotState& state, hal::BusStatus status, double time_s) {
-  player_.step(time_s);
-  const TickInput input{.state = state,
-                        .bus = status,
-                        .now_ns = state.stamp_ns,
-                        .drive = &player_.drive(),
-                        .request = &player_.request()};
+void Lockstep::advance() {
+  static_assert(ControlCycle::kPeriod_ns % hal::BusCycle::kPeriod_ns == 0);
+  for (std::int64_t step = 0; step < ControlCycle::kPeriod_ns / hal::BusCycle::kPeriod_ns; ++step) {
+    clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
+    bus_cycle_.run();
+  }
+}
+
+void Lockstep::control(double time_s) {
+  player_.step(time_s, clock_.now_ns());
+  inbox_.put(player_.drive());
+  inbox_.put(player_.request());
   const Mode before = tick_.result().mode;
-  const TickResult& result = tick_.step(input);
+  control_cycle_.run(clock_.now_ns());
+  const TickResult& result = tick_.result();
   timing_.add(time_s, result.times);
-  if (log_ != nullptr) log_->write(input, result);
+  if (log_ != nullptr) log_->write(control_cycle_.record());
   if (result.mode == Mode::kFault && before != Mode::kFault) outcome_.faults.push_back(result.fault);
 
   if (!options_.always_hoisted) {
-    hoist_.step(player_.current().hoist_without_policy && !options_.balanced_by_policy, tick_period_s_);
+    hoist_.step(player_.current().hoist_without_policy && !options_.balanced_by_policy, kTickPeriod_s);
     plant_.set_hoist(hoist_.lift_m(), hoist_.engaged());
   }
 }
@@ -80,7 +83,7 @@ void Lockstep::measure(double time_s) {
   const sim::Truth truth = plant_.truth();
   const bool hoisted = options_.always_hoisted || hoist_.carrying();
   if (log_ != nullptr) log_->write_truth(static_cast<std::int64_t>(std::llround(time_s * 1e9)), truth, hoisted);
-  if (hoisted) outcome_.hoisted_s += tick_period_s_;
+  if (hoisted) outcome_.hoisted_s += kTickPeriod_s;
   // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
   const bool judged = !hoisted && (holding || result.mode == Mode::kFault);
   if (judged) {

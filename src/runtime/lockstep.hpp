@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "gco/slip_statistics.hpp"
-#include "hal/hal.hpp"
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
 #include "model/robot_model.hpp"
+#include "runtime/control_cycle.hpp"
 #include "runtime/hoist.hpp"
 #include "runtime/metrics.hpp"
 #include "runtime/plant.hpp"
@@ -19,8 +21,6 @@
 namespace pmg::runtime {
 
 struct LockstepOptions {
-  double bus_period_s = 0.002;
-  int bus_steps_per_tick = 5;
   bool balanced_by_policy = false;  ///< then the gantry stays away
   bool always_hoisted = false;      ///< the world began on the gantry and stays there
 };
@@ -63,17 +63,20 @@ class Lockstep {
   const StageTiming& timing() const { return timing_; }
 
  private:
-  void control(const model::RobotState& state, hal::BusStatus status, double time_s);
+  void advance();
+  void control(double time_s);
   void measure(double time_s);
 
-  const model::RobotModel& robot_;
-  hal::Hal& bus_;
   Plant& plant_;
   Tick& tick_;
   const Scenario& scenario_;
   TickLog* log_;
   LockstepOptions options_;
-  double tick_period_s_;
+  io::SimulationClock clock_;
+  hal::BusLink link_;
+  OperatorInbox inbox_;
+  hal::BusCycle bus_cycle_;
+  ControlCycle control_cycle_;
   ScenarioPlayer player_;
   Hoist hoist_;
   Metrics metrics_;

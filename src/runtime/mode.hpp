@@ -42,8 +42,10 @@ struct Source {
 /// The six-channel command of one source (pmg_msgs::command_t).
 struct DriveMessage {
   Source source;
-  std::int64_t sequence = 0;  ///< increases with every message of a session
-  double lease_s = 0.0;       ///< how long the source keeps driving after this message
+  std::int64_t sequence = 0;     ///< increases with every message of a session
+  std::int64_t stamp_ns = 0;     ///< by the sender's clock
+  std::int64_t received_ns = 0;  ///< by the receiver's
+  double lease_s = 0.0;          ///< how long the source keeps driving after this message
   Command command;
 };
 
@@ -51,8 +53,30 @@ struct DriveMessage {
 struct ModeRequest {
   Source source;
   std::int64_t sequence = 0;
+  std::int64_t stamp_ns = 0;
+  std::int64_t received_ns = 0;
   Mode mode = Mode::kDamping;
   bool reset_fault = false;
+
+  /// What anyone may ask for at any time.
+  bool stops() const noexcept { return !reset_fault && (mode == Mode::kPassive || mode == Mode::kDamping); }
+};
+
+/// What became of a mode request; the numbers are those of pmg_msgs::ack_t.
+enum class Verdict : std::uint8_t {
+  kTaken = 0,
+  kNotYours = 1,
+  kOutOfOrder = 2,
+  kLate = 3,
+  kNoMode = 4,
+};
+
+/// The tick's answer to one request.
+struct ModeAck {
+  Source source;
+  std::int64_t sequence = 0;
+  Verdict verdict = Verdict::kTaken;
+  Mode mode = Mode::kPassive;  ///< after the tick that took it
 };
 
 }  // namespace pmg::runtime

@@ -55,11 +55,12 @@ ScenarioPlayer::ScenarioPlayer(const Scenario& scenario) : scenario_(scenario), 
   drive_.lease_s = 0.5;
 }
 
-void ScenarioPlayer::step(double time_s) noexcept {
+void ScenarioPlayer::step(double time_s, std::int64_t now_ns) noexcept {
   current_ = &scenario_.at(time_s);
   ++drive_.sequence;
   drive_.command = current_->command;
   ++request_.sequence;
+  drive_.stamp_ns = drive_.received_ns = request_.stamp_ns = request_.received_ns = now_ns;
   request_.mode = current_->mode;
 }
 

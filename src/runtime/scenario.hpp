@@ -38,7 +38,8 @@ class ScenarioPlayer {
  public:
   explicit ScenarioPlayer(const Scenario& scenario);
 
-  void step(double time_s) noexcept;
+  /// time_s counts from the scenario's start; now_ns is the run's clock.
+  void step(double time_s, std::int64_t now_ns) noexcept;
   const ScenarioStep& current() const noexcept { return *current_; }
   const DriveMessage& drive() const noexcept { return drive_; }
   const ModeRequest& request() const noexcept { return request_; }

@@ -1,5 +1,7 @@
 #include "runtime/supervisor.hpp"
 
+#include <utility>
+
 namespace pmg::runtime {
 
 Supervisor::Supervisor(const model::RobotModel& robot, const SupervisorOptions& options)
@@ -23,7 +25,7 @@ Mode Supervisor::update(const SupervisorInput& input) noexcept {
         fault_ = Fault{};
       }
       wanted_.reset();
-      reset_wanted_ = false;
+      reset_wanted_ = stop_wanted_ = false;
       return mode_;
     }
     if (found) {
@@ -31,6 +33,7 @@ Mode Supervisor::update(const SupervisorInput& input) noexcept {
       return mode_;
     }
   }
+  if (std::exchange(stop_wanted_, false)) stop_now();
   follow_request(input);
   if (mode_ == Mode::kWalk) stop_walking_if_due(input);
   return mode_;
@@ -43,6 +46,12 @@ void Supervisor::raise(const Fault& fault) noexcept {
   wanted_.reset();
   reset_wanted_ = false;
   stopping_since_ns_.reset();
+}
+
+void Supervisor::stop_now() noexcept {
+  // A wish for limp drives is carried out by follow_request; every other wish of this tick yields to the stop.
+  if (wanted_ != Mode::kPassive && mode_ > Mode::kDamping) wanted_ = Mode::kDamping;
+  if (wanted_ == Mode::kStand || wanted_ == Mode::kWalk) wanted_.reset();
 }
 
 void Supervisor::follow_request(const SupervisorInput& input) noexcept {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "hal/command_guard.hpp"
 #include "runtime/fault.hpp"
 #include "runtime/mode.hpp"
 
@@ -19,6 +20,8 @@ struct SupervisorOptions {
 struct SupervisorInput {
   const model::RobotState& state;
   hal::BusStatus bus = hal::BusStatus::kOk;
+  hal::TripCause guard_trip = hal::TripCause::kNone;  ///< since the last tick
+  std::int64_t late_ns = 0;                           ///< the last tick behind its deadline
   std::int64_t now_ns = 0;
   double command_age_s = 0.0;
   bool entry_done = false;  ///< the ramp from the measured posture into Stand has ended
@@ -32,6 +35,9 @@ class Supervisor {
   /// Remembers a request until update() has carried it out or refused it. A later request replaces it.
   void request(const ModeRequest& request) noexcept;
 
+  /// Anyone's stop, whatever else this tick was asked for: Damping unless the mode is Passive or Fault.
+  void stop() noexcept { stop_wanted_ = true; }
+
   /// Decides the mode of this tick: one step at most, upwards one mode at a time.
   Mode update(const SupervisorInput& input) noexcept;
 
@@ -44,6 +50,7 @@ class Supervisor {
   Command admit(const Command& user) const noexcept;
 
  private:
+  void stop_now() noexcept;
   void follow_request(const SupervisorInput& input) noexcept;
   void climb(const SupervisorInput& input) noexcept;
   void stop_walking_if_due(const SupervisorInput& input) noexcept;
@@ -53,7 +60,7 @@ class Supervisor {
   Mode mode_ = Mode::kPassive;
   Fault fault_;
   std::optional<Mode> wanted_;
-  bool reset_wanted_ = false;
+  bool reset_wanted_ = false, stop_wanted_ = false;
   std::optional<std::int64_t> stopping_since_ns_;
 };
 

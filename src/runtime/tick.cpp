@@ -1,5 +1,6 @@
 #include "runtime/tick.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace pmg::runtime {
@@ -45,6 +46,8 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   const Mode before = result_.mode;
   const Mode mode = supervisor_.update({.state = input.state,
                                         .bus = input.bus,
+                                        .guard_trip = input.guard_trip,
+                                        .late_ns = input.late_ns,
                                         .now_ns = input.now_ns,
                                         .command_age_s = result_.command_age_s,
                                         .entry_done = entry_.done(),
@@ -57,23 +60,29 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
 
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
+  for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
   result_.times.tick_ns = stopwatch_.now_ns() - start_ns;
   return result_;
 }
 
 void Tick::take_messages(const TickInput& input) noexcept {
-  if (input.drive != nullptr) intake_.accept(*input.drive, input.now_ns);
-  if (input.request != nullptr) {
-    result_.last_request = *input.request;
-    if (intake_.may_request(*input.request, input.now_ns)) supervisor_.request(*input.request);
+  for (const DriveMessage& drive : input.drives) intake_.accept(drive, input.now_ns);
+  result_.ack_count = 0;
+  for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
+    const Verdict verdict = intake_.judge(request, input.now_ns);
+    if (verdict == Verdict::kTaken) supervisor_.request(request);
+    result_.acks[result_.ack_count++] = {.source = request.source, .sequence = request.sequence, .verdict = verdict};
   }
+  if (input.stop) supervisor_.stop();
+  result_.ignored = intake_.ignored();
   result_.command_age_s = intake_.age_s(input.now_ns);
   result_.driving = intake_.driving(input.now_ns);
 }
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
   generator_.reset();
+  gco_.reset();
   entry_.start(state.q, generator_.reference().q);
   limiter_.start_from(state.q);
 }

@@ -2,10 +2,13 @@
 // runs in lockstep with a simulation and in the robot's control thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "gco/ground_aware_command.hpp"
+#include "hal/command_guard.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "model/robot_io.hpp"
@@ -35,10 +38,16 @@ TickOptions tick_options(const model::RobotModel& robot);
 struct TickInput {
   const model::RobotState& state;
   hal::BusStatus bus = hal::BusStatus::kOk;
-  std::int64_t now_ns = 0;              ///< by the clock that stamps the state
-  const DriveMessage* drive = nullptr;  ///< what arrived since the last tick, if anything
-  const ModeRequest* request = nullptr;
+  std::int64_t now_ns = 0;                ///< by the clock that stamps the state
+  std::span<const DriveMessage> drives;   ///< what arrived since the last tick, in its order; at most kMaxDrives
+  std::span<const ModeRequest> requests;  ///< likewise, at most kMaxRequests
+  bool stop = false;                      ///< the stop line was pulled since the last tick
+  hal::TripCause guard_trip = hal::TripCause::kNone;  ///< the bus guard took over since the last tick
+  std::int64_t late_ns = 0;  ///< how far behind its deadline the last tick ended; not positive: in time
 };
+
+/// Messages that one tick takes; the operator's inbox keeps the rest for the next.
+inline constexpr std::size_t kMaxDrives = 32, kMaxRequests = 8;
 
 /// Wall time that each stage took, by the stopwatch.
 struct StageTimes {
@@ -53,9 +62,11 @@ struct TickResult {
   Reference reference;    ///< of this tick in Stand and Walk; otherwise of the last such tick
   gco::Result optimised;  ///< likewise
   LimitReport limited;
-  double command_age_s = 0.0;  ///< infinite before the first command
-  Source driving;              ///< empty when nobody drives
-  ModeRequest last_request;    ///< the last one received, whether followed or not: the acknowledgement
+  IgnoredCommands ignored;                 ///< driving messages since the start, by reason
+  double command_age_s = 0.0;              ///< infinite before the first command
+  Source driving;                          ///< empty when nobody drives
+  std::array<ModeAck, kMaxRequests> acks;  ///< one for each of this tick's requests
+  std::size_t ack_count = 0;
   StageTimes times;
 };
 

@@ -30,11 +30,12 @@ void copy(const Eigen::Quaterniond& from, double (&to)[4]) {
   to[3] = from.z();
 }
 
-template <typename Message>
-void copy_sender(const Source& source, std::int64_t sequence, Message& message) {
-  message.source = source.name.data();
-  message.session = source.session;
-  message.sequence = sequence;
+template <typename From, typename Message>
+void copy_sender(const From& from, Message& message) {
+  message.stamp_ns = from.stamp_ns;
+  message.source = from.source.name.data();
+  message.session = from.source.session;
+  message.sequence = from.sequence;
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, double c
   const int n = robot.joint_index.size();
   pmg_msgs::robot_info_t info;
   info.stamp_ns = 0;
-  info.robot = robot.name;
+  info.robot = info.model = robot.name;
   info.joint_count = n;
   info.joint_names = robot.joint_index.names();
   copy(robot.q_lower(), n, info.lower_rad);
@@ -56,43 +57,55 @@ TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, double c
   state_.joint_count = reference_.joint_count = motor_command_.joint_count = n;
 }
 
-void TickLog::write(const TickInput& input, const TickResult& result) {
-  write_messages(input);
-  write_state(input.now_ns, input.state);
-  write_reference(input.now_ns, result);
-  write_command(input.now_ns, result.command);
-  write_status(input.now_ns, result);
+void TickLog::write(const TickRecord& record) {
+  const TickResult& result = record.result;
+  write_state(record.now_ns, record.state);
+  write_input(record);
+  write_reference(record.now_ns, result);
+  write_command(record.now_ns, result.command);
+  write_status(record.now_ns, result);
   if (result.mode == Mode::kFault && last_mode_ != Mode::kFault) {
     pmg_msgs::fault_t fault;
+    fault.robot = robot_.name;
     fault.stamp_ns = result.fault.stamp_ns;
     fault.code = static_cast<std::int32_t>(result.fault.code);
     fault.text = describe(result.fault, robot_);
-    writer_.write("FAULT", input.now_ns, fault);
+    writer_.write("FAULT", record.now_ns, fault);
   }
   last_mode_ = result.mode;
 }
 
-void TickLog::write_messages(const TickInput& input) {
-  if (input.drive != nullptr) {
-    command_.stamp_ns = input.now_ns;
-    copy_sender(input.drive->source, input.drive->sequence, command_);
-    command_.lease_s = input.drive->lease_s;
-    const Command& u = input.drive->command;
+void TickLog::write_input(const TickRecord& record) {
+  input_.command_received_ns.clear();
+  input_.request_received_ns.clear();
+  for (const DriveMessage& drive : record.input().drives) {
+    input_.command_received_ns.push_back(drive.received_ns);
+    copy_sender(drive, command_);
+    command_.lease_s = drive.lease_s;
+    const Command& u = drive.command;
     command_.vx_m_s = u[kVx];
     command_.vy_m_s = u[kVy];
     command_.omega_rad_s = u[kOmega];
     command_.pitch_rad = u[kPitch];
     command_.roll_rad = u[kRoll];
     command_.height_m = u[kHeight];
-    writer_.write("COMMAND", input.now_ns, command_);
+    writer_.write("COMMAND", record.now_ns, command_);
   }
-  if (input.request != nullptr) {
-    mode_.stamp_ns = input.now_ns;
-    copy_sender(input.request->source, input.request->sequence, mode_);
-    mode_.mode = static_cast<std::int8_t>(input.request->mode);
-    mode_.reset_fault = input.request->reset_fault;
-    writer_.write("MODE", input.now_ns, mode_);
+  for (const ModeRequest& request : record.input().requests) {
+    input_.request_received_ns.push_back(request.received_ns);
+    copy_sender(request, mode_);
+    mode_.mode = static_cast<std::int8_t>(request.mode);
+    mode_.reset_fault = request.reset_fault;
+    writer_.write("MODE", record.now_ns, mode_);
   }
+  input_.stamp_ns = record.now_ns;
+  input_.bus = static_cast<std::int8_t>(record.bus);
+  input_.guard_trip = static_cast<std::int8_t>(record.guard_trip);
+  input_.stop = record.stop;
+  input_.late_ns = record.late_ns;
+  input_.command_count = static_cast<std::int32_t>(record.drive_count);
+  input_.request_count = static_cast<std::int32_t>(record.request_count);
+  writer_.write("TICK", record.now_ns, input_);
 }
 
 void TickLog::write_state(std::int64_t stamp_ns, const model::RobotState& state) {
@@ -155,11 +168,10 @@ void TickLog::write_status(std::int64_t stamp_ns, const TickResult& result) {
   status_.fault_code = static_cast<std::int32_t>(result.fault.code);
   status_.driving_source = result.driving.name.data();
   status_.command_age_s = std::isfinite(result.command_age_s) ? result.command_age_s : -1.0;
-  status_.acknowledged_session = result.last_request.source.session;
-  status_.acknowledged_sequence = result.last_request.sequence;
   status_.limited_position = result.limited.position;
   status_.limited_rate = result.limited.rate;
   status_.limited_torque = result.limited.torque;
+  status_.gco_held = result.optimised.status == gco::Status::kNotConverged;
   writer_.write("STATUS", stamp_ns, status_);
 }
 

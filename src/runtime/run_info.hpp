@@ -1,0 +1,22 @@
+// Who runs what: stamped into every log and told on the network (pmg_msgs::robot_info_t).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pmg::runtime {
+
+struct RunInfo {
+  std::string robot;         ///< the controller's name; the model's unless two of a kind share a network
+  std::int64_t session = 0;  ///< larger at every start (wall clock [ns]); 0 in lockstep, whose logs are reproducible
+  std::string policy = "none";
+  std::string backend = "sil";
+  std::string options;                                     ///< configuration in force, JSON
+  std::string bundle;                                      ///< SHA-256 over the files below
+  std::vector<std::pair<std::string, std::string>> files;  ///< path relative to the robot's folder, SHA-256
+  std::vector<std::string> refused;                        ///< what the system refused of real-time scheduling
+};
+
+}  // namespace pmg::runtime
