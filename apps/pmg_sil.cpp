@@ -231,7 +231,10 @@ int simulate(const Arguments& arguments) {
 
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
-  runtime::TickLog log(log_file, robot, 1.0 / tick_options.dt_s);
+  const runtime::RunInfo run{.robot = robot.name,
+                             .policy = arguments.policy,
+                             .options = config_json(arguments, robot, clips, tick_options).dump()};
+  runtime::TickLog log(log_file, robot, run, 1.0 / tick_options.dt_s);
   std::optional<Film> film;
   if (arguments.video) film.emplace(world, arguments.out / "video.mp4");
   ProgressLine progress;

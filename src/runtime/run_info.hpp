@@ -9,14 +9,18 @@
 namespace pmg::runtime {
 
 struct RunInfo {
-  std::string robot;         ///< the controller's name; the model's unless two of a kind share a network
+  std::string robot{};       ///< the controller's name; the model's unless two of a kind share a network
   std::int64_t session = 0;  ///< larger at every start (wall clock [ns]); 0 in lockstep, whose logs are reproducible
   std::string policy = "none";
   std::string backend = "sil";
-  std::string options;                                     ///< configuration in force, JSON
-  std::string bundle;                                      ///< SHA-256 over the files below
-  std::vector<std::pair<std::string, std::string>> files;  ///< path relative to the robot's folder, SHA-256
-  std::vector<std::string> refused;                        ///< what the system refused of real-time scheduling
+  std::string options{};                                     ///< configuration in force, JSON
+  std::string bundle{};                                      ///< SHA-256 over the files below
+  std::vector<std::pair<std::string, std::string>> files{};  ///< path relative to the robot's folder, SHA-256
+  bool realtime = false;                                     ///< every thread got the scheduling that it needs
+  std::vector<std::string> refused{};                        ///< what the system refused of real-time scheduling
 };
+
+/// Version of this software, for logs and --version.
+const char* software_version() noexcept;
 
 }  // namespace pmg::runtime

@@ -5,39 +5,38 @@
 
 #include "io/log_writer.hpp"
 #include "model/robot_model.hpp"
-#include "pmg_msgs/command_t.hpp"
-#include "pmg_msgs/ground_truth_t.hpp"
-#include "pmg_msgs/mode_t.hpp"
-#include "pmg_msgs/motor_command_t.hpp"
-#include "pmg_msgs/reference_t.hpp"
-#include "pmg_msgs/robot_state_t.hpp"
-#include "pmg_msgs/status_t.hpp"
-#include "pmg_msgs/tick_input_t.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/tick_messages.hpp"
 #include "runtime/tick_record.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::runtime {
 
-/// Channels: ROBOT_INFO once, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick, GROUND_TRUTH in
-/// simulation, FAULT when one latches. Keeps its message buffers, so a tick allocates nothing once they have grown. Not
-/// for a real-time thread.
+/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick,
+/// GROUND_TRUTH in simulation, TIMING in the threaded controller, FAULT when one latches. Keeps its message buffers, so
+/// a tick allocates nothing once they have grown. Not for a real-time thread.
 class TickLog {
  public:
-  TickLog(io::LogWriter& writer, const model::RobotModel& robot, double control_rate_Hz);
+  /// Keeps references to writer and robot.
+  TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz);
+
+  /// From here on into another file, which stands alone: it begins with ROBOT_INFO too.
+  void continue_in(io::LogWriter& writer, std::int64_t stamp_ns);
 
   void write(const TickRecord& record);
+  void write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
   void write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted);
 
  private:
   void write_input(const TickRecord& record);
-  void write_state(std::int64_t stamp_ns, const model::RobotState& state);
-  void write_reference(std::int64_t stamp_ns, const TickResult& result);
-  void write_command(std::int64_t stamp_ns, const model::JointCommand& command);
-  void write_status(std::int64_t stamp_ns, const TickResult& result);
+  void write_fault_once(const TickRecord& record);
 
-  io::LogWriter& writer_;
+  io::LogWriter* writer_;
   const model::RobotModel& robot_;
-  Mode last_mode_ = Mode::kPassive;
+  const RunInfo run_;
+  const int joint_count_;
+  Fault last_fault_;
+  pmg_msgs::robot_info_t info_;
   pmg_msgs::tick_input_t input_;
   pmg_msgs::command_t command_;
   pmg_msgs::mode_t mode_;
@@ -45,7 +44,9 @@ class TickLog {
   pmg_msgs::reference_t reference_;
   pmg_msgs::motor_command_t motor_command_;
   pmg_msgs::status_t status_;
+  pmg_msgs::timing_t timing_;
   pmg_msgs::ground_truth_t truth_;
+  pmg_msgs::fault_t fault_;
 };
 
 }  // namespace pmg::runtime

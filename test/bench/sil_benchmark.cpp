@@ -59,7 +59,7 @@ void BM_sil(benchmark::State& state) {
     hal::SilHal bus(world);
     runtime::WorldPlant plant(world);
     io::LogWriter writer(file);
-    runtime::TickLog log(writer, robot, 1.0 / options.dt_s);
+    runtime::TickLog log(writer, robot, {.robot = robot.name}, 1.0 / options.dt_s);
     runtime::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
     int ticks = 0;
     long settled = 0;

@@ -51,7 +51,7 @@ class LockstepRun : public testing::Test {
     WorldPlant plant(world);
     Tick tick = make_tick(robot);
     io::LogWriter writer(folder_ / log_name);
-    TickLog log(writer, robot, 100.0);
+    TickLog log(writer, robot, {.robot = robot.name}, 100.0);
     return Lockstep(robot, bus, plant, tick, scenario, &log, {}).run();
   }
 
@@ -178,7 +178,7 @@ TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
   LockstepOutcome outcome;
   {
     io::LogWriter writer(folder_ / "fault.lcm");
-    TickLog log(writer, robot, 100.0);
+    TickLog log(writer, robot, {.robot = robot.name}, 100.0);
     Lockstep lockstep(robot, bus, plant, tick, scenario, &log, {});
     outcome = lockstep.run();
     const auto summary = summary_json({robot.name, scenario.name, "none", 0, 0.1}, outcome, lockstep.timing(), robot);
