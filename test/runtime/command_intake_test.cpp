@@ -8,7 +8,7 @@
 namespace pmg::runtime {
 namespace {
 
-using Verdict = CommandIntake::Verdict;
+using DriveVerdict = CommandIntake::DriveVerdict;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -31,26 +31,26 @@ ModeRequest request(const char* source, std::int64_t session, Mode mode, bool re
 
 TEST(CommandIntake, OneSourceDrivesUntilItsLeaseEnds) {
   CommandIntake intake;
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 1), 0), Verdict::kAccepted);
-  EXPECT_EQ(intake.accept(message("vr", 1, 1), kSecond_ns / 2 - 1), Verdict::kOtherSourceDrives);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 1), 0), DriveVerdict::kAccepted);
+  EXPECT_EQ(intake.accept(message("vr", 1, 1), kSecond_ns / 2 - 1), DriveVerdict::kOtherSourceDrives);
   EXPECT_EQ(intake.driving(0), Source::make("gamepad", 1));
-  EXPECT_EQ(intake.accept(message("vr", 1, 1), kSecond_ns / 2), Verdict::kAccepted);
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 2), kSecond_ns / 2 + 1), Verdict::kOtherSourceDrives);
+  EXPECT_EQ(intake.accept(message("vr", 1, 1), kSecond_ns / 2), DriveVerdict::kAccepted);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 2), kSecond_ns / 2 + 1), DriveVerdict::kOtherSourceDrives);
   EXPECT_EQ(intake.driving(2 * kSecond_ns), Source{});
 }
 
 TEST(CommandIntake, ARestartedSourceIsAnotherSource) {
   CommandIntake intake;
   intake.accept(message("gamepad", 1, 50), 0);
-  EXPECT_EQ(intake.accept(message("gamepad", 2, 1), 1), Verdict::kOtherSourceDrives);
-  EXPECT_EQ(intake.accept(message("gamepad", 2, 1), kSecond_ns), Verdict::kAccepted);
+  EXPECT_EQ(intake.accept(message("gamepad", 2, 1), 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(intake.accept(message("gamepad", 2, 1), kSecond_ns), DriveVerdict::kAccepted);
 }
 
 TEST(CommandIntake, RepeatedAndOvertakenMessagesAreRefused) {
   CommandIntake intake;
   intake.accept(message("gamepad", 1, 5), 0);
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 5), 10), Verdict::kOutOfOrder);
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 4), 10), Verdict::kOutOfOrder);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 5), 10), DriveVerdict::kOutOfOrder);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 4), 10), DriveVerdict::kOutOfOrder);
   EXPECT_DOUBLE_EQ(intake.command()[kVx], 0.5);
   EXPECT_DOUBLE_EQ(intake.age_s(kSecond_ns), 1.0) << "a refused message is no sign of life";
 }
@@ -61,7 +61,7 @@ TEST(CommandIntake, CommandsThatAreNotFiniteAreRefused) {
       CommandIntake intake;
       DriveMessage drive = message("gamepad", 1, 1);
       drive.command.u[channel] = bad;
-      EXPECT_EQ(intake.accept(drive, 0), Verdict::kNotFinite);
+      EXPECT_EQ(intake.accept(drive, 0), DriveVerdict::kNotFinite);
       EXPECT_EQ(intake.command(), Command{});
     }
   }
@@ -69,10 +69,10 @@ TEST(CommandIntake, CommandsThatAreNotFiniteAreRefused) {
 
 TEST(CommandIntake, LeasesArePositiveAndAtMostTwoSeconds) {
   CommandIntake intake;
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, 0.0), 0), Verdict::kNoLease);
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, std::nan("")), 0), Verdict::kNoLease);
-  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, 1e9), 0), Verdict::kAccepted);
-  EXPECT_EQ(intake.accept(message("vr", 1, 1), 2 * kSecond_ns), Verdict::kAccepted);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, 0.0), 0), DriveVerdict::kNoLease);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, std::nan("")), 0), DriveVerdict::kNoLease);
+  EXPECT_EQ(intake.accept(message("gamepad", 1, 1, 1e9), 0), DriveVerdict::kAccepted);
+  EXPECT_EQ(intake.accept(message("vr", 1, 1), 2 * kSecond_ns), DriveVerdict::kAccepted);
 }
 
 TEST(CommandIntake, AgeIsInfiniteBeforeTheFirstCommand) {
@@ -82,15 +82,15 @@ TEST(CommandIntake, AgeIsInfiniteBeforeTheFirstCommand) {
 
 TEST(CommandIntake, AnySourceMayStopButOnlyTheDrivingOneMayClimbOrReset) {
   CommandIntake intake;
-  EXPECT_TRUE(intake.may_request(request("vr", 1, Mode::kWalk), 0)) << "nobody drives";
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kWalk), 0), Verdict::kTaken) << "nobody drives";
   intake.accept(message("gamepad", 1, 1), 0);
-  EXPECT_TRUE(intake.may_request(request("vr", 1, Mode::kDamping), 1));
-  EXPECT_TRUE(intake.may_request(request("vr", 1, Mode::kPassive), 1));
-  EXPECT_FALSE(intake.may_request(request("vr", 1, Mode::kStand), 1));
-  EXPECT_FALSE(intake.may_request(request("vr", 1, Mode::kWalk), 1));
-  EXPECT_FALSE(intake.may_request(request("vr", 1, Mode::kDamping, true), 1)) << "a reset is no stop";
-  EXPECT_TRUE(intake.may_request(request("gamepad", 1, Mode::kWalk), 1));
-  EXPECT_TRUE(intake.may_request(request("vr", 1, Mode::kWalk), kSecond_ns));
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kDamping), 1), Verdict::kTaken);
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kPassive), 1), Verdict::kTaken);
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kStand), 1), Verdict::kNotYours);
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kWalk), 1), Verdict::kNotYours);
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kDamping, true), 1), Verdict::kNotYours) << "a reset is no stop";
+  EXPECT_EQ(intake.judge(request("gamepad", 1, Mode::kWalk), 1), Verdict::kTaken);
+  EXPECT_EQ(intake.judge(request("vr", 1, Mode::kWalk), kSecond_ns), Verdict::kTaken);
 }
 
 TEST(Source, LongNamesAreCutAndStayTerminated) {

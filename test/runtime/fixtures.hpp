@@ -110,11 +110,10 @@ struct DrivenTick {
     state.bus_sample += 5;
     ++drive.sequence;
     ++request.sequence;
-    const runtime::TickResult& result = tick.step({.state = state,
-                                                   .bus = bus,
-                                                   .now_ns = now_ns,
-                                                   .drive = speaking ? &drive : nullptr,
-                                                   .request = speaking ? &request : nullptr});
+    drive.stamp_ns = drive.received_ns = request.stamp_ns = request.received_ns = now_ns;
+    const std::size_t messages = speaking ? 1 : 0;
+    const runtime::TickResult& result = tick.step(
+        {.state = state, .bus = bus, .now_ns = now_ns, .drives = {&drive, messages}, .requests = {&request, messages}});
     if (result.command.kp.sum() > 0.0) state.q = result.command.q;
     return result;
   }

@@ -109,11 +109,13 @@ TEST(ScenarioPlayer, IsAnOperatorWhoNeverFallsSilent) {
   ScenarioPlayer player(scenario);
   std::int64_t sequence = 0;
   for (int k = 0; k < 200; ++k) {
-    player.step(0.01 * k);
+    player.step(0.01 * k, 10'000'000 * k);
     EXPECT_GT(player.drive().sequence, sequence);
     sequence = player.drive().sequence;
     EXPECT_GT(player.drive().lease_s, 0.2);
     EXPECT_EQ(player.drive().source, player.request().source);
+    EXPECT_EQ(player.drive().received_ns, 10'000'000 * k);
+    EXPECT_EQ(player.request().received_ns, 10'000'000 * k);
   }
   EXPECT_EQ(player.request().mode, Mode::kWalk);
   EXPECT_DOUBLE_EQ(player.drive().command[kVy], 0.2);

@@ -98,7 +98,9 @@ TEST(Tick, DampingComesInTheTickThatAsksForItEvenFromAStranger) {
   EXPECT_EQ(result.mode, Mode::kDamping);
   EXPECT_EQ(result.command.kp.sum(), 0.0);
   EXPECT_GT(result.command.kd.minCoeff(), 0.0);
-  EXPECT_EQ(result.last_request.source, Source::make("bystander", 9)) << "and it is acknowledged";
+  ASSERT_EQ(result.ack_count, 1u) << "and it is acknowledged";
+  EXPECT_EQ(result.acks[0].source, Source::make("bystander", 9));
+  EXPECT_EQ(result.acks[0].mode, Mode::kDamping);
 }
 
 TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
