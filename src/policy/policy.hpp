@@ -1,17 +1,35 @@
 // The policy's interface. q_des = q_ref + action_scale * action for the policy joints (design: residual actions).
 #pragma once
 
+#include <optional>
+
 #include "model/robot_io.hpp"
 #include "pmg/reference.hpp"
 
 namespace pmg::policy {
 
-enum class Status { kOk, kNotFinite };
+enum class Status {
+  kOk,
+  kNotFinite,  ///< a value that isn't finite, or no result at all: a fault
+  kLate,       ///< no result for this tick: the last target is held, for a few ticks
+};
+
+/// What the drives' position loops are set to, one value a joint in the robot's joint order.
+struct DriveGains {
+  JointVector kp_Nm_per_rad, kd_Nm_s_per_rad;
+};
 
 class Policy {
  public:
   virtual ~Policy() = default;
-  /// q_des for every joint, rad, from what a robot can sense. No exception.
+
+  /// The gains that the policy was trained with; nothing: robot.yaml's. Asked once, before the first act().
+  virtual std::optional<DriveGains> gains() const { return std::nullopt; }
+
+  /// Forgets its history. On every entry into Stand, before the first act().
+  virtual void reset() noexcept {}
+
+  /// q_des for every joint, rad, from what a robot can sense. No exception. q_des counts only with kOk.
   virtual Status act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
                      JointVector& q_des) noexcept = 0;
 };

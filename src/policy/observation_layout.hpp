@@ -1,0 +1,60 @@
+// What the actor sees: names, sizes, offsets and scales of the observation vector. The one definition; the controller's
+// assembler (observation.hpp) reads it, and training takes it from here as JSON.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "model/robot_model.hpp"
+
+namespace pmg::policy {
+
+/// A quantity that an observation term shows. Each element is scale * (value - origin).
+enum class Quantity {
+  kGyro,               ///< angular velocity in the IMU frame [rad/s]
+  kGravityDirection,   ///< unit vector down, in the IMU frame
+  kCommand,            ///< u' of the ground-aware optimisation, in the order of pmg::Channel
+  kPhase,              ///< gain * sin(2 pi phi), gain * cos(2 pi phi), gain
+  kReferencePosition,  ///< q_ref - q_stand [rad]
+  kReferenceVelocity,  ///< dq_ref [rad/s]
+  kJointPosition,      ///< q - q_stand [rad]
+  kJointVelocity,      ///< dq [rad/s]
+  kLastAction,         ///< the network's previous output
+};
+
+struct ObservationTerm {
+  Quantity quantity = Quantity::kGyro;
+  std::string name;
+  int offset = 0;  ///< first element in the vector
+  int size = 0;
+  double scale = 1.0;
+  int age_ticks = 0;                 ///< 0: this tick; otherwise the value that was seen so many ticks ago
+  std::vector<std::string> element;  ///< one name an element: joint, channel or axis
+  std::vector<int> joint;            ///< index in the robot's joint order of each element; empty for non-joint terms
+};
+
+class ObservationLayout {
+ public:
+  /// Older frames of what changes fastest: lets the actor infer velocities, delays and contacts.
+  static constexpr int kHistoryAges_ticks[] = {2, 4, 6};
+  static constexpr int kOldest_ticks = 6;
+
+  explicit ObservationLayout(const model::RobotModel& robot);
+
+  const std::vector<ObservationTerm>& terms() const { return terms_; }
+  int size() const { return size_; }
+  const std::vector<std::string>& action_joints() const { return action_joints_; }
+
+  /// {"size", "terms": [{"name", "offset", "size", "scale", "age_ticks", "elements"}]}
+  std::string to_json() const;
+
+ private:
+  void add(Quantity quantity, double scale, int age_ticks, std::vector<std::string> elements, std::vector<int> joints);
+
+  std::vector<ObservationTerm> terms_;
+  std::vector<std::string> action_joints_;
+  int size_ = 0;
+};
+
+}  // namespace pmg::policy

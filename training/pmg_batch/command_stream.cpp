@@ -1,0 +1,54 @@
+#include "command_stream.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace pmg::training {
+
+namespace {
+// Share of the range below which a velocity counts as none: nobody asks for a crawl.
+constexpr double kSmallestShare = 0.08;
+constexpr std::array<double, kChannels> kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
+}  // namespace
+
+const Command& CommandStream::step(double dt_s) {
+  left_s_ -= dt_s;
+  if (left_s_ <= 0.0) draw();
+  return command_;
+}
+
+double CommandStream::value(std::size_t channel) {
+  const double drawn = kRangeStretch * uniform(limits_.lower[channel], limits_.upper[channel]);
+  const double range = drawn < 0.0 ? -limits_.lower[channel] : limits_.upper[channel];
+  return channel < kVelocityChannels && std::abs(drawn) < kSmallestShare * range ? 0.0 : drawn;
+}
+
+void CommandStream::draw() {
+  left_s_ = uniform(0.0, 1.0) < 0.15 ? uniform(0.4, 1.5) : uniform(2.0, 7.0);
+  command_ = Command{};
+  const double kind = uniform(0.0, 1.0);
+  if (kind < 0.06) return;  // stand upright
+  if (kind < 0.16) {        // a posture on the spot
+    for (std::size_t c = kVelocityChannels; c < kChannels; ++c) {
+      if (uniform(0.0, 1.0) < 0.6) command_.u[c] = value(c);
+    }
+    return;
+  }
+  if (kind < 0.40) {  // one velocity alone
+    const auto c = static_cast<std::size_t>(uniform(0.0, static_cast<double>(kVelocityChannels)));
+    command_.u[c] = value(c);
+    return;
+  }
+  if (kind < 0.55) {  // a velocity and one channel more
+    const auto c = static_cast<std::size_t>(uniform(0.0, static_cast<double>(kVelocityChannels)));
+    const auto other = (c + static_cast<std::size_t>(uniform(1.0, static_cast<double>(kChannels)))) % kChannels;
+    command_.u[c] = value(c);
+    command_.u[other] = value(other);
+    return;
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (uniform(0.0, 1.0) < kChannelShown[c]) command_.u[c] = value(c);
+  }
+}
+
+}  // namespace pmg::training
