@@ -217,6 +217,21 @@ std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& 
   return result;
 }
 
+std::vector<fs::path> clip_library_files(const fs::path& directory) {
+  std::vector<fs::path> files;
+  const auto add_all = [&](const auto& names) {
+    for (const char* name : names) {
+      for (const fs::path& file : {csv(directory, name), yaml(directory, name)}) {
+        if (fs::exists(file)) files.push_back(file);
+      }
+    }
+  };
+  add_all(kPositiveNames);
+  add_all(kNegativeNames);
+  add_all(kPostureNames);
+  return files;
+}
+
 ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot) {
   if (!fs::is_directory(directory)) raise({directory.string()}, "", "isn't a directory", "a directory of clips");
   ClipLibrary library;

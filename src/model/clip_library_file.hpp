@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
@@ -20,6 +21,9 @@ inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< the periods of all dyna
 /// of ten seconds or more in total, samples outside joint limits, mean velocities in the wrong direction, a posture
 /// that at command 0 isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
+
+/// Those of the files named above that are there.
+std::vector<std::filesystem::path> clip_library_files(const std::filesystem::path& directory);
 
 /// dq/dphi [rad per cycle] at N equidistant samples of one cycle: the slopes of the periodic cubic spline through them.
 std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q);

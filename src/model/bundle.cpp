@@ -1,0 +1,95 @@
+#include "model/bundle.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+
+#include "model/clip_library_file.hpp"
+#include "model/config_reader.hpp"
+
+namespace pmg::model {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+      throw std::runtime_error("SHA-256 is not available in this OpenSSL");
+  }
+  void add(std::string_view bytes) {
+    if (EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1)
+      throw std::runtime_error("SHA-256 can't be computed");
+  }
+  std::string hex() {
+    std::array<unsigned char, 32> digest{};
+    if (EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) != 1)
+      throw std::runtime_error("SHA-256 can't be computed");
+    std::string text;
+    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+std::string hash_of_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  Sha256 hash;
+  std::array<char, 65536> block{};
+  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+    hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
+  }
+  if (!file.is_open() || file.bad()) raise({path.string()}, "", "can't be read", "a readable file");
+  return hash.hex();
+}
+
+std::vector<fs::path> regular_files(const fs::path& directory) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(directory)) return files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  }
+  return files;
+}
+
+/// Only the one key: load_robot has checked the file already.
+std::string urdf_name(const fs::path& robot_yaml) {
+  return ConfigReader::from_file(robot_yaml).required<std::string>("urdf");
+}
+
+}  // namespace
+
+Bundle bundle(const RobotModel& robot, const fs::path& clips, const std::vector<fs::path>& policies) {
+  Bundle result;
+  const auto add = [&result](const std::string& name, const fs::path& file) {
+    result.files.emplace_back(name, hash_of_file(file));
+  };
+  const auto add_all = [&add](const std::string& folder, const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) add(folder + "/" + file.filename().string(), file);
+  };
+  const fs::path robot_yaml = robot.directory / "robot.yaml";
+  const std::string urdf = urdf_name(robot_yaml);
+  add("robot.yaml", robot_yaml);
+  add(urdf, robot.directory / urdf);
+  add_all("clips", clip_library_files(clips));
+  add_all("policies", policies);
+  add_all("calibration", regular_files(robot.directory / "calibration"));
+  std::ranges::sort(result.files);
+
+  Sha256 hash;
+  for (const auto& [name, sha256] : result.files) hash.add(fmt::format("{}  {}\n", sha256, name));
+  result.sha256 = hash.hex();
+  return result;
+}
+
+}  // namespace pmg::model
