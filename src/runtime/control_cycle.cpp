@@ -13,6 +13,7 @@ void ControlCycle::run(std::int64_t planned_ns) noexcept {
   take_sample();
   take_messages();
   record_.late_ns = late_ns_;
+  record_.policy_late = late_ns_ > 0 && record_.result.times.policy_ns > kPeriod_ns;
   record_.now_ns = clock_.now_ns();
   const TickResult& result = tick_.step(record_.input());
   output_.joints = result.command;

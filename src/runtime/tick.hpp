@@ -44,6 +44,7 @@ struct TickInput {
   bool stop = false;                      ///< the stop line was pulled since the last tick
   hal::TripCause guard_trip = hal::TripCause::kNone;  ///< the bus guard took over since the last tick
   std::int64_t late_ns = 0;  ///< how far behind its deadline the last tick ended; not positive: in time
+  bool policy_late = false;  ///< the last tick ended behind its deadline, and its policy alone took longer than a tick
 };
 
 /// Messages that one tick takes; the operator's inbox keeps the rest for the next.

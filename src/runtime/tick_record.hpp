@@ -25,6 +25,7 @@ struct TickRecord {
   bool stop = false;
   hal::TripCause guard_trip = hal::TripCause::kNone;
   std::int64_t late_ns = 0;
+  bool policy_late = false;
   TickResult result;
   CycleTiming timing;
 
@@ -37,7 +38,8 @@ struct TickRecord {
             .requests = {requests.data(), request_count},
             .stop = stop,
             .guard_trip = guard_trip,
-            .late_ns = late_ns};
+            .late_ns = late_ns,
+            .policy_late = policy_late};
   }
 };
 
