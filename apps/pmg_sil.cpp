@@ -10,11 +10,10 @@
 #include <optional>
 
 #include "hal/sil_hal.hpp"
-#include "model/clip_library_file.hpp"
+#include "runtime/control_setup.hpp"
+#include "runtime/film.hpp"
 #include "runtime/lockstep.hpp"
 #include "runtime/summary.hpp"
-#include "sim/renderer.hpp"
-#include "sim/video_writer.hpp"
 
 namespace {
 
@@ -37,27 +36,26 @@ Exit codes: 0 the scenario ran to its end, 1 the robot fell or a fault latched, 
 constexpr double kGyroNoise_rad_s = 0.01, kEncoderNoise_rad = 0.0004, kOrientationNoise_rad = 0.002;
 
 struct Arguments {
-  std::string robot = "z1";
-  fs::path scenario, out, clips, export_mjcf;
-  std::string policy = "none";
-  std::string blend = "gain";
+  runtime::ControlSetup control;
+  fs::path scenario, out, export_mjcf;
   std::uint64_t seed = 0;
   bool gantry = false, video = false, json = false, print_config = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
-  app.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")->capture_default_str();
+  app.add_option("--robot", arguments.control.robot, "robot's name below config/robots, or its folder")
+      ->capture_default_str();
   app.add_option("--scenario", arguments.scenario, "scenario to play (YAML)");
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
-  app.add_option("--policy", arguments.policy,
+  app.add_option("--policy", arguments.control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference")
       ->capture_default_str();
-  app.add_option("--blend", arguments.blend,
+  app.add_option("--blend", arguments.control.blend,
                  "how clips are mixed: gain, or paper for the paper's weights to the letter")
       ->check(CLI::IsMember({"gain", "paper"}))
       ->capture_default_str();
-  app.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
   app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)");
@@ -75,16 +73,6 @@ void require(const fs::path& value, const char* option) {
     throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
 }
 
-std::unique_ptr<policy::Policy> load_policy(const std::string& name, const model::RobotModel& robot) {
-  if (name == "none") return std::make_unique<policy::ReferencePolicy>();
-  const fs::path file = robot.directory / "policies" / (name + ".onnx");
-  if (!fs::exists(file)) {
-    throw std::invalid_argument(
-        fmt::format("--policy {}: there is no {}; expected the name of a policy there, or none", name, file.string()));
-  }
-  throw std::invalid_argument(fmt::format("--policy {}: this build can't run ONNX policies yet; expected none", name));
-}
-
 sim::WorldOptions world_options(const Arguments& arguments) {
   sim::WorldOptions options;
   options.gantry = arguments.gantry;
@@ -95,75 +83,15 @@ sim::WorldOptions world_options(const Arguments& arguments) {
   return options;
 }
 
-nlohmann::ordered_json channels_json(const std::array<double, kChannels>& values) {
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = values[i];
+nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded) {
+  nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
+  json["scenario"] = arguments.scenario.string();
+  json["seed"] = arguments.seed;
+  json["gantry"] = arguments.gantry;
+  json["sensor_noise"] = {
+      {"gyro_rad_s", kGyroNoise_rad_s}, {"encoder_rad", kEncoderNoise_rad}, {"orientation_rad", kOrientationNoise_rad}};
   return json;
 }
-
-nlohmann::ordered_json config_json(const Arguments& arguments, const model::RobotModel& robot, const fs::path& clips,
-                                   const runtime::TickOptions& tick) {
-  const runtime::FaultLimits& faults = tick.supervisor.fault_limits;
-  return {{"robot", robot.directory.string()},
-          {"clips", clips.string()},
-          {"scenario", arguments.scenario.string()},
-          {"policy", arguments.policy},
-          {"blend", arguments.blend},
-          {"seed", arguments.seed},
-          {"gantry", arguments.gantry},
-          {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9},
-          {"control_period_s", tick.dt_s},
-          {"sensor_noise",
-           {{"gyro_rad_s", kGyroNoise_rad_s},
-            {"encoder_rad", kEncoderNoise_rad},
-            {"orientation_rad", kOrientationNoise_rad}}},
-          {"command",
-           {{"lower", channels_json(tick.generator.limits.lower)},
-            {"upper", channels_json(tick.generator.limits.upper)},
-            {"rate_per_s", channels_json(tick.generator.limits.rate_per_s)}}},
-          {"gco", {{"prior_weight", tick.gco.prior_weight}, {"optimise_roll_pitch", tick.gco.optimise_roll_pitch}}},
-          {"limiter", {{"target_rate_factor", tick.limiter.target_rate_factor}}},
-          {"entry",
-           {{"speed_rad_s", tick.entry.speed_rad_s},
-            {"shortest_s", tick.entry.shortest_s},
-            {"longest_s", tick.entry.longest_s}}},
-          {"supervisor",
-           {{"stale_command_s", tick.supervisor.stale_command_s}, {"stop_within_s", tick.supervisor.stop_within_s}}},
-          {"faults",
-           {{"stale_state_s", faults.stale_state_s},
-            {"temperature_degC", faults.temperature_degC},
-            {"joint_limit_margin_rad", faults.joint_limit_margin_rad},
-            {"velocity_factor", faults.velocity_factor},
-            {"torque_factor", faults.torque_factor},
-            {"tilt_rad", faults.tilt_rad},
-            {"persist_ticks", faults.persist_ticks}}}};
-}
-
-/// Films every fourth tick: 25 frames a second of simulation, of a size that a CPU draws in a few minutes.
-class Film {
- public:
-  Film(sim::World& world, const fs::path& file)
-      : world_(world),
-        renderer_(world.mj_model(), {.width = 960, .height = 540}),
-        writer_(file, renderer_.width(), renderer_.height(), kFramesPerSecond) {}
-
-  void after_tick(const runtime::LockstepProgress& progress) {
-    if (++ticks_ % kTicksPerFrame != 0) return;
-    const std::string text =
-        fmt::format("{:6.1f} s  {}\n{}", progress.time_s, runtime::to_string(progress.result.mode), progress.step.text);
-    writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
-  }
-  void close() { writer_.close(); }
-
- private:
-  static constexpr int kFramesPerSecond = 25;
-  static constexpr int kTicksPerFrame = 4;
-
-  sim::World& world_;
-  sim::Renderer renderer_;
-  sim::VideoWriter writer_;
-  std::int64_t ticks_ = 0;
-};
 
 /// One line that renews itself, when somebody watches.
 class ProgressLine {
@@ -208,37 +136,34 @@ void report(const runtime::LockstepOutcome& outcome, const nlohmann::ordered_jso
 int simulate(const Arguments& arguments) {
   require(arguments.scenario, "--scenario");
   // Everything that input can spoil comes first: nothing is written for bad input.
-  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  const model::RobotModel& robot = loaded.robot;
   const runtime::Scenario scenario = runtime::load_scenario(arguments.scenario);
-  const fs::path clips = arguments.clips.empty() ? robot.directory / "clips" : arguments.clips;
-  ClipLibrary library = model::load_clip_library(clips, robot);
-  std::unique_ptr<policy::Policy> policy = load_policy(arguments.policy, robot);
-  runtime::TickOptions tick_options = runtime::tick_options(robot);
-  tick_options.generator.blend = arguments.blend == "paper" ? Blend::kPaper : Blend::kGain;
-  runtime::LockstepOptions lockstep_options;
-  lockstep_options.balanced_by_policy = arguments.policy != "none";
-  lockstep_options.always_hoisted = arguments.gantry;
   if (arguments.print_config) {
-    std::cout << config_json(arguments, robot, clips, tick_options).dump(2) << '\n';
+    std::cout << config_json(arguments, loaded).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
   sim::World world(robot, world_options(arguments));
   const io::WallClock wall_clock;
-  runtime::Tick tick(robot, std::move(library), std::move(policy), wall_clock, tick_options);
+  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
   hal::SilHal bus(world);
   runtime::WorldPlant plant(world);
 
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
   const runtime::RunInfo run{.robot = robot.name,
-                             .policy = arguments.policy,
-                             .options = config_json(arguments, robot, clips, tick_options).dump()};
-  runtime::TickLog log(log_file, robot, run, 1.0 / tick_options.dt_s);
-  std::optional<Film> film;
+                             .policy = arguments.control.policy,
+                             .options = config_json(arguments, loaded).dump(),
+                             .bundle = loaded.bundle,
+                             .files = loaded.files};
+  runtime::TickLog log(log_file, robot, run, 1.0 / loaded.options.dt_s);
+  std::optional<runtime::Film> film;
   if (arguments.video) film.emplace(world, arguments.out / "video.mp4");
   ProgressLine progress;
-  runtime::Lockstep lockstep(robot, bus, plant, tick, scenario, &log, lockstep_options);
+  runtime::Lockstep lockstep(
+      robot, bus, plant, *tick, scenario, &log,
+      {.balanced_by_policy = arguments.control.policy != "none", .always_hoisted = arguments.gantry});
   lockstep.interrupted = [] { return interrupt_requested != 0; };
   lockstep.after_tick = [&](const runtime::LockstepProgress& now) {
     if (film) film->after_tick(now);
@@ -252,8 +177,8 @@ int simulate(const Arguments& arguments) {
   log_file.flush();
   if (film) film->close();
   lockstep.timing().write_csv(arguments.out / "timing.csv");
-  const auto summary = runtime::summary_json({robot.name, scenario.name, arguments.policy, arguments.seed, wall_s},
-                                             outcome, lockstep.timing(), robot);
+  const auto summary = runtime::summary_json(
+      {robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s}, outcome, lockstep.timing(), robot);
   runtime::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';
@@ -265,7 +190,7 @@ int simulate(const Arguments& arguments) {
 }
 
 int export_mjcf(const Arguments& arguments) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.control.robot));
   const std::string text = sim::mjcf(robot, world_options(arguments));
   std::ofstream out(arguments.export_mjcf);
   out << text;

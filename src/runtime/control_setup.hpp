@@ -1,0 +1,44 @@
+// From what a user names (robot, clips, policy) to a tick: the one place, for the controller, simulation and replay.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "io/clock.hpp"
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+#include "policy/policy.hpp"
+#include "runtime/tick.hpp"
+
+namespace pmg::runtime {
+
+struct ControlSetup {
+  std::string robot = "z1";     ///< name below config/robots, or a folder
+  std::filesystem::path clips;  ///< empty: the robot's own
+  std::string policy = "none";  ///< name below the robot's policies/, or none: drives follow the reference
+  std::string blend = "gain";   ///< how clips are mixed: gain or paper
+};
+
+/// What a setup names, read from its files and checked. The tick refers to nothing of it but robot.
+struct LoadedControl {
+  model::RobotModel robot;
+  std::filesystem::path clips;
+  ClipLibrary library;
+  std::unique_ptr<policy::Policy> policy;
+  TickOptions options;
+  std::string bundle;                                      ///< as RunInfo's
+  std::vector<std::pair<std::string, std::string>> files;  ///< likewise
+};
+
+/// Throws model::ConfigError or std::invalid_argument.
+LoadedControl load_control(const ControlSetup& setup);
+
+/// Takes library and policy out of loaded. Keeps a reference to the stopwatch.
+std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch);
+
+/// The configuration in force, as --print-config shows it and a log's ROBOT_INFO keeps it.
+nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded);
+
+}  // namespace pmg::runtime

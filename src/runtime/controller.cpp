@@ -1,0 +1,168 @@
+#include "runtime/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+namespace pmg::runtime {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The control cycle begins so long after a bus cycle: the drives have answered by then, and half a bus period and more
+/// is left for the tick, so that its command goes out with the next exchange.
+constexpr std::int64_t kControlAfterBus_ns = 800'000;
+constexpr std::int64_t kStartDelay_ns = 2 * hal::BusCycle::kPeriod_ns;
+constexpr milliseconds kPoll{1};
+constexpr int kRecorderPause_ms = 20;
+
+std::int64_t ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+ThreadSchedule scheduled(ThreadSchedule schedule, bool realtime) {
+  if (!realtime) {
+    schedule.priority = 0;
+    schedule.cpu = -1;
+  }
+  return schedule;
+}
+
+}  // namespace
+
+Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, Tick& tick, const ControllerOptions& options)
+    : options_(options),
+      inbox_(link_.stop),
+      bus_cycle_(bus, link_, robot, clock_, options.guard),
+      control_cycle_(tick, link_, inbox_, clock_) {
+  if (options.realtime) refused_ = lock_memory();
+  bus_thread_ = std::make_unique<PeriodicThread>(scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
+                                                 [this](const CycleTiming& timing) { run_bus(timing); });
+  control_thread_ =
+      std::make_unique<PeriodicThread>(scheduled(options.control, options.realtime), ControlCycle::kPeriod_ns,
+                                       [this](const CycleTiming& timing) { run_control(timing); });
+  for (const PeriodicThread* thread : {bus_thread_.get(), control_thread_.get()}) {
+    refused_.insert(refused_.end(), thread->refused().begin(), thread->refused().end());
+  }
+  if (!options.realtime) refused_.push_back("real-time scheduling was not asked for");
+}
+
+Controller::~Controller() { stop(); }
+
+void Controller::run_bus(const CycleTiming& timing) noexcept {
+  bus_cycle_.run();
+  if (bus_cycle_.sample().status == hal::BusStatus::kOk) drives_answered_.store(true, std::memory_order_release);
+  CycleTiming done = timing;
+  done.done_ns = clock_.now_ns();
+  if (!outbox_.bus_cycles.push(done)) outbox_.dropped_bus_cycles.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Controller::run_control(const CycleTiming& timing) noexcept {
+  control_cycle_.run(timing.planned_ns);
+  record_ = control_cycle_.record();
+  record_.timing = timing;
+  record_.timing.done_ns = clock_.now_ns();
+  if (!outbox_.records.push(record_)) outbox_.dropped_records.fetch_add(1, std::memory_order_relaxed);
+  const TickResult& result = record_.result;
+  for (std::size_t i = 0; i < result.ack_count; ++i) outbox_.acks.push(result.acks[i]);
+  outbox_.newest.put(record_);
+  news_.put({.now_ns = record_.now_ns,
+             .mode = result.mode,
+             .fault = result.fault,
+             .driving = result.driving,
+             .guard_trip = record_.guard_trip});
+  mode_.store(result.mode, std::memory_order_release);
+}
+
+void Controller::start(Pass comms, Pass recorder) {
+  comms_ = std::move(comms);
+  recorder_ = std::move(recorder);
+  started_ = true;
+  const std::int64_t first_ns = clock_.now_ns() + kStartDelay_ns;
+  bus_thread_->start(first_ns);
+  await_first_sample();
+  const std::int64_t cycles = (clock_.now_ns() - first_ns) / hal::BusCycle::kPeriod_ns + 2;
+  control_thread_->start(first_ns + cycles * hal::BusCycle::kPeriod_ns + kControlAfterBus_ns);
+  comms_thread_ = repeat("comms", comms_, 0);
+  recorder_thread_ = repeat("recorder", recorder_, kRecorderPause_ms);
+}
+
+void Controller::await_first_sample() {
+  const std::int64_t deadline_ns = clock_.now_ns() + ns(options_.first_sample_within_s);
+  while (!drives_answered_.load(std::memory_order_acquire)) {
+    if (clock_.now_ns() > deadline_ns) {
+      stopped_ = true;
+      bus_thread_->stop();
+      throw std::runtime_error(
+          fmt::format("the drives did not answer within {:.1f} s: are they powered and is the bus connected?",
+                      options_.first_sample_within_s));
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+std::jthread Controller::repeat(const char* name, Pass& pass, int pause_ms) {
+  return std::jthread([this, name, &pass, pause_ms](const std::stop_token& stop) {
+    pthread_setname_np(pthread_self(), name);
+    while (!stop.stop_requested() && try_pass(name, pass)) {
+      if (pause_ms > 0) std::this_thread::sleep_for(milliseconds(pause_ms));
+    }
+  });
+}
+
+bool Controller::try_pass(const char* name, Pass& pass) {
+  std::string what;
+  try {
+    pass();
+    return true;
+  } catch (const std::exception& error) {
+    what = error.what();
+  } catch (...) {
+    what = "unknown exception";
+  }
+  link_.stop.pull();  // first of all
+  const std::lock_guard lock(failure_mutex_);
+  if (failure_.empty()) failure_ = fmt::format("thread {}: {}", name, what);
+  return false;
+}
+
+std::string Controller::failure() const {
+  const std::lock_guard lock(failure_mutex_);
+  return failure_;
+}
+
+bool Controller::stop() {
+  if (std::exchange(stopped_, true)) return confirmed_;
+  if (!started_) return confirmed_;
+  link_.stop.pull();  // before anything that might wait
+  comms_thread_.request_stop();
+  if (comms_thread_.joinable()) comms_thread_.join();
+  confirmed_ = await_damping();
+  control_thread_->stop();
+  bus_thread_->stop();
+  recorder_thread_.request_stop();
+  if (recorder_thread_.joinable()) recorder_thread_.join();
+  try_pass("comms", comms_);
+  try_pass("recorder", recorder_);
+  return confirmed_;
+}
+
+bool Controller::await_damping() {
+  // With comms gone this thread is the inbox's only writer, and nobody can ask for another mode.
+  ModeRequest damping;
+  damping.source = Source::make("controller", 1);
+  damping.mode = Mode::kDamping;
+  damping.received_ns = damping.stamp_ns = clock_.now_ns();
+  inbox_.put(damping);
+  const std::int64_t deadline_ns = clock_.now_ns() + ns(options_.confirm_stop_within_s);
+  const auto damps = [this] {
+    const Mode mode = mode_.load(std::memory_order_acquire);
+    return mode == Mode::kDamping || mode == Mode::kFault;
+  };
+  while (!damps() && clock_.now_ns() < deadline_ns) std::this_thread::sleep_for(kPoll);
+  std::this_thread::sleep_for(std::chrono::nanoseconds(ns(options_.damp_s)));
+  return damps();
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,109 @@
+// The robot's controller: bus and control in real-time threads, messages and log in ordinary ones, around the very
+// objects that lockstep runs in one thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
+#include "io/mailbox.hpp"
+#include "runtime/control_cycle.hpp"
+#include "runtime/controller_outbox.hpp"
+#include "runtime/operator_inbox.hpp"
+#include "runtime/periodic_thread.hpp"
+
+namespace pmg::runtime {
+
+struct ControllerOptions {
+  bool realtime = true;  ///< false: ordinary scheduling, nothing locked
+  /// The bus before the control tick: whatever the tick does, the drives are answered and the guard can act.
+  ThreadSchedule bus{.name = "bus", .priority = 80};
+  ThreadSchedule control{.name = "control", .priority = 70};
+  hal::GuardOptions guard;
+  double first_sample_within_s = 2.0;  ///< the drives must answer once before control starts
+  double confirm_stop_within_s = 0.5;  ///< how long stop() waits for the control thread's damping
+  double damp_s = 0.2;                 ///< how long stop() lets the drives damp before the threads end
+};
+
+/// What a console or a screen shows of a tick.
+struct ControllerNews {
+  std::int64_t now_ns = 0;
+  Mode mode = Mode::kPassive;
+  Fault fault;
+  Source driving;
+  hal::TripCause guard_trip = hal::TripCause::kNone;
+};
+
+class Controller {
+ public:
+  /// What an ordinary thread does again and again. A throw ends the thread, damps, and is kept as failure().
+  using Pass = std::function<void()>;
+
+  /// Keeps references. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
+  /// threads to be had.
+  Controller(const model::RobotModel& robot, hal::Hal& bus, Tick& tick, const ControllerOptions& options = {});
+  ~Controller();  ///< stops
+
+  OperatorInbox& inbox() noexcept { return inbox_; }  ///< to be written by comms alone, and by others before start()
+  ControllerOutbox& outbox() noexcept { return outbox_; }
+  /// What the system refused of real-time scheduling, in words; known before start().
+  const std::vector<std::string>& refused() const noexcept { return refused_; }
+  pid_t bus_thread() const noexcept { return bus_thread_->id(); }
+  pid_t control_thread() const noexcept { return control_thread_->id(); }
+
+  /// Starts the bus; when the drives have answered, control; then comms and recorder. comms blocks for some
+  /// milliseconds itself; recorder is called every 20 ms. Throws std::runtime_error when the drives don't answer.
+  void start(Pass comms, Pass recorder);
+
+  /// The newest tick; false when there was none since the last call. One reader.
+  bool news(ControllerNews& news) noexcept { return news_.take(news); }
+  /// Empty while all threads are well.
+  std::string failure() const;
+
+  /// Damps, waits until the control thread confirms, keeps damping for a moment, ends the threads in the order comms,
+  /// control, bus, recorder, and gives comms and recorder a last pass. False when the control thread did not confirm
+  /// (the bus damped all the same). Further calls return the first one's answer.
+  bool stop();
+
+  const CycleStatistics& bus_statistics() const noexcept { return bus_thread_->statistics(); }  ///< after stop()
+  const CycleStatistics& control_statistics() const noexcept {
+    return control_thread_->statistics();
+  }                                                                       ///< after stop()
+  const hal::BusCycle& bus_cycle() const noexcept { return bus_cycle_; }  ///< after stop()
+
+ private:
+  void run_bus(const CycleTiming& timing) noexcept;
+  void run_control(const CycleTiming& timing) noexcept;
+  void await_first_sample();
+  std::jthread repeat(const char* name, Pass& pass, int pause_ms);
+  bool try_pass(const char* name, Pass& pass);  // false: it threw
+  bool await_damping();
+
+  ControllerOptions options_;
+  io::WallClock clock_;
+  hal::BusLink link_;
+  OperatorInbox inbox_;
+  ControllerOutbox outbox_;
+  hal::BusCycle bus_cycle_;
+  ControlCycle control_cycle_;
+  TickRecord record_;  // the control thread's
+  io::Mailbox<ControllerNews> news_;
+  std::atomic<bool> drives_answered_{false};
+  std::atomic<Mode> mode_{Mode::kPassive};
+  Pass comms_, recorder_;
+  std::vector<std::string> refused_;
+  std::unique_ptr<PeriodicThread> bus_thread_, control_thread_;
+  std::jthread comms_thread_, recorder_thread_;
+  mutable std::mutex failure_mutex_;  // ordinary threads only
+  std::string failure_;
+  bool started_ = false, stopped_ = false, confirmed_ = true;
+};
+
+}  // namespace pmg::runtime

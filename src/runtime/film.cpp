@@ -1,0 +1,21 @@
+#include "runtime/film.hpp"
+
+#include <fmt/format.h>
+
+namespace pmg::runtime {
+
+Film::Film(sim::World& world, const std::filesystem::path& file)
+    : world_(world),
+      renderer_(world.mj_model(), {.width = 960, .height = 540}),
+      writer_(file, renderer_.width(), renderer_.height(), kFramesPerSecond) {}
+
+void Film::after_tick(const LockstepProgress& progress) {
+  if (++ticks_ % kTicksPerFrame != 0) return;
+  const std::string text =
+      fmt::format("{:6.1f} s  {}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text);
+  writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
+}
+
+void Film::close() { writer_.close(); }
+
+}  // namespace pmg::runtime

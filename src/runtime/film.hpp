@@ -1,0 +1,33 @@
+// A film of a lockstep run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "runtime/lockstep.hpp"
+#include "sim/renderer.hpp"
+#include "sim/video_writer.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::runtime {
+
+/// Every fourth tick a picture: 25 a second of simulation, of a size that a CPU draws in a few minutes.
+class Film {
+ public:
+  /// Keeps a reference to world. Throws std::runtime_error without ffmpeg or OSMesa.
+  Film(sim::World& world, const std::filesystem::path& file);
+
+  void after_tick(const LockstepProgress& progress);
+  void close();  ///< throws std::runtime_error when ffmpeg failed
+
+ private:
+  static constexpr int kFramesPerSecond = 25;
+  static constexpr int kTicksPerFrame = 4;
+
+  sim::World& world_;
+  sim::Renderer renderer_;
+  sim::VideoWriter writer_;
+  std::int64_t ticks_ = 0;
+};
+
+}  // namespace pmg::runtime

@@ -1,0 +1,45 @@
+// What a real-time process asks the system for, and in plain words what the system refuses.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pmg::runtime {
+
+/// How one thread wants to run.
+struct ThreadSchedule {
+  std::string name;  ///< as the kernel shows it: at most 15 characters
+  int priority = 0;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
+  int cpu = -1;      ///< the one CPU that it may run on; -1: any
+};
+
+/// What the kernel says of a thread.
+struct KernelSchedule {
+  int policy = 0;         ///< SCHED_FIFO, SCHED_OTHER, ...
+  int priority = 0;       ///< of SCHED_FIFO
+  std::vector<int> cpus;  ///< that it may run on
+};
+
+/// Every function below returns what the system refused: a sentence each with what, why and how to grant it; empty when
+/// all was granted. A refusal is never fatal: the controller runs on, later than it should.
+
+/// No page of this process leaves memory from now on, those to come included: a page fault would cost milliseconds.
+std::vector<std::string> lock_memory();
+
+/// Names and schedules the calling thread, and lets its timers fire without slack.
+std::vector<std::string> schedule_this_thread(const ThreadSchedule& wanted);
+
+/// Stack of a real-time thread, thread-local data included: little enough to be locked.
+inline constexpr std::size_t kRealtimeStack_bytes = 1024 * 1024;
+
+/// Touches the next 256 KiB of the calling thread's stack, far more than a cycle uses, so that no cycle is the first to
+/// use a page of it. Needed where locking memory is refused.
+void prefault_stack() noexcept;
+
+/// Throws std::system_error when there is no such thread.
+KernelSchedule kernel_schedule(pid_t thread);
+
+}  // namespace pmg::runtime

@@ -1,0 +1,46 @@
+#include "runtime/simulated_robot.hpp"
+
+#include <algorithm>
+
+#include "hal/bus_cycle.hpp"
+
+namespace pmg::runtime {
+
+namespace {
+constexpr double kBusPeriod_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
+constexpr std::int64_t kCyclesPerPose = 5;  // a hundred a second: more than any screen shows
+}  // namespace
+
+SimulatedRobot::SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth)
+    : world_(world), bus_(world), always_hoisted_(always_hoisted), keep_truth_(keep_truth) {}
+
+hal::BusStatus SimulatedRobot::exchange(const model::JointCommand& command, model::RobotState& state) noexcept {
+  if (!always_hoisted_) move_gantry();
+  const hal::BusStatus status = bus_.exchange(command, state);
+  if (status != hal::BusStatus::kOk) {
+    diverged_.store(true, std::memory_order_release);
+    return status;
+  }
+  if (keep_truth_) {
+    truth_.bus_sample = state.bus_sample;
+    truth_.truth = world_.truth();
+    truth_.hoisted = always_hoisted_ || hoist_.carrying();
+    if (!truths_.push(truth_)) dropped_truths_.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (cycles_++ % kCyclesPerPose == 0) show();
+  return status;
+}
+
+void SimulatedRobot::move_gantry() noexcept {
+  hoist_.step(carry_.load(std::memory_order_relaxed), kBusPeriod_s);
+  world_.set_hoist(hoist_.lift_m(), hoist_.engaged());
+}
+
+void SimulatedRobot::show() noexcept {
+  pose_.time_s = world_.time_s();
+  pose_.count = std::min(static_cast<std::size_t>(world_.mj_model()->nq), PoseSample::kMaxPositions);
+  std::copy_n(world_.mj_data()->qpos, pose_.count, pose_.qpos.begin());
+  poses_.put(pose_);
+}
+
+}  // namespace pmg::runtime

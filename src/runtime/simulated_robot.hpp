@@ -1,0 +1,65 @@
+// A simulated robot for the bus thread: what others want of it and from it crosses wait-free.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+
+#include "hal/sil_hal.hpp"
+#include "io/mailbox.hpp"
+#include "pmg/types.hpp"
+#include "runtime/hoist.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::runtime {
+
+/// What only the simulation knows of one bus cycle.
+struct TruthSample {
+  std::uint64_t bus_sample = 0;  ///< of the state that the controller got in the same cycle
+  sim::Truth truth;
+  bool hoisted = false;  ///< the gantry carries the robot
+};
+
+/// MuJoCo's generalised positions, for pictures.
+struct PoseSample {
+  static constexpr std::size_t kMaxPositions = 7 + kMaxJoints;  ///< a free base and the joints
+  double time_s = 0.0;
+  std::size_t count = 0;
+  std::array<double, kMaxPositions> qpos{};
+};
+
+class SimulatedRobot final : public hal::Hal {
+ public:
+  static constexpr std::size_t kTruths = 8192;  ///< sixteen seconds
+
+  /// Keeps a reference to world, which belongs to the bus thread from now on. always_hoisted: it began on the gantry
+  /// and stays there. keep_truth: somebody will take it; dropped_truths() counts what nobody took in time.
+  SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth);
+
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
+
+  void carry(bool carry) noexcept { carry_.store(carry, std::memory_order_relaxed); }  ///< by the gantry; any thread
+  bool take(TruthSample& sample) noexcept { return truths_.pop(sample); }              ///< one reader
+  bool take(PoseSample& pose) noexcept { return poses_.take(pose); }                   ///< one reader
+  bool diverged() const noexcept { return diverged_.load(std::memory_order_acquire); }
+  std::int64_t dropped_truths() const noexcept { return dropped_truths_.load(std::memory_order_relaxed); }
+
+ private:
+  void move_gantry() noexcept;
+  void show() noexcept;
+
+  sim::World& world_;
+  hal::SilHal bus_;
+  const bool always_hoisted_, keep_truth_;
+  Hoist hoist_;
+  TruthSample truth_;
+  PoseSample pose_;
+  std::int64_t cycles_ = 0;
+  std::atomic<bool> carry_{false}, diverged_{false};
+  std::atomic<std::int64_t> dropped_truths_{0};
+  boost::lockfree::spsc_queue<TruthSample> truths_{kTruths};
+  io::Mailbox<PoseSample> poses_;
+};
+
+}  // namespace pmg::runtime
