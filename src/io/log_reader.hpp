@@ -1,33 +1,57 @@
-// Reads LCM event logs, one event after the other.
+// Reads LCM event logs, one event after the other, whatever state they are in.
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
-#include <lcm/lcm-cpp.hpp>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pmg::io {
 
+/// Damaged stretches are skipped and counted; a last event that is cut short (power lost, file still being written)
+/// ends the log. Not LCM's own reader, which speaks on stdout and believes every length that it finds.
 class LogReader {
  public:
   explicit LogReader(const std::filesystem::path& path);  ///< throws std::runtime_error if the file can't be opened
 
   bool next();  ///< to the next event; false at the end
-  const std::string& channel() const { return event_->channel; }
-  std::int64_t stamp_ns() const { return event_->timestamp * 1000; }  ///< LCM logs keep microseconds
+  const std::string& channel() const { return channel_; }
+  std::int64_t stamp_ns() const { return stamp_us_ * 1000; }  ///< LCM logs keep microseconds
+  const std::vector<std::uint8_t>& data() const { return data_; }
 
   /// The current event's message; nothing when it is of another type or cut short.
   template <typename Message>
   std::optional<Message> decode() const {
     Message message;
-    if (message.decode(event_->data, 0, event_->datalen) < 0) return std::nullopt;
+    if (!decode_into(message)) return std::nullopt;
     return message;
   }
+  /// Likewise, into a message whose memory is used again.
+  template <typename Message>
+  bool decode_into(Message& message) const {
+    return message.decode(data_.data(), 0, static_cast<int>(data_.size())) >= 0;
+  }
+
+  /// So far: bytes that belong to no event, those of a last event that is cut short included.
+  std::int64_t skipped_bytes() const { return skipped_bytes_; }
+  bool cut_short() const { return cut_short_; }  ///< at the end: the last event is incomplete
 
  private:
-  lcm::LogFile file_;
-  const lcm::LogEvent* event_ = nullptr;
+  enum class Outcome { kEvent, kNoEvent, kEnd };
+  Outcome parse();
+  bool available(std::size_t bytes);
+
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::vector<std::uint8_t> window_;  // of the file; what lies before at_ is done with
+  std::size_t at_ = 0;
+  std::string channel_;
+  std::int64_t stamp_us_ = 0;
+  std::vector<std::uint8_t> data_;
+  std::int64_t skipped_bytes_ = 0;
+  bool cut_short_ = false;
 };
 
 }  // namespace pmg::io

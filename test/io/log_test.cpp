@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <lcm/lcm-cpp.hpp>
 
 #include "io/log_reader.hpp"
 #include "io/log_writer.hpp"
@@ -77,6 +80,117 @@ TEST_F(Log, HoldsNothingOfTheTimeOfWriting) {
   EXPECT_EQ(bytes("a.lcm"), bytes("b.lcm"));
 }
 
+TEST_F(Log, IsWhatLcmItselfReads) {
+  const pmg_msgs::motor_command_t written = motor_command(31);
+  {
+    io::LogWriter writer(folder_ / "log.lcm");
+    for (int k = 0; k < 3; ++k) writer.write("MOTOR_COMMAND", 10'000'000LL * k, written);
+  }
+  lcm::LogFile file((folder_ / "log.lcm").string(), "r");
+  ASSERT_TRUE(file.good());
+  for (int k = 0; k < 3; ++k) {
+    const lcm::LogEvent* event = file.readNextEvent();
+    ASSERT_NE(event, nullptr);
+    EXPECT_EQ(event->eventnum, k);
+    EXPECT_EQ(event->timestamp, 10'000LL * k) << "microseconds";
+    EXPECT_EQ(event->channel, "MOTOR_COMMAND");
+    pmg_msgs::motor_command_t read;
+    ASSERT_GT(read.decode(event->data, 0, event->datalen), 0);
+    EXPECT_EQ(read.q_rad, written.q_rad);
+  }
+  EXPECT_EQ(file.readNextEvent(), nullptr);
+}
+
+/// A log of this many events; returns one event's size.
+std::int64_t write_log(const std::filesystem::path& path, int events) {
+  io::LogWriter writer(path);
+  for (int k = 0; k < events; ++k) writer.write("MOTOR_COMMAND", 10'000'000LL * k, motor_command(31));
+  return writer.bytes() / events;
+}
+
+TEST_F(Log, CutAnywhereItReadsUpToTheLastWholeEvent) {
+  const auto path = folder_ / "log.lcm";
+  const std::int64_t size = write_log(path, 3);
+  for (const std::int64_t left : {std::int64_t{0}, std::int64_t{1}, std::int64_t{27}, std::int64_t{30}, size - 1}) {
+    std::filesystem::resize_file(path, static_cast<std::uintmax_t>(2 * size + left));
+    io::LogReader reader(path);
+    int events = 0;
+    while (reader.next()) ++events;
+    EXPECT_EQ(events, 2) << left;
+    EXPECT_EQ(reader.cut_short(), left > 0) << left;
+    EXPECT_EQ(reader.skipped_bytes(), left);
+    write_log(path, 3);
+  }
+}
+
+TEST_F(Log, DamageCostsTheEventThatItHitsAndIsCounted) {
+  const auto path = folder_ / "log.lcm";
+  const std::int64_t size = write_log(path, 4);
+  const auto spoil = [&](std::int64_t at, std::initializer_list<unsigned char> bytes) {
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(at);
+    for (const unsigned char byte : bytes) file.put(static_cast<char>(byte));
+  };
+  struct Case {
+    const char* what;
+    std::int64_t at;
+    std::initializer_list<unsigned char> bytes;
+  };
+  for (const Case& damage : {Case{"sync word", size, {0}}, Case{"a length beyond reason", size + 24, {0xff}},
+                             Case{"a length beyond the file", size + 25, {0x10}}, Case{"no channel", size + 23, {0}}}) {
+    write_log(path, 4);
+    spoil(damage.at, damage.bytes);
+    io::LogReader reader(path);
+    std::vector<std::int64_t> stamps_ns;
+    while (reader.next()) stamps_ns.push_back(reader.stamp_ns());
+    EXPECT_EQ(stamps_ns, (std::vector<std::int64_t>{0, 20'000'000, 30'000'000})) << damage.what;
+    EXPECT_EQ(reader.skipped_bytes(), size) << damage.what;
+    EXPECT_FALSE(reader.cut_short()) << damage.what;
+  }
+}
+
+TEST_F(Log, WhatIsFlushedIsInTheFileAtOnce) {
+  io::LogWriter writer(folder_ / "log.lcm");
+  writer.write("MOTOR_COMMAND", 0, motor_command(31));
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "log.lcm"), 0u) << "gathered";
+  writer.flush();
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "log.lcm"), static_cast<std::uintmax_t>(writer.bytes()));
+}
+
+TEST_F(Log, AFullDiskIsToldAndCutsNoEventInTwo) {
+  // The kernel refuses to let any file of this process grow beyond the limit: EFBIG stands in for ENOSPC.
+  const auto path = folder_ / "log.lcm";
+  const std::int64_t size = write_log(path, 1);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = static_cast<rlim_t>(5 * size / 2);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  {
+    io::LogWriter writer(path);
+    writer.write("MOTOR_COMMAND", 0, motor_command(31));
+    writer.flush();
+    for (int k = 1; k < 4; ++k) writer.write("MOTOR_COMMAND", 10'000'000LL * k, motor_command(31));
+    EXPECT_THROW(writer.flush(), std::runtime_error);
+    EXPECT_EQ(writer.bytes(), size) << "what could not be written is forgotten";
+    writer.write("MOTOR_COMMAND", 40'000'000, motor_command(31));  // there is room for one more
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  io::LogReader reader(path);
+  std::vector<std::int64_t> stamps_ns;
+  while (reader.next()) stamps_ns.push_back(reader.stamp_ns());
+  EXPECT_EQ(stamps_ns, (std::vector<std::int64_t>{0, 40'000'000}));
+  EXPECT_EQ(reader.skipped_bytes(), 0);
+}
+
+TEST_F(Log, ADeviceThatTakesNothingIsToldToo) {
+  io::LogWriter writer("/dev/full");
+  writer.write("MOTOR_COMMAND", 0, motor_command(31));
+  EXPECT_THROW(writer.flush(), std::runtime_error);
+}
+
 TEST_F(Log, SaysWhichFileCannotBeMadeOrOpened) {
   try {
     io::LogWriter writer(folder_ / "absent" / "log.lcm");
@@ -85,6 +199,7 @@ TEST_F(Log, SaysWhichFileCannotBeMadeOrOpened) {
     EXPECT_NE(std::string(error.what()).find("absent/log.lcm"), std::string::npos) << error.what();
   }
   EXPECT_THROW(io::LogReader(folder_ / "absent.lcm"), std::runtime_error);
+  EXPECT_THROW(io::LogReader{folder_}, std::runtime_error);
 }
 
 }  // namespace
