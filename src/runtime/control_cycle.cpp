@@ -19,6 +19,7 @@ void ControlCycle::run(std::int64_t planned_ns) noexcept {
   output_.joints = result.command;
   link_.commands.put(output_);
   record_.result = result;
+  record_.tick = next_tick_++;
   late_ns_ = clock_.now_ns() - (planned_ns + kPeriod_ns);
 }
 

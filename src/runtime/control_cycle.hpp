@@ -34,6 +34,7 @@ class ControlCycle {
   hal::BusSample sample_;
   hal::ControlOutput output_;
   TickRecord record_;
+  std::int64_t next_tick_ = 0;
   std::int64_t late_ns_ = 0;  // what this tick tells the next
 };
 

@@ -171,6 +171,7 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
 void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
   const TickInput input = record.input();
   message.stamp_ns = input.now_ns;
+  message.tick = record.tick;
   message.bus = static_cast<std::int8_t>(input.bus);
   message.guard_trip = static_cast<std::int8_t>(input.guard_trip);
   message.stop = input.stop;

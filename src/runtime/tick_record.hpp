@@ -15,6 +15,7 @@ struct CycleTiming {
 };
 
 struct TickRecord {
+  std::int64_t tick = 0;  ///< counts from 0
   model::RobotState state;
   hal::BusStatus bus = hal::BusStatus::kOk;
   std::int64_t now_ns = 0;
