@@ -25,7 +25,7 @@ using Bytes = std::span<const std::uint8_t>;
 template <typename Message>
 std::optional<Message> decode_message(Bytes bytes) {
   try {
-    Message message;
+    Message message{};
     const int size = static_cast<int>(bytes.size());
     if (message.decode(bytes.data(), 0, size) == size) return message;
   } catch (const std::exception&) {  // lcm-gen's code trusts lengths: std::string and std::vector object

@@ -21,6 +21,9 @@ class OperatorInbox {
     return queued;
   }
 
+  /// A stop that nobody waits to see acknowledged.
+  void stop() noexcept { stop_.pull(); }
+
   bool take(DriveMessage& drive) noexcept { return drives_.pop(drive); }
   bool take(ModeRequest& request) noexcept { return requests_.pop(request); }
 

@@ -1,0 +1,153 @@
+#include "runtime/comms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "runtime/tick_messages.hpp"
+
+namespace pmg::runtime {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+}  // namespace
+
+Comms::Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, const model::RobotModel& robot,
+             const RunInfo& run, double control_rate_Hz, const io::Clock& clock)
+    : link_(link),
+      outbox_(outbox),
+      robot_(robot),
+      run_(run),
+      control_rate_Hz_(control_rate_Hz),
+      clock_(clock),
+      gate_(inbox, run.robot, clock),
+      next_second_ns_(clock.now_ns()) {
+  link_.subscribe("COMMAND", [this](io::Bytes message) {
+    if (!listening_) gate_.take_command(message);
+  });
+  link_.subscribe("MODE", [this](io::Bytes message) {
+    if (!listening_) gate_.take_mode(message);
+  });
+  link_.subscribe("STATUS", [this](io::Bytes message) { hear_status(message); });
+}
+
+void Comms::hear_status(io::Bytes bytes) {
+  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
+  if (!status) return;  // nobody's request: not counted as one
+  if (status->robot != run_.robot) {
+    if (listening_ && std::ranges::find(others_, status->robot) == others_.end()) others_.push_back(status->robot);
+  } else if (status->session != run_.session) {
+    ++impostors_heard_;
+    impostor_session_ = status->session;
+  }
+}
+
+std::vector<std::string> Comms::listen_for_others(double seconds, const std::function<bool()>& interrupted) {
+  using std::chrono::steady_clock;
+  listening_ = true;
+  const auto end = steady_clock::now() + std::chrono::duration<double>(seconds);
+  do {
+    link_.receive(10);
+  } while (impostors_heard_ == 0 && steady_clock::now() < end && !(interrupted && interrupted()));
+  listening_ = false;
+  if (impostors_heard_ > 0) {
+    throw std::runtime_error(
+        fmt::format("robot \"{}\" is already run by another controller (session {}) on {}: end that one, or start this "
+                    "one with another --name or --lcm-url",
+                    run_.robot, impostor_session_, link_.url()));
+  }
+  return others_;
+}
+
+void Comms::step(int timeout_ms) {
+  link_.receive(timeout_ms);
+  publish_acks();
+  publish_newest();
+  if (clock_.now_ns() >= next_second_ns_) {
+    next_second_ns_ = clock_.now_ns() + kSecond_ns;
+    publish_each_second();
+  }
+  warn();
+}
+
+void Comms::warn() {
+  const GateCounts& counts = gate_.counts();
+  const auto once = [&](Warning warning, bool wrong, const auto& text) {
+    bool& warned = warned_[static_cast<std::size_t>(warning)];
+    if (!wrong || warned) return;
+    warned = true;
+    if (on_warning) on_warning(text());
+  };
+  once(Warning::kImpostor, impostors_heard_ > 0, [&] {
+    return fmt::format(
+        "another controller (session {}) speaks as robot \"{}\" on {}: both hear the same operators; end one of them",
+        impostor_session_, run_.robot, link_.url());
+  });
+  once(Warning::kMalformed, counts.malformed > 0,
+       [] { return std::string("malformed operators' messages are ignored; LINK counts them"); });
+  once(Warning::kVersion, counts.other_version > 0,
+       [] { return std::string("operators' messages of another version are ignored; LINK counts them"); });
+  once(Warning::kFlood, counts.flooded > 0,
+       [] { return std::string("operators send more than they are listened to; LINK counts what is ignored"); });
+  once(Warning::kNetwork, link_.publish_errors() > 0,
+       [&] { return fmt::format("the network refuses what is published on {}; the controller goes on", link_.url()); });
+}
+
+void Comms::publish_acks() {
+  outbox_.acks.consume_all([&](const ModeAck& ack) {
+    fill(ack, run_, clock_.now_ns(), ack_);
+    link_.publish("ACK", ack_);
+  });
+}
+
+void Comms::publish_newest() {
+  if (!outbox_.newest.take(newest_)) return;
+  const int joint_count = robot_.joint_index.size();
+  fill(newest_, run_, robot_, status_);
+  link_.publish("STATUS", status_);
+  fill(newest_, joint_count, state_);
+  link_.publish("STATE", state_);
+  fill(newest_, joint_count, reference_);
+  link_.publish("REFERENCE", reference_);
+  fill(newest_, joint_count, motor_command_);
+  link_.publish("MOTOR_COMMAND", motor_command_);
+  // The bus cycles go to the recorder, whose TIMING has them.
+  fill(newest_, BusTiming{}, outbox_.dropped_records, timing_);
+  link_.publish("TIMING", timing_);
+
+  const Fault& fault = newest_.result.fault;
+  const bool told = fault.code == published_fault_.code && fault.stamp_ns == published_fault_.stamp_ns;
+  if (newest_.result.mode == Mode::kFault && !told) {
+    fill(newest_, run_, robot_, fault_);
+    link_.publish("FAULT", fault_);
+  }
+  published_fault_ = fault;
+}
+
+void Comms::publish_each_second() {
+  const std::int64_t now_ns = clock_.now_ns();
+  fill(run_, robot_, control_rate_Hz_, now_ns, info_);
+  link_.publish("ROBOT_INFO", info_);
+
+  const GateCounts& gate = gate_.counts();
+  const IgnoredCommands& intake = newest_.result.ignored;
+  counts_.stamp_ns = now_ns;
+  counts_.robot = run_.robot;
+  counts_.accepted = intake.accepted;
+  counts_.malformed = gate.malformed;
+  counts_.other_version = gate.other_version;
+  counts_.other_robot = gate.other_robot;
+  counts_.flooded = gate.flooded;
+  counts_.other_source = intake.other_source;
+  counts_.out_of_order = intake.out_of_order;
+  counts_.late = intake.late;
+  counts_.not_finite = intake.not_finite;
+  counts_.no_lease = intake.no_lease;
+  link_.publish("LINK", counts_);
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,89 @@
+// The controller on the network: hears operators, answers them, and tells what it does. Channels: msgs/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/clock.hpp"
+#include "io/lcm_link.hpp"
+#include "model/robot_model.hpp"
+#include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/fault_t.hpp"
+#include "pmg_msgs/link_t.hpp"
+#include "pmg_msgs/motor_command_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+#include "runtime/controller_outbox.hpp"
+#include "runtime/operator_gate.hpp"
+#include "runtime/operator_inbox.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/tick_record.hpp"
+
+namespace pmg::runtime {
+
+/// For one ordinary thread, which calls step() again and again. Nothing here waits for a real-time thread, or makes one
+/// wait. A network that refuses what is published is counted and said once; it ends nothing.
+class Comms {
+ public:
+  /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
+  /// subscribe.
+  Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, const model::RobotModel& robot,
+        const RunInfo& run, double control_rate_Hz, const io::Clock& clock);
+
+  /// One line for the console when something is wrong for the first time. Called from step().
+  std::function<void(const std::string&)> on_warning;
+
+  /// Before the controller speaks: who else is on this address? Returns the other robots' names after that many seconds
+  /// of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our name is heard:
+  /// one line with name, session, address and what to do. Operators' messages of this time are not taken.
+  std::vector<std::string> listen_for_others(double seconds, const std::function<bool()>& interrupted = {});
+
+  /// Waits up to timeout_ms for operators, takes what they sent (a bounded number), and publishes: ACK for each answer,
+  /// the newest tick if there is one that was not published, FAULT when one latches, ROBOT_INFO and LINK once a second.
+  void step(int timeout_ms);
+
+  const GateCounts& gate_counts() const noexcept { return gate_.counts(); }
+  std::int64_t impostors_heard() const noexcept { return impostors_heard_; }  ///< messages of another one of our name
+
+ private:
+  enum class Warning { kImpostor, kMalformed, kVersion, kFlood, kNetwork };
+
+  void hear_status(io::Bytes message);
+  void publish_acks();
+  void publish_newest();
+  void publish_each_second();
+  void warn();
+
+  io::LcmLink& link_;
+  ControllerOutbox& outbox_;
+  const model::RobotModel& robot_;
+  const RunInfo& run_;
+  double control_rate_Hz_;
+  const io::Clock& clock_;
+  OperatorGate gate_;
+  bool listening_ = false;
+  std::vector<std::string> others_;
+  std::int64_t impostors_heard_ = 0, impostor_session_ = 0;
+  std::array<bool, 5> warned_{};  // by Warning
+  std::int64_t next_second_ns_;
+
+  TickRecord newest_;
+  Fault published_fault_;
+  pmg_msgs::ack_t ack_;
+  pmg_msgs::status_t status_;
+  pmg_msgs::robot_state_t state_;
+  pmg_msgs::reference_t reference_;
+  pmg_msgs::motor_command_t motor_command_;
+  pmg_msgs::timing_t timing_;
+  pmg_msgs::fault_t fault_;
+  pmg_msgs::robot_info_t info_;
+  pmg_msgs::link_t counts_{};
+};
+
+}  // namespace pmg::runtime

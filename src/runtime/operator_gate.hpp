@@ -1,0 +1,43 @@
+// What strangers on the network may put into the controller: whole messages of our version, for our robot, from a
+// source with a name, not too many. What else comes is counted and ignored; a stop gets through all of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/clock.hpp"
+#include "io/lcm_link.hpp"
+#include "runtime/operator_inbox.hpp"
+#include "runtime/source_rates.hpp"
+
+namespace pmg::runtime {
+
+/// Messages that were ignored before any tick saw them (pmg_msgs::link_t).
+struct GateCounts {
+  std::int64_t malformed = 0;
+  std::int64_t other_version = 0;
+  std::int64_t other_robot = 0;
+  std::int64_t flooded = 0;
+  friend bool operator==(const GateCounts&, const GateCounts&) = default;
+};
+
+/// The inbox's one writer. Finiteness, order, age, lease and who drives are for CommandIntake to judge.
+class OperatorGate {
+ public:
+  /// Keeps references. robot: the controller's name.
+  OperatorGate(OperatorInbox& inbox, std::string robot, const io::Clock& clock);
+
+  void take_command(io::Bytes message);  ///< channel COMMAND
+  void take_mode(io::Bytes message);     ///< channel MODE
+
+  const GateCounts& counts() const noexcept { return counts_; }
+
+ private:
+  OperatorInbox& inbox_;
+  std::string robot_;
+  const io::Clock& clock_;
+  SourceRates rates_;
+  GateCounts counts_;
+};
+
+}  // namespace pmg::runtime
