@@ -1,0 +1,122 @@
+#include "operator/mode_wish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "operator/words.hpp"
+
+namespace pmg::ops {
+
+namespace {
+
+using Modes = pmg_msgs::mode_t;
+
+std::int8_t requested_mode(Goal goal) {
+  switch (goal) {
+    case Goal::kPassive:
+      return Modes::PASSIVE;
+    case Goal::kStand:
+      return Modes::STAND;
+    case Goal::kWalk:
+      return Modes::WALK;
+    default:
+      return Modes::DAMPING;
+  }
+}
+
+bool reached(Goal goal, std::int8_t mode) {
+  switch (goal) {
+    case Goal::kStop:
+      return mode == Modes::DAMPING || mode == Modes::PASSIVE || mode == Modes::FAULT;
+    case Goal::kReset:
+      return mode != Modes::FAULT;
+    default:
+      return mode == requested_mode(goal);
+  }
+}
+
+std::string fault_words(const HeardRobot& heard) {
+  return heard.status && !heard.status->fault.empty() ? heard.status->fault : "a fault is latched";
+}
+
+}  // namespace
+
+ModeWish::ModeWish(OperatorSource& source, std::string robot, Goal goal, double timeout_s)
+    : source_(source),
+      robot_(std::move(robot)),
+      goal_(goal),
+      timeout_s_(timeout_s),
+      begin_ns_(source.clock().now_ns()),
+      repeat_at_ns_(begin_ns_ + kRepeat_ns) {
+  source_.request(robot_, requested_mode(goal), goal == Goal::kReset);
+}
+
+double ModeWish::elapsed_s() const { return static_cast<double>(source_.clock().now_ns() - begin_ns_) * 1e-9; }
+
+Progress ModeWish::step() {
+  const std::vector<Answer> all = answers();
+  const auto every = [&](auto condition) { return std::ranges::all_of(all, condition); };
+  const bool gathered = !robot_.empty() || source_.clock().now_ns() - begin_ns_ >= kGather_ns;
+  const bool timed_out = elapsed_s() >= timeout_s_;
+  if (gathered && !all.empty() && every([](const Answer& a) { return a.progress != Progress::kPending; })) {
+    return every([](const Answer& a) { return a.progress == Progress::kReached; }) ? Progress::kReached
+                                                                                   : Progress::kFailed;
+  }
+  if (timed_out) return Progress::kFailed;
+  const bool unanswered = all.empty() || !every([](const Answer& a) { return a.acknowledged; });
+  if (unanswered && source_.clock().now_ns() >= repeat_at_ns_) {
+    repeat_at_ns_ = source_.clock().now_ns() + kRepeat_ns;
+    source_.repeat_request();
+  }
+  return Progress::kPending;
+}
+
+std::vector<Answer> ModeWish::answers() const {
+  if (!robot_.empty()) return {judge(robot_)};
+  std::vector<Answer> all;
+  for (const auto& [robot, heard] : source_.heard()) all.push_back(judge(robot));
+  return all;
+}
+
+Answer ModeWish::judge(const std::string& robot) const {
+  Answer answer{.robot = robot, .mode = "unknown", .text = ""};
+  const HeardRobot* heard = source_.heard(robot);
+  if (heard == nullptr) {
+    answer.text = fmt::format("no controller of this name answers on {}", source_.url());
+    return answer;
+  }
+  answer.mode = mode_name(*heard->mode());
+  if (!heard->ack) {
+    answer.text = "not acknowledged";
+    return answer;
+  }
+  answer.acknowledged = true;
+  if (heard->ack->verdict == pmg_msgs::ack_t::TAKEN) return judge_taken(answer, *heard);
+  answer.text = verdict_words(heard->ack->verdict);
+  if (heard->ack->verdict == pmg_msgs::ack_t::NOT_YOURS && heard->status) {
+    answer.text += fmt::format(": {} (only a stop is taken from others)", heard->status->driving_source);
+  }
+  answer.progress = Progress::kFailed;
+  return answer;
+}
+
+Answer ModeWish::judge_taken(Answer answer, const HeardRobot& heard) const {
+  const std::int8_t mode = *heard.mode();
+  if (reached(goal_, mode)) {
+    answer.progress = Progress::kReached;
+    if (mode == Modes::FAULT) answer.text = fault_words(heard);
+  } else if (mode == Modes::FAULT) {
+    answer.progress = Progress::kFailed;
+    answer.text = fault_words(heard) + (goal_ == Goal::kReset ? "; its cause is still there" : "; ask for a reset");
+  } else if (goal_ == Goal::kPassive && mode == Modes::DAMPING) {
+    answer.progress = Progress::kFailed;
+    answer.text = "brakes; a robot that stood goes limp only when told twice";
+  } else {
+    answer.text = fmt::format("on its way to {}", mode_name(requested_mode(goal_)));
+  }
+  return answer;
+}
+
+}  // namespace pmg::ops

@@ -1,0 +1,68 @@
+#include "operator/operator_source.hpp"
+
+namespace pmg::ops {
+
+std::optional<std::int8_t> HeardRobot::mode() const {
+  if (ack && (!status || status->stamp_ns < ack->stamp_ns)) return ack->mode;
+  if (status) return status->mode;
+  return std::nullopt;
+}
+
+OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock)
+    : link_(link), clock_(clock) {
+  command_.version = pmg_msgs::command_t::VERSION;
+  mode_.version = pmg_msgs::mode_t::VERSION;
+  command_.source = mode_.source = name;
+  command_.session = mode_.session = session;
+  link_.subscribe("STATUS", [this](io::Bytes message) { hear_status(message); });
+  link_.subscribe("ACK", [this](io::Bytes message) { hear_ack(message); });
+}
+
+void OperatorSource::send_command(const std::string& robot, const Command& command, double lease_s) {
+  command_.robot = robot;
+  command_.stamp_ns = clock_.now_ns();
+  ++command_.sequence;
+  command_.lease_s = lease_s;
+  command_.vx_m_s = command[kVx];
+  command_.vy_m_s = command[kVy];
+  command_.omega_rad_s = command[kOmega];
+  command_.pitch_rad = command[kPitch];
+  command_.roll_rad = command[kRoll];
+  command_.height_m = command[kHeight];
+  link_.publish("COMMAND", command_);
+}
+
+void OperatorSource::request(const std::string& robot, std::int8_t mode, bool reset_fault) {
+  for (auto& [name, heard] : heard_) heard.ack.reset();
+  mode_.robot = robot;
+  ++mode_.sequence;
+  mode_.mode = mode;
+  mode_.reset_fault = reset_fault ? 1 : 0;
+  repeat_request();
+}
+
+void OperatorSource::repeat_request() {
+  mode_.stamp_ns = clock_.now_ns();
+  link_.publish("MODE", mode_);
+}
+
+const HeardRobot* OperatorSource::heard(const std::string& robot) const {
+  const auto found = heard_.find(robot);
+  return found == heard_.end() ? nullptr : &found->second;
+}
+
+void OperatorSource::hear_status(io::Bytes bytes) {
+  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
+  if (!status) return;
+  HeardRobot& robot = heard_[status->robot];
+  robot.status = status;
+  robot.status_heard_ns = clock_.now_ns();
+}
+
+void OperatorSource::hear_ack(io::Bytes bytes) {
+  const auto ack = io::decode_message<pmg_msgs::ack_t>(bytes);
+  const bool mine = ack && ack->source == mode_.source && ack->session == mode_.session;
+  if (mine && ack->sequence == mode_.sequence) heard_[ack->robot].ack = ack;
+}
+
+}  // namespace pmg::ops

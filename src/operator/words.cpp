@@ -1,0 +1,42 @@
+#include "operator/words.hpp"
+
+#include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/mode_t.hpp"
+
+namespace pmg::ops {
+
+const char* mode_name(std::int8_t mode) noexcept {
+  switch (mode) {
+    case pmg_msgs::mode_t::PASSIVE:
+      return "passive";
+    case pmg_msgs::mode_t::DAMPING:
+      return "damping";
+    case pmg_msgs::mode_t::STAND:
+      return "stand";
+    case pmg_msgs::mode_t::WALK:
+      return "walk";
+    case pmg_msgs::mode_t::FAULT:
+      return "fault";
+    default:
+      return "unknown";
+  }
+}
+
+const char* verdict_words(std::int8_t verdict) noexcept {
+  switch (verdict) {
+    case pmg_msgs::ack_t::TAKEN:
+      return "taken";
+    case pmg_msgs::ack_t::NOT_YOURS:
+      return "another source drives";
+    case pmg_msgs::ack_t::OUT_OF_ORDER:
+      return "out of order";
+    case pmg_msgs::ack_t::LATE:
+      return "too long on the way";
+    case pmg_msgs::ack_t::NO_MODE:
+      return "no mode that can be asked for";
+    default:
+      return "unknown answer";
+  }
+}
+
+}  // namespace pmg::ops

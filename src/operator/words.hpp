@@ -1,0 +1,11 @@
+// What the numbers in controllers' messages mean, in words.
+#pragma once
+
+#include <cstdint>
+
+namespace pmg::ops {
+
+const char* mode_name(std::int8_t mode) noexcept;         ///< of pmg_msgs::mode_t: "stand"
+const char* verdict_words(std::int8_t verdict) noexcept;  ///< of pmg_msgs::ack_t: why a request was not taken
+
+}  // namespace pmg::ops
