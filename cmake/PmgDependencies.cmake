@@ -37,14 +37,12 @@ add_library(pmg_kdl INTERFACE)
 target_include_directories(pmg_kdl SYSTEM INTERFACE ${orocos_kdl_INCLUDE_DIRS})
 target_link_libraries(pmg_kdl INTERFACE ${orocos_kdl_LIBRARIES} Eigen3::Eigen)
 
-# MuJoCo 2.2.2 and ONNX Runtime 1.21: third_party/fetch unpacks them, checked, into third_party/prefix.
+# MuJoCo 2.2.2, ONNX Runtime 1.21 and uPlot: third_party/fetch unpacks them, checked, into third_party/prefix, and does
+# nothing when they are there as pinned.
 set(PMG_THIRD_PARTY ${CMAKE_SOURCE_DIR}/third_party/prefix)
-if(NOT EXISTS ${PMG_THIRD_PARTY}/complete)
-  message(STATUS "Fetching MuJoCo and ONNX Runtime (third_party/fetch)")
-  execute_process(COMMAND ${CMAKE_SOURCE_DIR}/third_party/fetch RESULT_VARIABLE fetched)
-  if(NOT fetched EQUAL 0)
-    message(FATAL_ERROR "third_party/fetch failed; see its message above")
-  endif()
+execute_process(COMMAND ${CMAKE_SOURCE_DIR}/third_party/fetch RESULT_VARIABLE fetched)
+if(NOT fetched EQUAL 0)
+  message(FATAL_ERROR "third_party/fetch failed; see its message above")
 endif()
 
 add_library(pmg_mujoco SHARED IMPORTED GLOBAL)
