@@ -2,10 +2,15 @@
 
 namespace pmg::runtime {
 
-TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz)
+namespace {
+bool same(const Fault& a, const Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
+}  // namespace
+
+TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz,
+                 std::int64_t stamp_ns)
     : writer_(&writer), robot_(robot), run_(run), joint_count_(robot.joint_index.size()) {
-  fill(run_, robot_, control_rate_Hz, 0, info_);
-  writer_->write("ROBOT_INFO", 0, info_);
+  fill(run_, robot_, control_rate_Hz, stamp_ns, info_);
+  writer_->write("ROBOT_INFO", stamp_ns, info_);
 }
 
 void TickLog::continue_in(io::LogWriter& writer, std::int64_t stamp_ns) {
@@ -41,10 +46,15 @@ void TickLog::write_input(const TickRecord& record) {
   writer_->write("TICK", record.now_ns, input_);
 }
 
+void TickLog::announce_fault(std::int64_t stamp_ns, const TickRecord& record) {
+  announced_fault_ = record.result.fault;
+  fill(record, run_, robot_, fault_);
+  writer_->write("FAULT", stamp_ns, fault_);
+}
+
 void TickLog::write_fault_once(const TickRecord& record) {
   const Fault& fault = record.result.fault;
-  const bool latched =
-      fault.code != FaultCode::kNone && (fault.code != last_fault_.code || fault.stamp_ns != last_fault_.stamp_ns);
+  const bool latched = fault.code != FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
   last_fault_ = fault;
   if (!latched) return;
   fill(record, run_, robot_, fault_);

@@ -18,10 +18,15 @@ namespace pmg::runtime {
 class TickLog {
  public:
   /// Keeps references to writer and robot.
-  TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz);
+  TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz,
+          std::int64_t stamp_ns = 0);
 
   /// From here on into another file, which stands alone: it begins with ROBOT_INFO too.
   void continue_in(io::LogWriter& writer, std::int64_t stamp_ns);
+
+  /// FAULT now, with the stamp of the fault itself, instead of after the tick that latched it: a file that is about one
+  /// fault begins with it.
+  void announce_fault(std::int64_t stamp_ns, const TickRecord& record);
 
   void write(const TickRecord& record);
   void write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
@@ -35,7 +40,7 @@ class TickLog {
   const model::RobotModel& robot_;
   const RunInfo run_;
   const int joint_count_;
-  Fault last_fault_;
+  Fault last_fault_, announced_fault_;
   pmg_msgs::robot_info_t info_;
   pmg_msgs::tick_input_t input_;
   pmg_msgs::command_t command_;

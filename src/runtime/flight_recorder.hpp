@@ -1,0 +1,89 @@
+// The last seconds before a fault, kept in memory and written when one latches: a log that stands alone, and beside it
+// a page of text for the operator.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/clock.hpp"
+#include "model/robot_model.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/tick_messages.hpp"
+#include "runtime/tick_record.hpp"
+
+namespace pmg::runtime {
+
+struct FlightRecorderOptions {
+  double before_s = 30.0;  ///< of the records that are written, before the fault
+  double after_s = 1.0;    ///< and after it
+  int files = 16;          ///< pairs of log and text in the folder at most; older ones are removed
+  double retry_s = 1.0;    ///< after the disk refused one
+};
+
+/// Memory for all records is taken when it is made: some 9 kB for each. Writes
+/// DIRECTORY/fault-<UTC time>-<code>.lcm and .txt; names sort by time. Not for a real-time thread, no thread of its
+/// own.
+class FlightRecorder {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  /// Keeps references to robot and clock, which is the one that stamps the records. say takes sentences for people.
+  FlightRecorder(std::filesystem::path directory, const model::RobotModel& robot, const RunInfo& run,
+                 double control_rate_Hz, const io::Clock& clock, const FlightRecorderOptions& options, Say say);
+
+  void add(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+
+  /// Writes what is due. What the disk refuses is kept, and tried again in a later pass.
+  void pass();
+  /// Writes everything that waits, complete or not, once more.
+  void close();
+
+  int written() const { return written_; }
+  int waiting() const { return static_cast<int>(waiting_.size()); }
+
+ private:
+  struct Row {
+    TickRecord record;
+    BusTiming bus;
+    std::int64_t dropped_records = 0;
+  };
+  /// A fault that is not on the disk yet.
+  struct Incident {
+    TickRecord record;  // of the tick that latched it
+    Mode mode_before = Mode::kPassive;
+    std::int64_t utc_ns = 0;
+    std::int64_t try_ns = 0;   // not before, by the clock
+    std::vector<Row> rescued;  // after a refusal: the ring moves on
+    bool refused = false;
+  };
+
+  const Row& row(std::size_t age) const;  // 0: the newest
+  void note_fault(const TickRecord& record);
+  bool complete(const Incident& incident) const;
+  bool try_writing(Incident& incident);
+  void write(const Incident& incident, const std::filesystem::path& stem) const;
+  std::vector<const Row*> rows_of(const Incident& incident) const;
+  std::string text(const Incident& incident, const std::vector<const Row*>& rows,
+                   const std::filesystem::path& stem) const;
+  std::filesystem::path stem(const Incident& incident) const;
+  void remove_oldest() const;
+
+  std::filesystem::path directory_;
+  const model::RobotModel& robot_;
+  RunInfo run_;
+  double control_rate_Hz_;
+  const io::Clock& clock_;
+  FlightRecorderOptions options_;
+  Say say_;
+  std::vector<Row> ring_;
+  std::size_t next_ = 0, held_ = 0;
+  Fault last_fault_;
+  Mode last_mode_ = Mode::kPassive;
+  std::vector<Incident> waiting_;
+  int written_ = 0;
+};
+
+}  // namespace pmg::runtime

@@ -1,0 +1,223 @@
+#include "runtime/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+namespace pmg::runtime {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Flushed at least so often: fewer records than fill the writer's buffer, so that a refusal's losses can be counted.
+constexpr std::int64_t kRecordsAFlush = 50;
+
+/// log-NNNN.lcm by number.
+std::map<int, fs::path> log_files(const fs::path& directory) {
+  std::map<int, fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("log-") || !name.ends_with(".lcm")) continue;
+    int number = -1;
+    const char* end = name.data() + name.size() - 4;
+    if (std::from_chars(name.data() + 4, end, number).ptr == end && number >= 0) files[number] = entry.path();
+  }
+  return files;
+}
+
+fs::path made(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (!fs::is_directory(directory))
+    throw std::runtime_error(directory.string() + ": the log's folder can't be made: " + error.message());
+  return directory;
+}
+
+}  // namespace
+
+Recorder::Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
+                   const RecorderOptions& options, Say say)
+    : outbox_(outbox),
+      robot_(robot),
+      run_(run),
+      clock_(clock),
+      options_(options),
+      say_(std::move(say)),
+      flight_(made(options.directory), robot, run, options.control_rate_Hz, clock, options.flight,
+              [this](const std::string& text) { this->say(text); }) {
+  const auto earlier = log_files(options_.directory);
+  if (!earlier.empty()) next_number_ = earlier.rbegin()->first + 1;
+  if (options_.log) begin_file(clock_.now_ns());
+}
+
+Recorder::~Recorder() { close(); }
+
+void Recorder::say(const std::string& text) noexcept {
+  try {
+    if (say_) say_(text);
+  } catch (...) {  // a console that is gone must not end the log
+  }
+}
+
+/// Nothing that goes wrong here may end the thread: at worst this pass is lost.
+template <typename Action>
+void Recorder::guarded(Action&& action) noexcept {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    try {
+      say(std::string("log: ") + error.what());
+    } catch (...) {  // no memory for a sentence either
+    }
+  } catch (...) {
+  }
+}
+
+void Recorder::drain() noexcept {
+  guarded([this] { take_records(); });
+  guarded([this] { flush(); });
+  guarded([this] { flight_.pass(); });
+}
+
+void Recorder::close() noexcept {
+  if (std::exchange(closed_, true)) return;
+  drain();
+  guarded([this] { flight_.close(); });
+  guarded([this] {
+    if (writer_) writer_->sync();
+  });
+  writer_.reset();
+  if (lost() > 0) say(fmt::format("log: {} ticks are missing in it", lost()));
+}
+
+void Recorder::take_records() {
+  note_queue_losses();
+  // Bounded: a disk slower than the ticks must not keep this pass for ever.
+  for (std::size_t taken = 0; taken < ControllerOutbox::kRecords && outbox_.records.pop(record_); ++taken) {
+    take_bus_cycles(record_.timing.woke_ns);
+    guarded([this] { flight_.add(record_, bus_, lost()); });
+    if (options_.log) log_record();
+    bus_.start_anew();
+    if (after_record) guarded([this] { after_record(record_); });
+  }
+}
+
+void Recorder::take_bus_cycles(std::int64_t until_ns) {
+  while (bus_cycle_held_ || outbox_.bus_cycles.pop(bus_cycle_)) {
+    bus_cycle_held_ = bus_cycle_.done_ns > until_ns;
+    if (bus_cycle_held_) return;
+    bus_.add(bus_cycle_);
+  }
+}
+
+void Recorder::note_queue_losses() {
+  const std::int64_t dropped = outbox_.dropped_records.load(std::memory_order_relaxed);
+  if (dropped == queue_lost_) return;
+  say(fmt::format("log: the log's thread stood still for too long; {} ticks are missing in the log",
+                  dropped - queue_lost_));
+  queue_lost_ = dropped;
+}
+
+void Recorder::log_record() {
+  if (!writer_) try_again();
+  if (!writer_) {
+    ++disk_lost_;
+    return;
+  }
+  ++unflushed_;
+  try {
+    log_->write(record_);
+    log_->write_timing(record_, bus_, lost());
+    if (unflushed_ >= kRecordsAFlush) flush();
+    begin_next_file_if_due();
+  } catch (const std::exception& error) {
+    give_up_file(error.what());
+  }
+}
+
+void Recorder::flush() {
+  if (!writer_) return;
+  try {
+    writer_->flush();
+    written_ += std::exchange(unflushed_, 0);
+  } catch (const std::exception& error) {
+    give_up_file(error.what());
+  }
+}
+
+void Recorder::begin_next_file_if_due() {
+  if (!writer_ || writer_->bytes() < options_.file_bytes) return;
+  writer_->sync();
+  written_ += std::exchange(unflushed_, 0);
+  begin_file(record_.now_ns);
+}
+
+/// Throws when the disk refuses it; the old file stays in use then.
+void Recorder::begin_file(std::int64_t stamp_ns) {
+  const fs::path path = options_.directory / fmt::format("log-{:04d}.lcm", next_number_);
+  auto writer = std::make_unique<io::LogWriter>(path);
+  try {
+    if (log_) {
+      log_->continue_in(*writer, stamp_ns);
+    } else {
+      log_.emplace(*writer, robot_, run_, options_.control_rate_Hz, stamp_ns);
+    }
+    writer->flush();
+  } catch (const std::exception&) {
+    writer.reset();
+    std::error_code ignored;
+    fs::remove(path, ignored);  // or a full disk would fill up with empty files
+    throw;
+  }
+  writer_ = std::move(writer);
+  file_ = path;
+  ++next_number_;
+  guarded([this] { remove_oldest(); });
+}
+
+void Recorder::try_again() {
+  if (clock_.now_ns() < try_ns_) return;
+  try_ns_ = clock_.now_ns() + static_cast<std::int64_t>(options_.retry_s * 1e9);
+  try {
+    if (fs::space(options_.directory).available < static_cast<std::uintmax_t>(options_.spare_bytes)) return;
+    begin_file(record_.now_ns);
+  } catch (const std::exception&) {  // was told when it began
+    return;
+  }
+  say(fmt::format("log: writing again, into {}; {} ticks are missing before it", file_.string(),
+                  disk_lost_ - lost_before_refusal_));
+}
+
+void Recorder::give_up_file(const std::string& why) {
+  lost_before_refusal_ = disk_lost_;
+  disk_lost_ += std::exchange(unflushed_, 0);
+  writer_.reset();
+  try_ns_ = clock_.now_ns() + static_cast<std::int64_t>(options_.retry_s * 1e9);
+  say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on when there is room", why));
+}
+
+void Recorder::remove_oldest() const {
+  auto files = log_files(options_.directory);
+  while (std::ssize(files) > std::max(options_.files, 1)) {
+    fs::remove(files.begin()->second);
+    files.erase(files.begin());
+  }
+}
+
+void Recorder::write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) noexcept {
+  guarded([&] {
+    if (!writer_) return;
+    try {
+      log_->write_truth(stamp_ns, truth, hoisted);
+    } catch (const std::exception& error) {
+      give_up_file(error.what());
+    }
+  });
+}
+
+}  // namespace pmg::runtime

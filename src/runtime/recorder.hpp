@@ -1,0 +1,98 @@
+// What the real-time threads leave behind, on the disk: every tick in a rotated log, and the flight recorder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "io/clock.hpp"
+#include "io/log_writer.hpp"
+#include "model/robot_model.hpp"
+#include "runtime/controller_outbox.hpp"
+#include "runtime/flight_recorder.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/tick_log.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::runtime {
+
+struct RecorderOptions {
+  std::filesystem::path directory;      ///< made if absent
+  bool log = true;                      ///< false: the flight recorder alone
+  std::int64_t file_bytes = 256 << 20;  ///< then the next file: some eight minutes of 31 joints
+  int files = 8;                        ///< log-NNNN.lcm in the folder at most, those of earlier runs included
+  std::int64_t spare_bytes = 64 << 20;  ///< after a refusal, nothing is written until the disk has as much room
+  double retry_s = 1.0;                 ///< after a refusal
+  double control_rate_Hz = 100.0;
+  FlightRecorderOptions flight;
+};
+
+/// One consumer thread. Takes every record of the outbox and writes DIRECTORY/log-NNNN.lcm, numbered on from what is
+/// there; each file begins with ROBOT_INFO and stands alone. Whatever the disk does, drain() returns, the control
+/// thread never waits, and what is lost is counted in TIMING.dropped_records.
+class Recorder {
+ public:
+  /// Sentences for people: what went wrong, and when it is well again. Called from the threads that call the recorder.
+  using Say = std::function<void(const std::string&)>;
+
+  /// Keeps references to outbox, robot and clock, which is the one that stamps the records. Throws std::runtime_error
+  /// when the folder or the first file can't be made.
+  Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
+           const RecorderOptions& options, Say say);
+  ~Recorder();  ///< closes
+
+  /// Called with every record, in order, after it was logged; in drain().
+  std::function<void(const TickRecord&)> after_record;
+
+  /// One pass: everything that waits goes to the disk and survives the end of this process. Every 20 ms or so.
+  void drain() noexcept;
+  /// A simulation's truth, after the record that it belongs to; the log alone has it.
+  void write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) noexcept;
+  /// The last pass, after the real-time threads have ended. Once more does nothing.
+  void close() noexcept;
+
+  std::int64_t written() const { return written_; }               ///< records on the disk
+  std::int64_t lost() const { return queue_lost_ + disk_lost_; }  ///< records that the log doesn't have
+  const std::filesystem::path& file() const { return file_; }     ///< the newest log file; empty: none yet
+  const FlightRecorder& flight() const { return flight_; }
+
+ private:
+  void take_records();
+  void take_bus_cycles(std::int64_t until_ns);
+  void note_queue_losses();
+  void log_record();
+  void flush();
+  void begin_file(std::int64_t stamp_ns);
+  void begin_next_file_if_due();
+  void try_again();
+  void give_up_file(const std::string& why);
+  void remove_oldest() const;
+  void say(const std::string& text) noexcept;
+  template <typename Action>
+  void guarded(Action&& action) noexcept;
+
+  ControllerOutbox& outbox_;
+  const model::RobotModel& robot_;
+  RunInfo run_;
+  const io::Clock& clock_;
+  RecorderOptions options_;
+  Say say_;
+  std::filesystem::path file_;
+  int next_number_ = 0;
+  std::unique_ptr<io::LogWriter> writer_;  // null: no log wanted, or the disk refused
+  std::optional<TickLog> log_;
+  FlightRecorder flight_;
+  TickRecord record_;
+  BusTiming bus_;
+  CycleTiming bus_cycle_;  // taken out of the queue, but younger than the record
+  bool bus_cycle_held_ = false;
+  std::int64_t unflushed_ = 0, written_ = 0, queue_lost_ = 0, disk_lost_ = 0;
+  std::int64_t told_lost_ = 0, lost_before_refusal_ = 0;
+  std::int64_t try_ns_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace pmg::runtime
