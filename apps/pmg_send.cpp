@@ -1,0 +1,247 @@
+// pmg_send: asks a running controller for a mode, drives it for a stretch, or stops it, from a shell.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/lcm_link.hpp"
+#include "operator/drive.hpp"
+#include "operator/mode_wish.hpp"
+#include "operator/words.hpp"
+
+namespace {
+
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kNotReached = 1, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+Examples:
+  pmg_send stop                              brake every robot, whoever drives it
+  pmg_send stand                             the one robot that is heard
+  pmg_send walk --vx 0.3 --for 5 --robot z1  climb to walk, drive 5 s, come to rest, stand
+  pmg_send command --omega 0.4 --for 2       drive a robot that is in walk already
+
+A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
+
+Exit codes: 0 acknowledged and the mode reached, 1 refused, or not acknowledged or not reached in time, 2 bad input or no
+network, 130 interrupted (a robot that was driven is brought to rest first).)";
+
+struct Arguments {
+  std::string request;
+  std::string robot, lcm_url;
+  double timeout_s = 0.0;  // 0: by request
+  double duration_s = 0.0;
+  Command command;
+  bool json = false;
+};
+
+struct Request {
+  const char* name;
+  ops::Goal goal;
+  double timeout_s;  ///< entering Stand takes 5 s at the longest
+  const char* help;
+};
+
+constexpr Request kRequests[] = {
+    {"stop", ops::Goal::kStop, 2.0, "brake (damping) every robot on the address, or the one of --robot"},
+    {"damping", ops::Goal::kDamping, 2.0, "drives brake, no position"},
+    {"passive", ops::Goal::kPassive, 2.0, "drives limp; a robot that stands only brakes when told once"},
+    {"stand", ops::Goal::kStand, 10.0, "stand, from the posture that is measured"},
+    {"reset", ops::Goal::kReset, 2.0, "leave a latched fault for damping, if its cause is gone"},
+};
+constexpr double kDriveTimeout_s = 10.0;
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
+  CLI::App* drive = app.add_subcommand(name, help);
+  drive->fallthrough();
+  drive->add_option("--for", arguments.duration_s, "how long [s]")->required()->check(CLI::PositiveNumber);
+  constexpr const char* kOptions[] = {"--vx", "--vy", "--omega", "--pitch", "--roll", "--height"};
+  constexpr const char* kHelp[] = {"forward [m/s]",       "to the left [m/s]",        "turning left [rad/s]",
+                                   "torso forward [rad]", "torso to the right [rad]", "above standing [m]"};
+  for (std::size_t i = 0; i < kChannels; ++i) drive->add_option(kOptions[i], arguments.command.u[i], kHelp[i]);
+}
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  app.add_option("--robot", arguments.robot, "controller's name; may be left out when one is heard, and for stop");
+  app.add_option("--lcm-url", arguments.lcm_url,
+                 fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
+  app.add_option("--timeout", arguments.timeout_s,
+                 "give up after so long [s]; stop, damping, passive, reset 2, others 10")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--json", arguments.json, "print the outcome as JSON");
+  for (const Request& request : kRequests) app.add_subcommand(request.name, request.help)->fallthrough();
+  declare_drive(app, arguments, "walk", "climb to walk, drive for a while, come to rest and stand");
+  declare_drive(app, arguments, "command", "drive a robot that is in walk for a while, and come to rest");
+}
+
+class Session {
+ public:
+  explicit Session(const Arguments& arguments)
+      : arguments_(arguments),
+        link_(io::choose_lcm_url(arguments.lcm_url)),
+        source_(link_, fmt::format("pmg_send.{}", getpid()), session_number(), clock_) {}
+
+  int run() {
+    for (const Request& request : kRequests) {
+      if (arguments_.request == request.name) return ask(request);
+    }
+    return drive();
+  }
+
+ private:
+  /// Larger at every start.
+  static std::int64_t session_number() {
+    using std::chrono::system_clock;
+    return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
+  }
+
+  double timeout_s(double otherwise) const { return arguments_.timeout_s > 0.0 ? arguments_.timeout_s : otherwise; }
+
+  /// The robot that is meant. Empty when there is none, which is then reported.
+  std::string find_robot(double within_s) {
+    if (!arguments_.robot.empty()) return arguments_.robot;
+    const std::int64_t begin_ns = clock_.now_ns();
+    const auto elapsed_ns = [&] { return clock_.now_ns() - begin_ns; };
+    while (interrupt_requested == 0 && static_cast<double>(elapsed_ns()) * 1e-9 < within_s &&
+           (source_.heard().empty() || elapsed_ns() < ops::ModeWish::kGather_ns)) {
+      link_.receive(10);
+    }
+    if (source_.heard().size() == 1) return source_.heard().begin()->first;
+    if (source_.heard().empty()) {
+      report({{.robot = "", .mode = "unknown", .text = fmt::format("no controller is heard on {}", link_.url())}},
+             false);
+      return "";
+    }
+    std::string names;
+    for (const auto& [name, heard] : source_.heard()) names += (names.empty() ? "" : ", ") + name;
+    throw std::invalid_argument(fmt::format("several robots are heard ({}): say which one with --robot", names));
+  }
+
+  int ask(const Request& request) {
+    const bool every_robot = request.goal == ops::Goal::kStop;
+    const std::string robot = every_robot ? arguments_.robot : find_robot(timeout_s(request.timeout_s));
+    if (robot.empty() && !every_robot) return interrupt_requested != 0 ? kInterrupted : kNotReached;
+    ops::ModeWish wish(source_, robot, request.goal, timeout_s(request.timeout_s));
+    ops::Progress progress = ops::Progress::kPending;
+    while (progress == ops::Progress::kPending && interrupt_requested == 0) {
+      link_.receive(10);
+      progress = wish.step();
+    }
+    std::vector<ops::Answer> answers = wish.answers();
+    if (answers.empty()) {
+      answers.push_back(
+          {.robot = "", .mode = "unknown", .text = fmt::format("no controller is heard on {}", link_.url())});
+    }
+    const bool reached = progress == ops::Progress::kReached;
+    report(answers, reached, wish.elapsed_s());
+    return interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
+  }
+
+  int drive() {
+    const std::string robot = find_robot(timeout_s(kDriveTimeout_s));
+    if (robot.empty()) return interrupt_requested != 0 ? kInterrupted : kNotReached;
+    ops::Drive drive(source_, robot, arguments_.command,
+                     {.duration_s = arguments_.duration_s,
+                      .climb = arguments_.request == "walk",
+                      .timeout_s = timeout_s(kDriveTimeout_s)});
+    ops::Progress progress = ops::Progress::kPending;
+    while (progress == ops::Progress::kPending) {
+      link_.receive(5);
+      if (interrupt_requested != 0) drive.end_early();
+      progress = drive.step();
+      show_progress(robot, drive);
+    }
+    const bool reached = progress == ops::Progress::kReached;
+    ops::Answer answer{.robot = robot, .progress = progress, .mode = "unknown", .text = drive.text()};
+    if (const ops::HeardRobot* heard = source_.heard(robot)) {
+      answer.acknowledged = true;
+      answer.mode = ops::mode_name(*heard->mode());
+    }
+    if (reached) answer.text = fmt::format("drove for {:.1f} s", drive.driven_s());
+    report({answer}, reached, drive.driven_s());
+    return interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
+  }
+
+  /// Once a second, when somebody watches.
+  void show_progress(const std::string& robot, const ops::Drive& drive) {
+    const auto second = static_cast<int>(drive.driven_s());
+    if (!drive.driving() || second == shown_second_ || isatty(STDERR_FILENO) == 0) return;
+    shown_second_ = second;
+    std::cerr << fmt::format("{}: walk, {} of {:g} s (Ctrl-C: come to rest)\n", robot, second, arguments_.duration_s);
+  }
+
+  void report(const std::vector<ops::Answer>& answers, bool reached, double elapsed_s = 0.0) const {
+    if (arguments_.json) {
+      nlohmann::ordered_json json{{"request", arguments_.request},
+                                  {"reached", reached},
+                                  {"elapsed_s", elapsed_s},
+                                  {"lcm_url", link_.url()},
+                                  {"robots", nlohmann::json::array()}};
+      for (const ops::Answer& answer : answers) {
+        if (answer.robot.empty()) {
+          json["text"] = answer.text;
+          continue;
+        }
+        json["robots"].push_back({{"robot", answer.robot},
+                                  {"acknowledged", answer.acknowledged},
+                                  {"reached", answer.progress == ops::Progress::kReached},
+                                  {"mode", answer.mode},
+                                  {"text", answer.text}});
+      }
+      std::cout << json.dump(2) << '\n';
+      return;
+    }
+    for (const ops::Answer& answer : answers) {
+      const std::string text = answer.text.empty() ? "" : " (" + answer.text + ")";
+      std::ostream& out = reached ? std::cout : std::cerr;
+      if (answer.robot.empty()) {
+        out << "pmg_send: " << answer.text << '\n';
+      } else {
+        out << fmt::format("{}: {}{}\n", answer.robot, answer.mode, text);
+      }
+    }
+  }
+
+  const Arguments& arguments_;
+  io::WallClock clock_;
+  io::LcmLink link_;
+  ops::OperatorSource source_;
+  int shown_second_ = -1;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Asks a running controller for a mode, drives it for a while, or stops it.", "pmg_send");
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  arguments.request = app.get_subcommands().front()->get_name();
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  try {
+    for (const double value : arguments.command.u) {
+      if (!std::isfinite(value)) throw std::invalid_argument("a command's values must be finite numbers");
+    }
+    return Session(arguments).run();
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_send: " << error.what() << '\n';
+    return kBadInput;
+  }
+}
