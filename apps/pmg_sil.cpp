@@ -96,7 +96,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
 /// One line that renews itself, when somebody watches.
 class ProgressLine {
  public:
-  void after_tick(const runtime::LockstepProgress& progress) {
+  void after_tick(const runtime::RunProgress& progress) {
     if (!watched_ || ++ticks_ % 50 != 0) return;
     std::cerr << fmt::format("\r{:6.1f} / {:.1f} s  {:8} {:<60.60}", progress.time_s, progress.duration_s,
                              runtime::to_string(progress.result.mode), progress.step.text)
@@ -111,7 +111,7 @@ class ProgressLine {
   std::int64_t ticks_ = 0;
 };
 
-void report(const runtime::LockstepOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
+void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
   const runtime::TrackingSummary& tracking = outcome.tracking;
   std::cout
       << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}\n",
@@ -165,13 +165,13 @@ int simulate(const Arguments& arguments) {
       robot, bus, plant, *tick, scenario, &log,
       {.balanced_by_policy = arguments.control.policy != "none", .always_hoisted = arguments.gantry});
   lockstep.interrupted = [] { return interrupt_requested != 0; };
-  lockstep.after_tick = [&](const runtime::LockstepProgress& now) {
+  lockstep.after_tick = [&](const runtime::RunProgress& now) {
     if (film) film->after_tick(now);
     progress.after_tick(now);
   };
 
   const std::int64_t start_ns = wall_clock.now_ns();
-  const runtime::LockstepOutcome outcome = lockstep.run();
+  const runtime::RunOutcome outcome = lockstep.run();
   const double wall_s = static_cast<double>(wall_clock.now_ns() - start_ns) * 1e-9;
   progress.end();
   log_file.flush();

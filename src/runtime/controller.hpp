@@ -53,6 +53,7 @@ class Controller {
 
   OperatorInbox& inbox() noexcept { return inbox_; }  ///< to be written by comms alone, and by others before start()
   ControllerOutbox& outbox() noexcept { return outbox_; }
+  const ControllerOutbox& outbox() const noexcept { return outbox_; }
   /// What the system refused of real-time scheduling, in words; known before start().
   const std::vector<std::string>& refused() const noexcept { return refused_; }
   pid_t bus_thread() const noexcept { return bus_thread_->id(); }

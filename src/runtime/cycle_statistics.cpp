@@ -41,6 +41,7 @@ double TimeHistogram::percentile_us(double share) const noexcept {
 }
 
 void CycleStatistics::add(const CycleTiming& cycle) noexcept {
+  if (cycles() == 0) first_ns_ = cycle.planned_ns;
   missed_ = cycle.missed;
   wake_.add(cycle.woke_ns - cycle.planned_ns);
   duration_.add(cycle.done_ns - cycle.woke_ns);

@@ -45,6 +45,7 @@ class CycleStatistics {
   /// One cycle that ended. No heap.
   void add(const CycleTiming& cycle) noexcept;
 
+  std::int64_t first_ns() const noexcept { return first_ns_; }  ///< when the first cycle was planned
   std::int64_t cycles() const noexcept { return wake_.count(); }
   std::int64_t missed() const noexcept { return missed_; }      ///< cycles that never ran
   std::int64_t overruns() const noexcept { return overruns_; }  ///< cycles that took longer than a period
@@ -55,7 +56,7 @@ class CycleStatistics {
 
  private:
   std::int64_t period_ns_;
-  std::int64_t missed_ = 0, overruns_ = 0, delayed_count_ = 0, last_done_ns_ = 0;
+  std::int64_t first_ns_ = 0, missed_ = 0, overruns_ = 0, delayed_count_ = 0, last_done_ns_ = 0;
   TimeHistogram wake_, duration_;
   std::vector<DelayedCycle> delayed_;
 };

@@ -9,7 +9,7 @@ Film::Film(sim::World& world, const std::filesystem::path& file)
       renderer_(world.mj_model(), {.width = 960, .height = 540}),
       writer_(file, renderer_.width(), renderer_.height(), kFramesPerSecond) {}
 
-void Film::after_tick(const LockstepProgress& progress) {
+void Film::after_tick(const RunProgress& progress) {
   if (++ticks_ % kTicksPerFrame != 0) return;
   const std::string text =
       fmt::format("{:6.1f} s  {}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text);

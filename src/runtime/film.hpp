@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "runtime/lockstep.hpp"
+#include "runtime/run_measure.hpp"
 #include "sim/renderer.hpp"
 #include "sim/video_writer.hpp"
 #include "sim/world.hpp"
@@ -17,7 +17,7 @@ class Film {
   /// Keeps a reference to world. Throws std::runtime_error without ffmpeg or OSMesa.
   Film(sim::World& world, const std::filesystem::path& file);
 
-  void after_tick(const LockstepProgress& progress);
+  void after_tick(const RunProgress& progress);
   void close();  ///< throws std::runtime_error when ffmpeg failed
 
  private:

@@ -6,7 +6,6 @@ namespace pmg::runtime {
 
 namespace {
 constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
-constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
 }  // namespace
 
 Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, Tick& tick, const Scenario& scenario,
@@ -20,33 +19,26 @@ Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, 
       bus_cycle_(bus, link_, robot, clock_),
       control_cycle_(tick, link_, inbox_, clock_),
       player_(scenario),
-      metrics_(robot.standing_height_m, kTickPeriod_s),
-      gait_period_s_(kGaitPeriodBeforeWalking_s) {}
+      measure_(robot.standing_height_m) {}
 
-LockstepOutcome Lockstep::run() {
+RunOutcome Lockstep::run() {
   const auto ticks = static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / kTickPeriod_s - 1e-9));
   timing_.reserve(static_cast<std::size_t>(ticks));
+  bool ended_early = false;
   for (std::int64_t k = 0; k < ticks; ++k) {
-    if (interrupted && interrupted()) {
-      outcome_.interrupted = true;
-      break;
-    }
+    ended_early = interrupted && interrupted();
+    if (ended_early) break;
     advance();
-    if (plant_.diverged()) {
-      outcome_.diverged = true;
-      break;
-    }
+    if (plant_.diverged()) break;
     const double time_s = static_cast<double>(k) * kTickPeriod_s;
     control(time_s);
     measure(time_s);
-    outcome_.duration_s = time_s + kTickPeriod_s;
     if (after_tick) after_tick({time_s, scenario_.duration_s(), player_.current(), tick_.result()});
   }
-  outcome_.fell = metrics_.fell();
-  outcome_.fell_at_s = metrics_.fell_at_s();
-  outcome_.tracking = metrics_.summary();
-  outcome_.reference_slip = slip_.summary();
-  return outcome_;
+  RunOutcome outcome = measure_.outcome();
+  outcome.interrupted = ended_early;
+  outcome.diverged = plant_.diverged();
+  return outcome;
 }
 
 void Lockstep::advance() {
@@ -61,12 +53,9 @@ void Lockstep::control(double time_s) {
   player_.step(time_s, clock_.now_ns());
   inbox_.put(player_.drive());
   inbox_.put(player_.request());
-  const Mode before = tick_.result().mode;
   control_cycle_.run(clock_.now_ns());
-  const TickResult& result = tick_.result();
-  timing_.add(time_s, result.times);
+  timing_.add(time_s, tick_.result().times);
   if (log_ != nullptr) log_->write(control_cycle_.record());
-  if (result.mode == Mode::kFault && before != Mode::kFault) outcome_.faults.push_back(result.fault);
 
   if (!options_.always_hoisted) {
     hoist_.step(player_.current().hoist_without_policy && !options_.balanced_by_policy, kTickPeriod_s);
@@ -75,23 +64,10 @@ void Lockstep::control(double time_s) {
 }
 
 void Lockstep::measure(double time_s) {
-  const TickResult& result = tick_.result();
-  const bool holding = result.mode == Mode::kStand || result.mode == Mode::kWalk;
-  if (holding) slip_.add(result.reference, result.optimised);
-  if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
-
   const sim::Truth truth = plant_.truth();
   const bool hoisted = options_.always_hoisted || hoist_.carrying();
   if (log_ != nullptr) log_->write_truth(static_cast<std::int64_t>(std::llround(time_s * 1e9)), truth, hoisted);
-  if (hoisted) outcome_.hoisted_s += kTickPeriod_s;
-  // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
-  const bool judged = !hoisted && (holding || result.mode == Mode::kFault);
-  if (judged) {
-    const Command asked = result.mode == Mode::kStand ? Command{} : player_.current().command;
-    metrics_.add(truth, asked, gait_period_s_);
-  } else {
-    metrics_.skip(truth);
-  }
+  measure_.add(tick_.result(), truth, hoisted, player_.current().command);
 }
 
 }  // namespace pmg::runtime

@@ -3,16 +3,14 @@
 
 #include <cstdint>
 #include <functional>
-#include <vector>
 
-#include "gco/slip_statistics.hpp"
 #include "hal/bus_cycle.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
 #include "runtime/control_cycle.hpp"
 #include "runtime/hoist.hpp"
-#include "runtime/metrics.hpp"
 #include "runtime/plant.hpp"
+#include "runtime/run_measure.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/stage_timing.hpp"
 #include "runtime/tick.hpp"
@@ -25,27 +23,6 @@ struct LockstepOptions {
   bool always_hoisted = false;      ///< the world began on the gantry and stays there
 };
 
-/// How a run ended and what was measured on the way.
-struct LockstepOutcome {
-  double duration_s = 0.0;  ///< simulated
-  double hoisted_s = 0.0;
-  bool interrupted = false;
-  bool diverged = false;  ///< the simulation blew up; the run ends there
-  bool fell = false;
-  double fell_at_s = -1.0;
-  std::vector<Fault> faults;
-  TrackingSummary tracking;
-  gco::SlipSummary reference_slip;
-};
-
-/// What an observer sees after each tick.
-struct LockstepProgress {
-  double time_s;
-  double duration_s;
-  const ScenarioStep& step;
-  const TickResult& result;
-};
-
 class Lockstep {
  public:
   /// Keeps references to all of them. log may be null.
@@ -53,12 +30,12 @@ class Lockstep {
            TickLog* log, const LockstepOptions& options);
 
   /// Called after every tick, for progress and pictures.
-  std::function<void(const LockstepProgress&)> after_tick;
+  std::function<void(const RunProgress&)> after_tick;
   /// Asked before every tick: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 
   /// Plays the scenario once. A command computed from bus sample k acts from bus step k + 1.
-  LockstepOutcome run();
+  RunOutcome run();
 
   const StageTiming& timing() const { return timing_; }
 
@@ -79,11 +56,8 @@ class Lockstep {
   ControlCycle control_cycle_;
   ScenarioPlayer player_;
   Hoist hoist_;
-  Metrics metrics_;
-  gco::SlipStatistics slip_;
+  RunMeasure measure_;
   StageTiming timing_;
-  double gait_period_s_;
-  LockstepOutcome outcome_;
 };
 
 }  // namespace pmg::runtime

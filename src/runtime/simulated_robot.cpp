@@ -11,6 +11,16 @@ constexpr double kBusPeriod_s = static_cast<double>(hal::BusCycle::kPeriod_ns) *
 constexpr std::int64_t kCyclesPerPose = 5;  // a hundred a second: more than any screen shows
 }  // namespace
 
+sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry) {
+  sim::WorldOptions options;
+  options.gantry = gantry;
+  options.seed = seed;
+  options.gyro_noise_rad_s = kGyroNoise_rad_s;
+  options.encoder_noise_rad = kEncoderNoise_rad;
+  options.orientation_noise_rad = kOrientationNoise_rad;
+  return options;
+}
+
 SimulatedRobot::SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth)
     : world_(world), bus_(world), always_hoisted_(always_hoisted), keep_truth_(keep_truth) {}
 

@@ -29,6 +29,12 @@ struct PoseSample {
   std::array<double, kMaxPositions> qpos{};
 };
 
+/// Sensor noise of every simulated robot. Assumed: what consumer-grade IMUs and 14-bit encoders show; no data sheet of
+/// this robot is published.
+inline constexpr double kGyroNoise_rad_s = 0.01, kEncoderNoise_rad = 0.0004, kOrientationNoise_rad = 0.002;
+
+sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry);
+
 class SimulatedRobot final : public hal::Hal {
  public:
   static constexpr std::size_t kTruths = 8192;  ///< sixteen seconds

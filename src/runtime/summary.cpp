@@ -37,7 +37,7 @@ nlohmann::ordered_json stage_json(const StageTiming& timing, std::int64_t StageT
 
 }  // namespace
 
-nlohmann::ordered_json summary_json(const RunIdentity& run, const LockstepOutcome& outcome, const StageTiming& timing,
+nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,
                                     const model::RobotModel& robot) {
   nlohmann::ordered_json faults = nlohmann::ordered_json::array();
   for (const Fault& fault : outcome.faults) {

@@ -6,7 +6,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "runtime/lockstep.hpp"
+#include "model/robot_model.hpp"
+#include "runtime/run_measure.hpp"
+#include "runtime/stage_timing.hpp"
 
 namespace pmg::runtime {
 
@@ -17,7 +19,7 @@ struct RunIdentity {
   double wall_s = 0.0;
 };
 
-nlohmann::ordered_json summary_json(const RunIdentity& run, const LockstepOutcome& outcome, const StageTiming& timing,
+nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,
                                     const model::RobotModel& robot);
 
 /// Throws std::runtime_error.

@@ -63,12 +63,12 @@ void BM_sil(benchmark::State& state) {
     runtime::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
     int ticks = 0;
     long settled = 0;
-    lockstep.after_tick = [&](const runtime::LockstepProgress&) {
+    lockstep.after_tick = [&](const runtime::RunProgress&) {
       if (++ticks == kSettledTicks) settled = allocation_count();
       if (ticks == kTicks) allocations = allocation_count() - settled;
     };
     const double start_s = thread_cpu_s();
-    const runtime::LockstepOutcome outcome = lockstep.run();
+    const runtime::RunOutcome outcome = lockstep.run();
     state.SetIterationTime(thread_cpu_s() - start_s);
     if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
   }

@@ -40,7 +40,7 @@ class LockstepRun : public testing::Test {
     return std::string(std::istreambuf_iterator<char>(file), {});
   }
   /// A whole simulated run with a log.
-  LockstepOutcome simulate(const model::RobotModel& robot, const Scenario& scenario, const std::string& log_name,
+  RunOutcome simulate(const model::RobotModel& robot, const Scenario& scenario, const std::string& log_name,
                            std::uint64_t seed) {
     sim::WorldOptions options;
     options.seed = seed;
@@ -70,7 +70,7 @@ TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
   Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
   std::uint64_t ticks = 0;
   JointVector commanded = robot.q_stand();
-  lockstep.after_tick = [&](const LockstepProgress& progress) {
+  lockstep.after_tick = [&](const RunProgress& progress) {
     ++ticks;
     EXPECT_EQ(progress.result.command.bus_sample, 5 * ticks);
     // During the five steps before this tick the bus was given what the tick before had computed.
@@ -78,7 +78,7 @@ TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
     EXPECT_EQ(bus.last_command.q, commanded);
     commanded = progress.result.command.q;
   };
-  const LockstepOutcome outcome = lockstep.run();
+  const RunOutcome outcome = lockstep.run();
   EXPECT_EQ(ticks, 200u);
   EXPECT_NEAR(outcome.duration_s, 2.0, 1e-9);
   EXPECT_FALSE(outcome.fell);
@@ -95,7 +95,7 @@ TEST_F(LockstepRun, SameSeedSameLogByteForByte) {
 }
 
 TEST_F(LockstepRun, AnotherRobotNeedsNoOtherCode) {
-  const LockstepOutcome outcome = simulate(test::biped(), walk(4.0, true), "biped.lcm", 0);
+  const RunOutcome outcome = simulate(test::biped(), walk(4.0, true), "biped.lcm", 0);
   EXPECT_FALSE(outcome.diverged);
   EXPECT_TRUE(outcome.faults.empty());
   EXPECT_GT(outcome.hoisted_s, 3.9);
@@ -117,7 +117,7 @@ TEST_F(LockstepRun, TheTruthOfTheSimulationReachesNoDrive) {
     const Scenario scenario = walk(3.0);
     Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
     std::vector<double> all;
-    lockstep.after_tick = [&](const LockstepProgress& progress) {
+    lockstep.after_tick = [&](const RunProgress& progress) {
       const model::JointCommand& command = progress.result.command;
       for (const JointVector* values : {&command.q, &command.dq, &command.kp, &command.kd, &command.tau_ff}) {
         all.insert(all.end(), values->data(), values->data() + values->size());
@@ -144,7 +144,7 @@ TEST_F(LockstepRun, GantryTimeIsReportedAndNotJudged) {
   for (const bool policy : {false, true}) {
     test::IdealBus bus(robot);
     Tick tick = make_tick(robot);
-    const LockstepOutcome outcome =
+    const RunOutcome outcome =
         Lockstep(robot, bus, plant, tick, scenario, nullptr, {.balanced_by_policy = policy}).run();
     // Three seconds, and the two that it takes to set the robot down.
     EXPECT_NEAR(outcome.hoisted_s, policy ? 0.0 : 5.0, 0.03);
@@ -162,7 +162,7 @@ TEST_F(LockstepRun, InterruptionKeepsWhatWasDone) {
   Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
   int asked = 0;
   lockstep.interrupted = [&] { return ++asked > 100; };
-  const LockstepOutcome outcome = lockstep.run();
+  const RunOutcome outcome = lockstep.run();
   EXPECT_TRUE(outcome.interrupted);
   EXPECT_NEAR(outcome.duration_s, 1.0, 1e-9);
 }
@@ -175,7 +175,7 @@ TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
   plant.value.p_WB.z() = robot.standing_height_m;
   Tick tick = make_tick(robot);
   const Scenario scenario = walk(0.5);
-  LockstepOutcome outcome;
+  RunOutcome outcome;
   {
     io::LogWriter writer(folder_ / "fault.lcm");
     TickLog log(writer, robot, {.robot = robot.name}, 100.0);
@@ -203,7 +203,7 @@ TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
 
 TEST_F(LockstepRun, TheTourDoesNotFallAndItsReferenceKeepsTheFeetOnTheGround) {
   const Scenario tour = load_scenario(std::filesystem::path(PMG_SOURCE_DIR) / "config/scenarios/tour.yaml");
-  const LockstepOutcome outcome = simulate(test::z1(), tour, "tour.lcm", 0);
+  const RunOutcome outcome = simulate(test::z1(), tour, "tour.lcm", 0);
   EXPECT_FALSE(outcome.fell) << "at " << outcome.fell_at_s << " s";
   EXPECT_TRUE(outcome.faults.empty());
   EXPECT_GT(outcome.duration_s - outcome.hoisted_s, 15.0) << "on its own feet";

@@ -1,0 +1,249 @@
+// pmg_controller: the controller on its own host: real-time threads, wall clock, operators over LCM.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "runtime/control_setup.hpp"
+#include "runtime/controller.hpp"
+#include "runtime/controller_report.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/simulated_robot.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2 };
+
+constexpr const char* kFooter = R"(
+Starts in Passive and waits for operators on LCM (pmg_send, pmg_watch). SIGINT, SIGTERM and SIGHUP damp the robot, close the
+log and end the program. Software stops are not safety-rated: docs/safety.md.
+
+Example:
+  pmg_controller --hal sil --gantry --robot z1 --log out/first
+  pmg_send walk --robot z1 --vx 0.4 --for 5
+
+Exit codes: 0 ended by a signal or --duration, 1 it could not run on (drives, network, or a thread failed; the robot was
+damped), 2 bad input.)";
+
+struct Arguments {
+  std::string hal;
+  runtime::ControlSetup control;
+  std::string name, lcm_url;
+  fs::path log;
+  bool no_log = false, gantry = false, no_realtime = false, print_config = false, json = false;
+  std::uint64_t seed = 0;
+  std::optional<double> duration_s;
+  runtime::ControllerOptions threads;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.add_option("--hal", arguments.hal, "the drives: sil (MuJoCo), can or ethercat")
+      ->required()
+      ->check(CLI::IsMember({"sil", "can", "ethercat"}));
+  app.add_option("--robot", arguments.control.robot, "robot's name below config/robots, or its folder")
+      ->capture_default_str();
+  app.add_option("--name", arguments.name, "name that messages are addressed to; the robot's own if not given");
+  app.add_option("--policy", arguments.control.policy,
+                 "policy's name below the robot's policies/, or none: drives follow the reference")
+      ->capture_default_str();
+  app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
+  CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; logs/NAME-TIME if not given");
+  app.add_flag("--no-log", arguments.no_log, "write no log")->excludes(log);
+  app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
+  app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
+  app.add_option("--bus-cpu", arguments.threads.bus.cpu, "the one CPU of the bus thread; -1: any")
+      ->check(CLI::Range(-1, 4095))
+      ->capture_default_str();
+  app.add_option("--control-cpu", arguments.threads.control.cpu, "the one CPU of the control thread; -1: any")
+      ->check(CLI::Range(-1, 4095))
+      ->capture_default_str();
+  app.add_option("--bus-priority", arguments.threads.bus.priority, "SCHED_FIFO priority of the bus thread")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  app.add_option("--control-priority", arguments.threads.control.priority, "SCHED_FIFO priority of the control thread")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  app.add_flag("--no-realtime", arguments.no_realtime, "ordinary scheduling: for trying things out, not for a robot");
+  app.add_option("--duration", arguments.duration_s, "end after so many seconds")->check(CLI::PositiveNumber);
+  app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
+  app.add_flag("--json", arguments.json, "print how the run went as JSON on stdout at the end");
+}
+
+nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
+  return {{"priority", schedule.priority}, {"cpu", schedule.cpu}};
+}
+
+nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded) {
+  nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
+  json["name"] = arguments.name;
+  json["hal"] = arguments.hal;
+  json["lcm_url"] = arguments.lcm_url;
+  json["log"] = arguments.log.string();
+  json["gantry"] = arguments.gantry;
+  json["seed"] = arguments.seed;
+  json["realtime"] = {{"asked_for", arguments.threads.realtime},
+                      {"bus", thread_json(arguments.threads.bus)},
+                      {"control", thread_json(arguments.threads.control)}};
+  return json;
+}
+
+std::string utc_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}{:02}{:02}T{:02}{:02}{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday, utc.tm_hour,
+                     utc.tm_min, utc.tm_sec);
+}
+
+/// Signals that end the program arrive nowhere but in Waiter::wait(); threads made later inherit that.
+class EndSignals {
+ public:
+  EndSignals() {
+    sigemptyset(&signals_);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, signal);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);  // a console that went away must not end the control of a robot
+  }
+  /// True when one came within this time.
+  bool wait_ms(long timeout_ms) const {
+    const timespec timeout{.tv_sec = timeout_ms / 1000, .tv_nsec = timeout_ms % 1000 * 1'000'000};
+    return sigtimedwait(&signals_, nullptr, &timeout) > 0;
+  }
+
+ private:
+  sigset_t signals_;
+};
+
+/// Says what changes, as it happens.
+class Console {
+ public:
+  Console(const model::RobotModel& robot, std::string name) : robot_(robot), name_(std::move(name)) {}
+
+  void show(const runtime::ControllerNews& news) {
+    if (news.guard_trip != hal::TripCause::kNone) {
+      spdlog::error("the bus took over and damps: {}", news.guard_trip == hal::TripCause::kControlFrozen
+                                                           ? "no command came from the control thread"
+                                                           : "the control thread's command was not finite");
+    }
+    if (news.mode == mode_) return;
+    mode_ = news.mode;
+    if (news.mode == runtime::Mode::kFault) {
+      spdlog::error("FAULT, damping: {}. When its cause is gone: pmg_send reset --robot {}",
+                    runtime::describe(news.fault, robot_), name_);
+      return;
+    }
+    const char* driving = news.driving.name.data();
+    spdlog::info("mode: {}{}{}", runtime::to_string(news.mode), *driving == '\0' ? "" : ", driven by ", driving);
+  }
+
+ private:
+  const model::RobotModel& robot_;
+  std::string name_;
+  runtime::Mode mode_ = runtime::Mode::kPassive;
+};
+
+void announce(const Arguments& arguments, const runtime::RunInfo& run) {
+  spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", runtime::software_version(), run.robot, run.backend,
+               run.bundle.substr(0, 12), run.policy);
+  spdlog::info("LCM {}, log {}", arguments.lcm_url, arguments.no_log ? "none" : arguments.log.string());
+  for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
+}
+
+/// Waits until somebody or something ends the run. False: a failure did.
+bool supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
+               Console& console) {
+  constexpr long kPoll_ms = 20;
+  const auto start = std::chrono::steady_clock::now();
+  const auto expired = [&] {
+    return arguments.duration_s &&
+           std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(*arguments.duration_s);
+  };
+  bool signalled = false;
+  while (!signalled && !expired() && controller.failure().empty()) {
+    signalled = signals.wait_ms(kPoll_ms);
+    for (runtime::ControllerNews news; controller.news(news);) console.show(news);
+  }
+  return controller.failure().empty();
+}
+
+int control(Arguments& arguments) {
+  if (arguments.hal != "sil") {
+    throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil", arguments.hal,
+                                            arguments.hal == "can" ? "CAN" : "EtherCAT"));
+  }
+  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  if (arguments.name.empty()) arguments.name = loaded.robot.name;
+  if (arguments.log.empty() && !arguments.no_log)
+    arguments.log = fs::path("logs") / (arguments.name + "-" + utc_time());
+  arguments.threads.realtime = !arguments.no_realtime;
+  const nlohmann::ordered_json config = config_json(arguments, loaded);
+  if (arguments.print_config) {
+    std::cout << config.dump(2) << '\n';
+    return kOk;
+  }
+
+  const EndSignals signals;
+  const io::WallClock clock;
+  sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
+  runtime::SimulatedRobot robot(world, arguments.gantry, false);
+  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
+  runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
+  const runtime::RunInfo run{.robot = arguments.name,
+                             .session = std::chrono::system_clock::now().time_since_epoch().count(),
+                             .policy = arguments.control.policy,
+                             .backend = arguments.hal,
+                             .options = config.dump(),
+                             .bundle = loaded.bundle,
+                             .files = loaded.files,
+                             .realtime = controller.refused().empty(),
+                             .refused = controller.refused()};
+  announce(arguments, run);
+  Console console(loaded.robot, arguments.name);
+  controller.start([] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); }, [] {});
+  spdlog::info("mode: passive");
+  const bool well = supervise(controller, signals, arguments, console);
+  const std::string failure = controller.failure();
+  spdlog::info("{}: damping, then closing", well ? "asked to end" : "can't run on");
+  if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
+  for (const std::string& line : runtime::punctuality_lines(controller)) spdlog::info(line);
+  if (arguments.json) std::cout << runtime::punctuality_json(controller).dump(2) << '\n';
+  if (!well) throw std::runtime_error(failure);
+  return kOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("The controller on its own host: real-time threads, operators over LCM.", "pmg_controller");
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
+  spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+  try {
+    return control(arguments);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "pmg_controller: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_controller: " << error.what() << '\n';
+    return kFailed;
+  }
+}

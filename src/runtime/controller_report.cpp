@@ -1,0 +1,78 @@
+#include "runtime/controller_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace pmg::runtime {
+
+namespace {
+
+constexpr std::size_t kDelayedShown = 10;
+
+nlohmann::ordered_json histogram_json(const TimeHistogram& times) {
+  return {{"p50", times.percentile_us(0.50)}, {"p99", times.percentile_us(0.99)}};
+}
+
+nlohmann::ordered_json thread_json(const CycleStatistics& statistics, const char* duration_name) {
+  nlohmann::ordered_json delayed = nlohmann::ordered_json::array();
+  for (const DelayedCycle& cycle : statistics.delayed()) {
+    delayed.push_back({{"t_s", static_cast<double>(cycle.planned_ns - statistics.first_ns()) * 1e-9},
+                       {"late_ms", static_cast<double>(cycle.late_ns) * 1e-6}});
+  }
+  return {{"cycles", statistics.cycles()},
+          {"missed", statistics.missed()},
+          {"overruns", statistics.overruns()},
+          {"wake_us", histogram_json(statistics.wake())},
+          {duration_name, histogram_json(statistics.duration())},
+          {"delayed_count", statistics.delayed_count()},
+          {"delayed", delayed}};
+}
+
+std::string thread_line(const char* name, const CycleStatistics& statistics, const char* duration_name) {
+  return fmt::format(
+      "{}: {} cycles, wake-up p50 {:.0f} us, p99 {:.0f} us, {} p50 {:.0f} us, p99 {:.0f} us; {} missed, {} overran, {} "
+      "delayed by the host over 2 ms",
+      name, statistics.cycles(), statistics.wake().percentile_us(0.50), statistics.wake().percentile_us(0.99),
+      duration_name, statistics.duration().percentile_us(0.50), statistics.duration().percentile_us(0.99),
+      statistics.missed(), statistics.overruns(), statistics.delayed_count());
+}
+
+void add_delayed_line(const char* name, const CycleStatistics& statistics, std::vector<std::string>& lines) {
+  if (statistics.delayed().empty()) return;
+  std::string text = fmt::format("{}, delayed by the host:", name);
+  for (std::size_t i = 0; i < std::min(kDelayedShown, statistics.delayed().size()); ++i) {
+    const DelayedCycle& cycle = statistics.delayed()[i];
+    text += fmt::format(" {:.1f} ms at {:.3f} s,", static_cast<double>(cycle.late_ns) * 1e-6,
+                        static_cast<double>(cycle.planned_ns - statistics.first_ns()) * 1e-9);
+  }
+  text.back() = statistics.delayed_count() > static_cast<std::int64_t>(kDelayedShown) ? ';' : '.';
+  if (text.back() == ';') text += fmt::format(" {} in all", statistics.delayed_count());
+  lines.push_back(text);
+}
+
+}  // namespace
+
+nlohmann::ordered_json punctuality_json(const Controller& controller) {
+  const ControllerOutbox& outbox = controller.outbox();
+  return {{"realtime", controller.refused().empty()},
+          {"refused", controller.refused()},
+          {"control", thread_json(controller.control_statistics(), "tick_us")},
+          {"bus", thread_json(controller.bus_statistics(), "exchange_us")},
+          {"dropped_records", outbox.dropped_records.load()},
+          {"dropped_bus_cycles", outbox.dropped_bus_cycles.load()}};
+}
+
+std::vector<std::string> punctuality_lines(const Controller& controller) {
+  std::vector<std::string> lines = {thread_line("control", controller.control_statistics(), "tick"),
+                                    thread_line("bus", controller.bus_statistics(), "exchange")};
+  add_delayed_line("control", controller.control_statistics(), lines);
+  add_delayed_line("bus", controller.bus_statistics(), lines);
+  if (const std::int64_t dropped = controller.outbox().dropped_records.load(); dropped > 0) {
+    lines.push_back(fmt::format("{} ticks are not in the log: the recorder did not keep up", dropped));
+  }
+  return lines;
+}
+
+}  // namespace pmg::runtime

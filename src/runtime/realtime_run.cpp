@@ -1,0 +1,89 @@
+#include "runtime/realtime_run.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+namespace pmg::runtime {
+
+namespace {
+constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
+constexpr std::chrono::milliseconds kPoll{20};
+}  // namespace
+
+RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, Controller& controller,
+                         const Scenario& scenario, TickLog* log, bool hoists)
+    : robot_(robot),
+      controller_(controller),
+      scenario_(scenario),
+      log_(log),
+      hoists_(hoists),
+      player_(scenario),
+      measure_(model.standing_height_m) {
+  timing_.reserve(static_cast<std::size_t>(std::ceil(scenario.duration_s() / kTickPeriod_s)) + 1);
+}
+
+RunOutcome RealtimeRun::run() {
+  controller_.start([this] { speak(); }, [this] { record(); });
+  bool ended_early = false;
+  while (!spoken_.load() && controller_.failure().empty() && !robot_.diverged() && !ended_early) {
+    std::this_thread::sleep_for(kPoll);
+    ended_early = interrupted && interrupted();
+  }
+  measuring_.store(false);
+  controller_.stop();
+  if (!controller_.failure().empty()) throw std::runtime_error(controller_.failure());
+  RunOutcome outcome = measure_.outcome();
+  outcome.interrupted = ended_early;
+  outcome.diverged = robot_.diverged();
+  return outcome;
+}
+
+void RealtimeRun::speak() {
+  if (start_ns_ == 0) start_ns_ = next_ns_ = clock_.now_ns();
+  const double time_s = static_cast<double>(clock_.now_ns() - start_ns_) * 1e-9;
+  if (time_s >= scenario_.duration_s()) spoken_.store(true);
+  player_.step(time_s, clock_.now_ns());
+  // A full inbox means that the control thread stands still; the next message will do.
+  controller_.inbox().put(player_.drive());
+  controller_.inbox().put(player_.request());
+  robot_.carry(hoists_ && player_.current().hoist_without_policy);
+  next_ns_ = std::max(next_ns_ + ControlCycle::kPeriod_ns, clock_.now_ns());
+  std::this_thread::sleep_for(std::chrono::nanoseconds(next_ns_ - clock_.now_ns()));
+}
+
+void RealtimeRun::record() {
+  ControllerOutbox& outbox = controller_.outbox();
+  while (outbox.records.pop(record_)) {
+    CycleTiming cycle;
+    while (outbox.bus_cycles.pop(cycle)) bus_.add(cycle);
+    record_tick();
+    bus_.start_anew();
+  }
+}
+
+void RealtimeRun::record_tick() {
+  const TickResult& result = record_.result;
+  if (record_.drive_count > 0) asked_ = record_.drives[record_.drive_count - 1].command;
+  const bool truth_known = find_truth(record_.state.bus_sample);
+  if (log_ != nullptr) {
+    log_->write(record_);
+    log_->write_timing(record_, bus_, controller_.outbox().dropped_records.load());
+    if (truth_known) log_->write_truth(record_.now_ns, truth_.truth, truth_.hoisted);
+  }
+  if (!measuring_.load()) return;
+  const double time_s = static_cast<double>(ticks_++) * kTickPeriod_s;
+  timing_.add(time_s, result.times);
+  if (truth_known) measure_.add(result, truth_.truth, truth_.hoisted, asked_);
+  if (after_tick) after_tick({time_s, scenario_.duration_s(), scenario_.at(time_s), result});
+}
+
+/// Truths come in the order of bus samples, five to a tick. False when it was dropped.
+bool RealtimeRun::find_truth(std::uint64_t bus_sample) {
+  while (truth_.bus_sample < bus_sample && robot_.take(truth_)) {
+  }
+  return truth_.bus_sample == bus_sample;
+}
+
+}  // namespace pmg::runtime

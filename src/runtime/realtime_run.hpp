@@ -1,0 +1,65 @@
+// A scenario played to the threaded controller of a simulated robot, as an operator would, by the wall clock.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "io/clock.hpp"
+#include "runtime/controller.hpp"
+#include "runtime/run_measure.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/simulated_robot.hpp"
+#include "runtime/stage_timing.hpp"
+#include "runtime/tick_log.hpp"
+
+namespace pmg::runtime {
+
+class RealtimeRun {
+ public:
+  /// Keeps references. robot keeps the truth. log may be null. hoists: the scenario's gantry acts (nobody balances the
+  /// robot, and it does not hang already).
+  RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, Controller& controller, const Scenario& scenario,
+              TickLog* log, bool hoists);
+
+  /// Called after every tick, in the recorder's thread.
+  std::function<void(const RunProgress&)> after_tick;
+  /// Asked some fifty times a second: true ends the run and keeps what was done.
+  std::function<bool()> interrupted;
+
+  /// Plays the scenario once and stops the controller. Throws std::runtime_error when a thread failed or the drives
+  /// don't answer.
+  RunOutcome run();
+
+  const StageTiming& timing() const { return timing_; }
+
+ private:
+  void speak();   // the operator's pass: one message each 10 ms
+  void record();  // the recorder's pass
+  void record_tick();
+  bool find_truth(std::uint64_t bus_sample);
+
+  SimulatedRobot& robot_;
+  Controller& controller_;
+  const Scenario& scenario_;
+  TickLog* log_;
+  const bool hoists_;
+  const io::WallClock clock_;
+
+  // the operator's thread
+  ScenarioPlayer player_;
+  std::int64_t start_ns_ = 0, next_ns_ = 0;
+  std::atomic<bool> spoken_{false};
+
+  // the recorder's thread
+  RunMeasure measure_;
+  StageTiming timing_;
+  TickRecord record_;
+  TruthSample truth_;
+  BusTiming bus_;
+  Command asked_;
+  std::int64_t ticks_ = 0;
+  std::atomic<bool> measuring_{true};  // damping at the end is no part of the run
+};
+
+}  // namespace pmg::runtime

@@ -1,0 +1,43 @@
+#include "runtime/run_measure.hpp"
+
+#include "runtime/control_cycle.hpp"
+
+namespace pmg::runtime {
+
+namespace {
+constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
+}  // namespace
+
+RunMeasure::RunMeasure(double standing_height_m)
+    : metrics_(standing_height_m, kTickPeriod_s), gait_period_s_(kGaitPeriodBeforeWalking_s) {}
+
+void RunMeasure::add(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked) {
+  ++ticks_;
+  if (hoisted) sums_.hoisted_s += kTickPeriod_s;
+  if (result.mode == Mode::kFault && last_mode_ != Mode::kFault) sums_.faults.push_back(result.fault);
+  last_mode_ = result.mode;
+
+  const bool holding = result.mode == Mode::kStand || result.mode == Mode::kWalk;
+  if (holding) slip_.add(result.reference, result.optimised);
+  if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
+  // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
+  const bool judged = !hoisted && (holding || result.mode == Mode::kFault);
+  if (judged) {
+    metrics_.add(truth, result.mode == Mode::kStand ? Command{} : asked, gait_period_s_);
+  } else {
+    metrics_.skip(truth);
+  }
+}
+
+RunOutcome RunMeasure::outcome() const {
+  RunOutcome outcome = sums_;
+  outcome.duration_s = static_cast<double>(ticks_) * kTickPeriod_s;
+  outcome.fell = metrics_.fell();
+  outcome.fell_at_s = metrics_.fell_at_s();
+  outcome.tracking = metrics_.summary();
+  outcome.reference_slip = slip_.summary();
+  return outcome;
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,55 @@
+// What is measured of a simulated run, tick by tick; the same in lockstep and in real time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gco/slip_statistics.hpp"
+#include "runtime/metrics.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/tick.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::runtime {
+
+/// How a run ended and what was measured on the way.
+struct RunOutcome {
+  double duration_s = 0.0;  ///< simulated
+  double hoisted_s = 0.0;
+  bool interrupted = false;
+  bool diverged = false;  ///< the simulation blew up; the run ends there
+  bool fell = false;
+  double fell_at_s = -1.0;
+  std::vector<Fault> faults;
+  TrackingSummary tracking;
+  gco::SlipSummary reference_slip;
+};
+
+/// What an observer sees after each tick.
+struct RunProgress {
+  double time_s;
+  double duration_s;
+  const ScenarioStep& step;
+  const TickResult& result;
+};
+
+class RunMeasure {
+ public:
+  explicit RunMeasure(double standing_height_m);
+
+  /// One tick; asked: the scenario's command. Ticks on the gantry and before the first standing are not judged.
+  void add(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked);
+
+  /// With everything that add() saw; interrupted and diverged are the caller's to say.
+  RunOutcome outcome() const;
+
+ private:
+  Metrics metrics_;
+  gco::SlipStatistics slip_;
+  double gait_period_s_;
+  Mode last_mode_ = Mode::kPassive;
+  std::int64_t ticks_ = 0;
+  RunOutcome sums_;
+};
+
+}  // namespace pmg::runtime
