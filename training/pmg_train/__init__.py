@@ -1,0 +1,1 @@
+"""Training of PMG policies on the deployed generator's references."""

@@ -1,0 +1,103 @@
+"""Proximal policy optimisation on preallocated buffers.
+
+Own code and not rsl_rl's: acting and rewards run inside CUDA graphs here, so nothing may allocate, rebind a tensor or
+wait for the host between two ticks; the learning rate is a tensor on the device for the same reason.
+"""
+
+import torch
+import torch.distributed as dist
+from torch import nn
+
+from pmg_train.networks import ActorCritic, log_probability
+
+
+class Rollout:
+    def __init__(self, steps: int, worlds: int, observations: int, critic_observations: int, actions: int, device):
+        zeros = lambda *shape: torch.zeros(*shape, device=device)
+        self.seen, self.critic_seen = zeros(steps, worlds, observations), zeros(steps, worlds, critic_observations)
+        self.action, self.mean = zeros(steps, worlds, actions), zeros(steps, worlds, actions)
+        self.log_probability, self.reward = zeros(steps, worlds), zeros(steps, worlds)
+        self.done, self.timeout = zeros(steps, worlds), zeros(steps, worlds)
+        self.value = zeros(steps + 1, worlds)
+
+    def advantages(self, gamma: float, lambda_: float) -> torch.Tensor:
+        """Generalised advantage estimation; an episode that only ran out of time is worth what its state was."""
+        steps = self.reward.shape[0]
+        out, running = torch.empty_like(self.reward), torch.zeros_like(self.reward[0])
+        for t in reversed(range(steps)):
+            goes_on = 1 - self.done[t]
+            reward = self.reward[t] + gamma * self.timeout[t] * self.value[t]
+            delta = reward + gamma * self.value[t + 1] * goes_on - self.value[t]
+            running = delta + gamma * lambda_ * goes_on * running
+            out[t] = running
+        return out
+
+
+class Ppo:
+    def __init__(self, network: ActorCritic, config: dict, device):
+        self.network, self.config = network, config
+        self.rate = torch.tensor(config["learning_rate"][1], device=device)
+        cuda = self.rate.is_cuda
+        self.optimizer = torch.optim.Adam(network.parameters(), lr=self.rate if cuda else float(self.rate), fused=cuda)
+        self.world_size = dist.get_world_size() if dist.is_initialized() else 1
+
+    def update(self, rollout: Rollout, entropy: float) -> dict[str, torch.Tensor]:
+        c, net = self.config, self.network
+        flat = lambda x: x.flatten(0, 1)
+        advantage = rollout.advantages(c["gamma"], c["lambda"])
+        returns = flat(advantage + rollout.value[:-1])
+        advantage = flat(advantage)
+        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-6)
+        seen, critic_seen, action = flat(rollout.seen), flat(rollout.critic_seen), flat(rollout.action)
+        old_log, old_mean, old_std = flat(rollout.log_probability), flat(rollout.mean), net.std().detach().clone()
+        samples = action.shape[0]
+        size = samples // c["minibatches"]
+        sums = torch.zeros(3, device=action.device)
+        for _ in range(c["epochs"]):
+            order = torch.randperm(samples, device=action.device)
+            for k in range(c["minibatches"]):
+                i = order[k * size:(k + 1) * size]
+                mean, std = net.mean(seen[i]), net.std()
+                with torch.no_grad():
+                    kl = (torch.log(std / old_std) + (old_std ** 2 + (old_mean[i] - mean) ** 2) / (2 * std ** 2)
+                          - 0.5).sum(1).mean()
+                    self._adapt(kl)
+                ratio = torch.exp(log_probability(action[i], mean, std) - old_log[i])
+                gain = advantage[i]
+                clipped = ratio.clamp(1 - c["clip"], 1 + c["clip"])
+                policy_loss = -torch.min(ratio * gain, clipped * gain).mean()
+                value_loss = ((net.value(critic_seen[i]) - returns[i]) ** 2).mean()
+                loss = policy_loss + value_loss - entropy * std.log().sum()
+                self.optimizer.zero_grad(set_to_none=True)
+                loss.backward()
+                self._average_gradients()
+                nn.utils.clip_grad_norm_(net.parameters(), c["gradient_norm"], foreach=True)
+                self.optimizer.step()
+                sums += torch.stack([kl, value_loss.detach(), policy_loss.detach()])
+        kl, value_loss, policy_loss = sums / (c["epochs"] * c["minibatches"])
+        with torch.no_grad():
+            net.actor_norm.update(seen[::4])
+            net.critic_norm.update(critic_seen[::4])
+        return dict(kl=kl, value_loss=value_loss, policy_loss=policy_loss)
+
+    def _adapt(self, kl: torch.Tensor) -> None:
+        if self.world_size > 1:
+            dist.all_reduce(kl, op=dist.ReduceOp.AVG)
+        low, high = self.config["learning_rate"]
+        target = self.config["kl_target"]
+        rate = torch.where(kl > 2 * target, self.rate / 1.5, torch.where(kl < target / 2, self.rate * 1.5, self.rate))
+        self.rate.copy_(rate.clamp(low, high))
+        if not self.rate.is_cuda:
+            for group in self.optimizer.param_groups:
+                group["lr"] = float(self.rate)
+
+    def _average_gradients(self) -> None:
+        if self.world_size == 1:
+            return
+        gradients = [p.grad for p in self.network.parameters() if p.grad is not None]
+        together = torch.cat([g.flatten() for g in gradients])
+        dist.all_reduce(together, op=dist.ReduceOp.AVG)
+        at = 0
+        for g in gradients:
+            g.copy_(together[at:at + g.numel()].view_as(g))
+            at += g.numel()
