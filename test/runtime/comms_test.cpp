@@ -1,0 +1,192 @@
+// Comms: what the controller says on the network, and who else may speak as it.
+#include "runtime/comms.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pmg_msgs/mode_t.hpp"
+#include "runtime/fixtures.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::int64_t kTick_ns = 10'000'000;
+
+class CommsTest : public testing::Test {
+ protected:
+  CommsTest() {
+    run_.robot = "biped";
+    run_.session = 17;
+    for (const char* channel :
+         {"ACK", "STATUS", "STATE", "REFERENCE", "MOTOR_COMMAND", "TIMING", "FAULT", "ROBOT_INFO", "LINK"}) {
+      link_.subscribe(channel, [this, channel](io::Bytes) { ++heard_[channel]; });
+    }
+    link_.subscribe("ACK", [this](io::Bytes bytes) { ack_ = *io::decode_message<pmg_msgs::ack_t>(bytes); });
+    link_.subscribe("LINK", [this](io::Bytes bytes) { counts_ = *io::decode_message<pmg_msgs::link_t>(bytes); });
+    link_.subscribe("STATUS", [this](io::Bytes bytes) { status_ = *io::decode_message<pmg_msgs::status_t>(bytes); });
+    comms_.on_warning = [this](const std::string& text) { warnings_.push_back(text); };
+    const int n = robot_.joint_index.size();
+    record_.state = test::standing_state(robot_);
+    JointVector zero = JointVector::Zero(n);
+    record_.result.reference.q = record_.result.reference.dq = zero;
+    record_.result.command = {.q = zero, .dq = zero, .kp = zero, .kd = zero, .tau_ff = zero};
+  }
+
+  /// What the control thread leaves after a tick, and a step of comms; twice, so that this test hears it.
+  void tick() {
+    clock_.advance_to(clock_.now_ns() + kTick_ns);
+    record_.now_ns = clock_.now_ns();
+    outbox_.newest.put(record_);
+    comms_.step(0);
+    link_.receive(0);
+  }
+  void say_status(const std::string& robot, std::int64_t session) {
+    pmg_msgs::status_t status{};
+    status.robot = robot;
+    status.session = session;
+    link_.publish("STATUS", status);
+  }
+  static pmg_msgs::mode_t stop() {
+    pmg_msgs::mode_t message{};
+    message.version = pmg_msgs::mode_t::VERSION;
+    message.source = "pendant";
+    message.mode = pmg_msgs::mode_t::DAMPING;
+    return message;
+  }
+
+  const model::RobotModel& robot_ = test::biped();
+  io::SimulationClock clock_;
+  io::LcmLink link_{"memq://"};
+  hal::StopLine stop_line_;
+  OperatorInbox inbox_{stop_line_};
+  ControllerOutbox outbox_;
+  RunInfo run_;
+  Comms comms_{link_, inbox_, outbox_, robot_, run_, 100.0, clock_};
+  TickRecord record_;
+  std::map<std::string, int> heard_;
+  std::vector<std::string> warnings_;
+  pmg_msgs::ack_t ack_;
+  pmg_msgs::link_t counts_;
+  pmg_msgs::status_t status_;
+};
+
+TEST_F(CommsTest, EveryTickIsToldOnceAndWhoRunsWhatOnceASecond) {
+  for (int k = 0; k < 250; ++k) tick();
+  comms_.step(0);  // no newer tick: nothing to tell again
+  link_.receive(0);
+  EXPECT_EQ(heard_["STATUS"], 250);
+  EXPECT_EQ(heard_["STATE"], 250);
+  EXPECT_EQ(heard_["REFERENCE"], 250);
+  EXPECT_EQ(heard_["MOTOR_COMMAND"], 250);
+  EXPECT_EQ(heard_["TIMING"], 250);
+  EXPECT_EQ(heard_["ROBOT_INFO"], 3) << "at once, and after 1 s and 2 s";
+  EXPECT_EQ(heard_["LINK"], 3);
+  EXPECT_EQ(status_.robot, "biped");
+  EXPECT_EQ(status_.session, 17);
+  EXPECT_THAT(warnings_, IsEmpty()) << "its own STATUS is no other controller's";
+}
+
+TEST_F(CommsTest, EveryAnswerIsSent) {
+  outbox_.acks.push({.source = Source::make("pendant", 5), .sequence = 3, .verdict = Verdict::kNotYours});
+  outbox_.acks.push({.source = Source::make("pendant", 5), .sequence = 4, .mode = Mode::kDamping});
+  tick();
+  EXPECT_EQ(heard_["ACK"], 2);
+  EXPECT_EQ(ack_.robot, "biped");
+  EXPECT_EQ(ack_.source, "pendant");
+  EXPECT_EQ(ack_.session, 5);
+  EXPECT_EQ(ack_.sequence, 4);
+  EXPECT_EQ(ack_.mode, pmg_msgs::mode_t::DAMPING);
+}
+
+TEST_F(CommsTest, AFaultIsToldOnceHoweverLongItIsLatched) {
+  for (int k = 0; k < 5; ++k) tick();
+  record_.result.mode = Mode::kFault;
+  record_.result.fault = {.code = FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  for (int k = 0; k < 5; ++k) tick();
+  EXPECT_EQ(heard_["FAULT"], 1);
+  EXPECT_THAT(status_.fault, HasSubstr("tilt"));
+  record_.result.mode = Mode::kDamping;
+  record_.result.fault = Fault{};
+  for (int k = 0; k < 5; ++k) tick();
+  record_.result.mode = Mode::kFault;
+  record_.result.fault = {.code = FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  for (int k = 0; k < 5; ++k) tick();
+  EXPECT_EQ(heard_["FAULT"], 2) << "the same cause again is another fault";
+}
+
+TEST_F(CommsTest, LinkTellsWhatBecameOfEveryMessage) {
+  record_.result.ignored = {
+      .accepted = 1, .other_source = 2, .out_of_order = 3, .late = 4, .not_finite = 5, .no_lease = 6};
+  link_.send("COMMAND", std::vector<std::uint8_t>{1, 2, 3});
+  tick();
+  EXPECT_EQ(counts_.robot, "biped");
+  EXPECT_EQ(counts_.accepted, 1);
+  EXPECT_EQ(counts_.malformed, 1);
+  EXPECT_EQ(counts_.other_source, 2);
+  EXPECT_EQ(counts_.out_of_order, 3);
+  EXPECT_EQ(counts_.late, 4);
+  EXPECT_EQ(counts_.not_finite, 5);
+  EXPECT_EQ(counts_.no_lease, 6);
+}
+
+TEST_F(CommsTest, WhatIsWrongIsSaidOnTheConsoleOnce) {
+  for (int k = 0; k < 5; ++k) {
+    link_.send("COMMAND", std::vector<std::uint8_t>{1, 2, 3});
+    tick();
+  }
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("malformed")));
+}
+
+TEST_F(CommsTest, AControllerOfTheSameNameIsRefusedInOneLineThatSaysWhatToDo) {
+  say_status("biped", 16);
+  try {
+    comms_.listen_for_others(60.0);
+    FAIL() << "two controllers of one name";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("\"biped\""), HasSubstr("session 16"), HasSubstr("memq://"),
+                                    HasSubstr("--name"), HasSubstr("--lcm-url"), Not(HasSubstr("\n"))));
+  }
+}
+
+TEST_F(CommsTest, RobotsOfOtherNamesAreWelcomeAndNamed) {
+  for (int k = 0; k < 3; ++k) say_status("z1", 16);
+  say_status("z2", 16);
+  EXPECT_THAT(comms_.listen_for_others(0.0), ElementsAre("z1", "z2"));
+}
+
+TEST_F(CommsTest, OperatorsAreNotHeardBeforeTheControllerRuns) {
+  link_.publish("MODE", stop());
+  comms_.listen_for_others(0.0);
+  ModeRequest request;
+  EXPECT_FALSE(inbox_.take(request)) << "a stale request would be the first tick's";
+  EXPECT_EQ(stop_line_.pulls(), 0u);
+}
+
+TEST_F(CommsTest, AnotherControllerOfOurNameThatComesLaterIsSaidOnce) {
+  for (int k = 0; k < 5; ++k) {
+    say_status("biped", 18);
+    say_status("z1", 18);
+    tick();
+  }
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("another controller (session 18)")));
+  EXPECT_EQ(comms_.impostors_heard(), 5);
+}
+
+TEST_F(CommsTest, AStopIsTakenWithoutWaitingForTheNextTick) {
+  link_.publish("MODE", stop());
+  comms_.step(0);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+}
+
+}  // namespace
+}  // namespace pmg::runtime

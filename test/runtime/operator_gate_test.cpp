@@ -1,0 +1,258 @@
+// OperatorGate: nothing that strangers send fills the controller's queues, ends it, or keeps a stop from it.
+#include "runtime/operator_gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "pmg_msgs/command_t.hpp"
+#include "pmg_msgs/mode_t.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+using Modes = pmg_msgs::mode_t;
+
+constexpr std::int64_t kMillisecond_ns = 1'000'000;
+
+template <typename Message>
+std::vector<std::uint8_t> encoded(const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+class OperatorGateTest : public testing::Test {
+ protected:
+  OperatorGateTest() {
+    command_.version = pmg_msgs::command_t::VERSION;
+    mode_.version = Modes::VERSION;
+    command_.robot = mode_.robot = "z1";
+    command_.source = mode_.source = "gamepad";
+    command_.lease_s = 0.5;
+    mode_.mode = Modes::STAND;
+  }
+
+  void pass_ms(int milliseconds) { clock_.advance_to(clock_.now_ns() + milliseconds * kMillisecond_ns); }
+  void send_command(const std::string& source) {
+    command_.source = source;
+    ++command_.sequence;
+    gate_.take_command(encoded(command_));
+  }
+  void send_mode(const std::string& source, std::int8_t mode) {
+    mode_.source = source;
+    mode_.mode = mode;
+    gate_.take_mode(encoded(mode_));
+  }
+  /// What the control cycle would take from the inbox: names of commands' sources.
+  std::vector<std::string> take_commands() {
+    std::vector<std::string> sources;
+    for (DriveMessage drive; inbox_.take(drive);) sources.emplace_back(drive.source.name.data());
+    return sources;
+  }
+  std::vector<ModeRequest> take_requests() {
+    std::vector<ModeRequest> requests;
+    for (ModeRequest request; inbox_.take(request);) requests.push_back(request);
+    return requests;
+  }
+
+  io::SimulationClock clock_;
+  hal::StopLine stop_line_;
+  OperatorInbox inbox_{stop_line_};
+  OperatorGate gate_{inbox_, "z1", clock_};
+  pmg_msgs::command_t command_{};
+  Modes mode_{};
+};
+
+TEST_F(OperatorGateTest, ACommandArrivesAsItWasSentWithOurClocksTime) {
+  pass_ms(30);
+  command_.session = 9;
+  command_.sequence = 4;
+  command_.stamp_ns = 77;
+  command_.vx_m_s = 0.1;
+  command_.vy_m_s = 0.2;
+  command_.omega_rad_s = 0.3;
+  command_.pitch_rad = 0.4;
+  command_.roll_rad = 0.5;
+  command_.height_m = -0.1;
+  gate_.take_command(encoded(command_));
+  DriveMessage drive;
+  ASSERT_TRUE(inbox_.take(drive));
+  EXPECT_EQ(drive.source, Source::make("gamepad", 9));
+  EXPECT_EQ(drive.sequence, 4);
+  EXPECT_EQ(drive.stamp_ns, 77);
+  EXPECT_EQ(drive.received_ns, 30 * kMillisecond_ns);
+  EXPECT_EQ(drive.lease_s, 0.5);
+  EXPECT_EQ(drive.command, (Command{{0.1, 0.2, 0.3, 0.4, 0.5, -0.1}}));
+  EXPECT_EQ(gate_.counts(), GateCounts{});
+}
+
+TEST_F(OperatorGateTest, ForeignMessagesAreCountedByReasonAndIgnored) {
+  const auto sent = [&](const std::function<void()>& spoil) {
+    const auto [command, mode] = std::pair{command_, mode_};
+    spoil();
+    gate_.take_command(encoded(command_));
+    gate_.take_mode(encoded(mode_));
+    command_ = command;
+    mode_ = mode;
+  };
+  sent([&] { command_.version = mode_.version = 2; });
+  EXPECT_EQ(gate_.counts().other_version, 2);
+  sent([&] { command_.robot = mode_.robot = "z2"; });
+  sent([&] { command_.robot = mode_.robot = ""; });
+  EXPECT_EQ(gate_.counts().other_robot, 4);
+  sent([&] { command_.source = mode_.source = ""; });
+  sent([&] { command_.source = mode_.source = "a name of 24 characters."; });
+  sent([&] { command_.source = mode_.source = "\x1b[2Jgamepad"; });
+  sent([&] { command_.source = mode_.source = std::string("game\0pad", 8); });
+  EXPECT_EQ(gate_.counts().malformed, 8);
+  gate_.take_command(encoded(mode_));
+  gate_.take_mode(encoded(command_));
+  EXPECT_EQ(gate_.counts().malformed, 10);
+  EXPECT_TRUE(take_commands().empty());
+  EXPECT_TRUE(take_requests().empty());
+  EXPECT_EQ(stop_line_.pulls(), 0u);
+}
+
+TEST_F(OperatorGateTest, AStopForNobodyInParticularIsAStopForThisRobot) {
+  mode_.robot = "";
+  send_mode("pendant", Modes::DAMPING);
+  EXPECT_EQ(take_requests().size(), 1u);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+  send_mode("pendant", Modes::PASSIVE);
+  EXPECT_EQ(stop_line_.pulls(), 2u);
+  send_mode("pendant", Modes::STAND);
+  mode_.reset_fault = 1;
+  send_mode("pendant", Modes::DAMPING);
+  EXPECT_EQ(gate_.counts().other_robot, 2) << "standing up and resetting are for one robot";
+  EXPECT_EQ(stop_line_.pulls(), 2u);
+}
+
+TEST_F(OperatorGateTest, AModeThatDoesNotExistIsAnsweredNotGuessed) {
+  for (const int mode : {-128, -1, 4, 5, 127}) {
+    pass_ms(100);
+    send_mode("gamepad", static_cast<std::int8_t>(mode));
+    const std::vector<ModeRequest> requests = take_requests();
+    ASSERT_EQ(requests.size(), 1u);
+    EXPECT_EQ(requests[0].mode, Mode::kFault) << "which the intake answers with NO_MODE";
+  }
+  EXPECT_EQ(stop_line_.pulls(), 0u);
+}
+
+TEST_F(OperatorGateTest, AFloodOfOneSourceTakesNoRoomFromAnother) {
+  int gamepad = 0, flood = 0;
+  for (int ms = 0; ms < 2000; ++ms) {
+    pass_ms(1);
+    for (int k = 0; k < 100; ++k) {
+      command_.session = k;  // a source that invents sessions is one source
+      send_command("flood");
+    }
+    command_.session = 0;
+    if (ms % 20 == 0) send_command("gamepad");
+    if (ms % 10 == 9) {
+      for (const std::string& source : take_commands()) ++(source == "gamepad" ? gamepad : flood);
+    }
+  }
+  EXPECT_EQ(gamepad, 100) << "every one of a 50 Hz source's";
+  EXPECT_LE(flood, 2000 / 4 + 8) << "one a 4 ms, and a burst";
+  EXPECT_GE(flood, 2000 / 4 - 8);
+  EXPECT_EQ(gate_.counts().flooded, 200'000 - flood);
+}
+
+TEST_F(OperatorGateTest, MessagesThatADelayBunchedAreAllTaken) {
+  pass_ms(1000);
+  for (int k = 0; k < 8; ++k) send_command("gamepad");  // 160 ms of a 50 Hz source at once
+  EXPECT_EQ(take_commands().size(), 8u);
+  EXPECT_EQ(gate_.counts().flooded, 0);
+}
+
+TEST_F(OperatorGateTest, InventedNamesCannotCrowdOutWhoIsDrivingNorAStop) {
+  std::size_t gamepad = 0;
+  int name = 0;
+  for (int ms = 0; ms < 2000; ++ms) {
+    pass_ms(1);
+    if (ms % 20 == 0) send_command("gamepad");
+    for (int k = 0; k < 50; ++k) send_command("source " + std::to_string(++name));
+    if (ms % 10 == 0) {
+      for (const std::string& source : take_commands()) gamepad += source == "gamepad";
+    }
+  }
+  EXPECT_EQ(gamepad, 100u);
+  EXPECT_TRUE(take_requests().empty());
+  send_mode("pendant", Modes::DAMPING);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+  EXPECT_EQ(take_requests().size(), 1u) << "and it will be acknowledged";
+}
+
+TEST_F(OperatorGateTest, ASourceThatLeftMakesRoom) {
+  for (int k = 0; k < 8; ++k) send_command("source " + std::to_string(k));
+  send_command("gamepad");
+  EXPECT_EQ(take_commands().size(), 8u);
+  pass_ms(501);
+  send_command("gamepad");
+  EXPECT_EQ(take_commands().size(), 1u);
+}
+
+TEST_F(OperatorGateTest, EveryStopOfAFloodStopsAndTheQueueStaysBounded) {
+  for (int k = 0; k < 10'000; ++k) send_mode("source " + std::to_string(k % 20), Modes::DAMPING);
+  EXPECT_EQ(stop_line_.pulls(), 10'000u);
+  EXPECT_LE(take_requests().size(), 32u);
+}
+
+TEST_F(OperatorGateTest, AFloodOfRequestsLeavesRoomForAnothersStopToBeAcknowledged) {
+  for (int ms = 0; ms < 1000; ++ms) {
+    pass_ms(1);
+    for (int k = 0; k < 100; ++k) send_mode("flood", k % 2 == 0 ? Modes::STAND : Modes::DAMPING);
+    if (ms % 10 == 0) take_requests();
+  }
+  take_requests();
+  send_mode("pendant", Modes::DAMPING);
+  const std::vector<ModeRequest> requests = take_requests();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].source, Source::make("pendant", 0));
+}
+
+TEST_F(OperatorGateTest, AFullQueueIsCountedAndAStopGetsThroughAllTheSame) {
+  ModeRequest request;
+  request.mode = Mode::kStand;
+  int filled = 0;
+  while (inbox_.put(request)) ++filled;
+  EXPECT_EQ(filled, 32);
+  send_mode("pendant", Modes::DAMPING);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+  EXPECT_EQ(gate_.counts().flooded, 1);
+}
+
+TEST_F(OperatorGateTest, RandomBytesEndNothing) {
+  std::mt19937 random(20);
+  std::uniform_int_distribution<int> byte(0, 255);
+  std::uniform_int_distribution<std::size_t> size(0, 300), flips(1, 4);
+  const std::vector<std::uint8_t> command = encoded(command_), mode = encoded(mode_);
+  for (int k = 0; k < 100'000; ++k) {
+    std::vector<std::uint8_t> bytes;
+    if (k % 3 == 0) {
+      bytes.resize(size(random));
+      for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(byte(random));
+    } else {  // nearly right: with the type's hash, decoders read on
+      bytes = k % 3 == 1 ? command : mode;
+      std::uniform_int_distribution<std::size_t> position(8, bytes.size() - 1);
+      for (std::size_t flip = flips(random); flip > 0; --flip) {
+        bytes[position(random)] = static_cast<std::uint8_t>(byte(random));
+      }
+    }
+    gate_.take_command(bytes);
+    gate_.take_mode(bytes);
+    if (k % 100 == 0) {
+      pass_ms(10);
+      take_commands();
+      take_requests();
+    }
+  }
+  EXPECT_GT(gate_.counts().malformed, 100'000);
+}
+
+}  // namespace
+}  // namespace pmg::runtime
