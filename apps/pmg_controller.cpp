@@ -12,9 +12,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/lcm_link.hpp"
+#include "runtime/comms.hpp"
 #include "runtime/control_setup.hpp"
 #include "runtime/controller.hpp"
 #include "runtime/controller_report.hpp"
+#include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/simulated_robot.hpp"
 
@@ -25,6 +28,9 @@ using namespace pmg;
 
 enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2 };
 
+constexpr int kCommsWait_ms = 5;   // how late a tick is published at most
+constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
+
 constexpr const char* kFooter = R"(
 Starts in Passive and waits for operators on LCM (pmg_send, pmg_watch). SIGINT, SIGTERM and SIGHUP damp the robot, close the
 log and end the program. Software stops are not safety-rated: docs/safety.md.
@@ -33,8 +39,8 @@ Example:
   pmg_controller --hal sil --gantry --robot z1 --log out/first
   pmg_send walk --robot z1 --vx 0.4 --for 5
 
-Exit codes: 0 ended by a signal or --duration, 1 it could not run on (drives, network, or a thread failed; the robot was
-damped), 2 bad input.)";
+Exit codes: 0 ended by a signal or --duration, 1 it could not run on (the drives don't answer, or a thread failed; the robot
+was damped), 2 bad input, or a network, name or log folder that can't be used.)";
 
 struct Arguments {
   std::string hal;
@@ -61,7 +67,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
   CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; logs/NAME-TIME if not given");
-  app.add_flag("--no-log", arguments.no_log, "write no log")->excludes(log);
+  app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
   app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
   app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
   app.add_option("--bus-cpu", arguments.threads.bus.cpu, "the one CPU of the bus thread; -1: any")
@@ -108,7 +114,7 @@ std::string utc_time() {
                      utc.tm_min, utc.tm_sec);
 }
 
-/// Signals that end the program arrive nowhere but in Waiter::wait(); threads made later inherit that.
+/// Signals that end the program arrive nowhere but in wait_ms(); threads made later inherit that.
 class EndSignals {
  public:
   EndSignals() {
@@ -141,8 +147,8 @@ class Console {
     if (news.mode == mode_) return;
     mode_ = news.mode;
     if (news.mode == runtime::Mode::kFault) {
-      spdlog::error("FAULT, damping: {}. When its cause is gone: pmg_send reset --robot {}",
-                    runtime::describe(news.fault, robot_), name_);
+      spdlog::error("FAULT, damping: {}", runtime::describe(news.fault, robot_));
+      spdlog::error("{} Then: pmg_send reset --robot {}", runtime::advice(news.fault.code), name_);
       return;
     }
     const char* driving = news.driving.name.data();
@@ -158,12 +164,13 @@ class Console {
 void announce(const Arguments& arguments, const runtime::RunInfo& run) {
   spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", runtime::software_version(), run.robot, run.backend,
                run.bundle.substr(0, 12), run.policy);
-  spdlog::info("LCM {}, log {}", arguments.lcm_url, arguments.no_log ? "none" : arguments.log.string());
+  spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
+               arguments.no_log ? " (after a fault only)" : "");
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
 }
 
-/// Waits until somebody or something ends the run. False: a failure did.
-bool supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
+/// Waits until somebody or something ends the run.
+void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
                Console& console) {
   constexpr long kPoll_ms = 20;
   const auto start = std::chrono::steady_clock::now();
@@ -176,7 +183,50 @@ bool supervise(runtime::Controller& controller, const EndSignals& signals, const
     signalled = signals.wait_ms(kPoll_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
   }
-  return controller.failure().empty();
+}
+
+runtime::RunInfo run_info(const Arguments& arguments, const runtime::LoadedControl& loaded,
+                          const runtime::Controller& controller) {
+  return {.robot = arguments.name,
+          .session = std::chrono::system_clock::now().time_since_epoch().count(),
+          .policy = arguments.control.policy,
+          .backend = arguments.hal,
+          .options = config_json(arguments, loaded).dump(),
+          .bundle = loaded.bundle,
+          .files = loaded.files,
+          .realtime = controller.refused().empty(),
+          .refused = controller.refused()};
+}
+
+/// What happens between the threads' start and their end; everything that input can spoil has been checked.
+ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
+             runtime::Comms& comms, runtime::Recorder& recorder, Console& console) {
+  std::string failure;
+  try {
+    controller.start([&] { comms.step(kCommsWait_ms); }, [&] { recorder.drain(); });
+    spdlog::info("mode: passive");
+    supervise(controller, signals, arguments, console);
+    failure = controller.failure();
+    spdlog::info("{}: damping, then closing", failure.empty() ? "asked to end" : "can't run on");
+    if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  recorder.close();
+  if (!failure.empty()) spdlog::critical("{}", failure);
+  return failure.empty() ? kOk : kFailed;
+}
+
+void report(const Arguments& arguments, const runtime::Controller& controller, const runtime::Recorder& recorder) {
+  for (const std::string& line : runtime::punctuality_lines(controller)) spdlog::info(line);
+  if (recorder.lost() > 0) spdlog::warn("{} ticks are not in the log", recorder.lost());
+  if (!arguments.json) return;
+  nlohmann::ordered_json json = {{"robot", arguments.name},
+                                 {"log", arguments.log.string()},
+                                 {"logged_ticks", recorder.written()},
+                                 {"lost_ticks", recorder.lost()}};
+  json.update(runtime::punctuality_json(controller));
+  std::cout << json.dump(2) << '\n';
 }
 
 int control(Arguments& arguments) {
@@ -186,42 +236,39 @@ int control(Arguments& arguments) {
   }
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
   if (arguments.name.empty()) arguments.name = loaded.robot.name;
-  if (arguments.log.empty() && !arguments.no_log)
-    arguments.log = fs::path("logs") / (arguments.name + "-" + utc_time());
+  if (arguments.log.empty()) arguments.log = fs::path("logs") / (arguments.name + "-" + utc_time());
+  arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
   arguments.threads.realtime = !arguments.no_realtime;
-  const nlohmann::ordered_json config = config_json(arguments, loaded);
   if (arguments.print_config) {
-    std::cout << config.dump(2) << '\n';
+    std::cout << config_json(arguments, loaded).dump(2) << '\n';
     return kOk;
   }
 
   const EndSignals signals;
   const io::WallClock clock;
+  io::LcmLink link(arguments.lcm_url);
   sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
-  runtime::SimulatedRobot robot(world, arguments.gantry, false);
+  runtime::SimulatedRobot robot(world, arguments.gantry, !arguments.no_log);
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
-  const runtime::RunInfo run{.robot = arguments.name,
-                             .session = std::chrono::system_clock::now().time_since_epoch().count(),
-                             .policy = arguments.control.policy,
-                             .backend = arguments.hal,
-                             .options = config.dump(),
-                             .bundle = loaded.bundle,
-                             .files = loaded.files,
-                             .realtime = controller.refused().empty(),
-                             .refused = controller.refused()};
-  announce(arguments, run);
+  const runtime::RunInfo info = run_info(arguments, loaded, controller);
+  announce(arguments, info);
+
+  const double rate_Hz = 1.0 / loaded.options.dt_s;
+  const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };
+  runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock);
+  comms.on_warning = warn;
+  for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
+  runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
+                             {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
+  recorder.after_record = [&](const runtime::TickRecord& record) {
+    const runtime::TruthSample* truth = robot.take_truth(record.state.bus_sample);
+    if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
+  };
   Console console(loaded.robot, arguments.name);
-  controller.start([] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); }, [] {});
-  spdlog::info("mode: passive");
-  const bool well = supervise(controller, signals, arguments, console);
-  const std::string failure = controller.failure();
-  spdlog::info("{}: damping, then closing", well ? "asked to end" : "can't run on");
-  if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
-  for (const std::string& line : runtime::punctuality_lines(controller)) spdlog::info(line);
-  if (arguments.json) std::cout << runtime::punctuality_json(controller).dump(2) << '\n';
-  if (!well) throw std::runtime_error(failure);
-  return kOk;
+  const ExitCode code = run(arguments, signals, controller, comms, recorder, console);
+  report(arguments, controller, recorder);
+  return code;
 }
 
 }  // namespace
@@ -239,11 +286,8 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
   try {
     return control(arguments);
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "pmg_controller: " << error.what() << '\n';
-    return kBadInput;
   } catch (const std::exception& error) {
     std::cerr << "pmg_controller: " << error.what() << '\n';
-    return kFailed;
+    return kBadInput;
   }
 }

@@ -66,24 +66,17 @@ void RealtimeRun::record() {
 void RealtimeRun::record_tick() {
   const TickResult& result = record_.result;
   if (record_.drive_count > 0) asked_ = record_.drives[record_.drive_count - 1].command;
-  const bool truth_known = find_truth(record_.state.bus_sample);
+  const TruthSample* truth = robot_.take_truth(record_.state.bus_sample);
   if (log_ != nullptr) {
     log_->write(record_);
     log_->write_timing(record_, bus_, controller_.outbox().dropped_records.load());
-    if (truth_known) log_->write_truth(record_.now_ns, truth_.truth, truth_.hoisted);
+    if (truth != nullptr) log_->write_truth(record_.now_ns, truth->truth, truth->hoisted);
   }
   if (!measuring_.load()) return;
   const double time_s = static_cast<double>(ticks_++) * kTickPeriod_s;
   timing_.add(time_s, result.times);
-  if (truth_known) measure_.add(result, truth_.truth, truth_.hoisted, asked_);
+  if (truth != nullptr) measure_.add(result, truth->truth, truth->hoisted, asked_);
   if (after_tick) after_tick({time_s, scenario_.duration_s(), scenario_.at(time_s), result});
-}
-
-/// Truths come in the order of bus samples, five to a tick. False when it was dropped.
-bool RealtimeRun::find_truth(std::uint64_t bus_sample) {
-  while (truth_.bus_sample < bus_sample && robot_.take(truth_)) {
-  }
-  return truth_.bus_sample == bus_sample;
 }
 
 }  // namespace pmg::runtime

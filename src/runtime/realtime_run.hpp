@@ -37,7 +37,6 @@ class RealtimeRun {
   void speak();   // the operator's pass: one message each 10 ms
   void record();  // the recorder's pass
   void record_tick();
-  bool find_truth(std::uint64_t bus_sample);
 
   SimulatedRobot& robot_;
   Controller& controller_;
@@ -55,7 +54,6 @@ class RealtimeRun {
   RunMeasure measure_;
   StageTiming timing_;
   TickRecord record_;
-  TruthSample truth_;
   BusTiming bus_;
   Command asked_;
   std::int64_t ticks_ = 0;

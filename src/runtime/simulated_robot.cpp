@@ -35,10 +35,16 @@ hal::BusStatus SimulatedRobot::exchange(const model::JointCommand& command, mode
     truth_.bus_sample = state.bus_sample;
     truth_.truth = world_.truth();
     truth_.hoisted = always_hoisted_ || hoist_.carrying();
-    if (!truths_.push(truth_)) dropped_truths_.fetch_add(1, std::memory_order_relaxed);
+    truths_.push(truth_);  // one that doesn't fit is missing in the log
   }
   if (cycles_++ % kCyclesPerPose == 0) show();
   return status;
+}
+
+const TruthSample* SimulatedRobot::take_truth(std::uint64_t bus_sample) noexcept {
+  while (taken_.bus_sample < bus_sample && truths_.pop(taken_)) {
+  }
+  return taken_.bus_sample == bus_sample ? &taken_ : nullptr;
 }
 
 void SimulatedRobot::move_gantry() noexcept {

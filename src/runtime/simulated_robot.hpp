@@ -40,16 +40,16 @@ class SimulatedRobot final : public hal::Hal {
   static constexpr std::size_t kTruths = 8192;  ///< sixteen seconds
 
   /// Keeps a reference to world, which belongs to the bus thread from now on. always_hoisted: it began on the gantry
-  /// and stays there. keep_truth: somebody will take it; dropped_truths() counts what nobody took in time.
+  /// and stays there. keep_truth: somebody will take it.
   SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth);
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
 
   void carry(bool carry) noexcept { carry_.store(carry, std::memory_order_relaxed); }  ///< by the gantry; any thread
-  bool take(TruthSample& sample) noexcept { return truths_.pop(sample); }              ///< one reader
-  bool take(PoseSample& pose) noexcept { return poses_.take(pose); }                   ///< one reader
+  /// The truth of this bus cycle or, when it was dropped, nothing; older ones are given up. One reader.
+  const TruthSample* take_truth(std::uint64_t bus_sample) noexcept;
+  bool take(PoseSample& pose) noexcept { return poses_.take(pose); }  ///< one reader
   bool diverged() const noexcept { return diverged_.load(std::memory_order_acquire); }
-  std::int64_t dropped_truths() const noexcept { return dropped_truths_.load(std::memory_order_relaxed); }
 
  private:
   void move_gantry() noexcept;
@@ -59,12 +59,12 @@ class SimulatedRobot final : public hal::Hal {
   hal::SilHal bus_;
   const bool always_hoisted_, keep_truth_;
   Hoist hoist_;
-  TruthSample truth_;
+  TruthSample truth_;  // the bus thread's
   PoseSample pose_;
   std::int64_t cycles_ = 0;
   std::atomic<bool> carry_{false}, diverged_{false};
-  std::atomic<std::int64_t> dropped_truths_{0};
   boost::lockfree::spsc_queue<TruthSample> truths_{kTruths};
+  TruthSample taken_;  // the reader's
   io::Mailbox<PoseSample> poses_;
 };
 
