@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "runtime/mode.hpp"
+#include "runtime/source_memory.hpp"
 
 namespace pmg::runtime {
 
-/// Driving messages that were ignored since the start, by reason.
+/// Operators' messages since the start, commands and requests alike, by what became of them. All but accepted are
+/// ignored.
 struct IgnoredCommands {
   std::int64_t accepted = 0;
   std::int64_t other_source = 0;
@@ -23,10 +24,18 @@ class CommandIntake {
   enum class DriveVerdict {
     kAccepted,
     kOtherSourceDrives,
-    kOutOfOrder,  ///< sequence not above the last one of this session: repeated or overtaken
+    kOutOfOrder,  ///< sequence not above the last one of this session, or an earlier session: repeated or overtaken
     kLate,        ///< spent too long on the way
     kNotFinite,
     kNoLease,  ///< lease not positive
+  };
+
+  /// What becomes of a request.
+  struct Judgement {
+    Verdict verdict = Verdict::kTaken;
+    /// To be carried out; false for the repetition of a request that was, which is only acknowledged again. A stop that
+    /// isn't fresh (repeated, overtaken, late) is taken all the same: as a stop, not as a second wish for limp drives.
+    bool fresh = false;
   };
 
   /// Longest lease that is granted: a crashed operator station blocks the others for no longer.
@@ -34,14 +43,15 @@ class CommandIntake {
 
   DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
 
-  /// Stopping is for everyone; climbing and resetting for the driving source, or for anyone when none drives.
-  Verdict judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
+  /// Stopping is for everyone at any time; climbing and resetting for the driving source, or for anyone when none
+  /// drives.
+  Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
 
   const IgnoredCommands& ignored() const noexcept { return ignored_; }
 
   const Command& command() const noexcept { return last_.command; }  ///< last accepted; zero before the first
 
-  /// Infinite before the first accepted command.
+  /// Since the last accepted command was received; infinite before the first.
   double age_s(std::int64_t now_ns) const noexcept;
 
   /// Nobody drives: empty name.
@@ -49,7 +59,10 @@ class CommandIntake {
 
  private:
   bool leased(std::int64_t now_ns) const noexcept { return any_ && now_ns < lease_end_ns_; }
+  DriveVerdict check(const DriveMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
 
+  SourceMemory sources_;
   IgnoredCommands ignored_;
   bool any_ = false;
   DriveMessage last_;

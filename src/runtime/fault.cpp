@@ -2,137 +2,79 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pmg::runtime {
 
 namespace {
 
-constexpr std::array<const char*, kFaultCodes> kNames = {
-    "none",           "bus_lost",     "stale_state", "state_not_finite", "temperature", "joint_limit",
-    "joint_velocity", "joint_torque", "tilt",        "policy_not_finite"};
-constexpr std::array<const char*, kFaultCodes> kUnits = {"", "", "s", "", "degC", "rad", "rad/s", "Nm", "rad", ""};
+struct Wording {
+  const char* name;
+  const char* unit;
+  const char* cause;           // with {joint}, {value}, {limit}, {beyond} = |value - limit|
+  const char* cause_no_value;  // when no joint, or no number, can be named; null: the same
+  const char* advice;
+};
 
-int first_not_finite(const JointVector& values) noexcept {
-  for (int i = 0; i < static_cast<int>(values.size()); ++i) {
-    if (!std::isfinite(values[i])) return i;
-  }
-  return -1;
-}
+constexpr std::array<Wording, kFaultCodes> kWordings = {{
+    {"none", "", "nothing is wrong", nullptr, ""},
+    {"bus_lost", "", "the drives don't answer any more", nullptr,
+     "Look at the drives' power and the bus wiring; the drives' own watchdogs must have stopped them."},
+    {"stale_state", "s", "no news from the drives for {value:.3f} s, limit {limit:.3f} s", nullptr,
+     "Look at the bus: drives that answer late or a bus thread that does not run."},
+    {"state_not_finite", "", "{joint} reports a value that is no number",
+     "the state is incomplete, or the IMU reports what is no number or no orientation",
+     "Look at the encoder, torque sensor or IMU that is named in the log's last STATE."},
+    {"temperature", "degC", "{joint}'s drive has {value:.1f} degC, limit {limit:.1f} degC",
+     "{joint}'s drive reports no temperature", "Let the drive cool down; look at what it had to hold."},
+    {"control_frozen", "", "the control thread gave no command for too long; the bus damped the drives meanwhile",
+     nullptr, "Look at what else ran on the computer, and at what real-time scheduling was refused at the start."},
+    {"command_not_finite", "", "the control thread gave a command that was no number; the bus damped the drives",
+     nullptr, "A defect of the controller: keep the log and report it."},
+    {"stale_policy", "", "the policy gave no result in time, several ticks in a row", nullptr,
+     "Look at the policy's times in TIMING: too large a network, or a computer that is too busy."},
+    {"overrun", "s", "several ticks in a row ended behind their deadline, the last one by {value:.4f} s", nullptr,
+     "Look at the stages' times in TIMING, and at what else ran on the computer."},
+    {"joint_limit", "rad", "{joint} is at {value:.3f} rad, {beyond:.3f} rad beyond its range", nullptr,
+     "Bring the joint back into its range by hand; look at its zero and at what drove it there."},
+    {"joint_velocity", "rad/s", "{joint} moves at {value:.2f} rad/s, limit {limit:.2f} rad/s", nullptr,
+     "Look at the joint's encoder, its gains and what it hit."},
+    {"joint_torque", "Nm", "{joint} gives {value:.1f} Nm, limit {limit:.1f} Nm", nullptr,
+     "Look at what the joint pushed against."},
+    {"tilt", "rad", "the IMU's link leans {value:.2f} rad from upright, limit {limit:.2f} rad", nullptr,
+     "The robot fell or was tipped: put it upright before the reset."},
+    {"torso_attitude", "rad", "the torso leans {value:.2f} rad away from what was commanded, limit {limit:.2f} rad",
+     nullptr, "The robot lost its balance or was held: put it upright before it stands again."},
+    {"reference_not_finite", "", "the motion generator or the ground-aware optimisation gave what is no number",
+     nullptr, "A defect of the clip library or the controller: keep the log and report it."},
+    {"policy_not_finite", "", "the policy failed, or gave a target that is no number", nullptr,
+     "Walk without this policy; keep the log and report it."},
+    {"action_out_of_range", "rad",
+     "the policy pulls {joint} {value:.2f} rad away from its reference, limit {limit:.2f} rad", nullptr,
+     "The robot is not in a state that the policy was trained for, or it is the wrong policy."},
+}};
+
+const Wording& wording(FaultCode code) noexcept { return kWordings[static_cast<std::size_t>(code)]; }
 
 }  // namespace
 
-const char* to_string(FaultCode code) noexcept { return kNames[static_cast<std::size_t>(code)]; }
+const char* to_string(FaultCode code) noexcept { return wording(code).name; }
+
+const char* unit(FaultCode code) noexcept { return wording(code).unit; }
+
+const char* advice(FaultCode code) noexcept { return wording(code).advice; }
 
 std::string describe(const Fault& fault, const model::RobotModel& robot) {
-  const char* unit = kUnits[static_cast<std::size_t>(fault.code)];
-  std::string text = to_string(fault.code);
-  if (fault.joint >= 0) text += ": " + robot.joint_index.name(fault.joint);
-  if (*unit != '\0') {
-    text += fmt::format("{} {:.3f} {}, limit {:.3f} {}", fault.joint >= 0 ? " at" : ":", fault.value, unit, fault.limit,
-                        unit);
-  }
-  return text;
-}
-
-FaultDetector::FaultDetector(const model::RobotModel& robot, const FaultLimits& limits)
-    : limits_(limits),
-      q_lower_(robot.q_lower()),
-      q_upper_(robot.q_upper()),
-      velocity_limit_(q_lower_.size()),
-      effort_limit_(q_lower_.size()),
-      up_I_(robot.imu.T_LI.linear().transpose() * Eigen::Vector3d::UnitZ()) {
-  for (int i = 0; i < static_cast<int>(q_lower_.size()); ++i) {
-    const model::Joint& joint = robot.joints[static_cast<std::size_t>(i)];
-    velocity_limit_[i] = joint.velocity_limit_rad_s;
-    effort_limit_[i] = joint.effort_limit_Nm;
-  }
-}
-
-std::optional<Fault> FaultDetector::detect(const model::RobotState& state, hal::BusStatus bus, std::int64_t now_ns,
-                                           Scope scope) noexcept {
-  Fault fault = check_sensing(state, bus, now_ns);
-  if (fault.code == FaultCode::kNone && scope == Scope::kMotion) {
-    for (const FaultCode code : {FaultCode::kJointLimit, FaultCode::kJointVelocity, FaultCode::kJointTorque}) {
-      const Fault found = check_joints(code, state);
-      if (persists(code, found.code != FaultCode::kNone) && fault.code == FaultCode::kNone) fault = found;
-    }
-    const Fault tilted = check_tilt(state);
-    if (persists(FaultCode::kTilt, tilted.code != FaultCode::kNone) && fault.code == FaultCode::kNone) fault = tilted;
-  } else {
-    held_ticks_.fill(0);
-  }
-  if (fault.code == FaultCode::kNone) return std::nullopt;
-  fault.stamp_ns = now_ns;
-  return fault;
-}
-
-Fault FaultDetector::check_sensing(const model::RobotState& state, hal::BusStatus bus,
-                                   std::int64_t now_ns) const noexcept {
-  if (bus == hal::BusStatus::kLost) return {.code = FaultCode::kBusLost};
-  const double age_s = static_cast<double>(now_ns - state.stamp_ns) * 1e-9;
-  if (age_s > limits_.stale_state_s) {
-    return {.code = FaultCode::kStaleState, .value = age_s, .limit = limits_.stale_state_s};
-  }
-  for (const JointVector* values : {&state.q, &state.dq, &state.tau}) {
-    if (values->size() != q_lower_.size()) return {.code = FaultCode::kStateNotFinite};
-    const int joint = first_not_finite(*values);
-    if (joint >= 0) return {.code = FaultCode::kStateNotFinite, .joint = joint};
-  }
-  if (!state.gyro_rad_s.allFinite() || !state.acceleration_m_s2.allFinite() ||
-      !(std::abs(state.orientation_WI.norm() - 1.0) < 0.1)) {  // catches NaN as well as an estimate that never started
-    return {.code = FaultCode::kStateNotFinite};
-  }
-  for (int i = 0; i < static_cast<int>(state.temperature_degC.size()); ++i) {
-    if (!(state.temperature_degC[i] <= limits_.temperature_degC)) {
-      return {.code = FaultCode::kTemperature,
-              .joint = i,
-              .value = state.temperature_degC[i],
-              .limit = limits_.temperature_degC};
-    }
-  }
-  return {};
-}
-
-Fault FaultDetector::check_joints(FaultCode code, const model::RobotState& state) const noexcept {
-  for (int i = 0; i < static_cast<int>(q_lower_.size()); ++i) {
-    double value = 0.0, limit = 0.0;
-    bool beyond = false;
-    switch (code) {
-      case FaultCode::kJointLimit:
-        value = state.q[i];
-        limit = value < q_lower_[i] ? q_lower_[i] : q_upper_[i];
-        beyond = value < q_lower_[i] - limits_.joint_limit_margin_rad ||
-                 value > q_upper_[i] + limits_.joint_limit_margin_rad;
-        break;
-      case FaultCode::kJointVelocity:
-        value = state.dq[i];
-        limit = velocity_limit_[i] * limits_.velocity_factor;
-        beyond = std::abs(value) > limit;
-        break;
-      default:
-        value = state.tau[i];
-        limit = effort_limit_[i] * limits_.torque_factor;
-        beyond = std::abs(value) > limit;
-        break;
-    }
-    if (beyond) return {.code = code, .joint = i, .value = value, .limit = limit};
-  }
-  return {};
-}
-
-Fault FaultDetector::check_tilt(const model::RobotState& state) const noexcept {
-  const double cosine = (state.orientation_WI * up_I_).z();
-  const double tilt_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
-  if (tilt_rad <= limits_.tilt_rad) return {};
-  return {.code = FaultCode::kTilt, .value = tilt_rad, .limit = limits_.tilt_rad};
-}
-
-bool FaultDetector::persists(FaultCode code, bool present) noexcept {
-  int& held = held_ticks_[static_cast<std::size_t>(code)];
-  held = present ? std::min(held + 1, limits_.persist_ticks) : 0;
-  return held >= limits_.persist_ticks;
+  const Wording& words = wording(fault.code);
+  const bool joint_missing = fault.code == FaultCode::kStateNotFinite && fault.joint < 0;
+  const bool other_words = words.cause_no_value != nullptr && (joint_missing || !std::isfinite(fault.value));
+  const std::string joint = fault.joint >= 0 ? robot.joint_index.name(fault.joint) : "a joint";
+  return fmt::format(
+      "{}: {}", words.name,
+      fmt::format(fmt::runtime(other_words ? words.cause_no_value : words.cause), fmt::arg("joint", joint),
+                  fmt::arg("value", fault.value), fmt::arg("limit", fault.limit),
+                  fmt::arg("beyond", std::abs(fault.value - fault.limit))));
 }
 
 }  // namespace pmg::runtime

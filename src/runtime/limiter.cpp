@@ -16,16 +16,15 @@ int clamp_into(double low, double high, double& value) noexcept {
 
 }  // namespace
 
-Limiter::Limiter(const model::RobotModel& robot, double dt_s, const LimiterOptions& options)
-    : lower_(robot.q_lower()), upper_(robot.q_upper()), previous_(robot.q_stand()) {
+Limiter::Limiter(const model::RobotModel& robot, const JointVector& kp, const JointVector& kd, double dt_s,
+                 const LimiterOptions& options)
+    : lower_(robot.q_lower()), upper_(robot.q_upper()), kp_(kp), kd_(kd), previous_(robot.q_stand()) {
   const Eigen::Index n = lower_.size();
-  for (JointVector* values : {&step_, &effort_, &kp_, &kd_}) values->resize(n);
+  for (JointVector* values : {&step_, &effort_}) values->resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(i)];
     step_[i] = joint.velocity_limit_rad_s * options.target_rate_factor * dt_s;
     effort_[i] = joint.effort_limit_Nm;
-    kp_[i] = joint.kp_Nm_per_rad;
-    kd_[i] = joint.kd_Nm_s_per_rad;
   }
 }
 

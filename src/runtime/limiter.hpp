@@ -22,7 +22,9 @@ struct LimitReport {
 
 class Limiter {
  public:
-  Limiter(const model::RobotModel& robot, double dt_s, const LimiterOptions& options);
+  /// kp, kd: what the drives are given [Nm/rad], [Nm s/rad].
+  Limiter(const model::RobotModel& robot, const JointVector& kp, const JointVector& kd, double dt_s,
+          const LimiterOptions& options);
 
   void start_from(const JointVector& q) noexcept;  ///< the posture that targets move away from [rad]
 

@@ -9,16 +9,19 @@ Supervisor::Supervisor(const model::RobotModel& robot, const SupervisorOptions& 
 
 void Supervisor::request(const ModeRequest& request) noexcept {
   if (request.mode == Mode::kFault) return;  // nobody asks for one
-  wanted_ = request.mode;
-  reset_wanted_ = request.reset_fault;
+  if (request.reset_fault) {
+    reset_wanted_ = true;
+  } else {
+    wanted_ = request.mode;
+  }
 }
 
 Mode Supervisor::update(const SupervisorInput& input) noexcept {
   // A limp robot may be carried about, bent and unplugged: nothing of that is a fault until it is to hold itself.
   if (mode_ != Mode::kPassive) {
-    const bool holding = mode_ == Mode::kStand || mode_ == Mode::kWalk;
-    const auto scope = holding ? FaultDetector::Scope::kMotion : FaultDetector::Scope::kSensing;
-    const std::optional<Fault> found = detector_.detect(input.state, input.bus, input.now_ns, scope);
+    // In Fault as well: what was wrong with the robot's motion must be over before a reset.
+    const auto scope = mode_ == Mode::kDamping ? FaultDetector::Scope::kSensing : FaultDetector::Scope::kMotion;
+    const std::optional<Fault> found = detector_.detect(input.evidence, scope);
     if (mode_ == Mode::kFault) {
       if (reset_wanted_ && !found) {
         mode_ = Mode::kDamping;
@@ -32,7 +35,10 @@ Mode Supervisor::update(const SupervisorInput& input) noexcept {
       raise(*found);
       return mode_;
     }
+  } else {
+    detector_.reset();
   }
+  reset_wanted_ = false;
   if (std::exchange(stop_wanted_, false)) stop_now();
   follow_request(input);
   if (mode_ == Mode::kWalk) stop_walking_if_due(input);
@@ -80,15 +86,15 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
         if (!input.entry_done) return;  // the request waits for the ramp
         // Without somebody who drives it would stop at once; and walking must not begin by itself when a link comes
         // back.
-        if (input.command_age_s <= options_.stale_command_s) mode_ = Mode::kWalk;
+        if (may_walk(input)) mode_ = Mode::kWalk;
       }
       wanted_.reset();
       return;
     case Mode::kWalk:
       if (*wanted_ == Mode::kWalk) {
-        if (input.command_age_s <= options_.stale_command_s) stopping_since_ns_.reset();
+        if (may_walk(input)) stopping_since_ns_.reset();
       } else if (!stopping_since_ns_) {
-        stopping_since_ns_ = input.now_ns;
+        stopping_since_ns_ = input.evidence.now_ns;
       }
       wanted_.reset();
       return;
@@ -97,10 +103,15 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
   }
 }
 
+bool Supervisor::may_walk(const SupervisorInput& input) const noexcept {
+  return input.command_age_s <= options_.stale_command_s && input.gco_held_ticks < options_.gco_held_ticks;
+}
+
 void Supervisor::stop_walking_if_due(const SupervisorInput& input) noexcept {
-  if (input.command_age_s > options_.stale_command_s && !stopping_since_ns_) stopping_since_ns_ = input.now_ns;
+  const std::int64_t now_ns = input.evidence.now_ns;
+  if (!may_walk(input) && !stopping_since_ns_) stopping_since_ns_ = now_ns;
   if (!stopping_since_ns_) return;
-  const double stopping_s = static_cast<double>(input.now_ns - *stopping_since_ns_) * 1e-9;
+  const double stopping_s = static_cast<double>(now_ns - *stopping_since_ns_) * 1e-9;
   if (input.at_rest || stopping_s >= options_.stop_within_s) {
     mode_ = Mode::kStand;
     stopping_since_ns_.reset();

@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "hal/command_guard.hpp"
-#include "runtime/fault.hpp"
+#include "runtime/fault_detector.hpp"
 #include "runtime/mode.hpp"
 
 namespace pmg::runtime {
@@ -14,25 +13,25 @@ struct SupervisorOptions {
   FaultLimits fault_limits;
   double stale_command_s = 0.2;  ///< an older driving command ends walking
   double stop_within_s = 0.5;    ///< velocity is zero so long after, whatever the generator says
+  /// Ground-aware solutions held so many ticks in a row end walking: u' is then a second old.
+  int gco_held_ticks = 100;
 };
 
 /// What a tick knows when modes are decided.
 struct SupervisorInput {
-  const model::RobotState& state;
-  hal::BusStatus bus = hal::BusStatus::kOk;
-  hal::TripCause guard_trip = hal::TripCause::kNone;  ///< since the last tick
-  std::int64_t late_ns = 0;                           ///< the last tick behind its deadline
-  std::int64_t now_ns = 0;
+  FaultEvidence evidence;
   double command_age_s = 0.0;
   bool entry_done = false;  ///< the ramp from the measured posture into Stand has ended
   bool at_rest = false;     ///< the reference moves no foot
+  int gco_held_ticks = 0;   ///< ticks in a row in which the ground-aware optimisation held an old solution
 };
 
 class Supervisor {
  public:
   Supervisor(const model::RobotModel& robot, const SupervisorOptions& options);
 
-  /// Remembers a request until update() has carried it out or refused it. A later request replaces it.
+  /// Remembers a request until update() has carried it out or refused it. A later request replaces it. A reset is
+  /// nothing but a reset: outside of Fault it changes no mode.
   void request(const ModeRequest& request) noexcept;
 
   /// Anyone's stop, whatever else this tick was asked for: Damping unless the mode is Passive or Fault.
@@ -53,6 +52,7 @@ class Supervisor {
   void stop_now() noexcept;
   void follow_request(const SupervisorInput& input) noexcept;
   void climb(const SupervisorInput& input) noexcept;
+  bool may_walk(const SupervisorInput& input) const noexcept;
   void stop_walking_if_due(const SupervisorInput& input) noexcept;
 
   SupervisorOptions options_;

@@ -1,9 +1,63 @@
 #include "runtime/tick.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace pmg::runtime {
+
+namespace {
+
+/// Time since it began.
+class Lap {
+ public:
+  explicit Lap(const io::Clock& stopwatch) : stopwatch_(stopwatch), start_ns_(stopwatch.now_ns()) {}
+  std::int64_t end_ns() noexcept { return stopwatch_.now_ns() - start_ns_; }
+
+ private:
+  const io::Clock& stopwatch_;
+  std::int64_t start_ns_;
+};
+
+policy::DriveGains own_gains(const model::RobotModel& robot) {
+  const Eigen::Index n = robot.joint_index.size();
+  policy::DriveGains gains{JointVector(n), JointVector(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    gains.kp_Nm_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
+    gains.kd_Nm_s_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
+  }
+  return gains;
+}
+
+/// The policy's gains, or robot.yaml's. The bus guard would clamp implausible ones in silence: they are refused here.
+policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy) {
+  const auto gains = policy.gains();
+  if (!gains) return own_gains(robot);
+  const auto plausible = [&](const JointVector& values, double largest) {
+    return values.size() == robot.joint_index.size() && (values.array() >= 0.0).all() &&
+           (values.array() <= largest).all();
+  };
+  const hal::GuardOptions guard;
+  if (!plausible(gains->kp_Nm_per_rad, guard.max_kp_Nm_per_rad) ||
+      !plausible(gains->kd_Nm_s_per_rad, guard.max_kd_Nm_s_per_rad)) {
+    throw std::invalid_argument("the policy's drive gains don't fit the robot; expected one of each for " +
+                                std::to_string(robot.joint_index.size()) +
+                                " joints, none negative, none above the bus guard's largest");
+  }
+  return *gains;
+}
+
+bool finite(const Command& command) noexcept {
+  return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
+}
+
+bool finite(const Reference& reference) noexcept {
+  return reference.q.allFinite() && reference.dq.allFinite() && std::isfinite(reference.phase) &&
+         std::isfinite(reference.phase_rate_per_s) && std::isfinite(reference.gain) && finite(reference.command);
+}
+
+}  // namespace
 
 TickOptions tick_options(const model::RobotModel& robot) {
   TickOptions options;
@@ -17,52 +71,52 @@ Tick::Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<
            const io::Clock& stopwatch, const TickOptions& options)
     : stopwatch_(stopwatch),
       dt_s_(options.dt_s),
+      policy_may_owe_ticks_(options.late_policy_ticks),
+      gains_(gains_in_force(robot, *policy)),
+      brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
       generator_(std::move(library), options.generator),
       gco_(robot, options.gco),
       policy_(std::move(policy)),
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
-      limiter_(robot, options.dt_s, options.limiter) {
-  const Eigen::Index n = robot.joint_index.size();
-  kp_.resize(n);
-  kd_.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    kp_[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
-    kd_[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
-  }
+      limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
+      action_monitor_(options.action_monitor),
+      target_(robot.q_stand()) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();
-  for (JointVector* values : {&command.dq, &command.kp, &command.kd, &command.tau_ff}) values->setZero(n);
+  for (JointVector* values : {&command.dq, &command.kp, &command.kd, &command.tau_ff}) {
+    values->setZero(robot.joint_index.size());
+  }
   generator_.reset();
   result_.reference = generator_.reference();
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {
-  const std::int64_t start_ns = stopwatch_.now_ns();
+  Lap tick(stopwatch_);
   result_.times = StageTimes{};
   result_.limited = LimitReport{};
+  result_.policy_held = false;
+  if (input.late_ns > 0) ++result_.late_ticks;
   take_messages(input);
 
   const Mode before = result_.mode;
-  const Mode mode = supervisor_.update({.state = input.state,
-                                        .bus = input.bus,
-                                        .guard_trip = input.guard_trip,
-                                        .late_ns = input.late_ns,
-                                        .now_ns = input.now_ns,
-                                        .command_age_s = result_.command_age_s,
-                                        .entry_done = entry_.done(),
-                                        .at_rest = generator_.reference().gain == 0.0});
+  const Mode mode = supervisor_.update(supervisor_input(input));
   result_.user = supervisor_.admit(intake_.command());
   if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
-
-  const bool holding = mode == Mode::kStand || mode == Mode::kWalk;
-  if (!holding || !drive(input)) release(input.state, supervisor_.mode() != Mode::kPassive);
-
+  if (mode == Mode::kStand || mode == Mode::kWalk) {
+    Fault fault = drive(input.state);
+    if (fault.code != FaultCode::kNone) {
+      fault.stamp_ns = input.now_ns;
+      supervisor_.raise(fault);
+    }
+  }
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
+  if (result_.mode != Mode::kStand && result_.mode != Mode::kWalk) release(input.state);
+
   for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
-  result_.times.tick_ns = stopwatch_.now_ns() - start_ns;
+  result_.times.tick_ns = tick.end_ns();
   return result_;
 }
 
@@ -70,9 +124,12 @@ void Tick::take_messages(const TickInput& input) noexcept {
   for (const DriveMessage& drive : input.drives) intake_.accept(drive, input.now_ns);
   result_.ack_count = 0;
   for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
-    const Verdict verdict = intake_.judge(request, input.now_ns);
-    if (verdict == Verdict::kTaken) supervisor_.request(request);
-    result_.acks[result_.ack_count++] = {.source = request.source, .sequence = request.sequence, .verdict = verdict};
+    const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns);
+    if (judgement.fresh) supervisor_.request(request);
+    // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.
+    if (request.stops() && judgement.verdict == Verdict::kTaken) supervisor_.stop();
+    result_.acks[result_.ack_count++] = {
+        .source = request.source, .sequence = request.sequence, .verdict = judgement.verdict};
   }
   if (input.stop) supervisor_.stop();
   result_.ignored = intake_.ignored();
@@ -80,59 +137,100 @@ void Tick::take_messages(const TickInput& input) noexcept {
   result_.driving = intake_.driving(input.now_ns);
 }
 
+SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
+  SupervisorInput known{.evidence = {.state = input.state,
+                                     .bus = input.bus,
+                                     .guard_trip = input.guard_trip,
+                                     .late_ns = input.late_ns,
+                                     .policy_late = input.policy_late,
+                                     .now_ns = input.now_ns},
+                        .command_age_s = result_.command_age_s,
+                        .entry_done = entry_.done(),
+                        .at_rest = generator_.reference().gain == 0.0,
+                        .gco_held_ticks = gco_held_ticks_};
+  const bool holding = result_.mode == Mode::kStand || result_.mode == Mode::kWalk;
+  // On its way from the posture in which it was found the torso may be anywhere.
+  if (holding && entry_.done()) {
+    const Command& aim = result_.reference.command;
+    known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
+  }
+  return known;
+}
+
 void Tick::enter_stand(const model::RobotState& state) noexcept {
   generator_.reset();
   gco_.reset();
-  entry_.start(state.q, generator_.reference().q);
+  policy_->reset();
+  action_monitor_.reset();
+  target_ = generator_.reference().q;
+  policy_owes_ticks_ = gco_held_ticks_ = 0;
+  entry_.start(state.q, target_);
   limiter_.start_from(state.q);
 }
 
-bool Tick::drive(const TickInput& input) noexcept {
-  StageTimes& times = result_.times;
-  std::int64_t lap_ns = stopwatch_.now_ns();
-  const auto lap = [&](std::int64_t& stage_ns) {
-    const std::int64_t now_ns = stopwatch_.now_ns();
-    stage_ns = now_ns - lap_ns;
-    lap_ns = now_ns;
-  };
-
-  result_.reference = generator_.step(result_.user, dt_s_);
-  lap(times.generator_ns);
-  result_.optimised = gco_.solve(result_.reference);
-  lap(times.gco_ns);
+Fault Tick::drive(const model::RobotState& state) noexcept {
+  Fault fault = make_reference();
+  if (fault.code == FaultCode::kNone) fault = ask_policy(state);
+  if (fault.code != FaultCode::kNone) return fault;
 
   model::JointCommand& command = result_.command;
-  const policy::Status status = policy_->act(input.state, result_.reference, result_.optimised.command, command.q);
-  lap(times.policy_ns);
-  if (status != policy::Status::kOk || command.q.size() != kp_.size() || !command.q.allFinite()) {
-    supervisor_.raise({.code = FaultCode::kPolicyNotFinite, .stamp_ns = input.now_ns});
-    return false;
-  }
-
+  command.q = target_;
   entry_.apply(dt_s_, command.q);
-  result_.limited = limiter_.apply(input.state, command.q);
+  result_.limited = limiter_.apply(state, command.q);
   command.dq.setZero();
-  command.kp = kp_;
-  command.kd = kd_;
+  command.kp = gains_.kp_Nm_per_rad;
+  command.kd = gains_.kd_Nm_s_per_rad;
   command.tau_ff.setZero();
-  return true;
+  return {};
 }
 
-void Tick::release(const model::RobotState& state, bool brake) noexcept {
+Fault Tick::make_reference() noexcept {
+  Lap generator(stopwatch_);
+  result_.reference = generator_.step(result_.user, dt_s_);
+  result_.times.generator_ns = generator.end_ns();
+  if (!finite(result_.reference)) return {.code = FaultCode::kReferenceNotFinite};
+
+  Lap gco(stopwatch_);
+  result_.optimised = gco_.solve(result_.reference);
+  result_.times.gco_ns = gco.end_ns();
+  if (!finite(result_.optimised.command)) return {.code = FaultCode::kReferenceNotFinite};
+  gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;
+  return {};
+}
+
+Fault Tick::ask_policy(const model::RobotState& state) noexcept {
+  Lap lap(stopwatch_);
+  JointVector& q_des = result_.command.q;
+  const policy::Status status = policy_->act(state, result_.reference, result_.optimised.command, q_des);
+  result_.times.policy_ns = lap.end_ns();
+
+  result_.policy_held = status == policy::Status::kLate;
+  if (result_.policy_held) {
+    return ++policy_owes_ticks_ < policy_may_owe_ticks_ ? Fault{} : Fault{.code = FaultCode::kStalePolicy};
+  }
+  policy_owes_ticks_ = 0;
+  if (status != policy::Status::kOk || q_des.size() != target_.size() || !q_des.allFinite()) {
+    return {.code = FaultCode::kPolicyNotFinite};
+  }
+  target_ = q_des;
+  return action_monitor_.watch(target_, result_.reference.q);
+}
+
+void Tick::release(const model::RobotState& state) noexcept {
   model::JointCommand& command = result_.command;
   // The drives multiply it by zero; but zero times NaN is NaN, so a broken measurement must not pass through.
-  const bool usable = state.q.size() == kp_.size() && state.q.allFinite();
+  const bool usable = state.q.size() == target_.size() && state.q.allFinite();
   if (usable) {
     command.q = state.q;
   } else {
-    command.q.setZero(kp_.size());
+    command.q.setZero(target_.size());
   }
   command.dq.setZero();
   command.kp.setZero();
-  if (brake) {
-    command.kd = kd_;
-  } else {
+  if (result_.mode == Mode::kPassive) {
     command.kd.setZero();
+  } else {
+    command.kd = brake_kd_;
   }
   command.tau_ff.setZero();
 }

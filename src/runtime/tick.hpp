@@ -15,6 +15,7 @@
 #include "model/robot_model.hpp"
 #include "pmg/generator.hpp"
 #include "policy/policy.hpp"
+#include "runtime/action_monitor.hpp"
 #include "runtime/command_intake.hpp"
 #include "runtime/entry_ramp.hpp"
 #include "runtime/limiter.hpp"
@@ -30,6 +31,8 @@ struct TickOptions {
   SupervisorOptions supervisor;
   LimiterOptions limiter;
   EntryRampOptions entry;
+  ActionMonitorOptions action_monitor;
+  int late_policy_ticks = 3;  ///< results in a row that the policy may owe: so long its last target is held
 };
 
 /// The options that robot.yaml decides: command limits and scales; defaults for the rest.
@@ -58,22 +61,25 @@ struct StageTimes {
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
-  Fault fault;            ///< kNone unless mode is kFault
-  Command user;           ///< the driving source's command as far as the mode admits it
-  Reference reference;    ///< of this tick in Stand and Walk; otherwise of the last such tick
-  gco::Result optimised;  ///< likewise
+  Fault fault;               ///< kNone unless mode is kFault
+  Command user;              ///< the driving source's command as far as the mode admits it
+  Reference reference;       ///< of this tick in Stand and Walk; otherwise of the last such tick
+  gco::Result optimised;     ///< likewise
+  bool policy_held = false;  ///< the policy gave no result for this tick: its last target is in force
   LimitReport limited;
-  IgnoredCommands ignored;                 ///< driving messages since the start, by reason
+  IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
   double command_age_s = 0.0;              ///< infinite before the first command
   Source driving;                          ///< empty when nobody drives
   std::array<ModeAck, kMaxRequests> acks;  ///< one for each of this tick's requests
   std::size_t ack_count = 0;
+  std::int64_t late_ticks = 0;  ///< since the start, that ended behind their deadline
   StageTimes times;
 };
 
 class Tick {
  public:
-  /// Keeps a reference to the stopwatch. Throws std::invalid_argument when library and robot don't fit together.
+  /// Keeps a reference to the stopwatch, whose times are reported and decide nothing. Throws std::invalid_argument when
+  /// library, policy and robot don't fit together.
   Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<policy::Policy> policy,
        const io::Clock& stopwatch, const TickOptions& options);
 
@@ -83,14 +89,19 @@ class Tick {
 
  private:
   void take_messages(const TickInput& input) noexcept;
+  SupervisorInput supervisor_input(const TickInput& input) const noexcept;
   void enter_stand(const model::RobotState& state) noexcept;
-  /// False when the policy failed; the fault is then latched and the command is not filled.
-  bool drive(const TickInput& input) noexcept;
-  void release(const model::RobotState& state, bool brake) noexcept;
+  /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
+  Fault drive(const model::RobotState& state) noexcept;
+  Fault make_reference() noexcept;
+  Fault ask_policy(const model::RobotState& state) noexcept;
+  void release(const model::RobotState& state) noexcept;
 
   const io::Clock& stopwatch_;
   double dt_s_;
-  JointVector kp_, kd_;
+  int policy_may_owe_ticks_;
+  policy::DriveGains gains_;
+  JointVector brake_kd_;
   Generator generator_;
   gco::GroundAwareCommand gco_;
   std::unique_ptr<policy::Policy> policy_;
@@ -98,6 +109,9 @@ class Tick {
   Supervisor supervisor_;
   EntryRamp entry_;
   Limiter limiter_;
+  ActionMonitor action_monitor_;
+  JointVector target_;  // the policy's last good one, before ramp and limits
+  int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
   TickResult result_;
 };
 

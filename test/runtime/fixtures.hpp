@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
@@ -79,15 +81,27 @@ class ScriptedPlant final : public runtime::Plant {
 /// Follows the reference until told to break.
 class BreakablePolicy final : public policy::Policy {
  public:
-  enum class Break { kNone, kStatus, kNan, kHeap };
-  policy::Status act(const model::RobotState&, const Reference& reference, const Command&,
+  enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
+  policy::Status act(const model::RobotState&, const Reference& reference, const Command& optimised,
                      JointVector& q_des) noexcept override {
+    if (meanwhile) meanwhile();
+    seen_command = optimised;
     q_des = reference.q;
     if (how == Break::kNan) q_des[0] = std::numeric_limits<double>::quiet_NaN();
     if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
+    if (how == Break::kFarAction) q_des[3] += 0.8;
+    if (how == Break::kLate) q_des.setConstant(9.0);  // what a late policy leaves there must not count
+    if (how == Break::kLate) return policy::Status::kLate;
     return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;
   }
+  std::optional<policy::DriveGains> gains() const override { return own_gains; }
+  void reset() noexcept override { ++resets; }
+
   Break how = Break::kNone;
+  std::function<void()> meanwhile;  ///< what the world does while the policy thinks
+  std::optional<policy::DriveGains> own_gains;
+  Command seen_command;
+  int resets = 0;
 
  private:
   std::unique_ptr<double> heap_;

@@ -17,9 +17,19 @@ double uniform(std::mt19937_64& random, double lower, double upper) {
   return lower + (upper - lower) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
+/// With robot.yaml's gains.
+Limiter limiter_of(const model::RobotModel& robot, const LimiterOptions& options) {
+  JointVector kp(robot.joint_index.size()), kd = kp;
+  for (Eigen::Index i = 0; i < kp.size(); ++i) {
+    kp[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
+    kd[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
+  }
+  return {robot, kp, kd, kDt_s, options};
+}
+
 TEST(Limiter, LeavesAPlainTargetAlone) {
   const model::RobotModel& robot = test::z1();
-  Limiter limiter(robot, kDt_s, {});
+  Limiter limiter = limiter_of(robot, {});
   model::RobotState state = test::standing_state(robot);
   JointVector q_des = state.q.array() + 0.01;
   const JointVector wanted = q_des;
@@ -31,7 +41,7 @@ TEST(Limiter, LeavesAPlainTargetAlone) {
 TEST(Limiter, EveryPromiseHoldsForArbitraryTargets) {
   const model::RobotModel& robot = test::z1();
   const LimiterOptions options;
-  Limiter limiter(robot, kDt_s, options);
+  Limiter limiter = limiter_of(robot, options);
   std::mt19937_64 random(20);
   model::RobotState state = test::standing_state(robot);
   limiter.start_from(state.q);
@@ -58,7 +68,7 @@ TEST(Limiter, EveryPromiseHoldsForArbitraryTargets) {
 TEST(Limiter, TargetsMoveNoFasterThanAllowed) {
   const model::RobotModel& robot = test::z1();
   const LimiterOptions options;
-  Limiter limiter(robot, kDt_s, options);
+  Limiter limiter = limiter_of(robot, options);
   model::RobotState state = test::standing_state(robot);
   limiter.start_from(state.q);
   const int joint = robot.joint_index.at("left_elbow");
@@ -83,7 +93,7 @@ TEST(Limiter, SaysWhatItLimited) {
   const auto& knee_joint = robot.joints[static_cast<std::size_t>(knee)];
   model::RobotState state = test::standing_state(robot);
 
-  Limiter fresh(robot, kDt_s, {.target_rate_factor = 1e6});
+  Limiter fresh = limiter_of(robot, {.target_rate_factor = 1e6});
   JointVector q_des = state.q;
   q_des[knee] += 1.01 * knee_joint.effort_limit_Nm / knee_joint.kp_Nm_per_rad;
   LimitReport report = fresh.apply(state, q_des);
@@ -103,7 +113,7 @@ TEST(Limiter, BrakingCountsAsTorque) {
   const model::RobotModel& robot = test::z1();
   const int knee = robot.joint_index.at("left_knee");
   const auto& joint = robot.joints[static_cast<std::size_t>(knee)];
-  Limiter limiter(robot, kDt_s, {.target_rate_factor = 1e6});
+  Limiter limiter = limiter_of(robot, {.target_rate_factor = 1e6});
   model::RobotState state = test::standing_state(robot);
   state.dq[knee] = 2.0;  // 2 rad/s times kd is torque that the position error must leave room for
   JointVector q_des = state.q;

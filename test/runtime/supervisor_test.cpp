@@ -24,9 +24,7 @@ class SupervisorTest : public testing::Test {
   Mode update() {
     now_ns_ += 10'000'000;
     if (!frozen_stamp_) state_.stamp_ns = now_ns_;
-    return supervisor_.update({.state = state_,
-                               .bus = bus_,
-                               .now_ns = now_ns_,
+    return supervisor_.update({.evidence = {.state = state_, .bus = bus_, .now_ns = now_ns_, .torso = torso_},
                                .command_age_s = command_age_s_,
                                .entry_done = entry_done_,
                                .at_rest = at_rest_});
@@ -44,6 +42,7 @@ class SupervisorTest : public testing::Test {
   model::RobotState state_ = test::standing_state(test::biped());
   hal::BusStatus bus_ = hal::BusStatus::kOk;
   std::int64_t now_ns_ = 0;
+  std::optional<RollPitchAim> torso_ = RollPitchAim{};
   bool frozen_stamp_ = false, entry_done_ = true, at_rest_ = true;
   double command_age_s_ = 0.0;
 };
@@ -187,6 +186,8 @@ const std::vector<Row> kRows = {
     {"BeyondLowerLimit", FaultCode::kJointLimit,
      [](auto& s, auto& robot) { s.q[3] = robot.joints[3].lower_rad - 0.11; }, 3, false},
     {"TooFast", FaultCode::kJointVelocity,
+     [](auto& s, auto& robot) { s.dq[3] = 1.51 * robot.joints[3].velocity_limit_rad_s; }, 3, false},
+    {"TooFastBackwards", FaultCode::kJointVelocity,
      [](auto& s, auto& robot) { s.dq[3] = -1.51 * robot.joints[3].velocity_limit_rad_s; }, 3, false},
     {"TooMuchTorque", FaultCode::kJointTorque,
      [](auto& s, auto& robot) { s.tau[3] = 1.21 * robot.joints[3].effort_limit_Nm; }, 3, false},
@@ -195,6 +196,9 @@ const std::vector<Row> kRows = {
      false},
     {"TiltedAside", FaultCode::kTilt,
      [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(-1.01, Eigen::Vector3d::UnitX()) * s.orientation_WI; },
+     3, false},
+    {"TorsoNotAsCommanded", FaultCode::kTorsoAttitude,
+     [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(-0.61, Eigen::Vector3d::UnitY()) * s.orientation_WI; },
      3, false},
 };
 
@@ -235,7 +239,11 @@ TEST_F(SupervisorTest, WithinItsLimitsNothingIsAFault) {
   state_.dq[3] = 1.49 * joint.velocity_limit_rad_s;
   state_.tau[3] = 1.19 * joint.effort_limit_Nm;
   state_.temperature_degC[3] = 89.0;
-  state_.orientation_WI = Eigen::AngleAxisd(0.99, Eigen::Vector3d::UnitY()) * state_.orientation_WI;
+  const Eigen::Quaterniond upright = state_.orientation_WI;
+  state_.orientation_WI = Eigen::AngleAxisd(0.59, Eigen::Vector3d::UnitY()) * upright;
+  EXPECT_EQ(update(100), Mode::kWalk);
+  torso_.reset();
+  state_.orientation_WI = Eigen::AngleAxisd(0.99, Eigen::Vector3d::UnitY()) * upright;
   EXPECT_EQ(update(100), Mode::kWalk);
 }
 
@@ -249,12 +257,49 @@ TEST_F(SupervisorTest, AnInterruptedGlitchStartsCountingAnew) {
   }
 }
 
-TEST_F(SupervisorTest, StaleStateIsAFaultAfterTwoTicks) {
+TEST_F(SupervisorTest, StaleStateIsAFaultInTheSecondTickThatFindsIt) {
   reach(Mode::kStand);
   frozen_stamp_ = true;
-  EXPECT_EQ(update(2), Mode::kStand);
+  EXPECT_EQ(update(3), Mode::kStand) << "10 and 20 ms are no age yet; 30 ms is, but a host may stop for so long";
   EXPECT_EQ(update(), Mode::kFault);
   EXPECT_EQ(supervisor_.fault().code, FaultCode::kStaleState);
+}
+
+TEST_F(SupervisorTest, AHostThatStopsBothThreadsIsNoFault) {
+  reach(Mode::kStand);
+  now_ns_ += 300'000'000;
+  frozen_stamp_ = true;  // the control thread runs first afterwards
+  EXPECT_EQ(update(), Mode::kStand);
+  frozen_stamp_ = false;
+  EXPECT_EQ(update(10), Mode::kStand);
+}
+
+TEST_F(SupervisorTest, AResetOutsideOfFaultChangesNothing) {
+  for (const Mode mode : {Mode::kDamping, Mode::kStand, Mode::kWalk}) {
+    reach(mode);
+    ask(Mode::kDamping, true);
+    EXPECT_EQ(update(3), mode) << "an impatient second reset must not drop the robot";
+  }
+}
+
+TEST_F(SupervisorTest, TheTorsoIsJudgedAgainstItsCommandAndOnlyWhereItHasOne) {
+  reach(Mode::kWalk);
+  torso_ = RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
+  const Eigen::Quaterniond upright = state_.orientation_WI;
+  const auto lean = [&](double pitch_rad) {
+    // Whatever the heading.
+    state_.orientation_WI = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()) *
+                            Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) * upright;
+  };
+  lean(0.5 + 0.35);
+  EXPECT_EQ(update(20), Mode::kWalk);
+  torso_.reset();
+  lean(-0.2);
+  EXPECT_EQ(update(20), Mode::kWalk);
+  torso_ = RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
+  EXPECT_EQ(update(3), Mode::kFault) << "upright, but 0.7 rad from where it should be";
+  EXPECT_EQ(supervisor_.fault().code, FaultCode::kTorsoAttitude);
+  EXPECT_GT(supervisor_.fault().value, supervisor_.fault().limit);
 }
 
 }  // namespace
