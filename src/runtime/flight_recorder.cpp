@@ -114,6 +114,10 @@ void FlightRecorder::close() {
 }
 
 bool FlightRecorder::try_writing(Incident& incident) {
+  if (rows_of(incident).empty()) {  // no memory to rescue them, and the ring moved on
+    say_("flight recorder: the records of a fault are lost: " + describe(incident.record.result.fault, robot_));
+    return true;
+  }
   const fs::path file = stem(incident);
   try {
     remove_oldest();

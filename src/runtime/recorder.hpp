@@ -27,7 +27,7 @@ struct RecorderOptions {
   std::int64_t spare_bytes = 64 << 20;  ///< after a refusal, nothing is written until the disk has as much room
   double retry_s = 1.0;                 ///< after a refusal
   double control_rate_Hz = 100.0;
-  FlightRecorderOptions flight;
+  FlightRecorderOptions flight{};
 };
 
 /// One consumer thread. Takes every record of the outbox and writes DIRECTORY/log-NNNN.lcm, numbered on from what is
