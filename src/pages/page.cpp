@@ -1,0 +1,196 @@
+#include "pages/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "pages/assets.hpp"
+#include "pages/bar_picture.hpp"
+#include "pages/line_data.hpp"
+#include "pages/text.hpp"
+
+namespace pmg::pages {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kColumns =
+    1500;  // of a line: wider than a chart on a laptop, so that zooming in finds a bit more
+constexpr double kResolution = 5000.0;  // steps over a line's range: finer than a pixel
+
+std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
+
+ordered_json marks_json(const std::vector<Mark>& marks) {
+  ordered_json json = ordered_json::array();
+  for (const Mark& mark : marks) json.push_back({mark.x, mark.text});
+  return json;
+}
+
+bool same_x(const Line& a, const Line& b) { return a.x.data() == b.x.data() && a.x.size() == b.x.size(); }
+
+/// The lines sorted so that those over the same x follow each other: they share one track.
+std::vector<std::vector<const Line*>> tracks(const std::vector<Line>& lines) {
+  std::vector<std::vector<const Line*>> groups;
+  for (const Line& line : lines) {
+    const auto group = std::ranges::find_if(groups, [&](const auto& g) { return same_x(*g.front(), line); });
+    if (group != groups.end()) {
+      group->push_back(&line);
+    } else if (!line.x.empty()) {
+      groups.push_back({&line});
+    }
+  }
+  return groups;
+}
+
+std::string tracks_json(const std::vector<std::vector<const Line*>>& groups, double longest_gap) {
+  std::string text = "[";
+  for (const auto& group : groups) {
+    std::vector<std::span<const double>> ys;
+    for (const Line* line : group) ys.push_back(line->y);
+    const LineData data = decimate(group.front()->x, ys, kColumns, longest_gap);
+    text += text.size() > 1 ? ",{\"x\":" : "{\"x\":";
+    text += delta_json(data.x, 20.0 * kColumns) + ",\"y\":[";
+    for (std::size_t i = 0; i < data.y.size(); ++i) {
+      if (i > 0) text += ',';
+      text += delta_json(data.y[i], kResolution);
+    }
+    text += "]}";
+  }
+  return text + "]";
+}
+
+std::string chart_element(const std::string& spec, int height_px) {
+  return fmt::format(R"(<div class="chart" style="min-height:{}px"><script type="application/json">{}</script></div>)",
+                     height_px, escape_script(spec));
+}
+
+}  // namespace
+
+Page::Page(std::string title) : title_(std::move(title)) {}
+
+void Page::verdict(Tone tone, const std::string& text) {
+  const char* name = tone == Tone::kGood ? "good" : tone == Tone::kBad ? "bad" : "neutral";
+  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", name, escape_html(text));
+}
+
+void Page::heading(const std::string& text) {
+  ++headings_;
+  body_ += fmt::format("<h2 id=\"s{}\">{}</h2>\n", headings_, escape_html(text));
+  contents_ += fmt::format("<a href=\"#s{}\">{}</a> ", headings_, escape_html(text));
+}
+
+void Page::paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
+
+void Page::table(const Table& table) {
+  body_ += "<div class=\"scroll\"><table class=\"data\"><tr>";
+  for (const std::string& cell : table.header) body_ += "<th>" + escape_html(cell) + "</th>";
+  body_ += "</tr>\n";
+  for (const auto& row : table.rows) {
+    body_ += "<tr>";
+    for (const std::string& cell : row) body_ += "<td>" + escape_html(cell) + "</td>";
+    body_ += "</tr>\n";
+  }
+  body_ += "</table></div>\n";
+}
+
+void Page::chart(const Chart& chart) {
+  const auto groups = tracks(chart.lines);
+  ordered_json lines = ordered_json::array();
+  for (const auto& group : groups) {
+    show_x(group.front()->x.front(), group.front()->x.back());
+    for (const Line* line : group) {
+      lines.push_back({{"name", line->name},
+                       {"colour", line->colour},
+                       {"width", line->width_px},
+                       {"dashed", line->dashed},
+                       {"stepped", line->stepped}});
+    }
+  }
+  ordered_json bands = ordered_json::array();
+  for (const Band& band : chart.bands) bands.push_back({band.from, band.to, band.colour});
+  const ordered_json spec = {{"x_unit", chart.x_unit},
+                             {"height", chart.height_px},
+                             {"lines", lines},
+                             {"bands", bands},
+                             {"marks", marks_json(chart.marks)}};
+  std::string text = dump(spec);
+  text.pop_back();  // the closing brace: the tracks follow as text of their own
+  text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";
+  picture(chart.title, chart_element(text, chart.height_px));
+}
+
+void Page::lanes(const Lanes& lanes) {
+  ordered_json rows = ordered_json::array();
+  for (const Lanes::Lane& lane : lanes.lanes) {
+    ordered_json stretches = ordered_json::array();
+    for (const Lanes::Stretch& s : lane.stretches) {
+      show_x(s.from, s.to);
+      stretches.push_back({s.from, s.to, s.text, s.colour});
+    }
+    rows.push_back({{"name", lane.name}, {"stretches", stretches}});
+  }
+  const ordered_json spec = {{"x_unit", lanes.x_unit},
+                             {"lines", ordered_json::array()},
+                             {"bands", ordered_json::array()},
+                             {"marks", marks_json(lanes.marks)},
+                             {"lanes", rows},
+                             {"tracks", ordered_json::array()}};
+  picture(lanes.title, chart_element(dump(spec), 34 + 26 * static_cast<int>(lanes.lanes.size())));
+}
+
+void Page::bars(const Bars& bars) { picture(bars.title, svg(bars)); }
+void Page::histogram(const Histogram& histogram) { picture(histogram.title, svg(histogram)); }
+
+void Page::columns(const std::function<void()>& fill) {
+  body_ += "<div class=\"columns\">\n";
+  fill();
+  body_ += "</div>\n";
+}
+
+void Page::folded(const std::string& summary, const std::function<void()>& fill) {
+  body_ += "<details><summary>" + escape_html(summary) + "</summary>\n";
+  fill();
+  body_ += "</details>\n";
+}
+
+void Page::picture(const std::string& title, const std::string& content) {
+  body_ += "<div class=\"picture\"><h3>" + escape_html(title) + "</h3>" + content + "</div>\n";
+}
+
+void Page::show_x(double from, double to) {
+  if (std::isfinite(from)) x_from_ = std::min(x_from_, from);
+  if (std::isfinite(to)) x_to_ = std::max(x_to_, to);
+}
+
+std::string Page::html() const {
+  const bool some_x = x_from_ < x_to_;
+  const std::string title = escape_html(title_);
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\">\n"
+      // Whatever got into the page, it loads nothing.
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+      "script-src "
+      "'unsafe-inline'\">\n<title>" +
+      title + "</title>\n<style>" + kUplotStyle + "\n" + kPageStyle + "</style></head>\n";
+  text += fmt::format("<body data-from=\"{}\" data-to=\"{}\">\n<h1>{}</h1>\n", some_x ? x_from_ : 0.0,
+                      some_x ? x_to_ : 1.0, title);
+  if (headings_ > 1) text += "<nav>" + contents_ + "</nav>\n";
+  text += "<noscript><p>The charts need JavaScript; tables, bars and histograms don't.</p></noscript>\n" + body_;
+  text += std::string("<script>") + kUplotScript + "\n" + kPageScript + "</script>\n</body></html>\n";
+  return text;
+}
+
+void Page::write(const std::filesystem::path& file) const {
+  std::ofstream out(file, std::ios::binary);
+  out << html();
+  if (!out.flush()) throw std::runtime_error(file.string() + ": can't be written");
+}
+
+}  // namespace pmg::pages

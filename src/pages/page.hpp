@@ -1,0 +1,46 @@
+// One self-contained HTML page, pictures first: no network is needed to read it, and its tables, bars and histograms
+// need no script either. Charts share the cursor and the zoom.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "pages/pictures.hpp"
+
+namespace pmg::pages {
+
+enum class Tone { kGood, kBad, kNeutral };
+
+/// Adds to its end with each call. All text is escaped.
+class Page {
+ public:
+  explicit Page(std::string title);
+
+  void verdict(Tone tone, const std::string& text);  ///< one line that stands out
+  void heading(const std::string& text);             ///< a section, listed at the page's top
+  void paragraph(const std::string& text);
+  void table(const Table& table);
+  void chart(const Chart& chart);  ///< throws std::invalid_argument when a line's x decreases or y has another size
+  void lanes(const Lanes& lanes);
+  void bars(const Bars& bars);
+  void histogram(const Histogram& histogram);
+
+  void columns(const std::function<void()>& fill);  ///< pictures side by side where there is room
+  void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown on a click
+
+  std::string html() const;
+  void write(const std::filesystem::path& file) const;  ///< throws std::runtime_error
+
+ private:
+  void picture(const std::string& title, const std::string& content);
+  void show_x(double from, double to);
+
+  std::string title_, body_, contents_;
+  int headings_ = 0;
+  double x_from_ = std::numeric_limits<double>::infinity(), x_to_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace pmg::pages

@@ -1,0 +1,100 @@
+// What a page can show. Plain data; spans are read while the picture is added to the page and not kept.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pmg::pages {
+
+/// Okabe and Ito's colours, which colour-blind readers tell apart, on a light ground.
+namespace colour {
+inline constexpr const char* kInk = "#1b1f24";
+inline constexpr const char* kGrey = "#8a929c";
+inline constexpr const char* kBlue = "#0072b2";
+inline constexpr const char* kVermillion = "#d55e00";
+inline constexpr const char* kGreen = "#009e73";
+inline constexpr const char* kOrange = "#e69f00";
+inline constexpr const char* kSky = "#56b4e9";
+inline constexpr const char* kPurple = "#cc79a7";
+}  // namespace colour
+
+struct Line {
+  std::string name;
+  std::span<const double> x, y;  ///< x doesn't decrease; NaN in y is a gap; lines that share x's memory share its text
+  std::string colour = colour::kBlue;
+  double width_px = 1.3;
+  bool dashed = false;
+  bool stepped = false;  ///< holds its value until the next point
+};
+
+/// A shaded stretch of x behind the lines.
+struct Band {
+  double from, to;
+  std::string colour;
+};
+
+/// A vertical line with a word.
+struct Mark {
+  double x;
+  std::string text;
+};
+
+struct Chart {
+  std::string title;  ///< with the unit of y: "left knee, torque [Nm]"
+  std::string x_unit = "s";
+  std::vector<Line> lines;
+  std::vector<Band> bands = {};
+  std::vector<Mark> marks = {};
+  int height_px = 230;
+  double longest_gap = std::numeric_limits<double>::infinity();  ///< of x, over which a line is not drawn
+};
+
+/// Rows of coloured stretches over the charts' x: who was when in which state.
+struct Lanes {
+  struct Stretch {
+    double from, to;
+    std::string text;
+    std::string colour;
+  };
+  struct Lane {
+    std::string name;
+    std::vector<Stretch> stretches;
+  };
+  std::string title;
+  std::string x_unit = "s";
+  std::vector<Lane> lanes;
+  std::vector<Mark> marks = {};
+};
+
+/// Horizontal bars, names.size() rows of one bar a set.
+struct Bars {
+  struct Set {
+    std::string name;
+    std::vector<double> values;
+    std::string colour = colour::kBlue;
+  };
+  std::string title;
+  std::string unit;
+  std::vector<std::string> names;
+  std::vector<Set> sets;
+};
+
+struct Histogram {
+  struct Set {
+    std::string name;
+    std::span<const double> values;
+    std::string colour = colour::kBlue;
+  };
+  std::string title;
+  std::string unit;
+  std::vector<Set> sets;
+};
+
+struct Table {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+}  // namespace pmg::pages

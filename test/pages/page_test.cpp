@@ -1,0 +1,147 @@
+#include "pages/page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "pages/assets.hpp"
+#include "pages/text.hpp"
+
+namespace pmg::pages {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::vector<double> kX = {0.0, 1.0, 2.0}, kY = {3.0, 1.0, 2.0};
+constexpr const char* kHostile = "</script><img src=x onerror=alert(1)> \"&' \xff";
+
+/// A page with one of everything, all called name.
+Page full_page(const std::string& name) {
+  Page page(name);
+  page.verdict(Tone::kBad, name);
+  page.heading(name);
+  page.heading("second");
+  page.paragraph(name);
+  page.table({.header = {name}, .rows = {{name}}});
+  page.columns([&] {
+    page.chart({.title = name, .x_unit = name, .lines = {{.name = name, .x = kX, .y = kY}}, .marks = {{1.0, name}}});
+    page.lanes(
+        {.title = name, .x_unit = name, .lanes = {{name, {{0.0, 1.0, name, colour::kSky}}}}, .marks = {{1.0, name}}});
+  });
+  page.folded(name, [&] {
+    page.bars({.title = name, .unit = name, .names = {name}, .sets = {{name, {1.0}}, {name, {2.0}}}});
+    page.histogram({.title = name, .unit = name, .sets = {{name, kY}}});
+  });
+  return page;
+}
+
+std::string without_assets(std::string html) {
+  for (const char* asset : {kUplotScript, kUplotStyle, kPageScript, kPageStyle}) {
+    const std::size_t at = html.find(asset);
+    if (at == std::string::npos)
+      ADD_FAILURE() << "an asset is missing";
+    else
+      html.erase(at, std::string(asset).size());
+  }
+  return html;
+}
+
+std::vector<nlohmann::json> chart_specs(const std::string& html) {
+  std::vector<nlohmann::json> specs;
+  const std::string open = "<script type=\"application/json\">";
+  for (std::size_t at = html.find(open); at != std::string::npos; at = html.find(open, at + 1)) {
+    const std::size_t begin = at + open.size();
+    specs.push_back(nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin)));
+  }
+  return specs;
+}
+
+TEST(Page, LoadsNothingFromAnywhere) {
+  const std::string html = without_assets(full_page("name").html()) + kPageScript + kPageStyle + kUplotStyle;
+  EXPECT_THAT(html, Not(HasSubstr("http://")));
+  EXPECT_THAT(html, Not(HasSubstr("https://")));
+  EXPECT_THAT(html, Not(testing::ContainsRegex("(src|href)=\"[^#]")));
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  std::istringstream uplot(kUplotScript);
+  for (std::string line; std::getline(uplot, line);) {  // its licence and comments name addresses
+    if (line.find("://") == std::string::npos) continue;
+    EXPECT_THAT(line, testing::ContainsRegex("(//|\\*).*https?://"));
+  }
+}
+
+TEST(Page, NamesNeverBecomeMarkup) {
+  const std::string html = without_assets(full_page(kHostile).html());
+  EXPECT_THAT(html, Not(HasSubstr("<img")));
+  EXPECT_THAT(html, Not(HasSubstr("onerror=alert(1)> \"")));
+  EXPECT_THAT(html, HasSubstr("&lt;img src=x onerror=alert(1)&gt; &quot;&amp;&#39;"));
+  EXPECT_EQ(chart_specs(html).size(), 2U) << "no name ends a script";
+}
+
+TEST(Page, ChartsCarryTheirLinesOnce) {
+  Page page("charts");
+  const std::vector<double> other_x = {0.5, 1.5};
+  page.chart({.title = "three lines",
+              .lines = {{.name = "a", .x = kX, .y = kY},
+                        {.name = "b", .x = other_x, .y = other_x},
+                        {.name = "c", .x = kX, .y = kX}}});
+  const auto specs = chart_specs(page.html());
+  ASSERT_EQ(specs.size(), 1U);
+  ASSERT_EQ(specs[0]["tracks"].size(), 2U) << "a and c share their x";
+  EXPECT_EQ(specs[0]["tracks"][0]["y"].size(), 2U);
+  EXPECT_EQ(specs[0]["lines"][1]["name"], "c") << "lines are in the order of the tracks";
+  EXPECT_EQ(specs[0]["lines"][2]["name"], "b");
+}
+
+TEST(Page, ShowsAllChartsOverOneRange) {
+  Page page("range");
+  page.chart({.title = "a", .lines = {{.name = "a", .x = kX, .y = kY}}});
+  page.lanes({.title = "b", .lanes = {{"lane", {{-1.0, 7.5, "long", colour::kSky}}}}});
+  EXPECT_THAT(page.html(), HasSubstr("data-from=\"-1\" data-to=\"7.5\""));
+}
+
+TEST(Page, EmptyPicturesAreNoError) {
+  Page page("empty");
+  const std::vector<double> none, nans(3, std::nan(""));
+  page.chart({.title = "no line", .lines = {}});
+  page.chart({.title = "empty line", .lines = {{.name = "a", .x = none, .y = none}}});
+  page.chart({.title = "nothing finite", .lines = {{.name = "a", .x = kX, .y = nans}}});
+  page.lanes({.title = "no lane", .lanes = {}});
+  page.bars({.title = "no bar", .unit = "", .names = {"a"}, .sets = {{"set", {}}}});
+  page.bars({.title = "no number", .unit = "", .names = {"a"}, .sets = {{"set", nans}}});
+  page.histogram({.title = "no value", .unit = "", .sets = {{"set", none}}});
+  EXPECT_EQ(chart_specs(page.html()).size(), 4U);
+}
+
+TEST(Page, TablesBarsAndHistogramsNeedNoScript) {
+  Page page("plain");
+  page.table({.header = {"h"}, .rows = {{"cell"}}});
+  page.bars({.title = "bars", .unit = "rad", .names = {"left_knee"}, .sets = {{"run", {0.25}}}});
+  page.histogram({.title = "times", .unit = "us", .sets = {{"tick", kY}}});
+  const std::string html = without_assets(page.html());
+  EXPECT_THAT(html, HasSubstr("<td>cell</td>"));
+  EXPECT_THAT(html, testing::ContainsRegex("<svg.*left_knee.*0\\.25.*</svg>"));
+  EXPECT_THAT(html, HasSubstr("tick: 3 values, p50 2, p99 3 us"));
+}
+
+TEST(Page, SaysSoWhenItCantBeWritten) {
+  EXPECT_THROW(Page("x").write("/no such folder/x.html"), std::runtime_error);
+  EXPECT_THROW(Page("x").write("/dev/full"), std::runtime_error);
+}
+
+TEST(Number, IsShortAndReadable) {
+  EXPECT_EQ(number(0.0), "0");
+  EXPECT_EQ(number(-0.0001), "-0.0001");
+  EXPECT_EQ(number(0.12345), "0.123");
+  EXPECT_EQ(number(-0.0), "0");
+  EXPECT_EQ(number(12.3), "12.3");
+  EXPECT_EQ(number(123456.7), "123457");
+  EXPECT_EQ(number(std::nan("")), "-");
+}
+
+}  // namespace
+}  // namespace pmg::pages
