@@ -1,8 +1,9 @@
-// pmg_sil: the controller against a MuJoCo simulation, in lockstep, playing a scenario.
+// pmg_sil: the controller against a MuJoCo simulation, playing a scenario in lockstep or with the robot's threads.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -11,8 +12,10 @@
 
 #include "hal/sil_hal.hpp"
 #include "runtime/control_setup.hpp"
+#include "runtime/controller_report.hpp"
 #include "runtime/film.hpp"
 #include "runtime/lockstep.hpp"
+#include "runtime/realtime_run.hpp"
 #include "runtime/summary.hpp"
 
 namespace {
@@ -24,7 +27,8 @@ enum ExitCode { kOk = 0, kFellOrFault = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 Writes DIR/log.lcm (simulation time only: same binary, inputs and seed give the same bytes), DIR/timing.csv (wall times),
-DIR/summary.json, and with --video DIR/video.mp4.
+DIR/summary.json, and with --video DIR/video.mp4. With --realtime the controller's threads run by the wall clock, and
+summary.json says under "punctuality" how well they kept their times.
 
 Example:
   pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
@@ -32,14 +36,11 @@ Example:
 Exit codes: 0 the scenario ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
 (what was done until then is kept).)";
 
-// Assumed: what consumer-grade IMUs and 14-bit encoders show; no data sheet of this robot is published.
-constexpr double kGyroNoise_rad_s = 0.01, kEncoderNoise_rad = 0.0004, kOrientationNoise_rad = 0.002;
-
 struct Arguments {
   runtime::ControlSetup control;
   fs::path scenario, out, export_mjcf;
   std::uint64_t seed = 0;
-  bool gantry = false, video = false, json = false, print_config = false;
+  bool gantry = false, realtime = false, video = false, json = false, print_config = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -58,7 +59,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
-  app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)");
+  CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
+                                       "the robot's threads and the wall clock instead of lockstep; not reproducible");
+  app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)")->excludes(realtime);
   app.add_option("--export-mjcf", arguments.export_mjcf, "write the robot's MuJoCo model to this file and exit");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
   app.add_flag("--json", arguments.json, "print summary.json on stdout instead of the short report");
@@ -73,23 +76,14 @@ void require(const fs::path& value, const char* option) {
     throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
 }
 
-sim::WorldOptions world_options(const Arguments& arguments) {
-  sim::WorldOptions options;
-  options.gantry = arguments.gantry;
-  options.seed = arguments.seed;
-  options.gyro_noise_rad_s = kGyroNoise_rad_s;
-  options.encoder_noise_rad = kEncoderNoise_rad;
-  options.orientation_noise_rad = kOrientationNoise_rad;
-  return options;
-}
-
 nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded) {
   nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
-  json["sensor_noise"] = {
-      {"gyro_rad_s", kGyroNoise_rad_s}, {"encoder_rad", kEncoderNoise_rad}, {"orientation_rad", kOrientationNoise_rad}};
+  json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
+                          {"encoder_rad", runtime::kEncoderNoise_rad},
+                          {"orientation_rad", runtime::kOrientationNoise_rad}};
   return json;
 }
 
@@ -130,68 +124,127 @@ void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& su
   for (const auto& fault : summary["faults"]) {
     std::cout << fmt::format("fault at {:.2f} s: {}\n", fault["t_s"].get<double>(), fault["text"].get<std::string>());
   }
+  if (summary.contains("punctuality")) {
+    for (const char* thread : {"control", "bus"}) {
+      const auto& times = summary["punctuality"][thread];
+      std::cout << fmt::format("{} thread: {} cycles, wake-up p50 {:.0f} us, p99 {:.0f} us, {} delayed by the host\n",
+                               thread, times["cycles"].get<std::int64_t>(), times["wake_us"]["p50"].get<double>(),
+                               times["wake_us"]["p99"].get<double>(), times["delayed_count"].get<std::int64_t>());
+    }
+  }
   std::cout << fmt::format("results in {}\n", out.string());
+}
+
+/// A scenario that was played, either way.
+struct Played {
+  runtime::RunOutcome outcome;
+  runtime::StageTiming timing;
+  nlohmann::ordered_json realtime;  // null in lockstep
+};
+
+/// What both ways of playing need.
+struct Stage {
+  const Arguments& arguments;
+  const runtime::LoadedControl& loaded;
+  const runtime::Scenario& scenario;
+  sim::World& world;
+  io::LogWriter& log_file;
+  runtime::Tick& tick;
+  bool balanced_by_policy() const { return arguments.control.policy != "none"; }
+};
+
+runtime::RunInfo run_info(const Stage& stage) {
+  return {.robot = stage.loaded.robot.name,
+          .policy = stage.arguments.control.policy,
+          .options = config_json(stage.arguments, stage.loaded).dump(),
+          .bundle = stage.loaded.bundle,
+          .files = stage.loaded.files};
+}
+
+Played play_lockstep(const Stage& stage) {
+  const model::RobotModel& robot = stage.loaded.robot;
+  const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
+  hal::SilHal bus(stage.world);
+  runtime::WorldPlant plant(stage.world);
+  runtime::TickLog log(stage.log_file, robot, run_info(stage), rate_Hz);
+  std::optional<runtime::Film> film;
+  if (stage.arguments.video) film.emplace(stage.world, stage.arguments.out / "video.mp4");
+  ProgressLine progress;
+  runtime::Lockstep lockstep(
+      robot, bus, plant, stage.tick, stage.scenario, &log,
+      {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
+  lockstep.interrupted = [] { return interrupt_requested != 0; };
+  lockstep.after_tick = [&](const runtime::RunProgress& now) {
+    if (film) film->after_tick(now);
+    progress.after_tick(now);
+  };
+  const runtime::RunOutcome outcome = lockstep.run();
+  progress.end();
+  if (film) film->close();
+  return {outcome, lockstep.timing(), nullptr};
+}
+
+Played play_realtime(const Stage& stage) {
+  const model::RobotModel& robot = stage.loaded.robot;
+  const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
+  runtime::SimulatedRobot simulated(stage.world, stage.arguments.gantry, true);
+  runtime::Controller controller(robot, simulated, stage.tick);
+  for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
+  runtime::RunInfo info = run_info(stage);
+  info.session = std::chrono::system_clock::now().time_since_epoch().count();
+  info.realtime = controller.refused().empty();
+  info.refused = controller.refused();
+  runtime::TickLog log(stage.log_file, robot, info, rate_Hz);
+  ProgressLine progress;
+  runtime::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
+                           !stage.balanced_by_policy() && !stage.arguments.gantry);
+  run.interrupted = [] { return interrupt_requested != 0; };
+  run.after_tick = [&](const runtime::RunProgress& now) { progress.after_tick(now); };
+  const runtime::RunOutcome outcome = run.run();
+  progress.end();
+  return {outcome, run.timing(), runtime::punctuality_json(controller)};
 }
 
 int simulate(const Arguments& arguments) {
   require(arguments.scenario, "--scenario");
   // Everything that input can spoil comes first: nothing is written for bad input.
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
-  const model::RobotModel& robot = loaded.robot;
   const runtime::Scenario scenario = runtime::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
-  sim::World world(robot, world_options(arguments));
-  const io::WallClock wall_clock;
-  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
-  hal::SilHal bus(world);
-  runtime::WorldPlant plant(world);
-
+  sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
-  const runtime::RunInfo run{.robot = robot.name,
-                             .policy = arguments.control.policy,
-                             .options = config_json(arguments, loaded).dump(),
-                             .bundle = loaded.bundle,
-                             .files = loaded.files};
-  runtime::TickLog log(log_file, robot, run, 1.0 / loaded.options.dt_s);
-  std::optional<runtime::Film> film;
-  if (arguments.video) film.emplace(world, arguments.out / "video.mp4");
-  ProgressLine progress;
-  runtime::Lockstep lockstep(
-      robot, bus, plant, *tick, scenario, &log,
-      {.balanced_by_policy = arguments.control.policy != "none", .always_hoisted = arguments.gantry});
-  lockstep.interrupted = [] { return interrupt_requested != 0; };
-  lockstep.after_tick = [&](const runtime::RunProgress& now) {
-    if (film) film->after_tick(now);
-    progress.after_tick(now);
-  };
+  const io::WallClock wall_clock;
+  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
+  const Stage stage{arguments, loaded, scenario, world, log_file, *tick};
 
   const std::int64_t start_ns = wall_clock.now_ns();
-  const runtime::RunOutcome outcome = lockstep.run();
+  const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);
   const double wall_s = static_cast<double>(wall_clock.now_ns() - start_ns) * 1e-9;
-  progress.end();
   log_file.flush();
-  if (film) film->close();
-  lockstep.timing().write_csv(arguments.out / "timing.csv");
-  const auto summary = runtime::summary_json(
-      {robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s}, outcome, lockstep.timing(), robot);
+  played.timing.write_csv(arguments.out / "timing.csv");
+  nlohmann::ordered_json summary =
+      runtime::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s},
+                            played.outcome, played.timing, loaded.robot);
+  if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   runtime::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';
   } else {
-    report(outcome, summary, arguments.out);
+    report(played.outcome, summary, arguments.out);
   }
+  const runtime::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted) return kInterrupted;
   return outcome.fell || outcome.diverged || !outcome.faults.empty() ? kFellOrFault : kOk;
 }
 
 int export_mjcf(const Arguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.control.robot));
-  const std::string text = sim::mjcf(robot, world_options(arguments));
+  const std::string text = sim::mjcf(robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
   std::ofstream out(arguments.export_mjcf);
   out << text;
   if (!out.flush()) throw std::runtime_error(arguments.export_mjcf.string() + ": can't be written");
@@ -201,7 +254,10 @@ int export_mjcf(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs the controller against a MuJoCo simulation, in lockstep, playing a scenario.", "pmg_sil");
+  CLI::App app(
+      "Runs the controller against a MuJoCo simulation, playing a scenario in lockstep or, with --realtime, in "
+      "threads.",
+      "pmg_sil");
   Arguments arguments;
   declare(app, arguments);
   try {

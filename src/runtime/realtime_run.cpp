@@ -37,6 +37,7 @@ RunOutcome RealtimeRun::run() {
   RunOutcome outcome = measure_.outcome();
   outcome.interrupted = ended_early;
   outcome.diverged = robot_.diverged();
+  for (Fault& fault : outcome.faults) fault.stamp_ns -= first_tick_ns_;
   return outcome;
 }
 
@@ -73,6 +74,7 @@ void RealtimeRun::record_tick() {
     if (truth != nullptr) log_->write_truth(record_.now_ns, truth->truth, truth->hoisted);
   }
   if (!measuring_.load()) return;
+  if (ticks_ == 0) first_tick_ns_ = record_.now_ns;
   const double time_s = static_cast<double>(ticks_++) * kTickPeriod_s;
   timing_.add(time_s, result.times);
   if (truth != nullptr) measure_.add(result, truth->truth, truth->hoisted, asked_);

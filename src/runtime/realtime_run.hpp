@@ -27,8 +27,8 @@ class RealtimeRun {
   /// Asked some fifty times a second: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 
-  /// Plays the scenario once and stops the controller. Throws std::runtime_error when a thread failed or the drives
-  /// don't answer.
+  /// Plays the scenario once and stops the controller; times in the outcome count from the first tick. Throws
+  /// std::runtime_error when a thread failed or the drives don't answer.
   RunOutcome run();
 
   const StageTiming& timing() const { return timing_; }
@@ -56,7 +56,7 @@ class RealtimeRun {
   TickRecord record_;
   BusTiming bus_;
   Command asked_;
-  std::int64_t ticks_ = 0;
+  std::int64_t ticks_ = 0, first_tick_ns_ = 0;
   std::atomic<bool> measuring_{true};  // damping at the end is no part of the run
 };
 
