@@ -165,6 +165,7 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
   message.limited_rate = result.limited.rate;
   message.limited_torque = result.limited.torque;
   message.gco_held = result.optimised.status == gco::Status::kNotConverged;
+  message.policy_held = result.policy_held;
   message.realtime = run.realtime;
 }
 
@@ -176,6 +177,7 @@ void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
   message.guard_trip = static_cast<std::int8_t>(input.guard_trip);
   message.stop = input.stop;
   message.late_ns = input.late_ns;
+  message.policy_late = input.policy_late;
   message.policy_late = input.policy_late;
   message.command_count = static_cast<std::int32_t>(input.drives.size());
   message.command_received_ns.clear();
