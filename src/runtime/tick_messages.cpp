@@ -178,7 +178,6 @@ void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
   message.stop = input.stop;
   message.late_ns = input.late_ns;
   message.policy_late = input.policy_late;
-  message.policy_late = input.policy_late;
   message.command_count = static_cast<std::int32_t>(input.drives.size());
   message.command_received_ns.clear();
   for (const DriveMessage& drive : input.drives) message.command_received_ns.push_back(drive.received_ns);
