@@ -1,0 +1,88 @@
+// A whole controller on a network without sockets and a clock without time: bus, control and comms of one or more
+// robots and the operators who talk to them, in one thread.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
+#include "io/lcm_link.hpp"
+#include "runtime/comms.hpp"
+#include "runtime/control_cycle.hpp"
+#include "runtime/fixtures.hpp"
+
+namespace pmg::test {
+
+struct NetworkedRobot {
+  NetworkedRobot(const std::string& name, io::LcmLink& link, const io::Clock& clock)
+      : run{.robot = name, .session = 1}, comms(link, inbox, outbox, robot, run, 100.0, clock), clock_(clock) {
+    bus_cycle.run();  // the first sample
+  }
+
+  /// One control tick. As in the controller's threads, what was sent is heard first.
+  void control() {
+    cycle.run(clock_.now_ns());
+    const runtime::TickRecord& record = cycle.record();
+    for (std::size_t i = 0; i < record.result.ack_count && !acks_lost; ++i) outbox.acks.push(record.result.acks[i]);
+    outbox.newest.put(record);
+  }
+  const runtime::TickResult& result() const { return cycle.record().result; }
+
+  bool acks_lost = false;
+  const model::RobotModel& robot = biped();
+  runtime::RunInfo run;
+  hal::BusLink bus_link;
+  runtime::OperatorInbox inbox{bus_link.stop};
+  runtime::ControllerOutbox outbox;
+  runtime::Comms comms;
+
+ private:
+  const io::Clock& clock_;
+
+ public:
+  IdealBus bus{robot};
+  hal::BusCycle bus_cycle{bus, bus_link, robot, clock_};
+  BreakablePolicy* policy = new BreakablePolicy;
+  runtime::Tick tick{robot, clips(robot), std::unique_ptr<policy::Policy>(policy), clock_,
+                     runtime::tick_options(robot)};
+  runtime::ControlCycle cycle{tick, bus_link, inbox, clock_};
+};
+
+class Network {
+ public:
+  NetworkedRobot& add_robot(const std::string& name) { return robots_.emplace_back(name, link, clock); }
+
+  /// 10 ms of every robot; messages are delivered on the way.
+  void advance() {
+    for (int bus_cycle = 0; bus_cycle < 5; ++bus_cycle) {
+      clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
+      link.receive(0);
+      for (NetworkedRobot& robot : robots_) {
+        robot.bus_cycle.run();
+        if (bus_cycle == 0 && control_alive) robot.control();
+        robot.comms.step(0);
+      }
+    }
+  }
+  /// Until the operator's errand has ended, at most so long.
+  template <typename Errand>
+  auto finish(Errand& errand, double at_most_s = 30.0) {
+    auto progress = errand.step();
+    for (const auto pending = progress; progress == pending && at_most_s > 0.0; at_most_s -= 0.01) {
+      advance();
+      progress = errand.step();
+    }
+    return progress;
+  }
+
+  io::SimulationClock clock;
+  io::LcmLink link{"memq://"};
+  bool control_alive = true;
+
+ private:
+  std::deque<NetworkedRobot> robots_;
+};
+
+}  // namespace pmg::test

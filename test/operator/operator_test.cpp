@@ -1,0 +1,231 @@
+// What an operator asks of a controller, over the network and back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "networked_robot.hpp"
+#include "operator/drive.hpp"
+#include "operator/mode_wish.hpp"
+
+namespace pmg::ops {
+namespace {
+
+using runtime::Mode;
+using test::Network;
+using test::NetworkedRobot;
+using testing::HasSubstr;
+
+class OperatorTest : public testing::Test {
+ protected:
+  OperatorTest() {
+    network_.link.subscribe("MODE", [this](io::Bytes) { ++requests_sent_; });
+    for (int k = 0; k < 3; ++k) network_.advance();
+  }
+  Progress ask(Goal goal, const std::string& robot = "biped") {
+    ModeWish wish(mine_, robot, goal, 10.0);
+    const Progress progress = network_.finish(wish);
+    answers_ = wish.answers();
+    elapsed_s_ = wish.elapsed_s();
+    return progress;
+  }
+  static Command forward(double vx_m_s) { return Command{{vx_m_s}}; }
+  /// Somebody else makes the robot walk and goes on driving it.
+  std::unique_ptr<Drive> other_drives() {
+    auto drive = std::make_unique<Drive>(other_, "biped", forward(0.3), DriveOptions{.duration_s = 100, .climb = true});
+    while (!drive->driving()) step(*drive);
+    for (int k = 0; k < 100; ++k) step(*drive);
+    EXPECT_EQ(robot_.result().mode, Mode::kWalk);
+    return drive;
+  }
+  Progress step(Drive& drive) {
+    network_.advance();
+    return drive.step();
+  }
+
+  Network network_;
+  NetworkedRobot& robot_ = network_.add_robot("biped");
+  OperatorSource mine_{network_.link, "pmg_send.1", 1, network_.clock};
+  OperatorSource other_{network_.link, "gamepad", 1, network_.clock};
+  int requests_sent_ = 0;
+  std::vector<Answer> answers_;
+  double elapsed_s_ = 0.0;
+};
+
+TEST_F(OperatorTest, StandIsReachedAndSaid) {
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kStand);
+  ASSERT_EQ(answers_.size(), 1u);
+  EXPECT_TRUE(answers_[0].acknowledged);
+  EXPECT_EQ(answers_[0].mode, "stand");
+}
+
+TEST_F(OperatorTest, AStopReachesARobotThatSomebodyElseDrives) {
+  const auto drive = other_drives();
+  ModeWish stop(mine_, "", Goal::kStop, 2.0);
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    step(*drive);
+    progress = stop.step();
+  }
+  EXPECT_EQ(progress, Progress::kReached);
+  EXPECT_LE(stop.elapsed_s(), 0.2 + 0.02) << "as long as it listens for other robots";
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+  EXPECT_EQ(robot_.bus.last_command.kp.sum(), 0.0);
+}
+
+TEST_F(OperatorTest, TheBusBrakesBeforeAnyTickHeardOfTheStop) {
+  const auto drive = other_drives();
+  network_.control_alive = false;
+  const ModeWish stop(mine_, "biped", Goal::kStop, 2.0);
+  network_.advance();
+  EXPECT_EQ(robot_.bus.last_command.kp.sum(), 0.0);
+}
+
+TEST_F(OperatorTest, AStopWithoutANameStopsEveryRobot) {
+  NetworkedRobot& second = network_.add_robot("second");
+  network_.advance();
+  EXPECT_EQ(ask(Goal::kStand, "biped"), Progress::kReached);
+  EXPECT_EQ(ask(Goal::kStand, "second"), Progress::kReached);
+  EXPECT_EQ(ask(Goal::kStop, ""), Progress::kReached);
+  EXPECT_EQ(answers_.size(), 2u);
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+  EXPECT_EQ(second.result().mode, Mode::kDamping);
+}
+
+TEST_F(OperatorTest, ARequestIsRepeatedUntilAnsweredAndNotAfter) {
+  network_.control_alive = false;
+  ModeWish wish(mine_, "biped", Goal::kDamping, 10.0);
+  for (int k = 0; k < 50; ++k) {
+    network_.advance();
+    EXPECT_EQ(wish.step(), Progress::kPending);
+  }
+  EXPECT_GE(requests_sent_, 9) << "every 50 ms";
+  EXPECT_LE(requests_sent_, 11);
+  network_.control_alive = true;
+  EXPECT_EQ(network_.finish(wish), Progress::kReached);
+  const int sent = requests_sent_;
+  for (int k = 0; k < 20; ++k) {
+    network_.advance();
+    wish.step();
+  }
+  EXPECT_EQ(requests_sent_, sent);
+}
+
+TEST_F(OperatorTest, AControllerThatNeverAnswersIsSaidInTime) {
+  network_.control_alive = false;
+  EXPECT_EQ(ask(Goal::kDamping), Progress::kFailed);
+  EXPECT_NEAR(elapsed_s_, 10.0, 0.02);
+  EXPECT_EQ(answers_[0].text, "not acknowledged");
+  EXPECT_EQ(ask(Goal::kDamping, "nobody"), Progress::kFailed);
+  EXPECT_THAT(answers_[0].text, HasSubstr("no controller of this name answers on memq://"));
+}
+
+TEST_F(OperatorTest, ARepeatedWishForLimpDrivesIsStillOneWish) {
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  robot_.acks_lost = true;
+  ModeWish wish(mine_, "biped", Goal::kPassive, 10.0);
+  for (int k = 0; k < 20; ++k) {
+    network_.advance();
+    wish.step();
+  }
+  EXPECT_GE(requests_sent_, 4);
+  robot_.acks_lost = false;
+  EXPECT_EQ(network_.finish(wish), Progress::kFailed);
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+  EXPECT_THAT(wish.answers()[0].text, HasSubstr("told twice"));
+  EXPECT_EQ(ask(Goal::kPassive), Progress::kReached) << "told again";
+}
+
+TEST_F(OperatorTest, OthersMayNotTakeOverWhileSomebodyDrives) {
+  const auto drive = other_drives();
+  ModeWish wish(mine_, "biped", Goal::kStand, 2.0);
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    step(*drive);
+    progress = wish.step();
+  }
+  EXPECT_EQ(progress, Progress::kFailed);
+  EXPECT_THAT(wish.answers()[0].text, HasSubstr("another source drives: gamepad"));
+  EXPECT_EQ(robot_.result().mode, Mode::kWalk);
+
+  Drive second(mine_, "biped", forward(-0.3), {.duration_s = 1.0});
+  progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    step(*drive);
+    progress = second.step();
+  }
+  EXPECT_EQ(progress, Progress::kFailed);
+  EXPECT_EQ(second.text(), "another source drives: gamepad");
+}
+
+TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 2.0, .climb = true});
+  double fastest = 0.0;
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    progress = step(drive);
+    fastest = std::max(fastest, robot_.result().reference.command[kVx]);
+  }
+  EXPECT_EQ(progress, Progress::kReached) << drive.text();
+  EXPECT_NEAR(drive.driven_s(), 2.0, 0.011);
+  EXPECT_NEAR(fastest, 0.3, 1e-6);
+  EXPECT_EQ(robot_.result().mode, Mode::kStand);
+  EXPECT_EQ(robot_.result().reference.command[kVx], 0.0);
+  network_.advance();
+  network_.advance();
+  EXPECT_EQ(robot_.result().driving, runtime::Source{}) << "nobody need wait for its lease";
+}
+
+TEST_F(OperatorTest, AnInterruptedWalkComesToRestToo) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0, .climb = true});
+  while (drive.driven_s() < 1.0) step(drive);
+  drive.end_early();
+  EXPECT_EQ(network_.finish(drive), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kStand);
+  EXPECT_NEAR(drive.driven_s(), 1.0, 0.03);
+}
+
+TEST_F(OperatorTest, AWalkThatSomebodyStoppedIsNotBegunAgain) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0, .climb = true});
+  while (drive.driven_s() < 1.0) step(drive);
+  const ModeWish stop(other_, "biped", Goal::kStop, 2.0);
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) progress = step(drive);
+  EXPECT_EQ(progress, Progress::kFailed);
+  EXPECT_EQ(drive.text(), "walk was ended by another request: mode is damping");
+  for (int k = 0; k < 100; ++k) {
+    step(drive);
+    ASSERT_EQ(robot_.result().mode, Mode::kDamping);
+  }
+}
+
+TEST_F(OperatorTest, DrivingARobotThatDoesNotWalkIsRefusedInWords) {
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0});
+  EXPECT_EQ(network_.finish(drive), Progress::kFailed);
+  EXPECT_EQ(drive.text(), "mode is stand: commands move a robot in walk only");
+}
+
+TEST_F(OperatorTest, AControllerThatFallsSilentEndsTheDrive) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0, .climb = true});
+  while (drive.driven_s() < 1.0) step(drive);
+  network_.control_alive = false;
+  EXPECT_EQ(network_.finish(drive, 1.0), Progress::kFailed);
+  EXPECT_EQ(drive.text(), "the controller is no longer heard");
+}
+
+TEST_F(OperatorTest, AFaultIsSaidInItsOwnWordsUntilItIsReset) {
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  robot_.policy->how = test::BreakablePolicy::Break::kNan;
+  for (int k = 0; k < 3; ++k) network_.advance();
+  ASSERT_EQ(robot_.result().mode, Mode::kFault);
+  EXPECT_EQ(ask(Goal::kStand), Progress::kFailed);
+  EXPECT_THAT(answers_[0].text, HasSubstr("policy"));
+  EXPECT_THAT(answers_[0].text, HasSubstr("ask for a reset"));
+  EXPECT_EQ(ask(Goal::kStop), Progress::kReached) << "a fault brakes already";
+  robot_.policy->how = test::BreakablePolicy::Break::kNone;
+  EXPECT_EQ(ask(Goal::kReset), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+}
+
+}  // namespace
+}  // namespace pmg::ops
