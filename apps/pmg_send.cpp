@@ -200,7 +200,7 @@ class Session {
                                   {"mode", answer.mode},
                                   {"text", answer.text}});
       }
-      std::cout << json.dump(2) << '\n';
+      std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
       return;
     }
     for (const ops::Answer& answer : answers) {
@@ -209,7 +209,7 @@ class Session {
       if (answer.robot.empty()) {
         out << "pmg_send: " << answer.text << '\n';
       } else {
-        out << fmt::format("{}: {}{}\n", answer.robot, answer.mode, text);
+        out << ops::printable(fmt::format("{}: {}{}", answer.robot, answer.mode, text)) << '\n';
       }
     }
   }

@@ -53,16 +53,22 @@ const HeardRobot* OperatorSource::heard(const std::string& robot) const {
 
 void OperatorSource::hear_status(io::Bytes bytes) {
   const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
-  if (!status) return;
-  HeardRobot& robot = heard_[status->robot];
-  robot.status = status;
-  robot.status_heard_ns = clock_.now_ns();
+  HeardRobot* robot = status ? place_of(status->robot) : nullptr;
+  if (robot == nullptr) return;
+  robot->status = status;
+  robot->status_heard_ns = clock_.now_ns();
 }
 
 void OperatorSource::hear_ack(io::Bytes bytes) {
   const auto ack = io::decode_message<pmg_msgs::ack_t>(bytes);
   const bool mine = ack && ack->source == mode_.source && ack->session == mode_.session;
-  if (mine && ack->sequence == mode_.sequence) heard_[ack->robot].ack = ack;
+  HeardRobot* robot = mine && ack->sequence == mode_.sequence ? place_of(ack->robot) : nullptr;
+  if (robot != nullptr) robot->ack = ack;
+}
+
+HeardRobot* OperatorSource::place_of(const std::string& robot) {
+  if (heard_.size() >= kMostRobots && !heard_.contains(robot)) return nullptr;
+  return &heard_[robot];
 }
 
 }  // namespace pmg::ops

@@ -29,6 +29,8 @@ struct HeardRobot {
 /// For one thread. Hears only while somebody calls link.receive().
 class OperatorSource {
  public:
+  static constexpr std::size_t kMostRobots = 64;  ///< a flood of invented names ends here
+
   /// Keeps references. name: at most 23 characters. session: larger at every start of this name.
   OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock);
 
@@ -48,6 +50,7 @@ class OperatorSource {
  private:
   void hear_status(io::Bytes message);
   void hear_ack(io::Bytes message);
+  HeardRobot* place_of(const std::string& robot);  // null: too many
 
   io::LcmLink& link_;
   const io::Clock& clock_;

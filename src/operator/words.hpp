@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace pmg::ops {
 
 const char* mode_name(std::int8_t mode) noexcept;         ///< of pmg_msgs::mode_t: "stand"
 const char* verdict_words(std::int8_t verdict) noexcept;  ///< of pmg_msgs::ack_t: why a request was not taken
+
+/// Text from the network, fit for a terminal: control characters, which could move the cursor, become '?'.
+std::string printable(std::string text);
 
 }  // namespace pmg::ops

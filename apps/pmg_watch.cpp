@@ -1,0 +1,170 @@
+// pmg_watch: what the controllers on an LCM address do, live in a terminal.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/lcm_link.hpp"
+#include "operator/robot_board.hpp"
+#include "operator/robot_text.hpp"
+
+namespace {
+
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kNotHeard = 1, kBadInput = 2 };
+
+constexpr const char* kFooter = R"(
+One robot fills a screen; of several each gets a line (--robot shows one of them at full length). Without a terminal: a line
+a second and robot, or a JSON object with --json.
+
+Examples:
+  pmg_watch
+  pmg_watch --once --json
+
+Exit codes: 0 ended with Ctrl-C, or with --once a robot was heard; 1 with --once none was; 2 bad input or no network.)";
+
+constexpr auto kReplace = nlohmann::json::error_handler_t::replace;  // strangers' text may be no UTF-8
+constexpr double kNotHeardAfter_s = 2.0;
+
+struct Arguments {
+  std::string robot, lcm_url;
+  double timeout_s = 3.0;
+  bool once = false, json = false;
+};
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+class Watch {
+ public:
+  explicit Watch(const Arguments& arguments)
+      : arguments_(arguments), link_(io::choose_lcm_url(arguments.lcm_url)), board_(link_, clock_) {}
+
+  /// One status, with what comes once a second if it comes in time.
+  int once() {
+    const auto complete = [&] {
+      const std::vector<const ops::RobotNews*> shown = selected();
+      return !shown.empty() &&
+             std::ranges::all_of(shown, [](const ops::RobotNews* news) { return news->info && news->link; });
+    };
+    std::optional<double> heard_at_s;
+    while (interrupt_requested == 0 && elapsed_s() < arguments_.timeout_s && !complete()) {
+      link_.receive(20);
+      if (!heard_at_s && !selected().empty()) heard_at_s = elapsed_s();
+      if (heard_at_s && elapsed_s() - *heard_at_s > 1.2) break;
+    }
+    print_all(true);
+    return selected().empty() ? kNotHeard : kOk;
+  }
+
+  int forever() {
+    const bool terminal = isatty(STDOUT_FILENO) != 0 && !arguments_.json;
+    const double period_s = terminal ? 0.2 : 1.0;
+    for (double next_s = period_s; interrupt_requested == 0 && std::cout.good();) {
+      link_.receive(20);
+      if (elapsed_s() < next_s) continue;
+      next_s = elapsed_s() + period_s;
+      if (terminal) {
+        redraw();
+      } else {
+        print_all(false);
+      }
+    }
+    return kOk;
+  }
+
+ private:
+  double elapsed_s() const { return static_cast<double>(clock_.now_ns() - begin_ns_) * 1e-9; }
+
+  std::vector<const ops::RobotNews*> selected() const {
+    std::vector<const ops::RobotNews*> news;
+    for (const auto& [name, robot] : board_.robots()) {
+      if (arguments_.robot.empty() || name == arguments_.robot) news.push_back(&robot);
+    }
+    return news;
+  }
+
+  std::string nobody() const {
+    return fmt::format("no controller{} is heard on {}",
+                       arguments_.robot.empty() ? "" : fmt::format(" named \"{}\"", arguments_.robot), link_.url());
+  }
+
+  void redraw() {
+    std::vector<std::string> lines;
+    const std::vector<const ops::RobotNews*> shown = selected();
+    if (shown.size() == 1) {
+      lines = ops::screen(*shown.front(), board_.silence_s(*shown.front()));
+    } else {
+      for (const ops::RobotNews* news : shown) lines.push_back(ops::one_line(*news, board_.silence_s(*news)));
+    }
+    if (shown.empty()) lines = {elapsed_s() > kNotHeardAfter_s ? nobody() : "listening on " + link_.url()};
+    std::string text;
+    if (drawn_lines_ > 0) text += fmt::format("\x1b[{}A", drawn_lines_);  // up to where the last picture began
+    for (const std::string& line : lines) text += line + "\x1b[K\n";
+    text += "\x1b[J";
+    drawn_lines_ = lines.size();
+    std::cout << text << std::flush;
+  }
+
+  void print_all(bool at_length) {
+    const std::vector<const ops::RobotNews*> shown = selected();
+    if (shown.empty() && (at_length || elapsed_s() > kNotHeardAfter_s)) std::cerr << "pmg_watch: " << nobody() << '\n';
+    for (const ops::RobotNews* news : shown) {
+      const double silence_s = board_.silence_s(*news);
+      if (arguments_.json) {
+        std::cout << ops::news_json(*news, silence_s).dump(at_length ? 2 : -1, ' ', false, kReplace) << '\n';
+      } else if (at_length && shown.size() == 1) {
+        for (const std::string& line : ops::screen(*news, silence_s)) std::cout << line << '\n';
+      } else {
+        std::cout << ops::one_line(*news, silence_s) << '\n';
+      }
+    }
+    std::cout << std::flush;
+  }
+
+  const Arguments& arguments_;
+  io::WallClock clock_;
+  io::LcmLink link_;
+  ops::RobotBoard board_;
+  std::int64_t begin_ns_ = clock_.now_ns();
+  std::size_t drawn_lines_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Shows what the controllers on an LCM address do.", "pmg_watch");
+  Arguments arguments;
+  app.footer(kFooter);
+  app.add_option("--robot", arguments.robot, "show the controller of this name only");
+  app.add_option("--lcm-url", arguments.lcm_url,
+                 fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
+  app.add_flag("--once", arguments.once, "print one status and end");
+  app.add_option("--timeout", arguments.timeout_s, "with --once: wait so long [s]")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--json", arguments.json, "print JSON, an object a line");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGPIPE, SIG_IGN);  // pmg_watch | head
+  try {
+    Watch watch(arguments);
+    return arguments.once ? watch.once() : watch.forever();
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_watch: " << error.what() << '\n';
+    return kBadInput;
+  }
+}

@@ -1,0 +1,77 @@
+#include "operator/robot_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pmg::ops {
+
+void RecentValues::add(double value) {
+  if (values_.size() < kKept) {
+    values_.push_back(value);
+    return;
+  }
+  values_[next_] = value;
+  next_ = (next_ + 1) % kKept;
+}
+
+double RecentValues::percentile(double percent) const {
+  if (values_.empty()) return 0.0;
+  std::vector<double> sorted = values_;
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(percent / 100.0 * static_cast<double>(sorted.size()))) - 1;
+  const auto nth = sorted.begin() + std::max<std::ptrdiff_t>(rank, 0);
+  std::ranges::nth_element(sorted, nth);
+  return *nth;
+}
+
+RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock) : clock_(clock) {
+  link.subscribe("STATUS", [this](io::Bytes bytes) { hear_status(bytes); });
+  link.subscribe("ROBOT_INFO", [this](io::Bytes bytes) {
+    const auto info = io::decode_message<pmg_msgs::robot_info_t>(bytes);
+    if (info && robots_.contains(info->robot)) robots_[info->robot].info = info;
+  });
+  link.subscribe("LINK", [this](io::Bytes bytes) {
+    const auto counts = io::decode_message<pmg_msgs::link_t>(bytes);
+    if (counts && robots_.contains(counts->robot)) robots_[counts->robot].link = counts;
+  });
+  link.subscribe("REFERENCE", [this](io::Bytes bytes) {
+    const auto reference = io::decode_message<pmg_msgs::reference_t>(bytes);
+    RobotNews* news = reference ? of_tick(reference->stamp_ns) : nullptr;
+    if (news != nullptr) news->reference = reference;
+  });
+  link.subscribe("TIMING", [this](io::Bytes bytes) {
+    const auto timing = io::decode_message<pmg_msgs::timing_t>(bytes);
+    RobotNews* news = timing ? of_tick(timing->stamp_ns) : nullptr;
+    if (news == nullptr) return;
+    news->timing = timing;
+    news->wake_us.add(static_cast<double>(timing->wake_ns) * 1e-3);
+    news->tick_us.add(static_cast<double>(timing->tick_ns) * 1e-3);
+  });
+  link.subscribe("STATE", [this](io::Bytes bytes) {
+    // A state carries its sample's stamp, not its tick's: whose it is can be told of one robot only.
+    const auto state = io::decode_message<pmg_msgs::robot_state_t>(bytes);
+    if (state && robots_.size() == 1) robots_.begin()->second.state = state;
+  });
+}
+
+double RobotBoard::silence_s(const RobotNews& news) const noexcept {
+  return static_cast<double>(clock_.now_ns() - news.heard_ns) * 1e-9;
+}
+
+void RobotBoard::hear_status(io::Bytes bytes) {
+  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
+  if (!status) return;
+  if (robots_.size() >= kMostRobots && !robots_.contains(status->robot)) return;
+  RobotNews& news = robots_[status->robot];
+  if (news.heard_ns != 0 && news.status.session != status->session) ++news.sessions;
+  news.status = *status;
+  news.heard_ns = clock_.now_ns();
+}
+
+RobotNews* RobotBoard::of_tick(std::int64_t stamp_ns) {
+  for (auto& [name, news] : robots_) {
+    if (news.status.stamp_ns == stamp_ns) return &news;
+  }
+  return nullptr;
+}
+
+}  // namespace pmg::ops

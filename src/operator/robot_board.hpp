@@ -1,0 +1,69 @@
+// What is known of each robot that speaks on an LCM address: the newest of every kind of message, and timing over the
+// last seconds.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/clock.hpp"
+#include "io/lcm_link.hpp"
+#include "pmg_msgs/link_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+
+namespace pmg::ops {
+
+/// Percentiles by nearest rank over the last kept values.
+class RecentValues {
+ public:
+  static constexpr std::size_t kKept = 1000;  ///< ten seconds of ticks
+
+  void add(double value);
+  double percentile(double percent) const;  ///< 0 without values
+  bool empty() const noexcept { return values_.empty(); }
+
+ private:
+  std::vector<double> values_;  // a ring once it is full
+  std::size_t next_ = 0;
+};
+
+struct RobotNews {
+  pmg_msgs::status_t status{};
+  std::int64_t heard_ns = 0;  ///< when, by the board's clock
+  std::optional<pmg_msgs::robot_info_t> info{};
+  std::optional<pmg_msgs::link_t> link{};
+  std::optional<pmg_msgs::reference_t> reference{};
+  std::optional<pmg_msgs::robot_state_t> state{};
+  std::optional<pmg_msgs::timing_t> timing{};
+  RecentValues wake_us{}, tick_us{};
+  int sessions = 1;  ///< how often the controller was started since it was heard first, or how many speak in turns
+};
+
+/// For one thread; hears while somebody calls link.receive().
+class RobotBoard {
+ public:
+  static constexpr std::size_t kMostRobots = 64;  ///< a flood of invented names ends here
+
+  /// Keeps references.
+  RobotBoard(io::LcmLink& link, const io::Clock& clock);
+
+  const std::map<std::string, RobotNews>& robots() const noexcept { return robots_; }
+  /// Since the robot's last status.
+  double silence_s(const RobotNews& news) const noexcept;
+
+ private:
+  void hear_status(io::Bytes message);
+  /// The robot whose status was of the same tick: references and timing don't carry a name. Null: none.
+  RobotNews* of_tick(std::int64_t stamp_ns);
+
+  const io::Clock& clock_;
+  std::map<std::string, RobotNews> robots_;
+};
+
+}  // namespace pmg::ops

@@ -1,0 +1,176 @@
+#include "operator/robot_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "operator/words.hpp"
+#include "pmg/command.hpp"
+
+namespace pmg::ops {
+
+namespace {
+
+struct Hottest {
+  double temperature_degC;
+  std::string joint;
+};
+
+std::optional<Hottest> hottest(const RobotNews& news) {
+  if (!news.state || news.state->temperature_degC.empty()) return std::nullopt;
+  const std::vector<double>& degC = news.state->temperature_degC;
+  const auto found = std::ranges::max_element(degC);
+  const auto index = static_cast<std::size_t>(found - degC.begin());
+  const bool named = news.info && index < news.info->joint_names.size();
+  return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
+}
+
+std::string driver(const pmg_msgs::status_t& status) {
+  return status.driving_source.empty() ? "nobody" : printable(status.driving_source);
+}
+
+std::string command_text(const double (&u)[kChannels]) {
+  return fmt::format(
+      "vx {:+.2f}  vy {:+.2f} m/s  omega {:+.2f} rad/s  pitch {:+.2f}  roll {:+.2f} rad  height {:+.3f} m", u[kVx],
+      u[kVy], u[kOmega], u[kPitch], u[kRoll], u[kHeight]);
+}
+
+std::string limits_text(const pmg_msgs::status_t& status) {
+  std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
+                                 status.limited_torque);
+  if (status.gco_held) text += "; ground-aware optimisation held";
+  return text;
+}
+
+/// What was ignored only when there was any.
+std::string network_text(const pmg_msgs::link_t& link) {
+  std::string text = fmt::format("{} accepted", link.accepted);
+  for (const auto& [count, reason] :
+       {std::pair{link.malformed, "malformed"}, std::pair{link.other_version, "of another version"},
+        std::pair{link.other_robot, "for another robot"}, std::pair{link.flooded, "too many"},
+        std::pair{link.other_source, "while another drives"}, std::pair{link.out_of_order, "out of order"},
+        std::pair{link.late, "late"}, std::pair{link.not_finite, "not finite"},
+        std::pair{link.no_lease, "without lease"}}) {
+    if (count > 0) text += fmt::format(", {} {}", count, reason);
+  }
+  return text;
+}
+
+std::string timing_text(const RobotNews& news) {
+  return fmt::format("wake-up p50 {:.0f} p99 {:.0f} us   tick p50 {:.0f} p99 {:.0f} us   missed ticks {}   {}",
+                     news.wake_us.percentile(50), news.wake_us.percentile(99), news.tick_us.percentile(50),
+                     news.tick_us.percentile(99), news.timing->missed_ticks,
+                     news.status.realtime ? "real-time" : "NOT real-time");
+}
+
+nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
+  nlohmann::ordered_json json;
+  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = u[i];
+  return json;
+}
+
+}  // namespace
+
+std::string one_line(const RobotNews& news, double silence_s) {
+  const pmg_msgs::status_t& status = news.status;
+  std::string line =
+      fmt::format("{:<12} {:<8} driven by {:<16}", printable(status.robot), mode_name(status.mode), driver(status));
+  if (news.reference) {
+    line += fmt::format(" vx {:+.2f} vy {:+.2f} omega {:+.2f}", news.reference->command[kVx],
+                        news.reference->command[kVy], news.reference->command[kOmega]);
+  }
+  if (!news.tick_us.empty()) line += fmt::format(" tick p99 {:.0f} us", news.tick_us.percentile(99));
+  if (!status.fault.empty()) line += "  FAULT " + printable(status.fault);
+  if (silence_s > kGone_s) line += fmt::format("  NOT HEARD for {:.0f} s", silence_s);
+  return line;
+}
+
+std::vector<std::string> screen(const RobotNews& news, double silence_s) {
+  const pmg_msgs::status_t& status = news.status;
+  std::vector<std::string> lines;
+  const auto add = [&](const char* label, const std::string& text) {
+    lines.push_back(fmt::format("{:<11}{}", label, text));
+  };
+  std::string who = printable(status.robot);
+  if (news.info) {
+    who += fmt::format("   model {}   policy {}   backend {}   bundle {:.12}", printable(news.info->model),
+                       printable(news.info->policy), printable(news.info->backend), printable(news.info->bundle));
+  }
+  add("robot", who);
+  add("mode", fmt::format("{}{}", mode_name(status.mode),
+                          silence_s > kGone_s ? fmt::format("   NOT HEARD for {:.0f} s", silence_s) : ""));
+  add("fault", status.fault.empty() ? "none" : printable(status.fault));
+  add("driven by", status.command_age_s < 0.0
+                       ? driver(status) + "   no command yet"
+                       : fmt::format("{}   last command {:.2f} s ago", driver(status), status.command_age_s));
+  if (news.reference) {
+    const pmg_msgs::reference_t& reference = *news.reference;
+    add("asked", command_text(reference.user));
+    add("u", command_text(reference.command) + (reference.command_limited ? "  limited" : ""));
+    add("u'", command_text(reference.optimised));
+    add("gait", fmt::format("phase {:.2f}   left {}   right {}", reference.phase, reference.contact[0] ? "##" : "..",
+                            reference.contact[1] ? "##" : ".."));
+  }
+  add("limited", limits_text(status));
+  if (const auto hot = hottest(news))
+    add("hottest", fmt::format("{:.0f} degC at {}", hot->temperature_degC, hot->joint));
+  if (news.timing) add("timing", timing_text(news));
+  if (news.link) add("messages", network_text(*news.link));
+  if (news.info) {
+    for (const std::string& refused : news.info->refused) add("refused", printable(refused));
+  }
+  if (news.sessions > 2) add("WARNING", "several controllers speak under this name");
+  return lines;
+}
+
+nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
+  const pmg_msgs::status_t& status = news.status;
+  nlohmann::ordered_json json{
+      {"robot", status.robot},
+      {"session", status.session},
+      {"mode", mode_name(status.mode)},
+      {"fault_code", status.fault_code},
+      {"fault", status.fault},
+      {"driving_source", status.driving_source},
+      {"command_age_s", status.command_age_s},
+      {"silence_s", silence_s},
+      {"realtime", status.realtime != 0},
+      {"gco_held", status.gco_held != 0},
+      {"limited",
+       {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
+  if (news.info) {
+    json["info"] = {{"model", news.info->model},   {"software", news.info->software},
+                    {"policy", news.info->policy}, {"backend", news.info->backend},
+                    {"bundle", news.info->bundle}, {"refused", news.info->refused}};
+  }
+  if (news.reference) {
+    json["user"] = command_json(news.reference->user);
+    json["command"] = command_json(news.reference->command);
+    json["optimised"] = command_json(news.reference->optimised);
+    json["phase"] = news.reference->phase;
+    json["contact"] = {news.reference->contact[0] != 0, news.reference->contact[1] != 0};
+  }
+  if (const auto hot = hottest(news)) {
+    json["hottest"] = {{"temperature_degC", hot->temperature_degC}, {"joint", hot->joint}};
+  }
+  if (news.timing) {
+    json["timing"] = {{"wake_p50_us", news.wake_us.percentile(50)}, {"wake_p99_us", news.wake_us.percentile(99)},
+                      {"tick_p50_us", news.tick_us.percentile(50)}, {"tick_p99_us", news.tick_us.percentile(99)},
+                      {"missed_ticks", news.timing->missed_ticks},  {"dropped_records", news.timing->dropped_records}};
+  }
+  if (news.link) {
+    const pmg_msgs::link_t& link = *news.link;
+    json["messages"] = {
+        {"accepted", link.accepted},         {"malformed", link.malformed}, {"other_version", link.other_version},
+        {"other_robot", link.other_robot},   {"flooded", link.flooded},     {"other_source", link.other_source},
+        {"out_of_order", link.out_of_order}, {"late", link.late},           {"not_finite", link.not_finite},
+        {"no_lease", link.no_lease}};
+  }
+  return json;
+}
+
+}  // namespace pmg::ops
