@@ -122,8 +122,7 @@ std::string svg(const Histogram& histogram) {
     fmt::format_to(add, R"(<path d="{}V{}Z" fill="{}" fill-opacity="0.45" stroke="{}"/>)", path, kTop + kPlot,
                    histogram.sets[set].colour, histogram.sets[set].colour);
     const std::span<const double> values = histogram.sets[set].values;
-    const std::string beyond =
-        b.above > 0 ? fmt::format(", {} beyond, {} at most", b.above, number(percentile(values, 1.0))) : "";
+    const std::string beyond = b.above > 0 ? fmt::format(", {} beyond", b.above) : "";
     out += legend_entry(
         kLeft, kTop + kPlot + kAxis + 20.0 * static_cast<double>(set) + 14, histogram.sets[set].colour,
         fmt::format("{}: {} values, p50 {}, p99 {} {}{}", histogram.sets[set].name, b.total(),

@@ -1,0 +1,100 @@
+// pmg_report: logs as one page of pictures.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "progress_line.hpp"
+#include "runtime/run_figures.hpp"
+#include "runtime/run_report.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kIncomplete = 1, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+LOG is a .lcm file, or the folder of a run. Several logs are laid over each other, each from its own beginning. The page
+holds all that it needs: it can be mailed and read without a network. docs/reports.md says how to read it.
+
+Example:
+  pmg_report out/tour/log.lcm --out tour.html
+
+Exit codes: 0 the page is written, 1 it is written but part of a log could not be read, 2 bad input or output, 130
+interrupted (the page shows what was read until then).)";
+
+struct Arguments {
+  std::vector<fs::path> logs;
+  fs::path out = "report.html";
+  bool json = false;
+};
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+std::vector<runtime::RunSeries> read(const std::vector<fs::path>& logs) {
+  std::vector<runtime::RunSeries> runs;
+  apps::ProgressLine progress;
+  for (const fs::path& log : logs) {
+    runs.push_back(runtime::read_run(log, [&](double share) {
+      progress.show(share, "reading " + log.string());
+      return interrupt_requested == 0;
+    }));
+  }
+  return runs;
+}
+
+void tell(const Arguments& arguments, const std::vector<runtime::RunSeries>& runs) {
+  if (arguments.json) {
+    nlohmann::ordered_json json = {{"report", arguments.out.string()}, {"runs", nlohmann::ordered_json::array()}};
+    for (const runtime::RunSeries& run : runs) json["runs"].push_back(runtime::run_json(run));
+    std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    return;
+  }
+  for (const runtime::RunSeries& run : runs) {
+    std::cout << runtime::verdict(run) << '\n';
+    for (const std::string& problem : run.problems) std::cout << "  " << problem << '\n';
+  }
+  std::cout << fmt::format("report in {}\n", arguments.out.string());
+}
+
+int report(const Arguments& arguments) {
+  if (arguments.logs.size() > runtime::kMostRuns) {
+    throw std::invalid_argument(
+        fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), runtime::kMostRuns));
+  }
+  const std::vector<runtime::RunSeries> runs = read(arguments.logs);
+  runtime::run_report(runs).write(arguments.out);
+  tell(arguments, runs);
+  if (interrupt_requested != 0) return kInterrupted;
+  return std::ranges::all_of(runs, [](const auto& run) { return run.problems.empty(); }) ? kOk : kIncomplete;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Shows logs as one self-contained HTML page, pictures first.", "pmg_report");
+  Arguments arguments;
+  app.footer(kFooter);
+  app.add_option("LOG", arguments.logs, "log of a run, or a run's folder; several are laid over each other")
+      ->required();
+  app.add_option("--out", arguments.out, "file for the page")->capture_default_str();
+  app.add_flag("--json", arguments.json, "print the runs' figures on stdout as JSON instead of one line each");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  std::signal(SIGINT, on_interrupt);
+  try {
+    return report(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_report: " << error.what() << '\n';
+    return kBadInput;
+  }
+}

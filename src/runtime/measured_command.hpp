@@ -1,0 +1,31 @@
+// The six channels as a simulated robot really did them, to be laid over what was asked.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+
+#include "pmg/command.hpp"
+#include "pmg_msgs/ground_truth_t.hpp"
+
+namespace pmg::runtime {
+
+/// Velocities in the heading frame H, averaged over the last gait period as the metrics are (metrics.hpp); posture of
+/// the torso in H; height of the pelvis as deviation from standing.
+class MeasuredCommand {
+ public:
+  /// One call a tick. Averages start anew when time jumps by more than a period or runs back.
+  std::array<double, kChannels> add(const pmg_msgs::ground_truth_t& truth, double gait_period_s,
+                                    double standing_height_m);
+
+ private:
+  struct Sample {
+    double time_s, vx_W_m_s, vy_W_m_s, yaw_rate_rad_s, cos_yaw, sin_yaw;
+  };
+  std::deque<Sample> samples_;
+};
+
+/// Whether the robot lies: as in metrics.hpp.
+bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m);
+
+}  // namespace pmg::runtime

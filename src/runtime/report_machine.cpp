@@ -1,0 +1,169 @@
+// How drives and computer coped: limits, temperatures, times.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pages/histogram.hpp"
+#include "pages/text.hpp"
+#include "runtime/report_sections.hpp"
+
+namespace pmg::runtime::report {
+
+namespace {
+
+constexpr std::size_t kHottest = 4;     // joints whose temperatures are drawn
+constexpr double kDelayed_us = 2000.0;  // a bus cycle: later than that something on the host was in the way
+constexpr std::size_t kListedDelays = 30;
+
+std::int64_t above_zero(const RunSeries::Samples& counts) {
+  return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
+}
+
+double hottest(const std::vector<float>& temperatures) {
+  double most = -1e9;
+  for (const float t : temperatures) most = std::max(most, std::isfinite(t) ? static_cast<double>(t) : most);
+  return most;
+}
+
+void limit_table(pages::Page& page, const Runs& runs) {
+  pages::Table table{.header = {"ticks with"}, .rows = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) table.header.push_back(runs[i].name + suffix(runs, i));
+  const auto row = [&](const char* name, auto count) {
+    std::vector<std::string> cells = {name};
+    for (const RunSeries& run : runs) {
+      const std::int64_t ticks = count(run);
+      const double share =
+          static_cast<double>(ticks) / static_cast<double>(std::max<std::size_t>(run.status.t_s.size(), 1));
+      cells.push_back(ticks > 0 ? fmt::format("{} ({:.2f} %)", ticks, 100.0 * share) : "0");
+    }
+    table.rows.push_back(std::move(cells));
+  };
+  row("a target limited by its range", [](const RunSeries& run) { return above_zero(run.status.limited_position); });
+  row("a target limited by its speed", [](const RunSeries& run) { return above_zero(run.status.limited_rate); });
+  row("a target limited by its torque", [](const RunSeries& run) { return above_zero(run.status.limited_torque); });
+  row("a command outside the admissible set", [](const RunSeries& run) { return run.reference.command_limited; });
+  row("a reference clamped to a joint's range", [](const RunSeries& run) { return run.reference.joint_clamped; });
+  row("no convergence of the ground-aware optimisation",
+      [](const RunSeries& run) { return run.reference.not_converged; });
+  page.table(table);
+}
+
+void temperature_chart(pages::Page& page, const Runs& runs) {
+  std::vector<std::vector<double>> kept;
+  kept.reserve(kHottest * runs.size());
+  std::vector<pages::Line> lines;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& temperatures = runs[i].state.temperature_degC;
+    std::vector<std::size_t> order(temperatures.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t joint) { return hottest(temperatures[joint]); });
+    static constexpr const char* kColours[] = {pages::colour::kVermillion, pages::colour::kOrange,
+                                               pages::colour::kPurple, pages::colour::kBlue};
+    for (std::size_t k = 0; k < std::min(kHottest, order.size()); ++k) {
+      const std::vector<float>& values = temperatures[order[k]];
+      const std::vector<double>& wide = kept.emplace_back(values.begin(), values.end());
+      lines.push_back({.name = runs[i].joint_names[order[k]] + suffix(runs, i),
+                       .x = runs[i].state.t_s,
+                       .y = wide,
+                       .colour = kColours[k],
+                       .dashed = i > 0});
+    }
+  }
+  add_chart(page, runs, fmt::format("Temperatures of the {} hottest drives [degC]", kHottest), std::move(lines));
+}
+
+/// All values of the runs' samples that aren't finite are left out: stages that did not run.
+void times(pages::Page& page, const Runs& runs, const char* title,
+           RunSeries::Samples decltype(RunSeries::timing)::*which) {
+  pages::Histogram histogram{.title = title, .unit = "us", .sets = {}};
+  std::vector<RunSeries::Samples> kept;
+  kept.reserve(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    RunSeries::Samples& values = kept.emplace_back(runs[i].timing.*which);
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (!values.empty()) histogram.sets.push_back({runs[i].name + suffix(runs, i), values, palette(i).measured});
+  }
+  if (!histogram.sets.empty()) page.histogram(histogram);
+}
+
+void delays(pages::Page& page, const Runs& runs) {
+  pages::Table table{.header = {"time [s]", "late [us]", "thread"}, .rows = {}};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& timing = runs[i].timing;
+    const auto add = [&](const RunSeries::Samples& late_us, const char* thread) {
+      for (std::size_t k = 0; k < late_us.size(); ++k) {
+        if (!(late_us[k] > kDelayed_us) || ++count > kListedDelays) continue;
+        table.rows.push_back(
+            {fmt::format("{:.2f}{}", timing.t_s[k], suffix(runs, i)), pages::number(late_us[k]), thread});
+      }
+    };
+    add(timing.wake_us, "control");
+    add(timing.bus_wake_us, "bus");
+    if (timing.missed_ticks + timing.bus_missed_cycles + timing.dropped_records > 0) {
+      page.paragraph(fmt::format("Skipped{}: {} ticks, {} bus cycles; {} records dropped from the log's queue.",
+                                 suffix(runs, i), timing.missed_ticks, timing.bus_missed_cycles,
+                                 timing.dropped_records));
+    }
+  }
+  if (count == 0) return;
+  page.folded(
+      fmt::format("{} cycles woke more than 2 ms late{}", count, count > kListedDelays ? ", the first of them" : ""),
+      [&] { page.table(table); });
+}
+
+}  // namespace
+
+void limits_and_temperatures(pages::Page& page, const Runs& runs) {
+  page.heading("Limits and temperatures");
+  limit_table(page, runs);
+  page.columns([&] {
+    std::vector<pages::Line> lines;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const auto& status = runs[i].status;
+      const std::string behind = suffix(runs, i);
+      lines.push_back({.name = "range" + behind,
+                       .x = status.t_s,
+                       .y = status.limited_position,
+                       .colour = palette(i).measured,
+                       .stepped = true});
+      lines.push_back({.name = "speed" + behind,
+                       .x = status.t_s,
+                       .y = status.limited_rate,
+                       .colour = palette(i).admissible,
+                       .stepped = true});
+      lines.push_back({.name = "torque" + behind,
+                       .x = status.t_s,
+                       .y = status.limited_torque,
+                       .colour = palette(i).optimised,
+                       .stepped = true});
+    }
+    add_chart(page, runs, "Joints whose target was limited, and by what", std::move(lines));
+    temperature_chart(page, runs);
+  });
+}
+
+void timing(pages::Page& page, const Runs& runs) {
+  page.heading("Timing");
+  if (std::ranges::all_of(runs, [](const RunSeries& run) { return run.timing.t_s.empty(); })) {
+    return page.paragraph("No wall-clock times: the log has no TIMING, and there is no timing.csv beside it.");
+  }
+  page.paragraph(
+      "Counts are on a logarithmic axis; the longest thousandth is told in words. On a computer that is shared with "
+      "others single long times say little.");
+  using Timing = decltype(RunSeries::timing);
+  page.columns([&] {
+    times(page, runs, "Whole tick", &Timing::tick_us);
+    times(page, runs, "Control thread's wake-up, behind its plan", &Timing::wake_us);
+    times(page, runs, "Bus thread's wake-up, the worst of each tick", &Timing::bus_wake_us);
+    times(page, runs, "Bus exchange, the longest of each tick", &Timing::bus_exchange_us);
+    times(page, runs, "Generator", &Timing::generator_us);
+    times(page, runs, "Ground-aware optimisation", &Timing::gco_us);
+    times(page, runs, "Policy", &Timing::policy_us);
+  });
+  delays(page, runs);
+}
+
+}  // namespace pmg::runtime::report

@@ -1,0 +1,128 @@
+// What was asked of the robot and what it did: commands, contact, slip.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "runtime/report_sections.hpp"
+#include "runtime/run_figures.hpp"
+
+namespace pmg::runtime::report {
+
+namespace {
+
+constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: a foot that barely touches carries nothing
+constexpr std::array<const char*, 2> kFeet = {"left", "right"};
+constexpr std::array<const char*, kChannels> kTitles = {
+    "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
+    "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
+
+/// Stretches in which a sampled condition holds.
+template <typename Condition>
+std::vector<pages::Lanes::Stretch> stretches(const RunSeries::Samples& t_s, const char* colour, Condition holds) {
+  std::vector<pages::Lanes::Stretch> found;
+  bool open = false;
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    if (i > 0 && t_s[i] - t_s[i - 1] > kLongestGap_s) open = false;
+    const bool now = holds(i);
+    if (open) found.back().to = t_s[i];
+    if (now && !open) found.push_back({t_s[i], t_s[i], "", colour});
+    open = now;
+  }
+  return found;
+}
+
+}  // namespace
+
+void commands(pages::Page& page, const Runs& runs) {
+  page.heading("Commands");
+  page.paragraph(
+      "asked: what the driving source wanted. admissible: inside the robot's limits and no faster than it may change; "
+      "the "
+      "reference realises it. optimised: what that reference really does on the ground. measured: what the simulated "
+      "robot "
+      "did, velocities averaged over one gait period.");
+  page.columns([&] {
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      std::vector<pages::Line> lines;
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        const auto& reference = runs[i].reference;
+        const auto& truth = runs[i].truth;
+        const Palette& colours = palette(i);
+        const std::string behind = suffix(runs, i);
+        lines.push_back({.name = "asked" + behind,
+                         .x = reference.t_s,
+                         .y = reference.user[channel],
+                         .colour = colours.asked,
+                         .dashed = true});
+        lines.push_back({.name = "admissible" + behind,
+                         .x = reference.t_s,
+                         .y = reference.command[channel],
+                         .colour = colours.admissible,
+                         .width_px = 2.2});
+        lines.push_back({.name = "optimised" + behind,
+                         .x = reference.t_s,
+                         .y = reference.optimised[channel],
+                         .colour = colours.optimised});
+        lines.push_back(
+            {.name = "measured" + behind, .x = truth.t_s, .y = truth.measured[channel], .colour = colours.measured});
+      }
+      add_chart(page, runs, kTitles[channel], std::move(lines));
+    }
+  });
+}
+
+void contact_and_slip(pages::Page& page, const Runs& runs) {
+  page.heading("Contact and slip");
+  pages::Lanes lanes{
+      .title = "Feet on the ground: as the reference plans it (dark), as the simulation measures it (light)",
+      .lanes = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& reference = runs[i].reference;
+    const auto& truth = runs[i].truth;
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      const std::string name = kFeet[foot] + suffix(runs, i);
+      if (!reference.t_s.empty())
+        lanes.lanes.push_back(
+            {name, stretches(reference.t_s, "#5b7fa6", [&](std::size_t k) { return reference.contact[foot][k]; })});
+      if (!truth.t_s.empty())
+        lanes.lanes.push_back({"", stretches(truth.t_s, "#b7cde4", [&](std::size_t k) {
+                                 return truth.foot_force_N[foot][k] > kLoadedFoot_N;
+                               })});
+    }
+  }
+  if (!lanes.lanes.empty()) page.lanes(lanes);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].reference.t_s.empty()) continue;
+    const SlipFigures slip = slip_figures(runs[i]);
+    page.paragraph(
+        fmt::format("Mean slip of the feet that the reference has on the ground{}: {:.4f} m/s if the base moved as "
+                    "commanded, {:.4f} m/s as optimised.",
+                    suffix(runs, i), slip.before_mean_m_s, slip.after_mean_m_s));
+  }
+  page.columns([&] {
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      std::vector<pages::Line> lines;
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        const auto& reference = runs[i].reference;
+        const auto& truth = runs[i].truth;
+        const Palette& colours = palette(i);
+        const std::string behind = suffix(runs, i);
+        lines.push_back({.name = "before" + behind,
+                         .x = reference.t_s,
+                         .y = reference.slip_before_m_s[foot],
+                         .colour = colours.admissible});
+        lines.push_back({.name = "after" + behind,
+                         .x = reference.t_s,
+                         .y = reference.slip_after_m_s[foot],
+                         .colour = colours.optimised});
+        lines.push_back(
+            {.name = "measured" + behind, .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured});
+      }
+      add_chart(page, runs,
+                fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFeet[foot]),
+                std::move(lines));
+    }
+  });
+}
+
+}  // namespace pmg::runtime::report

@@ -1,0 +1,148 @@
+#include "runtime/run_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pages/histogram.hpp"
+#include "runtime/mode.hpp"
+
+namespace pmg::runtime {
+
+namespace {
+
+constexpr std::size_t kShownHash = 12;  // hexadecimal digits that tell bundles apart at a glance
+
+nlohmann::ordered_json events_json(const std::vector<RunSeries::Event>& events) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const RunSeries::Event& event : events) json.push_back({{"t_s", event.t_s}, {"text", event.text}});
+  return json;
+}
+
+nlohmann::ordered_json times_json(const RunSeries::Samples& times_us) {
+  return {{"p50", pages::percentile(times_us, 0.50)}, {"p99", pages::percentile(times_us, 0.99)}};
+}
+
+std::int64_t ticks_above_zero(const RunSeries::Samples& counts) {
+  return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
+}
+
+}  // namespace
+
+std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s) {
+  std::vector<bool> held(t_s.size(), run.modes.empty());
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < t_s.size() && !run.modes.empty(); ++i) {
+    while (at + 1 < run.modes.size() && run.modes[at + 1].from_s <= t_s[i]) ++at;
+    const std::string& mode = run.modes[at].text;
+    held[i] = run.modes[at].from_s <= t_s[i] && (mode == to_string(Mode::kStand) || mode == to_string(Mode::kWalk));
+  }
+  return held;
+}
+
+std::vector<JointTracking> joint_tracking(const RunSeries& run) {
+  std::vector<JointTracking> joints(run.joint_names.size());
+  const std::vector<bool> held = holding(run, run.state.t_s);
+  std::vector<std::int64_t> ticks(joints.size());
+  const auto &state_s = run.state.t_s, &reference_s = run.reference.t_s;
+  for (std::size_t i = 0, k = 0; i < state_s.size(); ++i) {
+    while (k < reference_s.size() && reference_s[k] < state_s[i]) ++k;
+    const bool same_tick = k < reference_s.size() && reference_s[k] == state_s[i];
+    for (std::size_t joint = 0; joint < joints.size(); ++joint) {
+      const double torque_Nm = std::abs(static_cast<double>(run.state.torque_Nm[joint][i]));
+      if (torque_Nm > joints[joint].torque_max_Nm) joints[joint].torque_max_Nm = torque_Nm;
+      if (!same_tick || !held[i]) continue;
+      const double error_rad =
+          static_cast<double>(run.reference.q_ref_rad[joint][k]) - static_cast<double>(run.state.q_rad[joint][i]);
+      if (!std::isfinite(error_rad)) continue;
+      joints[joint].error_rms_rad += error_rad * error_rad;
+      ++ticks[joint];
+    }
+  }
+  for (std::size_t joint = 0; joint < joints.size(); ++joint) {
+    if (ticks[joint] > 0)
+      joints[joint].error_rms_rad = std::sqrt(joints[joint].error_rms_rad / static_cast<double>(ticks[joint]));
+  }
+  return joints;
+}
+
+SlipFigures slip_figures(const RunSeries& run) {
+  SlipFigures sum;
+  std::int64_t count = 0;
+  const auto& reference = run.reference;
+  const std::vector<bool> held = holding(run, reference.t_s);
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    for (std::size_t i = 0; i < reference.t_s.size(); ++i) {
+      const double before = reference.slip_before_m_s[foot][i], after = reference.slip_after_m_s[foot][i];
+      if (!held[i] || !reference.contact[foot][i] || !std::isfinite(before) || !std::isfinite(after)) continue;
+      sum.before_mean_m_s += before;
+      sum.after_mean_m_s += after;
+      ++count;
+    }
+  }
+  if (count == 0) return {};
+  const double share = 1.0 / static_cast<double>(count);
+  return {sum.before_mean_m_s * share, sum.after_mean_m_s * share};
+}
+
+std::string verdict(const RunSeries& run) {
+  std::string text = run.name + ": ";
+  if (run.identified) {
+    const auto& info = run.info;
+    text += info.robot == info.model ? info.robot : fmt::format("{} (a {})", info.robot, info.model);
+    text += fmt::format(", policy {}", info.policy.empty() ? "unknown" : info.policy);
+    if (!info.bundle.empty()) text += ", bundle " + info.bundle.substr(0, kShownHash);
+  } else {
+    text += "unknown robot";
+  }
+  text += fmt::format(", {:.1f} s. ", run.duration_s);
+  if (run.faults.empty()) {
+    text += "No fault";
+  } else {
+    text += fmt::format("FAULT at {:.2f} s: {}", run.faults.front().t_s, run.faults.front().text);
+    if (run.faults.size() > 1) text += fmt::format(" (and {} more)", run.faults.size() - 1);
+  }
+  if (run.fell) {
+    text += fmt::format(". FELL at {:.2f} s", run.fell_at_s);
+  } else if (!run.truth.t_s.empty()) {
+    text += ", did not fall";
+  }
+  return text + ".";
+}
+
+nlohmann::ordered_json run_json(const RunSeries& run) {
+  using nlohmann::ordered_json;
+  ordered_json modes = ordered_json::object(), errors = ordered_json::object();
+  for (const RunSeries::Stretch& mode : run.modes) {
+    modes[mode.text] = modes.value(mode.text, 0.0) + mode.to_s - mode.from_s;
+  }
+  const std::vector<JointTracking> tracking = joint_tracking(run);
+  for (std::size_t i = 0; i < tracking.size(); ++i) errors[run.joint_names[i]] = tracking[i].error_rms_rad;
+  const SlipFigures slip = slip_figures(run);
+  return {{"log", run.name},
+          {"robot", run.info.robot},
+          {"model", run.info.model},
+          {"software", run.info.software},
+          {"policy", run.info.policy},
+          {"backend", run.info.backend},
+          {"bundle", run.info.bundle},
+          {"duration_s", run.duration_s},
+          {"fell", run.fell},
+          {"fell_at_s", run.fell ? ordered_json(run.fell_at_s) : ordered_json(nullptr)},
+          {"faults", events_json(run.faults)},
+          {"guard_trips", events_json(run.guard_trips)},
+          {"modes_s", modes},
+          {"tracking_rms_rad", errors},
+          {"slip", {{"before_mean_m_s", slip.before_mean_m_s}, {"after_mean_m_s", slip.after_mean_m_s}}},
+          {"limited_ticks",
+           {{"position", ticks_above_zero(run.status.limited_position)},
+            {"rate", ticks_above_zero(run.status.limited_rate)},
+            {"torque", ticks_above_zero(run.status.limited_torque)}}},
+          {"timing_us", {{"tick", times_json(run.timing.tick_us)}, {"wake", times_json(run.timing.wake_us)}}},
+          {"lost_ticks", run.lost_ticks},
+          {"problems", run.problems}};
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,34 @@
+// A run's log in a few figures, for the report's tables and for machines.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/run_series.hpp"
+
+namespace pmg::runtime {
+
+/// Whether the drives followed the reference at each of these increasing times: mode stand or walk. Always, when the
+/// log says nothing of modes.
+std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s);
+
+struct JointTracking {
+  double error_rms_rad = 0.0;  ///< of q_ref - q while holding; 0 without a single such tick
+  double torque_max_Nm = 0.0;  ///< of its absolute value
+};
+std::vector<JointTracking> joint_tracking(const RunSeries& run);
+
+/// Mean over the ticks and feet in contact, while holding [m/s].
+struct SlipFigures {
+  double before_mean_m_s = 0.0, after_mean_m_s = 0.0;
+};
+SlipFigures slip_figures(const RunSeries& run);
+
+/// One line: what ran, how long, and how it ended.
+std::string verdict(const RunSeries& run);
+
+nlohmann::ordered_json run_json(const RunSeries& run);
+
+}  // namespace pmg::runtime

@@ -1,0 +1,162 @@
+#include "runtime/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "runtime/mode.hpp"
+#include "runtime/report_sections.hpp"
+#include "runtime/run_figures.hpp"
+
+namespace pmg::runtime {
+
+namespace report {
+
+namespace {
+
+using pages::Lanes;
+
+const char* mode_colour(const std::string& mode) {
+  if (mode == to_string(Mode::kDamping)) return "#f3d9a6";
+  if (mode == to_string(Mode::kStand)) return "#b9dcf2";
+  if (mode == to_string(Mode::kWalk)) return "#a8dcc8";
+  if (mode == to_string(Mode::kFault)) return "#f2a58c";
+  return "#e3e7ec";
+}
+
+Lanes::Lane lane(const std::string& name, const std::vector<RunSeries::Stretch>& stretches, const char* colour) {
+  Lanes::Lane row{.name = name, .stretches = {}};
+  for (const RunSeries::Stretch& s : stretches) {
+    row.stretches.push_back({s.from_s, s.to_s, s.text, colour != nullptr ? colour : mode_colour(s.text)});
+  }
+  return row;
+}
+
+/// The code before the colon: a mark has little room.
+std::string short_fault(const std::string& text) { return text.substr(0, text.find(':')); }
+
+}  // namespace
+
+const Palette& palette(std::size_t run) {
+  using namespace pages::colour;
+  static constexpr std::array<Palette, kMostRuns> kPalettes = {{
+      {.measured = kBlue, .asked = kInk, .admissible = kSky, .optimised = kPurple},
+      {.measured = kVermillion, .asked = kGrey, .admissible = kOrange, .optimised = kGreen},
+      {.measured = kGreen, .asked = kInk, .admissible = kSky, .optimised = kPurple},
+      {.measured = kPurple, .asked = kGrey, .admissible = kOrange, .optimised = kGreen},
+  }};
+  return kPalettes.at(run);
+}
+
+std::string suffix(const Runs& runs, std::size_t run) {
+  return runs.size() > 1 ? fmt::format(" ({})", static_cast<char>('A' + run)) : "";
+}
+
+std::vector<pages::Band> fault_bands(const Runs& runs) {
+  std::vector<pages::Band> bands;
+  for (const RunSeries& run : runs) {
+    for (const RunSeries::Stretch& mode : run.modes) {
+      if (mode.text == to_string(Mode::kFault)) bands.push_back({mode.from_s, mode.to_s, "rgba(213,94,0,0.10)"});
+    }
+  }
+  return bands;
+}
+
+void add_chart(pages::Page& page, const Runs& runs, const std::string& title, std::vector<pages::Line> lines,
+               int height_px) {
+  std::erase_if(lines, [](const pages::Line& line) { return line.x.empty(); });
+  if (lines.empty()) return;
+  page.chart({.title = title,
+              .lines = std::move(lines),
+              .bands = fault_bands(runs),
+              .height_px = height_px,
+              .longest_gap = kLongestGap_s});
+}
+
+void verdicts(pages::Page& page, const Runs& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunSeries& run = runs[i];
+    const std::string letter = runs.size() > 1 ? fmt::format("{}  ", static_cast<char>('A' + i)) : "";
+    page.verdict(run.fell || !run.faults.empty() ? pages::Tone::kBad : pages::Tone::kGood, letter + verdict(run));
+    for (const std::string& problem : run.problems) page.verdict(pages::Tone::kNeutral, letter + problem);
+  }
+}
+
+void timeline(pages::Page& page, const Runs& runs) {
+  page.heading("Timeline");
+  Lanes lanes{
+      .title = "Modes, who drives, and what the gantry carries; drag to zoom all charts, double click to go back",
+      .lanes = {}};
+  pages::Table events{.header = {"time [s]", "what"}, .rows = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunSeries& run = runs[i];
+    const std::string behind = suffix(runs, i);
+    lanes.lanes.push_back(lane("mode" + behind, run.modes, nullptr));
+    if (!run.sources.empty()) lanes.lanes.push_back(lane("driver" + behind, run.sources, "#dfe6ee"));
+    if (!run.hoisted.empty()) lanes.lanes.push_back(lane("gantry" + behind, run.hoisted, "#efe3d3"));
+    for (const RunSeries::Event& fault : run.faults)
+      lanes.marks.push_back({fault.t_s, short_fault(fault.text) + behind});
+    for (const auto* list : {&run.faults, &run.guard_trips, &run.stops}) {
+      for (const RunSeries::Event& event : *list)
+        events.rows.push_back({fmt::format("{:.2f}{}", event.t_s, behind), event.text});
+    }
+  }
+  page.lanes(lanes);
+  if (!events.rows.empty()) page.table(events);
+}
+
+void who_ran_what(pages::Page& page, const Runs& runs) {
+  page.heading("Who ran what");
+  pages::Table table{.header = {""}, .rows = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) table.header.push_back(runs[i].name + suffix(runs, i));
+  const auto row = [&](const char* name, auto value) {
+    std::vector<std::string> cells = {name};
+    for (const RunSeries& run : runs) cells.push_back(run.identified ? value(run.info) : "unknown");
+    table.rows.push_back(std::move(cells));
+  };
+  using Info = pmg_msgs::robot_info_t;
+  row("robot", [](const Info& info) { return info.robot; });
+  row("model", [](const Info& info) { return info.model; });
+  row("software", [](const Info& info) { return info.software; });
+  row("policy", [](const Info& info) { return info.policy; });
+  row("drives", [](const Info& info) { return info.backend; });
+  row("bundle", [](const Info& info) { return info.bundle; });
+  row("control rate [Hz]", [](const Info& info) { return fmt::format("{:g}", info.control_rate_hz); });
+  row("real time refused", [](const Info& info) { return fmt::format("{}", fmt::join(info.refused, "; ")); });
+  page.table(table);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Info& info = runs[i].info;
+    if (info.bundle_count > 0) {
+      page.folded("Files of the bundle" + suffix(runs, i), [&] {
+        pages::Table files{.header = {"file", "SHA-256"}, .rows = {}};
+        for (std::size_t k = 0; k < info.bundle_file.size(); ++k)
+          files.rows.push_back({info.bundle_file[k], info.bundle_sha256[k]});
+        page.table(files);
+      });
+    }
+    if (!info.options.empty())
+      page.folded("Configuration in force" + suffix(runs, i), [&] { page.paragraph(info.options); });
+  }
+}
+
+}  // namespace report
+
+pages::Page run_report(const std::vector<RunSeries>& runs) {
+  if (runs.empty() || runs.size() > kMostRuns) {
+    throw std::invalid_argument(fmt::format("a report shows 1 to {} runs, not {}", kMostRuns, runs.size()));
+  }
+  std::string title;
+  for (const RunSeries& run : runs) title += (title.empty() ? "" : " and ") + run.name;
+  pages::Page page("PMG report: " + title);
+  report::verdicts(page, runs);
+  report::timeline(page, runs);
+  report::commands(page, runs);
+  report::contact_and_slip(page, runs);
+  report::joints(page, runs);
+  report::limits_and_temperatures(page, runs);
+  report::timing(page, runs);
+  report::who_ran_what(page, runs);
+  return page;
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,310 @@
+#include "runtime/run_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+
+#include "io/log_reader.hpp"
+#include "pmg_msgs/fault_t.hpp"
+#include "pmg_msgs/mode_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/tick_input_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+#include "runtime/measured_command.hpp"
+#include "runtime/mode.hpp"
+
+namespace pmg::runtime {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<fs::path> files_of(const fs::path& log) {
+  if (!fs::exists(log)) throw std::runtime_error(log.string() + ": there is no such log");
+  if (!fs::is_directory(log)) return {log};
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(log)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".lcm" && (name == "log.lcm" || name.starts_with("log-")))
+      files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  if (files.empty()) throw std::runtime_error(log.string() + ": holds no log.lcm and no log-NNNN.lcm");
+  return files;
+}
+
+/// The file's name, with its folder's, which tells runs apart whose logs are all called log.lcm.
+std::string short_name(const fs::path& log) {
+  const fs::path path = fs::weakly_canonical(log);
+  return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
+}
+
+double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+double stage_us(std::int64_t ns) { return ns > 0 ? us(ns) : kNone; }
+
+void append(const std::vector<double>& row, RunSeries::JointSamples& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i].push_back(static_cast<float>(row[i]));
+}
+
+void extend(std::vector<RunSeries::Stretch>& stretches, double t_s, const std::string& text) {
+  if (!stretches.empty()) stretches.back().to_s = t_s;
+  if (stretches.empty() || stretches.back().text != text) stretches.push_back({t_s, t_s, text});
+}
+
+/// Gathers the events of one run.
+class Gathering {
+ public:
+  explicit Gathering(RunSeries& run) : run_(run) {}
+
+  void add(const io::LogReader& event) {
+    const std::string& channel = event.channel();
+    if (channel == "ROBOT_INFO") return with(event, &Gathering::info);
+    if (!first_ns_) first_ns_ = event.stamp_ns();
+    t_s_ = static_cast<double>(event.stamp_ns() - *first_ns_) * 1e-9;
+    if (t_s_ < run_.duration_s) {
+      ++back_in_time_;
+      return;
+    }
+    run_.duration_s = t_s_;
+    if (channel == "STATE") return with(event, &Gathering::state);
+    if (channel == "REFERENCE") return with(event, &Gathering::reference);
+    if (channel == "STATUS") return with(event, &Gathering::status);
+    if (channel == "GROUND_TRUTH") return with(event, &Gathering::truth);
+    if (channel == "TIMING") return with(event, &Gathering::timing);
+    if (channel == "TICK") return with(event, &Gathering::tick);
+    if (channel == "FAULT") return with(event, &Gathering::fault);
+  }
+
+  void finish() {
+    for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted}) {
+      std::erase_if(*stretches, [](const auto& stretch) { return stretch.text.empty(); });
+    }
+    // A log that begins in a fault, or whose FAULT is lost, still has its words in every status.
+    for (const RunSeries::Event& fault : latched_) {
+      const auto same = [&](const RunSeries::Event& known) { return std::abs(known.t_s - fault.t_s) < 0.05; };
+      if (std::ranges::none_of(run_.faults, same)) run_.faults.push_back(fault);
+    }
+    std::ranges::sort(run_.faults, {}, &RunSeries::Event::t_s);
+    if (!run_.identified) run_.problems.push_back("no ROBOT_INFO: who ran what is unknown, joints have numbers");
+    const auto tell = [this](std::int64_t count, const char* what) {
+      if (count > 0) run_.problems.push_back(fmt::format("{} {}", count, what));
+    };
+    tell(unreadable_, "messages of another type or another robot were skipped");
+    tell(back_in_time_, "messages run back in time and were skipped");
+    tell(run_.lost_ticks, "ticks are missing in the log");
+  }
+
+ private:
+  template <typename Message>
+  void with(const io::LogReader& event, bool (Gathering::*take)(const Message&)) {
+    static thread_local Message message;  // its vectors' memory is used again
+    if (!event.decode_into(message) || !(this->*take)(message)) ++unreadable_;
+  }
+
+  bool info(const pmg_msgs::robot_info_t& message) {
+    if (!run_.joint_names.empty() && message.joint_count != static_cast<int>(run_.joint_names.size())) return false;
+    if (run_.identified) return true;
+    run_.identified = true;
+    run_.info = message;
+    run_.joint_names = message.joint_names;
+    make_joints();
+    return true;
+  }
+
+  /// Whether a message has this run's joints; without ROBOT_INFO the first message decides.
+  bool fits(std::int32_t joint_count) {
+    if (run_.joint_names.empty()) {
+      for (std::int32_t i = 0; i < joint_count; ++i) run_.joint_names.push_back(fmt::format("joint {}", i));
+      make_joints();
+    }
+    return joint_count == static_cast<std::int32_t>(run_.joint_names.size());
+  }
+  void make_joints() {
+    for (auto* joints :
+         {&run_.state.q_rad, &run_.state.torque_Nm, &run_.state.temperature_degC, &run_.reference.q_ref_rad})
+      joints->resize(run_.joint_names.size());
+  }
+
+  bool state(const pmg_msgs::robot_state_t& message) {
+    if (!fits(message.joint_count)) return false;
+    run_.state.t_s.push_back(t_s_);
+    append(message.q_rad, run_.state.q_rad);
+    append(message.torque_Nm, run_.state.torque_Nm);
+    append(message.temperature_degC, run_.state.temperature_degC);
+    return true;
+  }
+
+  bool reference(const pmg_msgs::reference_t& message) {
+    if (!fits(message.joint_count)) return false;
+    auto& to = run_.reference;
+    to.t_s.push_back(t_s_);
+    append(message.q_ref_rad, to.q_ref_rad);
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      to.user[channel].push_back(message.user[channel]);
+      to.command[channel].push_back(message.command[channel]);
+      to.optimised[channel].push_back(message.optimised[channel]);
+    }
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      to.contact[foot].push_back(message.contact[foot] != 0);
+      to.contact_weight[foot].push_back(message.contact_weight[foot]);
+      to.slip_before_m_s[foot].push_back(message.slip_before_m_s[foot]);
+      to.slip_after_m_s[foot].push_back(message.slip_after_m_s[foot]);
+    }
+    to.not_converged += message.gco_status == pmg_msgs::reference_t::NOT_CONVERGED;
+    to.command_limited += message.command_limited != 0;
+    to.joint_clamped += message.joint_clamped != 0;
+    if (message.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / message.phase_rate_per_s;
+    return true;
+  }
+
+  bool status(const pmg_msgs::status_t& message) {
+    if (message.mode < 0 || message.mode > pmg_msgs::mode_t::FAULT) return false;
+    const auto mode = static_cast<Mode>(message.mode);
+    const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(Mode::kFault);
+    if (mode == Mode::kFault && !was_fault) {
+      latched_.push_back(
+          {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
+    }
+    extend(run_.modes, t_s_, to_string(mode));
+    extend(run_.sources, t_s_, message.driving_source);
+    run_.status.t_s.push_back(t_s_);
+    run_.status.limited_position.push_back(message.limited_position);
+    run_.status.limited_rate.push_back(message.limited_rate);
+    run_.status.limited_torque.push_back(message.limited_torque);
+    return true;
+  }
+
+  bool truth(const pmg_msgs::ground_truth_t& message) {
+    auto& to = run_.truth;
+    to.t_s.push_back(t_s_);
+    const double standing_height_m = run_.info.standing_height_m;
+    const auto measured = measured_command_.add(message, gait_period_s_, standing_height_m);
+    for (std::size_t channel = 0; channel < kChannels; ++channel) to.measured[channel].push_back(measured[channel]);
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      to.foot_force_N[foot].push_back(message.foot_force_N[foot]);
+      to.foot_slip_m_s[foot].push_back(message.foot_slip_m_s[foot]);
+    }
+    extend(run_.hoisted, t_s_, message.hoisted != 0 ? "on the gantry" : "");
+    if (!run_.fell && fallen(message, standing_height_m)) {
+      run_.fell = true;
+      run_.fell_at_s = t_s_;
+    }
+    return true;
+  }
+
+  bool timing(const pmg_msgs::timing_t& message) {
+    auto& to = run_.timing;
+    to.t_s.push_back(t_s_);
+    to.wake_us.push_back(us(message.wake_ns));
+    to.tick_us.push_back(us(message.tick_ns));
+    to.generator_us.push_back(stage_us(message.generator_ns));
+    to.gco_us.push_back(stage_us(message.gco_ns));
+    to.policy_us.push_back(stage_us(message.policy_ns));
+    to.bus_wake_us.push_back(us(message.bus_wake_max_ns));
+    to.bus_exchange_us.push_back(us(message.bus_exchange_max_ns));
+    to.missed_ticks = message.missed_ticks;
+    to.bus_missed_cycles = message.bus_missed_cycles;
+    to.dropped_records = message.dropped_records;
+    return true;
+  }
+
+  bool tick(const pmg_msgs::tick_input_t& message) {
+    if (last_tick_ && message.tick > *last_tick_ + 1) run_.lost_ticks += message.tick - *last_tick_ - 1;
+    last_tick_ = message.tick;
+    if (message.guard_trip == pmg_msgs::tick_input_t::CONTROL_FROZEN)
+      run_.guard_trips.push_back({t_s_, "the bus guard damped: no fresh command from the control thread"});
+    if (message.guard_trip == pmg_msgs::tick_input_t::COMMAND_NOT_FINITE)
+      run_.guard_trips.push_back({t_s_, "the bus guard damped: a command that was no number"});
+    if (message.stop) run_.stops.push_back({t_s_, "stop"});
+    return true;
+  }
+
+  bool fault(const pmg_msgs::fault_t& message) {
+    run_.faults.push_back({t_s_, message.text});
+    return true;
+  }
+
+  RunSeries& run_;
+  MeasuredCommand measured_command_;
+  std::optional<std::int64_t> first_ns_, last_tick_;
+  double t_s_ = 0.0, gait_period_s_ = 1.0;
+  std::vector<RunSeries::Event> latched_;
+  std::int64_t unreadable_ = 0, back_in_time_ = 0;
+};
+
+/// timing.csv of a lockstep run: time_s,tick_us,generator_us,gco_us,policy_us.
+void read_timing_csv(const fs::path& file, RunSeries& run) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;
+  auto& to = run.timing;
+  std::array<double, 5> row{};
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    bool whole = true;
+    for (double& value : row) {
+      std::string cell;
+      whole = whole && std::getline(cells, cell, ',') && std::istringstream(cell) >> value;
+    }
+    if (!whole || (!to.t_s.empty() && row[0] < to.t_s.back())) continue;
+    to.t_s.push_back(row[0]);
+    to.tick_us.push_back(row[1]);
+    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNone);
+    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNone);
+    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNone);
+  }
+}
+
+}  // namespace
+
+RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
+  const std::vector<fs::path> files = files_of(log);
+  RunSeries run;
+  run.name = short_name(log);
+  double total_bytes = 0.0, read_bytes = 0.0;
+  for (const fs::path& file : files) total_bytes += static_cast<double>(fs::file_size(file));
+
+  constexpr std::size_t kEventHeader_bytes = 28;
+  constexpr int kEventsPerCall = 2000;
+  Gathering gathering(run);
+  int events = 0;
+  bool interrupted = false;
+  for (const fs::path& file : files) {
+    io::LogReader reader(file);
+    while (!interrupted && reader.next()) {
+      gathering.add(reader);
+      read_bytes += static_cast<double>(kEventHeader_bytes + reader.channel().size() + reader.data().size());
+      if (progress && ++events % kEventsPerCall == 0) interrupted = !progress(std::min(1.0, read_bytes / total_bytes));
+    }
+    if (reader.cut_short()) {
+      run.problems.push_back(
+          fmt::format("{} ends in the middle of an event: its end is missing", file.filename().string()));
+    } else if (reader.skipped_bytes() > 0) {
+      run.problems.push_back(
+          fmt::format("{}: {} damaged bytes were skipped", file.filename().string(), reader.skipped_bytes()));
+    }
+  }
+  if (interrupted) run.problems.push_back("reading was interrupted: the rest of the log is not shown");
+  gathering.finish();
+  if (run.state.t_s.empty() && run.status.t_s.empty() && run.reference.t_s.empty() && !interrupted) {
+    throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read");
+  }
+  if (run.timing.t_s.empty()) {
+    read_timing_csv((fs::is_directory(log) ? log : log.parent_path()) / "timing.csv", run);
+  }
+  return run;
+}
+
+}  // namespace pmg::runtime

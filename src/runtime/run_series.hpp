@@ -1,0 +1,85 @@
+// A run's log as plain arrays over time: what pictures are drawn from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pmg/command.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+
+namespace pmg::runtime {
+
+/// One row a tick and channel; t_s counts from the log's beginning. A channel that the log lacks is empty. Of per-joint
+/// arrays the first index is the joint; they are float because a long run has many.
+struct RunSeries {
+  using Samples = std::vector<double>;
+  using JointSamples = std::vector<std::vector<float>>;
+
+  std::string name;  ///< of the log, short
+  bool identified = false;
+  pmg_msgs::robot_info_t info{};  ///< if identified
+  std::vector<std::string> joint_names;
+  double duration_s = 0.0;
+
+  struct {
+    Samples t_s;
+    JointSamples q_rad, torque_Nm, temperature_degC;
+  } state;
+
+  struct {
+    Samples t_s;
+    JointSamples q_ref_rad;
+    std::array<Samples, kChannels> user, command, optimised;
+    std::array<Samples, 2> contact_weight, slip_before_m_s, slip_after_m_s;
+    std::array<std::vector<bool>, 2> contact;
+    std::int64_t not_converged = 0, command_limited = 0, joint_clamped = 0;  ///< ticks
+  } reference;
+
+  struct {
+    Samples t_s, limited_position, limited_rate, limited_torque;
+  } status;
+
+  struct {
+    Samples t_s;
+    std::array<Samples, kChannels> measured;
+    std::array<Samples, 2> foot_force_N, foot_slip_m_s;
+  } truth;  ///< of a simulation
+
+  struct {
+    Samples t_s, wake_us, tick_us, generator_us, gco_us, policy_us;
+    Samples bus_wake_us, bus_exchange_us;  ///< the worst of the bus cycles since the last tick
+    std::int64_t missed_ticks = 0, bus_missed_cycles = 0, dropped_records = 0;
+  } timing;  ///< of the wall clock; stages that did not run are NaN
+
+  struct Stretch {
+    double from_s, to_s;
+    std::string text;
+  };
+  std::vector<Stretch> modes, sources, hoisted;
+
+  struct Event {
+    double t_s;
+    std::string text;
+  };
+  std::vector<Event> faults;  ///< as they latched, in words
+  std::vector<Event> guard_trips, stops;
+
+  bool fell = false;
+  double fell_at_s = -1.0;
+  std::int64_t lost_ticks = 0;        ///< numbers that the log jumps over
+  std::vector<std::string> problems;  ///< what could not be read, one sentence each
+};
+
+/// Called now and then with the share of the bytes that are read; false ends the reading, what was read is kept.
+using ReadingProgress = std::function<bool(double share)>;
+
+/// log: a .lcm file, or a run's folder, whose log.lcm or log-NNNN.lcm are taken as one. Wall times come from the log,
+/// or from a timing.csv beside it. Reads on over what is damaged. Throws std::runtime_error when nothing of a run can
+/// be read there.
+RunSeries read_run(const std::filesystem::path& log, const ReadingProgress& progress = {});
+
+}  // namespace pmg::runtime
