@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "networked_robot.hpp"
 #include "operator/drive.hpp"
 #include "operator/mode_wish.hpp"
@@ -224,6 +228,59 @@ TEST_F(OperatorTest, AFaultIsSaidInItsOwnWordsUntilItIsReset) {
   EXPECT_EQ(ask(Goal::kStop), Progress::kReached) << "a fault brakes already";
   robot_.policy->how = test::BreakablePolicy::Break::kNone;
   EXPECT_EQ(ask(Goal::kReset), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+}
+
+/// A hundred thousand messages a second, as comms hears them: a hundred in every millisecond or two.
+class FloodTest : public OperatorTest {
+ protected:
+  template <typename Errand>
+  Progress finish_in_flood(Errand& errand) {
+    Progress progress = Progress::kPending;
+    while (progress == Progress::kPending) {
+      for (int part = 0; part < 10; ++part) {
+        for (int k = 0; k < 100; ++k) (k % 2 == 0 ? send_junk() : send_command());
+        robot_.comms.step(0);
+      }
+      network_.advance();
+      progress = errand.step();
+    }
+    return progress;
+  }
+  void send_junk() {
+    ++sent_;
+    network_.link.send(sent_ % 4 == 0 ? "MODE" : "COMMAND", junk_);
+  }
+  void send_command() {
+    pmg_msgs::command_t command{};
+    command.version = pmg_msgs::command_t::VERSION;
+    command.robot = "biped";
+    command.source = "flood" + std::to_string(++sent_ % 3);
+    command.sequence = sent_;
+    command.lease_s = 2.0;
+    command.vx_m_s = -1.0;
+    network_.link.publish("COMMAND", command);
+  }
+
+  const std::vector<std::uint8_t> junk_ = std::vector<std::uint8_t>(200, 0x5a);
+  int sent_ = 0;
+};
+
+TEST_F(FloodTest, WhoDrivesGoesOnDriving) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 3.0, .climb = true});
+  while (!drive.driving()) step(drive);
+  EXPECT_EQ(finish_in_flood(drive), Progress::kReached) << drive.text();
+  EXPECT_NEAR(drive.driven_s(), 3.0, 0.02);
+  EXPECT_EQ(robot_.result().mode, Mode::kStand);
+  EXPECT_GT(robot_.comms.gate_counts().malformed, 100'000);
+  EXPECT_GT(robot_.comms.gate_counts().flooded, 100'000);
+}
+
+TEST_F(FloodTest, AStopIsObeyedAndAcknowledged) {
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  ModeWish stop(mine_, "biped", Goal::kStop, 2.0);
+  EXPECT_EQ(finish_in_flood(stop), Progress::kReached);
+  EXPECT_LE(stop.elapsed_s(), 0.021);
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
 }
 
