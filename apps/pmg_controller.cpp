@@ -235,6 +235,7 @@ int control(Arguments& arguments) {
                                             arguments.hal == "can" ? "CAN" : "EtherCAT"));
   }
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  runtime::expect_shared_host(loaded.options);
   if (arguments.name.empty()) arguments.name = loaded.robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("logs") / (arguments.name + "-" + utc_time());
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);

@@ -209,6 +209,7 @@ int simulate(const Arguments& arguments) {
   require(arguments.scenario, "--scenario");
   // Everything that input can spoil comes first: nothing is written for bad input.
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  if (arguments.realtime) runtime::expect_shared_host(loaded.options);
   const runtime::Scenario scenario = runtime::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded).dump(2) << '\n';

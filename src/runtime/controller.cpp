@@ -152,6 +152,7 @@ bool Controller::await_damping() {
   // With comms gone this thread is the inbox's only writer, and nobody can ask for another mode.
   ModeRequest damping;
   damping.source = Source::make("controller", 1);
+  damping.sequence = 1;
   damping.mode = Mode::kDamping;
   damping.received_ns = damping.stamp_ns = clock_.now_ns();
   inbox_.put(damping);

@@ -26,7 +26,7 @@ struct ControllerOptions {
   /// The bus before the control tick: whatever the tick does, the drives are answered and the guard can act.
   ThreadSchedule bus{.name = "bus", .priority = 80};
   ThreadSchedule control{.name = "control", .priority = 70};
-  hal::GuardOptions guard;
+  hal::GuardOptions guard{};
   double first_sample_within_s = 2.0;  ///< the drives must answer once before control starts
   double confirm_stop_within_s = 0.5;  ///< how long stop() waits for the control thread's damping
   double damp_s = 0.2;                 ///< how long stop() lets the drives damp before the threads end

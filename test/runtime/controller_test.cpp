@@ -1,0 +1,134 @@
+// The threaded controller: what its threads promise each other and the robot, whatever goes wrong.
+#include "runtime/controller.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "runtime/threaded_controller.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+using test::BreakableBus;
+using test::eventually;
+using test::ThreadedRobot;
+using testing::HasSubstr;
+
+void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
+
+TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
+  ThreadedRobot run(test::z1());
+  std::vector<std::int64_t> indices;
+  std::vector<Mode> modes;
+  std::int64_t bus_cycles = 0;
+  const auto record = [&] {
+    TickRecord tick;
+    while (run.controller.outbox().records.pop(tick)) {
+      indices.push_back(tick.tick);
+      if (modes.empty() || modes.back() != tick.result.mode) modes.push_back(tick.result.mode);
+      EXPECT_GT(tick.state.bus_sample, 0u) << "control starts when the drives have answered";
+      EXPECT_GE(tick.timing.woke_ns, tick.timing.planned_ns);
+      EXPECT_GE(tick.timing.done_ns, tick.timing.woke_ns);
+    }
+    CycleTiming cycle;
+    while (run.controller.outbox().bus_cycles.pop(cycle)) ++bus_cycles;
+  };
+  run.controller.start([&] { run.speaker(); }, record);
+  ASSERT_TRUE(run.sees(Mode::kPassive));
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(Mode::kWalk));
+  run.bus.lost = true;
+  ASSERT_TRUE(run.sees(Mode::kFault));
+  EXPECT_EQ(run.news.fault.code, FaultCode::kBusLost);
+  run.bus.lost = false;
+  ASSERT_TRUE(run.reach(Mode::kDamping, true));
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  EXPECT_TRUE(run.controller.stop());
+
+  EXPECT_EQ(run.bus.last_kp_sum, 0.0) << "the drives' last command is damping";
+  EXPECT_GT(run.bus.last_kd_sum, 0.0);
+  EXPECT_EQ(modes.front(), Mode::kPassive);
+  EXPECT_EQ(modes.back(), Mode::kDamping);
+  EXPECT_EQ(run.controller.outbox().dropped_records, 0);
+  EXPECT_EQ(run.controller.outbox().dropped_bus_cycles, 0);
+  EXPECT_EQ(bus_cycles, run.controller.bus_statistics().cycles());
+  ASSERT_EQ(static_cast<std::int64_t>(indices.size()), run.controller.control_statistics().cycles());
+  for (std::size_t i = 1; i < indices.size(); ++i) ASSERT_EQ(indices[i], indices[i - 1] + 1);
+}
+
+TEST(Controller, ThreadsHaveTheKernelsWordForTheirScheduling) {
+  ThreadedRobot run(test::z1());
+  const KernelSchedule bus = kernel_schedule(run.controller.bus_thread());
+  const KernelSchedule control = kernel_schedule(run.controller.control_thread());
+  if (run.controller.refused().empty()) {
+    EXPECT_EQ(bus.policy, SCHED_FIFO);
+    EXPECT_EQ(control.policy, SCHED_FIFO);
+    EXPECT_GT(bus.priority, control.priority);
+  } else {
+    EXPECT_THAT(testing::PrintToString(run.controller.refused()),
+                testing::AnyOf(HasSubstr("SCHED_FIFO"), HasSubstr("mlockall")));
+  }
+}
+
+TEST(Controller, WithoutRealTimeItRunsAndSaysSo) {
+  ThreadedRobot run(test::z1(), {.realtime = false});
+  EXPECT_EQ(kernel_schedule(run.controller.bus_thread()).policy, SCHED_OTHER);
+  ASSERT_EQ(run.controller.refused().size(), 1u);
+  EXPECT_THAT(run.controller.refused()[0], HasSubstr("not asked for"));
+  run.controller.start(rest, [] {});
+  EXPECT_TRUE(run.sees(Mode::kPassive));
+  EXPECT_TRUE(run.controller.stop());
+}
+
+TEST(Controller, DrivesThatNeverAnswerEndTheStartWithOneLine) {
+  ThreadedRobot run(test::z1(), {.first_sample_within_s = 0.05});
+  run.bus.lost = true;
+  try {
+    run.controller.start(rest, [] {});
+    FAIL() << "it started";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the drives did not answer within 0.1 s"));
+  }
+  ControllerNews news;
+  EXPECT_FALSE(run.controller.news(news)) << "control never ran";
+}
+
+TEST(Controller, AThrowInAnOrdinaryThreadDampsAndIsTold) {
+  ThreadedRobot run(test::z1());
+  std::atomic<bool> broken{false};
+  run.controller.start([&] { run.speaker(); },
+                       [&] {
+                         if (broken) throw std::runtime_error("no paper");
+                       });
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  EXPECT_EQ(run.controller.failure(), "");
+  ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
+  broken = true;
+  EXPECT_TRUE(run.sees(Mode::kDamping));
+  EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0; }));
+  EXPECT_TRUE(eventually([&] { return !run.controller.failure().empty(); }));
+  EXPECT_EQ(run.controller.failure(), "thread recorder: no paper");
+  EXPECT_TRUE(run.controller.stop());
+}
+
+TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
+  ThreadedRobot run(test::z1());
+  run.controller.start([&] { run.speaker(); }, [] {});
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
+  run.policy->freeze = true;
+  // Nobody asked for anything: the bus alone finds that no command comes.
+  EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0 && run.bus.last_kd_sum > 0.0; }));
+  run.policy->freeze = false;
+  EXPECT_TRUE(run.sees(Mode::kFault)) << "it does not go on as if nothing had been";
+  EXPECT_EQ(run.news.fault.code, FaultCode::kControlFrozen);
+  EXPECT_TRUE(run.controller.stop());
+  EXPECT_EQ(run.bus.last_kp_sum, 0.0);
+  EXPECT_GE(run.controller.bus_cycle().guard().trips(), 1u);
+}
+
+}  // namespace
+}  // namespace pmg::runtime

@@ -1,0 +1,25 @@
+// Catches threads that must not use the heap or a lock: replaces malloc, free and the pthread locks of this program.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace pmg::test {
+
+struct Trapped {
+  long heap = 0;   ///< calls of the malloc and free families
+  long locks = 0;  ///< calls of pthread mutexes, rwlocks and conditions
+};
+
+/// False under sanitizers, which replace the same functions, and outside glibc.
+bool trap_available() noexcept;
+/// From now on calls in these threads (the kernel's numbers) are counted.
+void arm_trap(const std::vector<pid_t>& threads) noexcept;
+void disarm_trap() noexcept;
+Trapped trapped() noexcept;
+/// Where the first call came from, for whoever has to find it.
+std::string first_trapped();
+
+}  // namespace pmg::test

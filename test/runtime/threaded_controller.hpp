@@ -1,0 +1,147 @@
+// What tests of the threaded controller share: an operator, a bus that can be broken, and waiting for a condition.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "runtime/controller.hpp"
+#include "runtime/fixtures.hpp"
+#include "runtime/simulated_robot.hpp"
+
+namespace pmg::test {
+
+/// True when the condition came true within a time that no machine in working order needs.
+inline bool eventually(const std::function<bool()>& condition, double deadline_s = 30.0) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+/// Passes on what another bus says until told to lose it.
+class BreakableBus final : public hal::Hal {
+ public:
+  explicit BreakableBus(hal::Hal& bus) : bus_(bus) {}
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
+    last_kp_sum.store(command.kp.sum());
+    last_kd_sum.store(command.kd.sum());
+    if (lost) return hal::BusStatus::kLost;
+    return bus_.exchange(command, state);
+  }
+  std::atomic<bool> lost{false};
+  std::atomic<double> last_kp_sum{-1.0}, last_kd_sum{-1.0};  ///< of the last command
+
+ private:
+  hal::Hal& bus_;
+};
+
+/// Follows the reference; other threads may make it stand still or use the heap.
+class SwitchablePolicy final : public policy::Policy {
+ public:
+  policy::Status act(const model::RobotState&, const Reference& reference, const Command&,
+                     JointVector& q_des) noexcept override {
+    while (freeze) std::this_thread::yield();
+    if (use_heap) heap_ = std::make_unique<double>(reference.phase);
+    if (use_lock) const std::lock_guard lock(mutex_);
+    q_des = reference.q;
+    return policy::Status::kOk;
+  }
+  std::atomic<bool> freeze{false}, use_heap{false}, use_lock{false};
+
+ private:
+  std::unique_ptr<double> heap_;
+  std::mutex mutex_;
+};
+
+/// The comms thread's work in a test: a command every 5 ms and, when told so, one request.
+class TestOperator {
+ public:
+  explicit TestOperator(runtime::OperatorInbox& inbox) : inbox_(inbox) {
+    drive_.source = request_.source = runtime::Source::make("test", 1);
+    drive_.lease_s = 0.5;
+    drive_.command[kVx] = 0.4;
+  }
+  void operator()() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    drive_.stamp_ns = drive_.received_ns = request_.stamp_ns = request_.received_ns = clock_.now_ns();
+    ++drive_.sequence;
+    inbox_.put(drive_);
+    if (!asked_.exchange(false)) return;
+    ++request_.sequence;
+    request_.mode = wanted_;
+    request_.reset_fault = reset_;
+    inbox_.put(request_);
+  }
+  /// Any thread; the request goes out with the next message.
+  void ask(runtime::Mode mode, bool reset = false) {
+    wanted_ = mode;
+    reset_ = reset;
+    asked_ = true;
+  }
+
+ private:
+  runtime::OperatorInbox& inbox_;
+  io::WallClock clock_;
+  runtime::DriveMessage drive_;
+  runtime::ModeRequest request_;
+  std::atomic<bool> asked_{false}, reset_{false};
+  std::atomic<runtime::Mode> wanted_{runtime::Mode::kPassive};
+};
+
+/// A simulated robot on the gantry under the threaded controller.
+struct ThreadedRobot {
+  explicit ThreadedRobot(const model::RobotModel& model, const runtime::ControllerOptions& options = {})
+      : world(model, runtime::world_with_noise(1, true)),
+        robot(world, true, true),
+        bus(robot),
+        policy(new SwitchablePolicy),
+        tick(model, clips(model), std::unique_ptr<policy::Policy>(policy), clock, tick_options(model)),
+        controller(model, bus, tick, options),
+        speaker(controller.inbox()) {}
+
+  static runtime::TickOptions tick_options(const model::RobotModel& model) {
+    runtime::TickOptions options = runtime::tick_options(model);
+    runtime::expect_shared_host(options);
+    return options;
+  }
+
+  /// Asks again until the mode is there: a request may meet a tick that has to refuse it.
+  bool reach(runtime::Mode mode, bool reset = false) {
+    std::int64_t asked_ns = 0;
+    return eventually([&] {
+      runtime::ControllerNews newest;
+      if (controller.news(newest)) news = newest;
+      if (news.mode == mode) return true;
+      if (clock.now_ns() - asked_ns > 200'000'000) {
+        asked_ns = clock.now_ns();
+        speaker.ask(mode, reset);
+      }
+      return false;
+    });
+  }
+  bool sees(runtime::Mode mode) {
+    return eventually([&] {
+      runtime::ControllerNews newest;
+      if (controller.news(newest)) news = newest;
+      return news.mode == mode;
+    });
+  }
+
+  io::WallClock clock;
+  sim::World world;
+  runtime::SimulatedRobot robot;
+  BreakableBus bus;
+  SwitchablePolicy* policy;
+  runtime::Tick tick;
+  runtime::Controller controller;
+  TestOperator speaker;
+  runtime::ControllerNews news;
+};
+
+}  // namespace pmg::test
