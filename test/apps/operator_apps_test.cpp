@@ -1,0 +1,218 @@
+// pmg_send and pmg_watch as their users see them: alone, without a network, and against a real pmg_controller over UDP.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/private_network.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using io::Multicast;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Finished {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// A program in the background, in the calling thread's network.
+class Background {
+ public:
+  Background(const std::string& program, std::vector<std::string> arguments, const fs::path& output) {
+    std::vector<char*> argv;
+    arguments.insert(arguments.begin(), program);
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      if (std::freopen(output.c_str(), "w", stdout) == nullptr ||
+          std::freopen(output.c_str(), "a", stderr) == nullptr) {
+        ::_exit(126);
+      }
+      ::execv((std::string(PMG_BIN_DIR) + "/" + program).c_str(), argv.data());
+      ::_exit(127);
+    }
+  }
+  ~Background() {
+    if (pid_ > 0) end(SIGKILL);
+  }
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  int end(int signal) {
+    ::kill(pid_, signal);
+    return wait();
+  }
+  int wait() {
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+class OperatorApps : public testing::Test {
+ protected:
+  OperatorApps() { fs::create_directories(folder_); }
+  ~OperatorApps() override { fs::remove_all(folder_); }
+
+  Finished run(const std::string& command) {
+    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
+    const std::string line =
+        std::string(PMG_BIN_DIR) + "/" + command + " >" + out.string() + " 2>" + err.string() + " </dev/null";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
+  }
+  static std::string text(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  std::unique_ptr<Background> controller(const std::string& name) {
+    auto started = std::make_unique<Background>(
+        "pmg_controller",
+        std::vector<std::string>{"--hal", "sil", "--robot", "z1", "--gantry", "--no-realtime", "--name", name, "--log",
+                                 (folder_ / ("log_" + name)).string()},
+        folder_ / (name + ".txt"));
+    EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0) << text(folder_ / (name + ".txt"));
+    return started;
+  }
+  std::string mode_of(const std::string& name) {
+    const Finished watch = run("pmg_watch --once --json --timeout 10 --robot " + name);
+    return watch.exit_code == 0 ? nlohmann::json::parse(watch.out)["mode"].get<std::string>() : watch.err;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("pmg_operator_apps_test_" + std::to_string(getpid()));
+};
+
+TEST_F(OperatorApps, HelpHasAnExampleAndTheExitCodes) {
+  for (const char* app : {"pmg_send", "pmg_watch"}) {
+    const Finished help = run(std::string(app) + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("Exit codes: 0")));
+  }
+}
+
+TEST_F(OperatorApps, BadInputIsRefused) {
+  for (const auto& [command, complaint] : {
+           std::pair{"pmg_send", "subcommand"},
+           std::pair{"pmg_send fly", "subcommand"},
+           std::pair{"pmg_send walk --vx 0.3", "--for is required"},
+           std::pair{"pmg_send walk --vx fast --for 1", "--vx"},
+           std::pair{"pmg_send walk --vx nan --for 1", "must be finite"},
+           std::pair{"pmg_send walk --for -1", "--for"},
+           std::pair{"pmg_send stop --timeout 0", "--timeout"},
+           std::pair{"pmg_send stop --lcm-url udpm://10.0.0.1:7667", "expected a multicast group"},
+           std::pair{"pmg_watch --lcm-url file:///tmp/log", "expected udpm://GROUP:PORT"},
+           std::pair{"pmg_watch --timeout never", "--timeout"},
+       }) {
+    const Finished refused = run(command);
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    EXPECT_THAT(refused.err + refused.out, HasSubstr(complaint)) << command;
+  }
+}
+
+TEST_F(OperatorApps, WithoutAMulticastRouteTheWayOutIsSaid) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kNone, [&] {
+    for (const char* app : {"pmg_send stop", "pmg_watch --once"}) {
+      const Finished failed = run(app);
+      EXPECT_EQ(failed.exit_code, 2);
+      EXPECT_THAT(failed.err, HasSubstr("ip route add 224.0.0.0/4 dev lo"));
+      EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+    }
+  });
+}
+
+TEST_F(OperatorApps, WithoutAControllerThatIsSaid) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    for (const char* command :
+         {"pmg_send stop --timeout 0.3", "pmg_send stand --timeout 0.3", "pmg_watch --once --timeout 0.3"}) {
+      const Finished unheard = run(command);
+      EXPECT_EQ(unheard.exit_code, 1) << command;
+      EXPECT_THAT(unheard.err, HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0")) << command;
+    }
+    const Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
+    EXPECT_EQ(named.exit_code, 1);
+    EXPECT_THAT(named.err, HasSubstr("no controller of this name answers"));
+  });
+}
+
+TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    EXPECT_EQ(mode_of("z1"), "passive");
+
+    const Finished stand = run("pmg_send stand --json");
+    EXPECT_EQ(stand.exit_code, 0) << stand.out << stand.err;
+    const auto answer = nlohmann::json::parse(stand.out);
+    EXPECT_EQ(answer["robots"][0]["robot"], "z1");
+    EXPECT_EQ(answer["robots"][0]["acknowledged"], true);
+    EXPECT_EQ(answer["robots"][0]["mode"], "stand");
+
+    // A host that leaves these processes alone for 0.2 s ends a walk, as it should: then once more.
+    Finished walk;
+    for (int attempt = 0; attempt < 5 && walk.exit_code != 0; ++attempt) walk = run("pmg_send walk --vx 0.2 --for 0.5");
+    EXPECT_EQ(walk.exit_code, 0) << walk.err;
+    EXPECT_THAT(walk.out, HasSubstr("z1: stand (drove for 0.5 s)"));
+
+    Background driver("pmg_send", {"walk", "--vx", "0.2", "--for", "100", "--robot", "z1"}, folder_ / "driver.txt");
+    for (int k = 0; k < 100 && mode_of("z1") != "walk"; ++k) {
+    }
+    const Finished stop = run("pmg_send stop");
+    EXPECT_EQ(stop.exit_code, 0) << stop.err;
+    EXPECT_EQ(stop.out, "z1: damping\n");
+    EXPECT_EQ(driver.wait(), 1) << "the driver is told that somebody stopped it";
+    EXPECT_EQ(mode_of("z1"), "damping");
+    EXPECT_EQ(robot->end(SIGINT), 0);
+  });
+}
+
+TEST_F(OperatorApps, AnInterruptedWalkIsBroughtToRest) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    Background driver("pmg_send", {"walk", "--vx", "0.2", "--for", "100"}, folder_ / "driver.txt");
+    for (int k = 0; k < 100 && mode_of("z1") != "walk"; ++k) {
+    }
+    EXPECT_EQ(driver.end(SIGINT), 130);
+    EXPECT_EQ(mode_of("z1"), "stand") << "brought to rest, not dropped; " << text(folder_ / "driver.txt");
+  });
+}
+
+TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto first = controller("first");
+    const Finished refused =
+        run("pmg_controller --hal sil --gantry --no-realtime --name first --log " + (folder_ / "x").string());
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("\"first\" is already run by another controller"), HasSubstr("--name")));
+
+    const auto second = controller("second");
+    const Finished unclear = run("pmg_send stand");
+    EXPECT_EQ(unclear.exit_code, 2);
+    EXPECT_THAT(unclear.err, HasSubstr("several robots are heard (first, second)"));
+    EXPECT_EQ(run("pmg_send stand --robot first").exit_code, 0);
+    EXPECT_EQ(run("pmg_send stand --robot second").exit_code, 0);
+    const Finished stop = run("pmg_send stop");
+    EXPECT_EQ(stop.exit_code, 0) << stop.err;
+    EXPECT_THAT(stop.out, AllOf(HasSubstr("first: damping"), HasSubstr("second: damping")));
+  });
+}
+
+}  // namespace
+}  // namespace pmg
