@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <map>
 #include <stdexcept>
 #include <utility>
+
+#include "io/log_series.hpp"
 
 namespace pmg::runtime {
 
@@ -16,19 +16,6 @@ namespace fs = std::filesystem;
 
 /// Flushed at least so often: fewer records than fill the writer's buffer, so that a refusal's losses can be counted.
 constexpr std::int64_t kRecordsAFlush = 50;
-
-/// log-NNNN.lcm by number.
-std::map<int, fs::path> log_files(const fs::path& directory) {
-  std::map<int, fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with("log-") || !name.ends_with(".lcm")) continue;
-    int number = -1;
-    const char* end = name.data() + name.size() - 4;
-    if (std::from_chars(name.data() + 4, end, number).ptr == end && number >= 0) files[number] = entry.path();
-  }
-  return files;
-}
 
 fs::path made(const fs::path& directory) {
   std::error_code error;
@@ -50,7 +37,7 @@ Recorder::Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, con
       say_(std::move(say)),
       flight_(made(options.directory), robot, run, options.control_rate_Hz, clock, options.flight,
               [this](const std::string& text) { this->say(text); }) {
-  const auto earlier = log_files(options_.directory);
+  const auto earlier = io::rotated_log_files(options_.directory);
   if (!earlier.empty()) next_number_ = earlier.rbegin()->first + 1;
   if (options_.log) begin_file(clock_.now_ns());
 }
@@ -202,7 +189,7 @@ void Recorder::give_up_file(const std::string& why) {
 }
 
 void Recorder::remove_oldest() const {
-  auto files = log_files(options_.directory);
+  auto files = io::rotated_log_files(options_.directory);
   while (std::ssize(files) > std::max(options_.files, 1)) {
     fs::remove(files.begin()->second);
     files.erase(files.begin());

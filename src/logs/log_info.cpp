@@ -1,0 +1,275 @@
+#include "logs/log_info.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "io/log_series.hpp"
+#include "pmg_msgs/fault_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/tick_input_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+
+namespace pmg::logs {
+
+namespace {
+
+constexpr std::array<std::pair<const char*, std::int64_t pmg_msgs::timing_t::*>, 7> kTimings = {{
+    {"wake", &pmg_msgs::timing_t::wake_ns},
+    {"tick", &pmg_msgs::timing_t::tick_ns},
+    {"generator", &pmg_msgs::timing_t::generator_ns},
+    {"gco", &pmg_msgs::timing_t::gco_ns},
+    {"policy", &pmg_msgs::timing_t::policy_ns},
+    {"bus wake", &pmg_msgs::timing_t::bus_wake_max_ns},
+    {"bus exchange", &pmg_msgs::timing_t::bus_exchange_max_ns},
+}};
+
+std::string mode_name(std::int8_t mode) {
+  return mode >= 0 && mode <= static_cast<std::int8_t>(runtime::Mode::kFault)
+             ? runtime::to_string(static_cast<runtime::Mode>(mode))
+             : fmt::format("mode {}", mode);
+}
+
+/// Nearest rank.
+TimingSpread spread(const char* name, std::vector<std::int64_t>& values_ns) {
+  std::ranges::sort(values_ns);
+  const auto rank = [&](double share) {
+    const auto position = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values_ns.size())));
+    return static_cast<double>(values_ns[std::max<std::size_t>(position, 1) - 1]) * 1e-3;
+  };
+  return {.name = name, .p50_us = rank(0.5), .p99_us = rank(0.99), .p999_us = rank(0.999), .max_us = rank(1.0)};
+}
+
+/// Reads one run after the other out of a series of events.
+class Summariser {
+ public:
+  void take(const io::LogReader& event, const std::filesystem::path& file) {
+    if (event.channel() == "ROBOT_INFO") take_info(event);
+    if (!run_) begin_run(event.stamp_ns());
+    if (run_->files.empty() || run_->files.back() != file) run_->files.push_back(file);
+    ++run_->messages[event.channel()];
+    last_ns_ = event.stamp_ns();
+    if (event.channel() == "TICK") take_tick(event);
+    if (event.channel() == "STATUS") take_status(event);
+    if (event.channel() == "FAULT") take_fault(event);
+    if (event.channel() == "TIMING") take_timing(event);
+  }
+
+  std::vector<RunSummary> end() {
+    end_run();
+    return std::move(runs_);
+  }
+
+ private:
+  void begin_run(std::int64_t stamp_ns) {
+    run_.emplace();
+    first_ns_ = stamp_ns;
+    next_tick_.reset();
+    mode_.reset();
+    told_faults_.clear();
+    timings_ns_ = {};
+  }
+
+  void end_run() {
+    if (!run_) return;
+    run_->duration_s = seconds(last_ns_);
+    for (std::size_t i = 0; i < kTimings.size(); ++i) {
+      if (!timings_ns_[i].empty()) run_->timing.push_back(spread(kTimings[i].first, timings_ns_[i]));
+    }
+    runs_.push_back(*std::exchange(run_, std::nullopt));
+  }
+
+  double seconds(std::int64_t stamp_ns) const { return static_cast<double>(stamp_ns - first_ns_) * 1e-9; }
+
+  /// A rotated file repeats its run's; another run's differs in its session.
+  void take_info(const io::LogReader& event) {
+    auto info = event.decode<pmg_msgs::robot_info_t>();
+    if (!info) return;
+    const bool another =
+        run_ && run_->info && (info->session != run_->info->session || info->robot != run_->info->robot);
+    // Lockstep runs have no session; their clocks begin anew.
+    if (another || (run_ && event.stamp_ns() < last_ns_)) end_run();
+    if (!run_) begin_run(event.stamp_ns());
+    run_->info = std::move(info);
+  }
+
+  void take_tick(const io::LogReader& event) {
+    const auto tick = event.decode<pmg_msgs::tick_input_t>();
+    if (!tick) return;
+    ++run_->ticks;
+    if (!next_tick_) run_->from_the_start = tick->tick == 0;
+    if (next_tick_ && tick->tick > *next_tick_) run_->lost_ticks += tick->tick - *next_tick_;
+    next_tick_ = tick->tick + 1;
+  }
+
+  void take_status(const io::LogReader& event) {
+    const auto status = event.decode<pmg_msgs::status_t>();
+    if (!status || mode_ == status->mode) return;
+    mode_ = status->mode;
+    run_->modes.push_back({seconds(event.stamp_ns()), mode_name(status->mode)});
+  }
+
+  void take_fault(const io::LogReader& event) {
+    const auto fault = event.decode<pmg_msgs::fault_t>();
+    if (!fault || !told_faults_.emplace(fault->code, fault->stamp_ns).second) return;
+    // By its own stamp: a flight recorder's file begins with the fault that it is about.
+    run_->faults.push_back({seconds(fault->stamp_ns), fault->text});
+  }
+
+  void take_timing(const io::LogReader& event) {
+    const auto timing = event.decode<pmg_msgs::timing_t>();
+    if (!timing) return;
+    run_->missed_ticks = timing->missed_ticks;
+    run_->missed_bus_cycles = timing->bus_missed_cycles;
+    for (std::size_t i = 0; i < kTimings.size(); ++i) {
+      const std::int64_t value_ns = (*timing).*kTimings[i].second;
+      if (value_ns != 0) timings_ns_[i].push_back(value_ns);  // 0: the stage didn't run
+    }
+  }
+
+  std::vector<RunSummary> runs_;
+  std::optional<RunSummary> run_;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+  std::optional<std::int64_t> next_tick_;
+  std::optional<std::int8_t> mode_;
+  std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;
+  std::array<std::vector<std::int64_t>, kTimings.size()> timings_ns_;
+};
+
+std::string utc(std::int64_t utc_ns) {
+  const std::time_t time = static_cast<std::time_t>(utc_ns / 1'000'000'000);
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  char text[40];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &parts);
+  return text;
+}
+
+nlohmann::ordered_json at_json(const std::vector<RunSummary::At>& events) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const RunSummary::At& event : events) json.push_back({{"t_s", event.time_s}, {"text", event.text}});
+  return json;
+}
+
+nlohmann::ordered_json info_json(const pmg_msgs::robot_info_t& info) {
+  nlohmann::ordered_json files = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < info.bundle_file.size(); ++i) files[info.bundle_file[i]] = info.bundle_sha256[i];
+  const auto options = nlohmann::ordered_json::parse(info.options, nullptr, false);
+  return {
+      {"robot", info.robot},     {"model", info.model},
+      {"session", info.session}, {"software", info.software},
+      {"policy", info.policy},   {"backend", info.backend},
+      {"bundle", info.bundle},   {"bundle_files", files},
+      {"refused", info.refused}, {"options", options.is_discarded() ? nlohmann::ordered_json(info.options) : options}};
+}
+
+nlohmann::ordered_json run_json(const RunSummary& run) {
+  nlohmann::ordered_json json;
+  if (run.info) json = info_json(*run.info);
+  json["files"] = nlohmann::ordered_json::array();
+  for (const auto& file : run.files) json["files"].push_back(file.string());
+  json["duration_s"] = run.duration_s;
+  json["from_the_start"] = run.from_the_start;
+  json["ticks"] = run.ticks;
+  json["lost_ticks"] = run.lost_ticks;
+  json["missed_ticks"] = run.missed_ticks;
+  json["missed_bus_cycles"] = run.missed_bus_cycles;
+  json["messages"] = run.messages;
+  json["modes"] = at_json(run.modes);
+  json["faults"] = at_json(run.faults);
+  json["timing_us"] = nlohmann::ordered_json::object();
+  for (const TimingSpread& timing : run.timing) {
+    json["timing_us"][timing.name] = {
+        {"p50", timing.p50_us}, {"p99", timing.p99_us}, {"p99.9", timing.p999_us}, {"max", timing.max_us}};
+  }
+  return json;
+}
+
+std::string info_text(const pmg_msgs::robot_info_t& info) {
+  std::string text = fmt::format("robot      {} (model {}), backend {}, policy {}\n", info.robot, info.model,
+                                 info.backend, info.policy);
+  text += fmt::format("software   {}\n", info.software);
+  if (info.session != 0) text += fmt::format("started    {}\n", utc(info.session));
+  text += fmt::format("bundle     {}\n", info.bundle.empty() ? "not stamped" : info.bundle);
+  for (std::size_t i = 0; i < info.bundle_file.size(); ++i) {
+    text += fmt::format("           {}  {}\n", info.bundle_sha256[i], info.bundle_file[i]);
+  }
+  for (const std::string& refused : info.refused) text += fmt::format("refused    {}\n", refused);
+  if (!info.options.empty()) text += fmt::format("options    {}\n", info.options);
+  return text;
+}
+
+std::string timeline(const char* title, const std::vector<RunSummary::At>& events) {
+  std::string text;
+  for (const RunSummary::At& event : events) {
+    text += fmt::format("{:<10} {:9.2f} s  {}\n", text.empty() ? title : "", event.time_s, event.text);
+  }
+  return text.empty() ? fmt::format("{:<10} none\n", title) : text;
+}
+
+std::string run_text(const RunSummary& run) {
+  std::string text = run.info ? info_text(*run.info) : "robot      not told: no ROBOT_INFO in this log\n";
+  for (const auto& file : run.files) {
+    text += fmt::format("{:<10} {}\n", &file == &run.files.front() ? "files" : "", file.string());
+  }
+  text += fmt::format("duration   {:.2f} s, {} ticks{}\n", run.duration_s, run.ticks,
+                      run.from_the_start ? ", from the controller's first" : ", not from the controller's start");
+  text += fmt::format("lost       {} ticks not in the log, {} ticks and {} bus cycles skipped by the controller\n",
+                      run.lost_ticks, run.missed_ticks, run.missed_bus_cycles);
+  text += timeline("modes", run.modes);
+  text += timeline("faults", run.faults);
+  std::string messages;
+  for (const auto& [channel, count] : run.messages) {
+    messages += fmt::format("{:<10} {:>9}  {}\n", messages.empty() ? "messages" : "", count, channel);
+  }
+  text += messages;
+  if (!run.timing.empty()) {
+    text += fmt::format("timing     {:<14} {:>9} {:>9} {:>9} {:>9}  us\n", "", "p50", "p99", "p99.9", "max");
+    for (const TimingSpread& timing : run.timing) {
+      text += fmt::format("           {:<14} {:9.1f} {:9.1f} {:9.1f} {:9.1f}\n", timing.name, timing.p50_us,
+                          timing.p99_us, timing.p999_us, timing.max_us);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+LogSummary summarise_logs(const std::vector<std::filesystem::path>& files) {
+  io::LogSeries events(files);
+  Summariser summariser;
+  while (events.next()) summariser.take(events.event(), events.file());
+  LogSummary summary{
+      .runs = summariser.end(), .skipped_bytes = events.skipped_bytes(), .cut_short = events.cut_short()};
+  if (summary.runs.empty()) throw std::runtime_error(files.front().string() + ": no LCM event in it; expected a log");
+  return summary;
+}
+
+nlohmann::ordered_json to_json(const LogSummary& summary) {
+  nlohmann::ordered_json json;
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const RunSummary& run : summary.runs) json["runs"].push_back(run_json(run));
+  json["cut_short"] = summary.cut_short;
+  json["skipped_bytes"] = summary.skipped_bytes;
+  return json;
+}
+
+std::string to_text(const LogSummary& summary) {
+  std::string text;
+  for (const RunSummary& run : summary.runs) {
+    if (!text.empty()) text += "\n";
+    text += run_text(run);
+  }
+  if (summary.cut_short) text += "cut short  the last event is incomplete (the program was killed, or still writes)\n";
+  if (summary.skipped_bytes > 0) text += fmt::format("skipped    {} bytes that are no event\n", summary.skipped_bytes);
+  return text;
+}
+
+}  // namespace pmg::logs

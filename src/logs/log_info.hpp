@@ -1,0 +1,53 @@
+// What a log is about: who ran what, for how long, and what happened.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pmg_msgs/robot_info_t.hpp"
+#include "runtime/mode.hpp"
+
+namespace pmg::logs {
+
+/// Of all values that one field of TIMING had.
+struct TimingSpread {
+  std::string name;
+  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
+};
+
+/// One run of one controller; a folder may hold several.
+struct RunSummary {
+  struct At {
+    double time_s;  ///< since the run's first event
+    std::string text;
+  };
+
+  std::optional<pmg_msgs::robot_info_t> info;  ///< nothing: the log doesn't say
+  std::vector<std::filesystem::path> files;
+  double duration_s = 0.0;
+  bool from_the_start = false;                   ///< the first tick is there
+  std::map<std::string, std::int64_t> messages;  ///< by channel
+  std::vector<At> modes;                         ///< each when it began
+  std::vector<At> faults;
+  std::int64_t ticks = 0, lost_ticks = 0, missed_ticks = 0, missed_bus_cycles = 0;
+  std::vector<TimingSpread> timing;  ///< empty in lockstep
+};
+
+struct LogSummary {
+  std::vector<RunSummary> runs;
+  std::int64_t skipped_bytes = 0;
+  bool cut_short = false;
+};
+
+/// Reads these logs. Throws std::runtime_error when one can't be opened or there is no event in any.
+LogSummary summarise_logs(const std::vector<std::filesystem::path>& files);
+
+nlohmann::ordered_json to_json(const LogSummary& summary);
+std::string to_text(const LogSummary& summary);
+
+}  // namespace pmg::logs

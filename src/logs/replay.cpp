@@ -1,0 +1,320 @@
+#include "logs/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <type_traits>
+
+#include "io/log_series.hpp"
+#include "logs/message_fields.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+#include "runtime/control_setup.hpp"
+#include "runtime/tick_messages.hpp"
+
+namespace pmg::logs {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr double kNotANumber = std::numeric_limits<double>::infinity();
+constexpr int kTicksAProgress = 100;
+
+std::string text_of(const ordered_json& options, const char* key, const std::string& otherwise) {
+  return options.contains(key) && options[key].is_string() ? options[key].get<std::string>() : otherwise;
+}
+
+runtime::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
+                               const ReplayOptions& options) {
+  runtime::ControlSetup setup;
+  setup.robot = options.robot.empty() ? text_of(logged, "robot", info.model) : options.robot;
+  setup.clips = options.clips;
+  if (options.robot.empty() && options.clips.empty()) setup.clips = text_of(logged, "clips", "");
+  setup.policy = text_of(logged, "policy", info.policy);
+  setup.blend = text_of(logged, "blend", setup.blend);
+  return setup;
+}
+
+/// Files that differ, by name.
+void note_bundle(const pmg_msgs::robot_info_t& info, const runtime::LoadedControl& loaded,
+                 std::vector<std::string>& notes) {
+  if (info.bundle.empty()) {
+    notes.push_back("the log doesn't say which files it ran with");
+    return;
+  }
+  if (info.bundle == loaded.bundle) return;
+  std::map<std::string, std::string> logged;
+  for (std::size_t i = 0; i < info.bundle_file.size(); ++i) logged[info.bundle_file[i]] = info.bundle_sha256[i];
+  for (const auto& [name, sha256] : loaded.files) {
+    const auto found = logged.find(name);
+    if (found == logged.end()) {
+      notes.push_back(fmt::format("{} is here, but was not there when the log was made", name));
+    } else if (found->second != sha256) {
+      notes.push_back(fmt::format("{} is not the file that the log was made with", name));
+    }
+    if (found != logged.end()) logged.erase(found);
+  }
+  for (const auto& [name, sha256] : logged) notes.push_back(fmt::format("{} was there when the log was made", name));
+}
+
+/// Numbers of the configuration that aren't those of the log; where files lie and how a run was made doesn't matter.
+void note_options(const ordered_json& logged, const ordered_json& now, std::vector<std::string>& notes) {
+  if (!logged.is_object()) return;
+  const ordered_json before = logged.flatten(), after = now.flatten();
+  for (const auto& [key, value] : after.items()) {
+    if (key == "/robot" || key == "/clips") continue;
+    if (!before.contains(key)) {
+      notes.push_back(fmt::format("option {} is {}; the log doesn't name it", key.substr(1), value.dump()));
+    } else if (before[key] != value) {
+      notes.push_back(fmt::format("option {} is {}; it was {}", key.substr(1), value.dump(), before[key].dump()));
+    }
+  }
+}
+
+/// The same bits: -0 is not 0, and a NaN is itself.
+bool same(const Field::Value& a, const Field::Value& b) {
+  if (std::holds_alternative<double>(a) && std::holds_alternative<double>(b)) {
+    return std::bit_cast<std::uint64_t>(std::get<double>(a)) == std::bit_cast<std::uint64_t>(std::get<double>(b));
+  }
+  return a == b;
+}
+
+double distance(const Field::Value& a, const Field::Value& b) {
+  const auto number = [](const Field::Value& value) {
+    if (const auto* real = std::get_if<double>(&value)) return *real;
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  const double gap = std::abs(number(a) - number(b));
+  return std::isfinite(gap) ? gap : kNotANumber;
+}
+
+class Replay {
+ public:
+  Replay(const ReplayOptions& options, const std::function<void(double)>& progress)
+      : options_(options), progress_(progress) {}
+
+  void take(const io::LogReader& event) {
+    if (!first_ns_) first_ns_ = event.stamp_ns();
+    const std::string& channel = event.channel();
+    if (channel == "ROBOT_INFO") {
+      take_info(event);
+    } else if (channel == "STATE") {
+      take_state(event);
+    } else if (channel == "COMMAND") {
+      take_message(event, commands_);
+    } else if (channel == "MODE") {
+      take_message(event, requests_);
+    } else if (channel == "TICK") {
+      take_tick(event);
+    } else if (channel == "REFERENCE") {
+      compare(event, reference_);
+    } else if (channel == "MOTOR_COMMAND") {
+      compare(event, motor_command_);
+    } else if (channel == "STATUS") {
+      compare_status(event);
+    }
+  }
+
+  ReplayReport end() {
+    if (report_.ticks == 0) throw std::runtime_error("no tick to replay in this log");
+    return std::move(report_);
+  }
+
+ private:
+  template <typename Message>
+  Message decoded(const io::LogReader& event) const {
+    auto message = event.decode<Message>();
+    if (!message) {
+      throw std::runtime_error(fmt::format("{} at {:.2f} s is no message that this program knows (another version?)",
+                                           event.channel(), seconds(event)));
+    }
+    return std::move(*message);
+  }
+  double seconds(const io::LogReader& event) const {
+    return static_cast<double>(event.stamp_ns() - first_ns_.value_or(0)) * 1e-9;
+  }
+
+  void take_info(const io::LogReader& event) {
+    const auto info = decoded<pmg_msgs::robot_info_t>(event);
+    if (tick_) {  // a later file of a rotated log
+      if (info.session == run_.session && info.robot == run_.robot && event.stamp_ns() >= last_ns_) return;
+      throw std::runtime_error("these logs are of more than one run; name the files of one");
+    }
+    const ordered_json logged = ordered_json::parse(info.options, nullptr, false);
+    const runtime::ControlSetup setup = setup_of(info, logged, options_);
+    loaded_ = runtime::load_control(setup);
+    if (loaded_.robot.joint_index.names() != info.joint_names) {
+      throw std::runtime_error(
+          fmt::format("the log's robot {} has other joints than {}", info.model, loaded_.robot.directory.string()));
+    }
+    note_bundle(info, loaded_, report_.notes);
+    if (info.software != runtime::software_version()) {
+      report_.notes.push_back(
+          fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
+    }
+    note_options(logged, runtime::control_json(setup, loaded_), report_.notes);
+    run_.robot = info.robot;
+    run_.session = info.session;
+    joint_count_ = loaded_.robot.joint_index.size();
+    tick_ = runtime::make_tick(loaded_, stopwatch_);
+  }
+
+  void take_state(const io::LogReader& event) {
+    require_tick();
+    const auto state = decoded<pmg_msgs::robot_state_t>(event);
+    if (!runtime::robot_state(state, joint_count_, record_.state))
+      throw std::runtime_error("STATE has another number of joints than the robot");
+    commands_.clear();
+    requests_.clear();
+    has_state_ = true;
+  }
+
+  template <typename Message>
+  void take_message(const io::LogReader& event, std::vector<Message>& messages) {
+    messages.push_back(decoded<Message>(event));
+  }
+
+  void take_tick(const io::LogReader& event) {
+    require_tick();
+    const auto input = decoded<pmg_msgs::tick_input_t>(event);
+    last_ns_ = event.stamp_ns();
+    check_whole(input);
+    record_.tick = input.tick;
+    record_.now_ns = input.stamp_ns;
+    record_.bus = static_cast<hal::BusStatus>(input.bus);
+    record_.guard_trip = static_cast<hal::TripCause>(input.guard_trip);
+    record_.stop = input.stop != 0;
+    record_.late_ns = input.late_ns;
+    record_.policy_late = input.policy_late != 0;
+    record_.drive_count = commands_.size();
+    for (std::size_t i = 0; i < commands_.size(); ++i) {
+      record_.drives[i] = runtime::drive_message(commands_[i], input.command_received_ns[i]);
+    }
+    record_.request_count = requests_.size();
+    for (std::size_t i = 0; i < requests_.size(); ++i) {
+      record_.requests[i] = runtime::mode_request(requests_[i], input.request_received_ns[i]);
+    }
+    record_.result = tick_->step(record_.input());
+    has_state_ = false;
+    ++report_.ticks;
+    report_.duration_s = seconds(event);
+    if (progress_ && report_.ticks % kTicksAProgress == 0) progress_(report_.duration_s);
+  }
+
+  void require_tick() const {
+    if (!tick_) throw std::runtime_error("the log doesn't begin with ROBOT_INFO: nobody knows what ran");
+  }
+
+  /// What this tick started from is all there, and every tick before it was replayed.
+  void check_whole(const pmg_msgs::tick_input_t& input) const {
+    const std::int64_t expected = report_.ticks;
+    if (input.tick != expected && expected == 0) {
+      throw std::runtime_error(fmt::format(
+          "the log begins with tick {}: what the controller remembers of the ticks before is not in it (rotated "
+          "away, or a flight recorder's). Only a log from the controller's start can be replayed",
+          input.tick));
+    }
+    if (input.tick != expected) {
+      throw std::runtime_error(
+          fmt::format("ticks {} to {} are missing in the log: it can't be replayed beyond {:.2f} s", expected,
+                      input.tick - 1, report_.duration_s));
+    }
+    const bool whole = has_state_ && commands_.size() == input.command_received_ns.size() &&
+                       requests_.size() == input.request_received_ns.size() &&
+                       commands_.size() <= runtime::kMaxDrives && requests_.size() <= runtime::kMaxRequests;
+    if (!whole) throw std::runtime_error(fmt::format("the messages before tick {} are not all in the log", input.tick));
+  }
+
+  void compare_status(const io::LogReader& event) {
+    // Known to the threads around the tick alone.
+    run_.realtime = decoded<pmg_msgs::status_t>(event).realtime != 0;
+    compare(event, status_);
+  }
+
+  void fill_message(pmg_msgs::reference_t& message) { runtime::fill(record_, joint_count_, message); }
+  void fill_message(pmg_msgs::motor_command_t& message) { runtime::fill(record_, joint_count_, message); }
+  void fill_message(pmg_msgs::status_t& message) { runtime::fill(record_, run_, loaded_.robot, message); }
+
+  template <typename Message>
+  void compare(const io::LogReader& event, Message& replayed) {
+    require_tick();
+    if (report_.ticks == 0) return;
+    fill_message(replayed);
+    ++report_.compared_messages;
+    bytes_.resize(static_cast<std::size_t>(replayed.getEncodedSize()));
+    replayed.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+    if (bytes_ == event.data()) return;
+    ++report_.different_messages;
+    note_differences(event);
+  }
+
+  /// Field by field, of a message whose bytes differ from bytes_.
+  void note_differences(const io::LogReader& event) {
+    if (!read_fields(event.channel(), event.data(), loaded_.robot.joint_index.names(), logged_fields_))
+      throw std::runtime_error(event.channel() + " is no message that this program knows (another version?)");
+    read_fields(event.channel(), bytes_, loaded_.robot.joint_index.names(), replayed_fields_);
+    for (std::size_t i = 0; i < std::min(logged_fields_.size(), replayed_fields_.size()); ++i) {
+      const Field& logged = logged_fields_[i];
+      const Field& replayed = replayed_fields_[i];
+      if (same(logged.value, replayed.value)) continue;
+      double& largest = report_.largest[event.channel() + " " + logged.name];
+      largest = std::max(largest, distance(logged.value, replayed.value));
+      if (report_.first) continue;
+      report_.first = Difference{.time_s = seconds(event),
+                                 .tick = record_.tick,
+                                 .channel = event.channel(),
+                                 .field = logged.path(),
+                                 .logged = to_text(logged.value),
+                                 .replayed = to_text(replayed.value)};
+    }
+  }
+
+  const ReplayOptions& options_;
+  const std::function<void(double)>& progress_;
+  const io::SimulationClock stopwatch_;  // nothing is timed
+  runtime::LoadedControl loaded_;
+  runtime::RunInfo run_;
+  std::unique_ptr<runtime::Tick> tick_;
+  int joint_count_ = 0;
+  std::optional<std::int64_t> first_ns_;
+  std::int64_t last_ns_ = 0;
+  bool has_state_ = false;
+  std::vector<pmg_msgs::command_t> commands_;
+  std::vector<pmg_msgs::mode_t> requests_;
+  runtime::TickRecord record_;
+  pmg_msgs::reference_t reference_;
+  pmg_msgs::motor_command_t motor_command_;
+  pmg_msgs::status_t status_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<Field> logged_fields_, replayed_fields_;
+  ReplayReport report_;
+};
+
+}  // namespace
+
+double ReplayReport::largest_difference() const {
+  double all = 0.0;
+  for (const auto& [field, value] : largest) all = std::max(all, value);
+  return all;
+}
+
+ReplayReport replay(const std::vector<fs::path>& files, const ReplayOptions& options,
+                    const std::function<void(double)>& progress) {
+  io::LogSeries events(files);
+  auto run = std::make_unique<Replay>(options, progress);  // records are large
+  while (events.next()) run->take(events.event());
+  ReplayReport report = run->end();
+  report.cut_short = events.cut_short();
+  return report;
+}
+
+}  // namespace pmg::logs
