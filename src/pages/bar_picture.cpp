@@ -78,13 +78,12 @@ std::string svg(const Bars& bars) {
 std::string svg(const Histogram& histogram) {
   constexpr int kWidth = 640, kPlot = 180, kLeft = 52, kRight = 16, kTop = 8, kAxis = 24, kBins = 60;
   const int height = kTop + kPlot + kAxis + 20 * static_cast<int>(histogram.sets.size());
-  // The few values beyond the 99.9th percentile are told in words: they would press all others into one bin.
-  double from = 0.0, to = 0.0, least = 0.0;
+  // The few values far beyond all others are told in words: they would press those into one bin.
+  double from = 0.0, to = 0.0;
   for (const Histogram::Set& set : histogram.sets) {
-    to = std::max(to, percentile(set.values, 0.999));
-    least = std::min(least, percentile(set.values, 0.001));
+    to = std::max(to, std::min(percentile(set.values, 0.999), 4.0 * percentile(set.values, 0.99)));
+    from = std::min(from, percentile(set.values, 0.001));
   }
-  from = least;
   if (!(to > from)) to = from + 1.0;
   std::vector<Bins> bins;
   double highest = 1.0;

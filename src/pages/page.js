@@ -1,7 +1,7 @@
 // Builds each chart when it comes into view. All share one x: a drag zooms all of them, a double click shows all again.
 (() => {
   'use strict';
-  const Y_AXIS_PX = 64;
+  const Y_AXIS_PX = 70;
   const FONT = '12px system-ui, sans-serif';
   const all = {min: +document.body.dataset.from, max: +document.body.dataset.to};
   const shown = {...all};
@@ -47,7 +47,7 @@
       ctx.stroke();
       const left = at(x) + ctx.measureText(words).width + 8 > box.left + box.width;
       ctx.textAlign = left ? 'right' : 'left';
-      ctx.fillText(words, at(x) + (left ? -4 : 4), box.top + 12);
+      ctx.fillText(words, at(x) + (left ? -4 : 4), spec.lanes ? box.top + box.height - 8 : box.top + 12);
     }
   });
   const drawLanes = (spec) => (u) => clipped(u, (ctx, box, at) => {
@@ -79,7 +79,7 @@
   const options = (spec, width) => {
     const lanes = spec.lanes;
     const grid = {stroke: '#e6e9ed', width: 1}, ticks = {stroke: '#c9ced6', width: 1, size: 4};
-    const y = {stroke: '#1b1f24', font: FONT, size: Y_AXIS_PX, grid, ticks};
+    const y = {stroke: '#1b1f24', font: FONT, size: Y_AXIS_PX, grid, ticks, values: (_, splits) => splits.map(text)};
     if (lanes) {
       const count = lanes.length;
       Object.assign(y, {
@@ -91,13 +91,13 @@
     return {
       width,
       height: lanes ? 34 + 26 * lanes.length : spec.height,
-      legend: {show: !lanes},
+      legend: {show: !lanes, markers: {width: 0, fill: (u, i) => u.series[i].stroke()}},
       scales: {
         x: {time: false},
         y: lanes ? {range: () => [0, lanes.length]} : {},
       },
       series: [
-        {label: spec.x_unit, value: (_, v) => text(v) + ' ' + spec.x_unit},
+        {label: spec.x_name, value: (_, v) => text(v) + ' ' + spec.x_unit},
         ...spec.lines.map((line) => ({
           label: line.name, stroke: line.colour, width: line.width, dash: line.dashed ? [6, 4] : undefined,
           paths: line.stepped ? uPlot.paths.stepped({align: 1}) : undefined,

@@ -43,7 +43,7 @@ struct Mark {
 
 struct Chart {
   std::string title;  ///< with the unit of y: "left knee, torque [Nm]"
-  std::string x_unit = "s";
+  std::string x_name = "time", x_unit = "s";
   std::vector<Line> lines;
   std::vector<Band> bands = {};
   std::vector<Mark> marks = {};

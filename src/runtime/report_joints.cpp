@@ -56,11 +56,8 @@ void charts(pages::Page& page, const Runs& runs, const Joint& joint) {
     if (joint.place[i] == kAbsent) continue;
     const RunSeries& run = runs[i];
     const std::string behind = suffix(runs, i);
-    const std::vector<bool> held = holding(run, run.reference.t_s);
-    std::vector<double>& reference = kept.emplace_back(widened(run.reference.q_ref_rad[joint.place[i]]));
-    for (std::size_t k = 0; k < reference.size(); ++k) {
-      if (!held[k]) reference[k] = std::nan("");  // nothing follows it then
-    }
+    const std::vector<double>& reference =
+        kept.emplace_back(followed(run, run.reference.t_s, widened(run.reference.q_ref_rad[joint.place[i]])));
     positions.push_back(
         {.name = "reference" + behind, .x = run.reference.t_s, .y = reference, .colour = palette(i).asked});
     const std::vector<double>& q = kept.emplace_back(widened(run.state.q_rad[joint.place[i]]));

@@ -124,6 +124,9 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const auto& status = runs[i].status;
       const std::string behind = suffix(runs, i);
+      if (above_zero(status.limited_position) + above_zero(status.limited_rate) + above_zero(status.limited_torque) ==
+          0)
+        continue;
       lines.push_back({.name = "range" + behind,
                        .x = status.t_s,
                        .y = status.limited_position,
@@ -151,7 +154,7 @@ void timing(pages::Page& page, const Runs& runs) {
     return page.paragraph("No wall-clock times: the log has no TIMING, and there is no timing.csv beside it.");
   }
   page.paragraph(
-      "Counts are on a logarithmic axis; the longest thousandth is told in words. On a computer that is shared with "
+      "Counts are on a logarithmic axis; the few longest are told in words. On a computer that is shared with "
       "others single long times say little.");
   using Timing = decltype(RunSeries::timing);
   page.columns([&] {

@@ -40,13 +40,18 @@ void commands(pages::Page& page, const Runs& runs) {
       "the "
       "reference realises it. optimised: what that reference really does on the ground. measured: what the simulated "
       "robot "
-      "did, velocities averaged over one gait period.");
+      "did on its own feet, velocities averaged over one gait period.");
   page.columns([&] {
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       std::vector<pages::Line> lines;
+      std::vector<std::vector<double>> kept;  // what the lines refer to
+      kept.reserve(2 * runs.size());
       for (std::size_t i = 0; i < runs.size(); ++i) {
         const auto& reference = runs[i].reference;
         const auto& truth = runs[i].truth;
+        const auto keep = [&](const RunSeries::Samples& values) -> const std::vector<double>& {
+          return kept.emplace_back(followed(runs[i], reference.t_s, values));
+        };
         const Palette& colours = palette(i);
         const std::string behind = suffix(runs, i);
         lines.push_back({.name = "asked" + behind,
@@ -56,12 +61,12 @@ void commands(pages::Page& page, const Runs& runs) {
                          .dashed = true});
         lines.push_back({.name = "admissible" + behind,
                          .x = reference.t_s,
-                         .y = reference.command[channel],
+                         .y = keep(reference.command[channel]),
                          .colour = colours.admissible,
                          .width_px = 2.2});
         lines.push_back({.name = "optimised" + behind,
                          .x = reference.t_s,
-                         .y = reference.optimised[channel],
+                         .y = keep(reference.optimised[channel]),
                          .colour = colours.optimised});
         lines.push_back(
             {.name = "measured" + behind, .x = truth.t_s, .y = truth.measured[channel], .colour = colours.measured});
@@ -79,6 +84,7 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& reference = runs[i].reference;
     const auto& truth = runs[i].truth;
+    const std::vector<bool> held = holding(runs[i], reference.t_s);
     for (std::size_t foot = 0; foot < 2; ++foot) {
       const std::string name = kFeet[foot] + suffix(runs, i);
       if (!reference.t_s.empty())
@@ -102,18 +108,23 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   page.columns([&] {
     for (std::size_t foot = 0; foot < 2; ++foot) {
       std::vector<pages::Line> lines;
+      std::vector<std::vector<double>> kept;  // what the lines refer to
+      kept.reserve(2 * runs.size());
       for (std::size_t i = 0; i < runs.size(); ++i) {
         const auto& reference = runs[i].reference;
         const auto& truth = runs[i].truth;
+        const auto keep = [&](const RunSeries::Samples& values) -> const std::vector<double>& {
+          return kept.emplace_back(followed(runs[i], reference.t_s, values));
+        };
         const Palette& colours = palette(i);
         const std::string behind = suffix(runs, i);
         lines.push_back({.name = "before" + behind,
                          .x = reference.t_s,
-                         .y = reference.slip_before_m_s[foot],
+                         .y = keep(reference.slip_before_m_s[foot]),
                          .colour = colours.admissible});
         lines.push_back({.name = "after" + behind,
                          .x = reference.t_s,
-                         .y = reference.slip_after_m_s[foot],
+                         .y = keep(reference.slip_after_m_s[foot]),
                          .colour = colours.optimised});
         lines.push_back(
             {.name = "measured" + behind, .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured});

@@ -20,11 +20,14 @@ struct Palette {
 };
 const Palette& palette(std::size_t run);
 
-/// " (B)" behind a line's name when there are several runs.
+/// " B" behind a line's name when there are several runs.
 std::string suffix(const Runs& runs, std::size_t run);
 
 /// Whether the drives were in a fault, behind the lines.
 std::vector<pages::Band> fault_bands(const Runs& runs);
+
+/// values with NaN where the drives did not follow the reference: then it says nothing.
+std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, std::vector<double> values);
 
 /// Adds the chart unless it has no line.
 void add_chart(pages::Page& page, const Runs& runs, const std::string& title, std::vector<pages::Line> lines,

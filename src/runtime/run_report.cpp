@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "runtime/mode.hpp"
@@ -49,7 +51,7 @@ const Palette& palette(std::size_t run) {
 }
 
 std::string suffix(const Runs& runs, std::size_t run) {
-  return runs.size() > 1 ? fmt::format(" ({})", static_cast<char>('A' + run)) : "";
+  return runs.size() > 1 ? fmt::format(" {}", static_cast<char>('A' + run)) : "";
 }
 
 std::vector<pages::Band> fault_bands(const Runs& runs) {
@@ -60,6 +62,14 @@ std::vector<pages::Band> fault_bands(const Runs& runs) {
     }
   }
   return bands;
+}
+
+std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, std::vector<double> values) {
+  const std::vector<bool> held = holding(run, t_s);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!held[i]) values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return values;
 }
 
 void add_chart(pages::Page& page, const Runs& runs, const std::string& title, std::vector<pages::Line> lines,
@@ -101,6 +111,7 @@ void timeline(pages::Page& page, const Runs& runs) {
         events.rows.push_back({fmt::format("{:.2f}{}", event.t_s, behind), event.text});
     }
   }
+  if (!lanes.marks.empty()) lanes.lanes.push_back({"faults", {}});  // room for the marks' words
   page.lanes(lanes);
   if (!events.rows.empty()) page.table(events);
 }

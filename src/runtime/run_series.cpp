@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -69,14 +70,19 @@ class Gathering {
 
   void add(const io::LogReader& event) {
     const std::string& channel = event.channel();
-    if (channel == "ROBOT_INFO") return with(event, &Gathering::info);
-    if (!first_ns_) first_ns_ = event.stamp_ns();
+    if (channel == "ROBOT_INFO") {
+      if (!first_ns_ && !info_ns_) info_ns_ = event.stamp_ns();
+      return with(event, &Gathering::info);
+    }
+    if (!first_ns_) first_ns_ = beginning(event.stamp_ns());
     t_s_ = static_cast<double>(event.stamp_ns() - *first_ns_) * 1e-9;
-    if (t_s_ < run_.duration_s) {
+    double& channel_t_s = newest_s_.try_emplace(channel, t_s_).first->second;
+    if (t_s_ < channel_t_s) {
       ++back_in_time_;
       return;
     }
-    run_.duration_s = t_s_;
+    channel_t_s = t_s_;
+    run_.duration_s = std::max(run_.duration_s, t_s_);
     if (channel == "STATE") return with(event, &Gathering::state);
     if (channel == "REFERENCE") return with(event, &Gathering::reference);
     if (channel == "STATUS") return with(event, &Gathering::status);
@@ -106,6 +112,13 @@ class Gathering {
   }
 
  private:
+  /// ROBOT_INFO's stamp when it belongs to the first tick's time: a simulation's times then stay as they are.
+  std::int64_t beginning(std::int64_t first_event_ns) const {
+    constexpr std::int64_t kSoon_ns = 1'000'000'000;
+    const std::int64_t ahead_ns = info_ns_ ? first_event_ns - *info_ns_ : -1;
+    return ahead_ns >= 0 && ahead_ns < kSoon_ns ? *info_ns_ : first_event_ns;
+  }
+
   template <typename Message>
   void with(const io::LogReader& event, bool (Gathering::*take)(const Message&)) {
     static thread_local Message message;  // its vectors' memory is used again
@@ -190,7 +203,9 @@ class Gathering {
     to.t_s.push_back(t_s_);
     const double standing_height_m = run_.info.standing_height_m;
     const auto measured = measured_command_.add(message, gait_period_s_, standing_height_m);
-    for (std::size_t channel = 0; channel < kChannels; ++channel) to.measured[channel].push_back(measured[channel]);
+    // What the gantry carries does not follow.
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      to.measured[channel].push_back(message.hoisted != 0 ? kNone : measured[channel]);
     for (std::size_t foot = 0; foot < 2; ++foot) {
       to.foot_force_N[foot].push_back(message.foot_force_N[foot]);
       to.foot_slip_m_s[foot].push_back(message.foot_slip_m_s[foot]);
@@ -237,8 +252,9 @@ class Gathering {
 
   RunSeries& run_;
   MeasuredCommand measured_command_;
-  std::optional<std::int64_t> first_ns_, last_tick_;
+  std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;
+  std::map<std::string, double> newest_s_;  // of each channel
   std::vector<RunSeries::Event> latched_;
   std::int64_t unreadable_ = 0, back_in_time_ = 0;
 };
