@@ -150,6 +150,28 @@ class Environment:
         low, high = self.ranges["kicks"]["every_s"]
         self.kick_in_s.uniform_(low, high)
 
+    MOMENTARY = ("stream", "tick", "row", "time_s", "kick_in_s", "action", "action_1", "action_2", "targets", "q_ref", "sway",
+                 "fresh", "history", "velocity", "wanted", "previous_dq", "previous_sole", "observation",
+                 "critic_observation")
+    MOMENTARY_PHYSICS = ("qpos", "qvel", "warmstart")
+
+    def _momentary(self) -> dict[str, torch.Tensor]:
+        return {name: getattr(self, name) for name in self.MOMENTARY} | {
+            name: getattr(self.worlds, name) for name in self.MOMENTARY_PHYSICS}
+
+    def state(self) -> dict[str, torch.Tensor]:
+        """All that changes from tick to tick; references and robots follow from the seed."""
+        return {name: value.clone() for name, value in self._momentary().items()}
+
+    def restore(self, state: dict[str, torch.Tensor]) -> bool:
+        """False, and nothing done, when the state is of another number of worlds."""
+        mine = self._momentary()
+        if any(mine[name].shape != value.shape for name, value in state.items()):
+            return False
+        for name, value in state.items():
+            mine[name].copy_(value)
+        return True
+
     # --------------------------------------------------------------------------------------------------------- tick
 
     def act(self, action: torch.Tensor) -> None:
@@ -190,6 +212,9 @@ class Environment:
         self.row.copy_(self.pool.read(self.stream, self.tick.clamp(max=self.pool.ticks - 1)))
         self.q_ref.copy_(self._reference(self.row, self.sway, self.time_s))
         self._reset(done)
+        self.look()
+
+    def look(self) -> None:
         seen, critic = self._observations()
         self.observation.copy_(seen)
         self.critic_observation.copy_(critic)

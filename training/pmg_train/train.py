@@ -95,13 +95,17 @@ class Training:
         self.iteration, self.steps, self.learned_s, self.curve = 0, 0, 0.0, []
         self.stop, self.board = False, None
         a.out.mkdir(parents=True, exist_ok=True)
+        self._record()
+        self.bare_steps_per_s = self._time_bare_steps()
+        with torch.no_grad():
+            self.env.reset_all()
+            self.env.look()
         if a.resume:
-            self._load(a.out / "last.pt")
+            self._load()
         if self.rank == 0:
             (a.out / "training.yaml").write_text(yaml.safe_dump(dict(
                 variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges), sort_keys=False))
             self.board = _tensorboard(a.out)
-        self._record()
 
     def log(self, text: str) -> None:
         if self.rank == 0:
@@ -167,12 +171,10 @@ class Training:
             torch.cuda.synchronize()
             wp.set_stream(wp.stream_from_torch(self.torch_stream), self.device)
             self.act, self.observe = graphs[0].replay, graphs[1].replay
-        with torch.no_grad():
-            self.env.reset_all()
         self.sums.zero_()
         self.log("compiled")
 
-    def bare_steps_per_s(self, calls: int = 40) -> float:
+    def _time_bare_steps(self, calls: int = 40) -> float:
         """World ticks a second of the physics alone, in this very run."""
         step = self.env.worlds.step
         step()
@@ -207,7 +209,7 @@ class Training:
                     target[t].copy_(value)
             with torch.no_grad():
                 r.value[-1].copy_(self.network.value(env.critic_observation))
-            done = min(1.0, self.learned_s / (60 * a.minutes))
+            done = min(1.0, self.iteration / ppo["entropy_iterations"])
             first, last = ppo["entropy"]
             info = self.ppo.update(r, first + (last - first) * done)
             self.iteration += 1
@@ -219,12 +221,12 @@ class Training:
                 self._report(info)
             if self.rank == 0 and time.time() - last_saved > a.checkpoint_s:
                 last_saved = time.time()
-                self.save(a.out / "last.pt")
+                self.save()
                 if time.time() - last_kept > a.keep_every_s:
                     last_kept = time.time()
                     self.save_actor(a.out / f"actor_{self.iteration}.pt")
         if self.rank == 0:
-            self.save(a.out / "last.pt")
+            self.save()
             self.save_actor(a.out / "actor.pt")
         self.log(f"done: {self.iteration} iterations, {self.steps / 1e6:.0f} M steps, {self.learned_s / 60:.1f} min")
 
@@ -272,28 +274,42 @@ class Training:
         actor = {k: v.cpu() for k, v in self.network.state_dict().items() if k.startswith("actor")}
         torch.save(dict(actor=actor, **self._meta()), path)
 
-    def save(self, path: Path) -> None:
-        """Everything an exact continuation needs but the worlds' momentary states, which are drawn anew."""
-        state = dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
-                     curve=self.curve, random=torch.get_rng_state(),
-                     random_device=torch.cuda.get_rng_state(self.device) if self.cuda else None, **self._meta())
-        torch.save(state, path.with_suffix(".part"))
-        path.with_suffix(".part").replace(path)
+    def save(self) -> None:
+        """last.pt: what was learned and how. worlds.pt: the momentary state, for an exact continuation."""
+        _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
+                    curve=self.curve, **self._meta()), self.a.out / "last.pt")
+        _write(dict(iteration=self.iteration, worlds=self.env.state(), random=torch.get_rng_state(),
+                    random_device=torch.cuda.get_rng_state(self.device) if self.cuda else None),
+               self.a.out / "worlds.pt")
 
-    def _load(self, path: Path) -> None:
+    def _load(self) -> None:
+        """Goes on exactly where the run ended; without its worlds.pt (another number of worlds, say) from new starts."""
+        path = self.a.out / "last.pt"
         state = torch.load(path, map_location=self.device, weights_only=False)
         if state["variant"] != self.a.variant:
             raise ValueError(f"{path} is a {state['variant']} policy")
         self.network.load_state_dict(state["network"])
-        rate = state["rate"]
         self.ppo.optimizer.load_state_dict(state["optimizer"])
-        self.ppo.rate.copy_(rate)
+        self.ppo.rate.copy_(state["rate"])
         if self.cuda:
             for group in self.ppo.optimizer.param_groups:
                 group["lr"] = self.ppo.rate
         self.iteration, self.steps, self.learned_s = state["iteration"], state["steps"], state["learned_s"]
         self.curve = state["curve"]
-        self.log(f"goes on from iteration {self.iteration}")
+        worlds = self.a.out / "worlds.pt"
+        momentary = torch.load(worlds, map_location="cpu", weights_only=False) if worlds.exists() else None
+        exact = momentary is not None and momentary["iteration"] == self.iteration and self.env.restore(momentary["worlds"])
+        if exact and self.ppo.world_size == 1:
+            torch.set_rng_state(momentary["random"])
+            if self.cuda:
+                torch.cuda.set_rng_state(momentary["random_device"], self.device)
+        self.log(f"goes on from iteration {self.iteration}" + ("" if exact else ", with new worlds"))
+
+
+def _write(state: dict, path: Path) -> None:
+    """Never leaves half a file under the name."""
+    torch.save(state, path.with_suffix(".part"))
+    path.with_suffix(".part").replace(path)
 
 
 def _tensorboard(out: Path):
@@ -320,9 +336,7 @@ def main() -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, interrupted)
-    bare = training.bare_steps_per_s()
-    with torch.no_grad():
-        training.env.reset_all()
+    bare = training.bare_steps_per_s
     training.log(f"bare stepping {bare / 1e3:.0f}k world ticks a second")
     training.run()
     speed = training.curve[-1]["steps_per_s"] if training.curve else 0.0
