@@ -1,0 +1,80 @@
+// One of the executables, run as a user would: with arguments, files for what it says, signals and an exit code.
+#pragma once
+
+#include <sched.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pmg::test {
+
+inline std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// A child process; killed when the test forgets it.
+class RunningProgram {
+ public:
+  RunningProgram(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder)
+      : out_(folder / (name + ".out")), err_(folder / (name + ".err")) {
+    const std::string program = std::string(PMG_BIN_DIR) + "/" + name;
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    child_ = fork();
+    if (child_ == 0) {
+      if (std::freopen(out_.c_str(), "w", stdout) == nullptr || std::freopen(err_.c_str(), "w", stderr) == nullptr) {
+        _exit(126);
+      }
+      execv(program.c_str(), argv.data());
+      _exit(127);
+    }
+  }
+  ~RunningProgram() {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  void send(int signal) const { kill(child_, signal); }
+  /// The exit code, or minus the signal that ended it.
+  int wait() {
+    int status = 0;
+    waitpid(child_, &status, 0);
+    child_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  /// True when the condition came true while the program ran.
+  bool until(const std::function<bool()>& condition, double deadline_s = 60.0) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
+    while (!condition()) {
+      if (waitpid(child_, nullptr, WNOHANG) != 0) {
+        child_ = 0;
+        return false;
+      }
+      if (std::chrono::steady_clock::now() > end) return false;
+      sched_yield();
+    }
+    return true;
+  }
+  std::string out() const { return text_of(out_); }
+  std::string err() const { return text_of(err_); }
+  pid_t id() const { return child_; }
+
+ private:
+  std::filesystem::path out_, err_;
+  pid_t child_ = 0;
+};
+
+}  // namespace pmg::test
