@@ -5,7 +5,11 @@
 namespace pmg::hal {
 
 CommandGuard::CommandGuard(const model::RobotModel& robot, const GuardOptions& options)
-    : options_(options), lower_(robot.q_lower()), upper_(robot.q_upper()), effort_(lower_.size()) {
+    : options_(options),
+      lower_(robot.q_lower()),
+      upper_(robot.q_upper()),
+      velocity_(lower_.size()),
+      effort_(lower_.size()) {
   const Eigen::Index n = lower_.size();
   brake_.q = robot.q_stand();
   for (JointVector* values : {&brake_.dq, &brake_.kp, &brake_.tau_ff}) values->setZero(n);
@@ -13,6 +17,7 @@ CommandGuard::CommandGuard(const model::RobotModel& robot, const GuardOptions& o
   for (Eigen::Index i = 0; i < n; ++i) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(i)];
     brake_.kd[i] = joint.kd_Nm_s_per_rad;
+    velocity_[i] = joint.velocity_limit_rad_s;
     effort_[i] = joint.effort_limit_Nm;
   }
   newest_.joints = brake_;
@@ -46,6 +51,7 @@ bool CommandGuard::plausible(const model::JointCommand& command) const noexcept 
 
 void CommandGuard::clamp(model::JointCommand& command) const noexcept {
   command.q = command.q.cwiseMax(lower_).cwiseMin(upper_);
+  command.dq = command.dq.cwiseMax(-velocity_).cwiseMin(velocity_);
   command.kp = command.kp.cwiseMax(0.0).cwiseMin(options_.max_kp_Nm_per_rad);
   command.kd = command.kd.cwiseMax(0.0).cwiseMin(options_.max_kd_Nm_s_per_rad);
   command.tau_ff = command.tau_ff.cwiseMax(-effort_).cwiseMin(effort_);

@@ -36,7 +36,7 @@ class CommandGuard {
   /// One bus cycle: fresh is the command that came since the last cycle, or null. Before the first command: no torque.
   /// Afterwards the newest command, held for hold_cycles; then, or when it is not finite, or a stop is pulled that its
   /// author had not seen, damping with robot.yaml's kd: until a command comes that knows of it. Targets are clamped to
-  /// the URDF's ranges and efforts.
+  /// the URDF's ranges, speeds and efforts.
   const model::JointCommand& next(const ControlOutput* fresh, std::uint32_t stop_pulls) noexcept;
 
   std::uint32_t trips() const noexcept { return trips_; }
@@ -50,7 +50,7 @@ class CommandGuard {
   void trip(TripCause cause) noexcept;
 
   GuardOptions options_;
-  JointVector lower_, upper_, effort_;
+  JointVector lower_, upper_, velocity_, effort_;
   ControlOutput newest_;
   model::JointCommand brake_;
   bool any_ = false, damping_ = false;

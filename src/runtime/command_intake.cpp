@@ -58,6 +58,7 @@ CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::i
   if (judgement.verdict != Verdict::kNoMode) {
     ++(ignored_.*kRequestCounters[static_cast<std::size_t>(judgement.verdict)]);
   }
+  if (request.stops() && judgement.verdict == Verdict::kTaken) stop(received_ns);
   if (judgement.fresh) {
     sources_.adopt(request.source, driving(now_ns), request.stamp_ns, received_ns).last_request = request.sequence;
   }
@@ -67,6 +68,7 @@ CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::i
 CommandIntake::Judgement CommandIntake::check(const ModeRequest& request, std::int64_t received_ns,
                                               std::int64_t now_ns) noexcept {
   if (request.mode >= Mode::kFault) return {.verdict = Verdict::kNoMode};
+  if (!request.stops() && received_ns <= stopped_ns_) return {.verdict = Verdict::kLate};
   const auto unless_stop = [&](Verdict verdict) {
     return Judgement{.verdict = request.stops() ? Verdict::kTaken : verdict};
   };

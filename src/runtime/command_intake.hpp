@@ -1,6 +1,7 @@
 // Who drives: one source at a time, for as long as its lease lasts, its command's age counted by the receiver's clock.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "runtime/mode.hpp"
@@ -47,6 +48,10 @@ class CommandIntake {
   /// drives.
   Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
 
+  /// Everybody was told to stop: climbs and resets that were received until now are overtaken by it, wherever they
+  /// still wait.
+  void stop(std::int64_t now_ns) noexcept { stopped_ns_ = std::max(stopped_ns_, now_ns); }
+
   const IgnoredCommands& ignored() const noexcept { return ignored_; }
 
   const Command& command() const noexcept { return last_.command; }  ///< last accepted; zero before the first
@@ -63,6 +68,7 @@ class CommandIntake {
   Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
 
   SourceMemory sources_;
+  std::int64_t stopped_ns_ = -1;
   IgnoredCommands ignored_;
   bool any_ = false;
   DriveMessage last_;

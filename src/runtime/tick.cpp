@@ -121,6 +121,10 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
 }
 
 void Tick::take_messages(const TickInput& input) noexcept {
+  if (input.stop) {
+    supervisor_.stop();
+    intake_.stop(input.now_ns);
+  }
   for (const DriveMessage& drive : input.drives) intake_.accept(drive, input.now_ns);
   result_.ack_count = 0;
   for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
@@ -131,7 +135,6 @@ void Tick::take_messages(const TickInput& input) noexcept {
     result_.acks[result_.ack_count++] = {
         .source = request.source, .sequence = request.sequence, .verdict = judgement.verdict};
   }
-  if (input.stop) supervisor_.stop();
   result_.ignored = intake_.ignored();
   result_.command_age_s = intake_.age_s(input.now_ns);
   result_.driving = intake_.driving(input.now_ns);

@@ -166,10 +166,10 @@ TEST_F(Intake, AnySourceMayStopButOnlyTheDrivingOneMayClimbOrReset) {
   drive("gamepad", 1, 1, 0);
   EXPECT_EQ(request("vr", 1, 2, Mode::kDamping, 1).verdict, Verdict::kTaken);
   EXPECT_EQ(request("vr", 1, 3, Mode::kPassive, 1).verdict, Verdict::kTaken);
-  EXPECT_EQ(request("vr", 1, 4, Mode::kStand, 1).verdict, Verdict::kNotYours);
-  EXPECT_EQ(request("vr", 1, 5, Mode::kWalk, 1).verdict, Verdict::kNotYours);
-  EXPECT_EQ(request("vr", 1, 6, Mode::kDamping, 1, true).verdict, Verdict::kNotYours) << "a reset is no stop";
-  EXPECT_EQ(request("gamepad", 1, 1, Mode::kWalk, 1).verdict, Verdict::kTaken);
+  EXPECT_EQ(request("vr", 1, 4, Mode::kStand, 2).verdict, Verdict::kNotYours);
+  EXPECT_EQ(request("vr", 1, 5, Mode::kWalk, 2).verdict, Verdict::kNotYours);
+  EXPECT_EQ(request("vr", 1, 6, Mode::kDamping, 2, true).verdict, Verdict::kNotYours) << "a reset is no stop";
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kWalk, 2).verdict, Verdict::kTaken);
   EXPECT_EQ(request("vr", 1, 7, Mode::kWalk, kSecond_ns).verdict, Verdict::kTaken);
 }
 
@@ -209,6 +209,16 @@ TEST_F(Intake, AStopIsTakenHoweverOldRepeatedOrForeignItIs) {
     EXPECT_FALSE(request("gamepad", 5, 3, mode, now_ns).fresh) << "but it is no second wish for limp drives";
   }
   EXPECT_EQ(intake_.driving(2 * kSecond_ns), Source::make("gamepad", 5)) << "a stop takes the lease from nobody";
+}
+
+TEST_F(Intake, WhatWasAskedBeforeAStopIsOvertakenByIt) {
+  request("vr", 1, 1, Mode::kDamping, kSecond_ns);
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kStand, kSecond_ns).verdict, Verdict::kLate);
+  EXPECT_TRUE(request("gamepad", 1, 1, Mode::kStand, kSecond_ns + 1).fresh);
+  intake_.stop(2 * kSecond_ns);
+  EXPECT_EQ(request("gamepad", 1, 2, Mode::kWalk, 2 * kSecond_ns).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 2, Mode::kDamping, 2 * kSecond_ns, true).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 3, Mode::kPassive, 2 * kSecond_ns).verdict, Verdict::kTaken);
 }
 
 TEST_F(Intake, WhatIsNoModeIsRefused) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
@@ -110,9 +111,13 @@ class BreakablePolicy final : public policy::Policy {
 /// A tick with its operator: sends a fresh command and a request every time.
 struct DrivenTick {
   explicit DrivenTick(const model::RobotModel& robot)
+      : DrivenTick(robot, std::make_unique<BreakablePolicy>(), clips(robot)) {}
+  DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy)
+      : DrivenTick(robot, std::move(any_policy), clips(robot)) {}
+  DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy, ClipLibrary library)
       : state(standing_state(robot)),
-        policy(new BreakablePolicy),
-        tick(robot, clips(robot), std::unique_ptr<policy::Policy>(policy), clock, runtime::tick_options(robot)) {
+        policy(any_policy.get()),
+        tick(robot, std::move(library), std::move(any_policy), clock, runtime::tick_options(robot)) {
     drive.source = request.source = runtime::Source::make("test", 1);
     drive.lease_s = 0.5;
   }
@@ -126,8 +131,11 @@ struct DrivenTick {
     ++request.sequence;
     drive.stamp_ns = drive.received_ns = request.stamp_ns = request.received_ns = now_ns;
     const std::size_t messages = speaking ? 1 : 0;
-    const runtime::TickResult& result = tick.step(
-        {.state = state, .bus = bus, .now_ns = now_ns, .drives = {&drive, messages}, .requests = {&request, messages}});
+    const runtime::TickResult& result = tick.step({.state = state,
+                                                   .bus = bus,
+                                                   .now_ns = now_ns,
+                                                   .drives = {&drive, messages},
+                                                   .requests = {&request, asking ? messages : 0}});
     if (result.command.kp.sum() > 0.0) state.q = result.command.q;
     return result;
   }
@@ -141,6 +149,7 @@ struct DrivenTick {
   BreakablePolicy* policy;
   runtime::Tick tick;
   hal::BusStatus bus = hal::BusStatus::kOk;
+  bool asking = true;  ///< with a request in every tick
   std::int64_t now_ns = 0;
   runtime::DriveMessage drive;
   runtime::ModeRequest request;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <utility>
 
 #include "fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
@@ -133,6 +135,101 @@ TEST(Tick, CommandsSayWhichSampleTheyWereComputedFrom) {
   test::DrivenTick driven(test::z1());
   driven.step();
   EXPECT_EQ(driven.tick.result().command.bus_sample, driven.state.bus_sample);
+}
+
+TEST(Tick, APolicyBringsItsOwnGainsButBrakesWithTheRobots) {
+  const model::RobotModel& robot = test::z1();
+  const Eigen::Index n = robot.joint_index.size();
+  auto policy = std::make_unique<test::BreakablePolicy>();
+  policy->own_gains = policy::DriveGains{JointVector::Constant(n, 90.0), JointVector::Constant(n, 2.5)};
+  test::DrivenTick driven(robot, std::move(policy));
+  driven.request.mode = Mode::kStand;
+  const TickResult& result = driven.run(1.0);
+  EXPECT_EQ(result.command.kp, JointVector::Constant(n, 90.0));
+  EXPECT_EQ(result.command.kd, JointVector::Constant(n, 2.5));
+  driven.request.mode = Mode::kDamping;
+  driven.step();
+  EXPECT_EQ(result.command.kd[0], robot.joints[0].kd_Nm_s_per_rad);
+}
+
+TEST(Tick, TorqueIsLimitedWithTheGainsInForce) {
+  const model::RobotModel& robot = test::z1();
+  const Eigen::Index n = robot.joint_index.size();
+  const int knee = robot.joint_index.at("left_knee");
+  const double effort_Nm = robot.joints[static_cast<std::size_t>(knee)].effort_limit_Nm;
+  auto policy = std::make_unique<test::BreakablePolicy>();
+  policy->own_gains = policy::DriveGains{JointVector::Constant(n, 2000.0), JointVector::Zero(n)};
+  test::DrivenTick driven(robot, std::move(policy));
+  driven.request.mode = Mode::kStand;
+  driven.run(1.5);
+  driven.state.q[knee] += 0.5;
+  const double held_rad = driven.state.q[knee];
+  const TickResult& result = driven.step();
+  ASSERT_EQ(result.mode, Mode::kStand);
+  EXPECT_LE(std::abs(2000.0 * (result.command.q[knee] - held_rad)), effort_Nm + 1e-6);
+  EXPECT_GT(result.limited.torque, 0);
+}
+
+TEST(Tick, RefusesGainsThatDoNotFitTheRobot) {
+  const model::RobotModel& robot = test::z1();
+  const Eigen::Index n = robot.joint_index.size();
+  for (const auto& [kp, kd] :
+       {std::pair{JointVector(JointVector::Constant(n - 1, 90.0)), JointVector(JointVector::Zero(n))},
+        std::pair{JointVector(JointVector::Constant(n, -1.0)), JointVector(JointVector::Zero(n))},
+        std::pair{JointVector(JointVector::Constant(n, 90.0)), JointVector(JointVector::Constant(n, 101.0))},
+        std::pair{JointVector(JointVector::Constant(n, std::nan(""))), JointVector(JointVector::Zero(n))}}) {
+    auto policy = std::make_unique<test::BreakablePolicy>();
+    policy->own_gains = policy::DriveGains{kp, kd};
+    EXPECT_THROW(test::DrivenTick(robot, std::move(policy)), std::invalid_argument);
+  }
+}
+
+TEST(Tick, APolicyForgetsItsHistoryOnEveryEntryIntoStand) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kWalk;
+  driven.run(1.0);
+  EXPECT_EQ(driven.policy->resets, 1);
+  driven.request.mode = Mode::kStand;
+  driven.run(1.0);
+  EXPECT_EQ(driven.policy->resets, 1) << "from Walk it goes on";
+  driven.request.mode = Mode::kDamping;
+  driven.run(0.1);
+  driven.request.mode = Mode::kStand;
+  driven.run(0.1);
+  EXPECT_EQ(driven.policy->resets, 2);
+}
+
+/// Steps so short that speeds are finite and their squares are not: the optimisation can't converge while feet move.
+ClipLibrary hopeless_clips(const model::RobotModel& robot) {
+  ClipLibrary library = test::clips(robot);
+  for (auto* clips : {&library.positive, &library.negative}) {
+    for (auto& clip : *clips) {
+      if (clip) clip->period_s = 1e-200;
+    }
+  }
+  return library;
+}
+
+TEST(Tick, WithoutConvergenceTheLastSolutionIsHeldAndThenWalkingEnds) {
+  const model::RobotModel& robot = test::biped();
+  test::DrivenTick driven(robot, std::make_unique<test::BreakablePolicy>(), hopeless_clips(robot));
+  driven.request.mode = Mode::kWalk;
+  driven.run(2.0);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kWalk);
+  ASSERT_EQ(driven.tick.result().optimised.status, gco::Status::kConverged);
+  const Command feasible = driven.tick.result().optimised.command;
+  driven.drive.command[kVx] = 0.2;
+  for (int k = 0; k < 100; ++k) {
+    const TickResult& result = driven.step();
+    ASSERT_EQ(result.mode, Mode::kWalk) << k;
+    ASSERT_EQ(result.optimised.status, gco::Status::kNotConverged);
+    ASSERT_EQ(driven.policy->seen_command, feasible) << "what the policy is told";
+  }
+  driven.asking = false;  // nobody insists on walking, but somebody still drives: the stop is the controller's own
+  const TickResult& result = driven.run(0.6);
+  EXPECT_EQ(result.mode, Mode::kStand);
+  EXPECT_EQ(result.fault.code, FaultCode::kNone);
+  EXPECT_EQ(result.optimised.status, gco::Status::kConverged) << "at rest it converges again";
 }
 
 /// Heap allocations of a stretch with every mode change, a walk with all channels, and a fault.

@@ -1,0 +1,137 @@
+// The bus cycle, the control cycle and the tick as the robot runs them, in one thread on a virtual clock, with drives
+// that follow at once. Everything can be stalled, spoilt and silenced.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "fixtures.hpp"
+#include "hal/bus_cycle.hpp"
+#include "runtime/control_cycle.hpp"
+#include "runtime/operator_inbox.hpp"
+
+namespace pmg::test {
+
+/// Drives that follow at once; what they report can be spoilt.
+class SpoiltBus final : public hal::Hal {
+ public:
+  explicit SpoiltBus(const model::RobotModel& robot) : state_(standing_state(robot)) {}
+
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
+    last_command = command;
+    ++exchanges;
+    if (command.kp.sum() > 0.0) state_.q = command.q;
+    if (status != hal::BusStatus::kOk) return status;
+    state_.bus_sample += 1;
+    state = state_;
+    if (spoil) spoil(state);
+    return status;
+  }
+
+  /// What the drives do is to brake: no position, some damping.
+  bool damping() const { return last_command.kp.cwiseAbs().maxCoeff() == 0.0 && last_command.kd.minCoeff() > 0.0; }
+  bool finite() const {
+    for (const JointVector* values :
+         {&last_command.q, &last_command.dq, &last_command.kp, &last_command.kd, &last_command.tau_ff}) {
+      if (!values->allFinite() || values->size() != state_.q.size()) return false;
+    }
+    return true;
+  }
+
+  hal::BusStatus status = hal::BusStatus::kOk;
+  std::function<void(model::RobotState&)> spoil;
+  model::JointCommand last_command;
+  int exchanges = 0;
+
+ private:
+  model::RobotState state_;
+};
+
+class ControlRig {
+ public:
+  explicit ControlRig(const model::RobotModel& robot) : ControlRig(robot, clips(robot), runtime::tick_options(robot)) {}
+  ControlRig(const model::RobotModel& robot, ClipLibrary library, const runtime::TickOptions& options)
+      : bus(robot),
+        policy(new BreakablePolicy),
+        inbox(link.stop),
+        tick(robot, std::move(library), std::unique_ptr<policy::Policy>(policy), clock, options),
+        bus_cycle(bus, link, robot, clock),
+        control_cycle(tick, link, inbox, clock) {
+    drive.source = runtime::Source::make("operator", 1);
+    drive.lease_s = 0.5;
+  }
+  ControlRig(const ControlRig&) = delete;
+  ControlRig& operator=(const ControlRig&) = delete;
+
+  /// 2 ms of the world, and the control cycle when it is due.
+  void cycle() {
+    world();
+    if (clock.now_ns() < planned_ns_ + control_delay_cycles * hal::BusCycle::kPeriod_ns) return;
+    if (!silent) speak();
+    if (!control_frozen) control_cycle.run(planned_ns_);
+    do planned_ns_ += runtime::ControlCycle::kPeriod_ns;
+    while (planned_ns_ + runtime::ControlCycle::kPeriod_ns <= clock.now_ns());
+  }
+  /// 2 ms of the world without the control thread, which is busy or asleep.
+  void world() {
+    clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
+    if (!bus_frozen) bus_cycle.run();
+    ++cycles;
+    if (after_cycle) after_cycle();
+  }
+  void run(double duration_s) {
+    for (int k = 0; k < static_cast<int>(duration_s * 500.0 + 0.5); ++k) cycle();
+  }
+  /// On to a given number of cycles after a tick.
+  void align(int cycles_after_tick) {
+    while (cycles % 5 != cycles_after_tick) cycle();
+  }
+
+  void ask(runtime::Mode mode) { ask(drive.source, mode, false); }
+  void reset() { ask(drive.source, runtime::Mode::kDamping, true); }
+  void ask(const runtime::Source& source, runtime::Mode mode, bool reset_fault) {
+    inbox.put(runtime::ModeRequest{.source = source,
+                                   .sequence = ++request_sequence_,
+                                   .stamp_ns = clock.now_ns(),
+                                   .received_ns = clock.now_ns(),
+                                   .mode = mode,
+                                   .reset_fault = reset_fault});
+  }
+  /// Walking on the spot, all ramps over.
+  void reach_walk() {
+    ask(runtime::Mode::kWalk);
+    for (int k = 0; k < 60 && mode() != runtime::Mode::kWalk; ++k) run(0.1);  // the ramp takes 5 s at most
+    ASSERT_EQ(mode(), runtime::Mode::kWalk);
+    run(0.5);
+  }
+
+  runtime::Mode mode() const { return tick.result().mode; }
+  runtime::FaultCode fault() const { return tick.result().fault.code; }
+
+  io::SimulationClock clock;
+  hal::BusLink link;
+  SpoiltBus bus;
+  BreakablePolicy* policy;
+  runtime::OperatorInbox inbox;
+  runtime::Tick tick;
+  hal::BusCycle bus_cycle;
+  runtime::ControlCycle control_cycle;
+  runtime::DriveMessage drive;  ///< sent before every tick
+  std::function<void()> after_cycle;
+  bool bus_frozen = false, control_frozen = false, silent = false;
+  int control_delay_cycles = 0;  ///< how late the control thread wakes
+  int cycles = 0;                ///< of 2 ms, since the start
+
+ private:
+  void speak() {
+    ++drive.sequence;
+    drive.stamp_ns = drive.received_ns = clock.now_ns();
+    inbox.put(drive);
+  }
+
+  std::int64_t planned_ns_ = runtime::ControlCycle::kPeriod_ns;
+  std::int64_t request_sequence_ = 0;
+};
+
+}  // namespace pmg::test

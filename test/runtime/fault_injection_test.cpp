@@ -1,0 +1,467 @@
+// docs/safety.md's table of faults, row by row, through the whole of bus cycle, guard, control cycle and tick: each
+// cause is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <ostream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "control_rig.hpp"
+#include "generator_core/allocation_count.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+using test::BreakablePolicy;
+using test::ControlRig;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kCyclesPerTick = 5;
+constexpr double kCycle_s = 0.002;
+
+const model::RobotModel& robot() { return test::biped(); }
+
+/// A library that is in order when it is read and overflows when it is played: one step takes 6e-309 s.
+ClipLibrary overflowing_clips() {
+  ClipLibrary library = test::clips(robot());
+  for (auto* clips : {&library.positive, &library.negative}) {
+    for (auto& clip : *clips) {
+      if (clip) clip->period_s = 6e-309;
+    }
+  }
+  return library;
+}
+
+TickOptions options_of(FaultCode code) {
+  TickOptions options = tick_options(robot());
+  // From rest to full speed in one tick, so that the overflow comes in the tick of the injection.
+  if (code == FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
+  return options;
+}
+
+ClipLibrary clips_of(FaultCode code) {
+  return code == FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(robot());
+}
+
+template <typename Spoil>
+auto in_state(Spoil spoil) {
+  return [spoil](ControlRig& rig) { rig.bus.spoil = spoil; };
+}
+
+auto in_policy(BreakablePolicy::Break how) {
+  return [how](ControlRig& rig) { rig.policy->how = how; };
+}
+
+void give_the_guard_a_nan(ControlRig& rig) {
+  hal::ControlOutput output;
+  output.joints = rig.tick.result().command;
+  output.joints.q[2] = kNan;
+  rig.link.commands.put(output);
+}
+
+/// The control thread wakes two bus cycles late and its policy takes four: one too many together, none alone.
+void overrun(ControlRig& rig) {
+  rig.control_delay_cycles = 2;
+  rig.policy->meanwhile = [&rig] {
+    for (int k = 0; k < 4; ++k) rig.world();
+  };
+}
+
+void block_the_policy(ControlRig& rig) {
+  rig.policy->meanwhile = [&rig] {
+    for (int k = 0; k < 6; ++k) rig.world();
+  };
+}
+
+struct Row {
+  const char* name;
+  FaultCode code;
+  std::function<void(ControlRig&)> inject;
+  /// The reset is refused as long as the cause is there. Otherwise the cause only shows when the robot stands again.
+  bool reset_waits;
+
+  friend void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+};
+
+std::vector<Row> rows() {
+  return {
+      {"BusLost", FaultCode::kBusLost, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kLost; }, true},
+      {"StaleState", FaultCode::kStaleState, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kStale; }, true},
+      {"NanInPosition", FaultCode::kStateNotFinite, in_state([](auto& s) { s.q[1] = kNan; }), true},
+      {"NanInOrientation", FaultCode::kStateNotFinite, in_state([](auto& s) { s.orientation_WI.x() = kNan; }), true},
+      {"MissingJoints", FaultCode::kStateNotFinite, in_state([](auto& s) { s.dq.conservativeResize(2); }), true},
+      {"Hot", FaultCode::kTemperature, in_state([](auto& s) { s.temperature_degC[2] = 95.0; }), true},
+      {"ControlFrozen", FaultCode::kControlFrozen, [](ControlRig& rig) { rig.control_frozen = true; }, false},
+      {"CommandNan", FaultCode::kCommandNotFinite, give_the_guard_a_nan, false},
+      {"StalePolicy", FaultCode::kStalePolicy, in_policy(BreakablePolicy::Break::kLate), false},
+      {"Overrun", FaultCode::kOverrun, overrun, false},
+      {"AboveRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].upper_rad + 0.12; }),
+       true},
+      {"BelowRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].lower_rad - 0.12; }),
+       true},
+      {"TooFast", FaultCode::kJointVelocity,
+       in_state([](auto& s) { s.dq[3] = 1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
+      {"TooFastBackwards", FaultCode::kJointVelocity,
+       in_state([](auto& s) { s.dq[3] = -1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
+      {"Torque", FaultCode::kJointTorque, in_state([](auto& s) { s.tau[3] = 1.3 * robot().joints[3].effort_limit_Nm; }),
+       true},
+      {"TorqueBackwards", FaultCode::kJointTorque,
+       in_state([](auto& s) { s.tau[3] = -1.3 * robot().joints[3].effort_limit_Nm; }), true},
+      {"Tilt", FaultCode::kTilt, in_state([](auto& s) {
+         s.orientation_WI = Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()) * s.orientation_WI;
+       }),
+       true},
+      {"TorsoAttitude", FaultCode::kTorsoAttitude, in_state([](auto& s) {
+         s.orientation_WI = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()) * s.orientation_WI;
+       }),
+       false},
+      {"Reference", FaultCode::kReferenceNotFinite, [](ControlRig& rig) { rig.drive.command[kVx] = 9.0; }, false},
+      {"PolicyNan", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNan), false},
+      {"PolicyFailed", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kStatus), false},
+      {"FarAction", FaultCode::kActionOutOfRange, in_policy(BreakablePolicy::Break::kFarAction), false},
+  };
+}
+
+void heal(ControlRig& rig) {
+  rig.bus.status = hal::BusStatus::kOk;
+  rig.bus.spoil = nullptr;
+  rig.control_frozen = rig.bus_frozen = rig.silent = false;
+  rig.control_delay_cycles = 0;
+  rig.policy->how = BreakablePolicy::Break::kNone;
+  rig.policy->meanwhile = nullptr;
+  rig.drive.command = Command{};
+}
+
+struct Range {
+  int least = std::numeric_limits<int>::max(), most = 0;
+  friend bool operator==(const Range&, const Range&) = default;
+};
+
+/// Bus cycles from the first one that carries the cause to the first one in which the drives are told to damp.
+int cycles_to_damping(ControlRig& rig, const std::function<void(ControlRig&)>& inject) {
+  const int first_cycle = rig.cycles + 1;
+  inject(rig);
+  for (int guard = 0; guard < 500; ++guard) {
+    int damped_in = 0;
+    rig.after_cycle = [&] {
+      if (damped_in == 0 && rig.bus.damping()) damped_in = rig.cycles;
+    };
+    rig.cycle();
+    rig.after_cycle = nullptr;
+    if (damped_in > 0) return damped_in - first_cycle;
+  }
+  return -1;
+}
+
+/// Whatever the moment between two ticks in which the cause appears.
+Range reaction_of(const Row& row) {
+  Range range;
+  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+    ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+    rig.reach_walk();
+    rig.align(moment);
+    const int cycles = cycles_to_damping(rig, row.inject);
+    EXPECT_GE(cycles, 0) << row.name << ": no reaction";
+    range.least = std::min(range.least, cycles);
+    range.most = std::max(range.most, cycles);
+  }
+  return range;
+}
+
+/// docs/safety.md: code -> bus cycles, "1 to 5" or "0".
+std::map<std::string, Range> documented_reactions() {
+  std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/safety.md");
+  const std::regex row(R"(^\| `([a-z_]+)` \|.*\| (\d+)(?: to (\d+))? \|[^|]*\|$)");
+  std::map<std::string, Range> reactions;
+  for (std::string line; std::getline(file, line);) {
+    std::smatch match;
+    if (!std::regex_match(line, match, row)) continue;
+    const int least = std::stoi(match[2]);
+    const bool added =
+        reactions.emplace(match[1], Range{.least = least, .most = match[3].matched ? std::stoi(match[3]) : least})
+            .second;
+    EXPECT_TRUE(added) << match[1] << " has two rows";
+  }
+  return reactions;
+}
+
+TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
+  std::map<std::string, Range> documented = documented_reactions();
+  for (std::size_t k = 1; k < kFaultCodes; ++k) {
+    const auto code = static_cast<FaultCode>(k);
+    const std::vector<Row> all = rows();
+    EXPECT_TRUE(std::ranges::any_of(all, [&](const Row& row) { return row.code == code; })) << to_string(code);
+    EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/safety.md";
+    EXPECT_NE(std::string(advice(code)), "") << to_string(code);
+  }
+  EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";
+}
+
+class FaultInjection : public testing::TestWithParam<Row> {};
+
+TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
+  const Row& row = GetParam();
+  const Range measured = reaction_of(row);
+  const Range documented = documented_reactions()[to_string(row.code)];
+  EXPECT_EQ(measured.least, documented.least) << row.name;
+  EXPECT_EQ(measured.most, documented.most) << row.name;
+}
+
+TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
+  const Row& row = GetParam();
+  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  rig.reach_walk();
+  const int cycles = cycles_to_damping(rig, row.inject);
+  ASSERT_GE(cycles, 0);
+  int undamped = 0, broken = 0;
+  rig.after_cycle = [&] {
+    undamped += rig.bus.damping() ? 0 : 1;
+    broken += rig.bus.finite() ? 0 : 1;
+  };
+  if (row.code == FaultCode::kControlFrozen) {
+    rig.run(1.0);
+    EXPECT_EQ(undamped, 0) << "the guard goes on damping alone";
+    heal(rig);  // the thread comes back
+  }
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault);
+  EXPECT_EQ(rig.fault(), row.code);
+  const std::string words = describe(rig.tick.result().fault, robot());
+  EXPECT_EQ(words.find(std::string(to_string(row.code)) + ": "), 0u) << words;
+  EXPECT_EQ(words.find("nan"), std::string::npos) << words;
+
+  rig.ask(Mode::kStand);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault) << "a request is no reset";
+  if (row.reset_waits) {
+    rig.reset();
+    rig.run(0.1);
+    EXPECT_EQ(rig.mode(), Mode::kFault) << "what was wrong still is";
+    EXPECT_EQ(rig.fault(), row.code) << "the first fault is kept";
+  }
+  heal(rig);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault) << "it is latched";
+  rig.reset();
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kDamping);
+  EXPECT_EQ(rig.fault(), FaultCode::kNone);
+  EXPECT_EQ(undamped, 0) << "all the time the drives brake";
+  EXPECT_EQ(broken, 0);
+  rig.after_cycle = nullptr;
+  rig.reach_walk();
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, FaultInjection, testing::ValuesIn(rows()),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+TEST(FaultInjectionBeside, AFrozenBusFindsADampingCommandWhenItReturns) {
+  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+    ControlRig rig(robot());
+    rig.reach_walk();
+    rig.align(moment);
+    rig.bus_frozen = true;
+    rig.run(0.1);
+    rig.bus_frozen = false;
+    rig.cycle();
+    EXPECT_TRUE(rig.bus.damping());
+    EXPECT_EQ(rig.fault(), FaultCode::kStaleState);
+  }
+}
+
+TEST(FaultInjectionBeside, AHostThatStopsEverythingForAWhileIsNoFault) {
+  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+    ControlRig rig(robot());
+    rig.reach_walk();
+    rig.align(moment);
+    rig.clock.advance_to(rig.clock.now_ns() + 150'000'000);
+    // The control thread may wake before the bus thread does.
+    rig.control_cycle.run(rig.clock.now_ns());
+    rig.run(0.5);
+    EXPECT_EQ(rig.mode(), Mode::kWalk);
+  }
+}
+
+TEST(FaultInjectionBeside, AStrangersStopBrakesInTheNextBusCycle) {
+  for (const Mode stop : {Mode::kDamping, Mode::kPassive}) {
+    for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+      ControlRig rig(robot());
+      rig.reach_walk();
+      rig.drive.command[kVx] = 0.3;
+      rig.run(1.0);
+      rig.align(moment);
+      EXPECT_EQ(cycles_to_damping(
+                    rig, [stop](ControlRig& stopped) { stopped.ask(Source::make("stranger", 77), stop, false); }),
+                0);
+      rig.after_cycle = [&] { EXPECT_TRUE(rig.bus.damping()); };
+      rig.run(0.2);
+      EXPECT_EQ(rig.mode(), Mode::kDamping);
+    }
+  }
+}
+
+TEST(FaultInjectionBeside, AStopBrakesEvenWhenNobodyReadsIt) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  rig.control_frozen = true;
+  for (int k = 0; k < 100; ++k) rig.ask(Mode::kStand);  // a flood that fills the queue
+  EXPECT_EQ(cycles_to_damping(rig, [](ControlRig& stopped) { stopped.ask(Mode::kDamping); }), 0);
+  rig.control_frozen = false;
+  rig.run(0.2);
+  EXPECT_EQ(rig.mode(), Mode::kDamping);
+}
+
+TEST(FaultInjectionBeside, AStopThatIsRepeatedUntilItIsAcknowledgedMakesNoRobotLimp) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  for (int k = 0; k < 20; ++k) {
+    rig.inbox.put(ModeRequest{.source = Source::make("stop", 1),
+                              .sequence = 5,
+                              .stamp_ns = rig.clock.now_ns(),
+                              .received_ns = rig.clock.now_ns(),
+                              .mode = Mode::kPassive});
+    rig.run(0.02);
+    EXPECT_EQ(rig.mode(), Mode::kDamping) << "limp only when told twice, and a repetition is no second time";
+  }
+  rig.ask(Mode::kPassive);
+  rig.run(0.02);
+  EXPECT_EQ(rig.mode(), Mode::kPassive);
+}
+
+TEST(FaultInjectionBeside, AKilledCommandSourceEndsInStandWithinItsTime) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.4;
+  rig.run(3.0);
+  ASSERT_GT(rig.tick.result().reference.gain, 0.5);
+  rig.silent = true;
+  rig.run(0.2);
+  EXPECT_EQ(rig.mode(), Mode::kWalk);
+  // Half a second to stop, and two ticks: one notices, one changes the mode.
+  rig.run(0.52);
+  EXPECT_EQ(rig.mode(), Mode::kStand);
+  EXPECT_NEAR(rig.tick.result().reference.gain, 0.0, 1e-9);
+  EXPECT_FALSE(rig.bus.damping()) << "it stands";
+  rig.silent = false;
+  rig.run(0.5);
+  EXPECT_EQ(rig.mode(), Mode::kStand) << "and walks only when asked again";
+  rig.ask(Mode::kWalk);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kWalk);
+}
+
+TEST(FaultInjectionBeside, AnOperatorsNanIsIgnoredAndCounted) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.2;
+  rig.run(0.1);
+  Command good = rig.tick.result().user;
+  rig.drive.command[kPitch] = kNan;
+  rig.after_cycle = [&] { EXPECT_TRUE(rig.bus.finite()); };
+  rig.run(0.1);
+  EXPECT_EQ(rig.tick.result().ignored.not_finite, 10);
+  EXPECT_EQ(rig.tick.result().user, good);
+  EXPECT_EQ(rig.mode(), Mode::kWalk);
+  rig.run(1.0);
+  EXPECT_EQ(rig.mode(), Mode::kStand) << "nonsense is no sign of life";
+}
+
+TEST(FaultInjectionBeside, ASingleLateTickIsCountedAndNoFault) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  for (int k = 0; k < 10; ++k) {
+    rig.policy->meanwhile = [&rig, left = 2]() mutable {
+      for (int cycle = 0; cycle < 6 && left > 0; ++cycle) rig.world();
+      --left;
+    };
+    rig.run(0.1);
+  }
+  EXPECT_EQ(rig.mode(), Mode::kWalk);
+  EXPECT_EQ(rig.tick.result().late_ticks, 20);
+}
+
+TEST(FaultInjectionBeside, APolicyThatBlocksIsNamedAndNotTheOverrunThatItCauses) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  ASSERT_GE(cycles_to_damping(rig, block_the_policy), 0);
+  EXPECT_EQ(rig.fault(), FaultCode::kStalePolicy);
+}
+
+TEST(FaultInjectionBeside, ALatePolicysLastTargetIsHeldFirst) {
+  ControlRig rig(robot());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.3;
+  rig.run(0.5);
+  rig.align(0);
+  rig.run(kCycle_s);
+  const JointVector held = rig.bus.last_command.q;
+  rig.policy->how = BreakablePolicy::Break::kLate;
+  for (int tick = 0; tick < 2; ++tick) {
+    rig.run(kCyclesPerTick * kCycle_s);
+    EXPECT_TRUE(rig.tick.result().policy_held);
+    EXPECT_EQ(rig.bus.last_command.q, held);
+    EXPECT_EQ(rig.mode(), Mode::kWalk);
+  }
+  rig.policy->how = BreakablePolicy::Break::kNone;
+  rig.run(1.0);
+  EXPECT_FALSE(rig.tick.result().policy_held);
+  EXPECT_EQ(rig.mode(), Mode::kWalk);
+}
+
+TEST(FaultInjectionBeside, NothingIsAFaultInPassive) {
+  for (const Row& row : rows()) {
+    ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+    rig.run(0.1);
+    row.inject(rig);
+    rig.after_cycle = [&] { EXPECT_EQ(rig.bus.last_command.kp.sum(), 0.0); };
+    rig.run(0.2);
+    rig.after_cycle = nullptr;
+    heal(rig);
+    rig.run(0.1);
+    EXPECT_EQ(rig.mode(), Mode::kPassive) << row.name;
+  }
+}
+
+TEST(FaultInjectionBeside, NoCycleOfEitherThreadUsesTheHeap) {
+  if (test::allocation_count() < 0) GTEST_SKIP() << "allocations can't be counted in this build";
+  ControlRig rig(robot());
+  rig.drive.command = Command{{0.2, 0.1, 0.1, 0.1, 0.05, -0.02}};
+  const auto run = [&](double duration_s) { rig.run(duration_s); };
+  const long before = test::allocation_count();
+  rig.ask(Mode::kWalk);
+  run(3.0);
+  rig.ask(Mode::kStand);
+  run(1.0);
+  rig.ask(Source::make("stranger", 1), Mode::kDamping, false);
+  run(0.1);
+  rig.ask(Mode::kWalk);
+  run(1.0);
+  rig.policy->how = BreakablePolicy::Break::kNan;
+  run(0.1);
+  rig.policy->how = BreakablePolicy::Break::kNone;
+  rig.reset();
+  run(0.1);
+  rig.bus.status = hal::BusStatus::kStale;
+  run(0.1);
+  rig.control_frozen = true;
+  run(0.1);
+  EXPECT_EQ(test::allocation_count(), before);
+  rig.control_frozen = false;
+  rig.bus.status = hal::BusStatus::kOk;
+  run(0.1);
+  rig.reset();
+  rig.ask(Mode::kWalk);
+  rig.policy->how = BreakablePolicy::Break::kHeap;
+  run(1.0);
+  rig.ask(Mode::kWalk);
+  run(1.0);
+  EXPECT_GT(test::allocation_count(), before + 50) << "the count must see one that does";
+}
+
+}  // namespace
+}  // namespace pmg::runtime

@@ -1,0 +1,128 @@
+// A hand-written policy balances Z1 in MuJoCo on drives too soft to stand by themselves; spoilt, it trips a fault.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "fixtures.hpp"
+#include "hal/sil_hal.hpp"
+#include "runtime/lockstep.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+/// Ankles that push back when the pelvis leans: residuals from the IMU's tilt and gyro.
+class AnkleBalance final : public policy::Policy {
+ public:
+  AnkleBalance(const model::RobotModel& robot, double action_factor) : action_factor_(action_factor) {
+    const Eigen::Index n = robot.joint_index.size();
+    gains_ = {JointVector(n), JointVector(n)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const model::Joint& joint = robot.joints[static_cast<std::size_t>(i)];
+      gains_.kp_Nm_per_rad[i] = joint.kp_Nm_per_rad;
+      gains_.kd_Nm_s_per_rad[i] = joint.kd_Nm_s_per_rad;
+    }
+    for (const char* side : {"left", "right"}) {
+      const int pitch = robot.joint_index.at(std::string(side) + "_ankle_pitch");
+      const int roll = robot.joint_index.at(std::string(side) + "_ankle_roll");
+      pitch_joints_.push_back(pitch);
+      roll_joints_.push_back(roll);
+      // Both ankles together: less than half of m g h = 260 Nm/rad, so the robot falls unless it is balanced.
+      gains_.kp_Nm_per_rad[pitch] = gains_.kp_Nm_per_rad[roll] = 60.0;
+      gains_.kd_Nm_s_per_rad[pitch] = gains_.kd_Nm_s_per_rad[roll] = 2.0;
+    }
+  }
+
+  std::optional<policy::DriveGains> gains() const override { return gains_; }
+
+  policy::Status act(const model::RobotState& state, const Reference& reference, const Command&,
+                     JointVector& q_des) noexcept override {
+    const Eigen::Matrix3d R_WI = state.orientation_WI.toRotationMatrix();
+    const double pitch_rad = std::asin(std::clamp(-R_WI(2, 0), -1.0, 1.0));
+    const double roll_rad = std::atan2(R_WI(2, 1), R_WI(2, 2));
+    q_des = reference.q;
+    for (const int joint : pitch_joints_) q_des[joint] += action(pitch_rad, state.gyro_rad_s.y());
+    for (const int joint : roll_joints_) q_des[joint] += action(roll_rad, state.gyro_rad_s.x());
+    return policy::Status::kOk;
+  }
+
+ private:
+  double action(double lean_rad, double rate_rad_s) const noexcept {
+    return action_factor_ * (kLean * lean_rad + kRate_s * rate_rad_s);
+  }
+
+  static constexpr double kLean = 4.0, kRate_s = 0.8;
+  double action_factor_;
+  policy::DriveGains gains_;
+  std::vector<int> pitch_joints_, roll_joints_;
+};
+
+struct Outcome {
+  RunOutcome lockstep;
+  Mode mode = Mode::kPassive;
+  model::JointCommand command;
+};
+
+Outcome stand_for_10_s(double action_factor) {
+  const model::RobotModel& robot = test::z1();
+  sim::WorldOptions options;
+  options.seed = 3;
+  options.encoder_noise_rad = 0.0004;
+  options.gyro_noise_rad_s = 0.01;
+  options.orientation_noise_rad = 0.002;
+  sim::World world(robot, options);
+  hal::SilHal bus(world);
+  WorldPlant plant(world);
+  const io::SimulationClock stopwatch;
+  Tick tick(robot, test::clips(robot), std::make_unique<AnkleBalance>(robot, action_factor), stopwatch,
+            tick_options(robot));
+  Scenario scenario;
+  scenario.name = "stand";
+  scenario.steps.resize(1);
+  scenario.steps[0].duration_s = 10.0;
+  scenario.steps[0].mode = Mode::kStand;
+  Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {.balanced_by_policy = true});
+  Outcome outcome;
+  outcome.lockstep = lockstep.run();
+  outcome.mode = tick.result().mode;
+  outcome.command = tick.result().command;
+  return outcome;
+}
+
+TEST(Sabotage, ThePolicyAsItIsBalances) {
+  const Outcome outcome = stand_for_10_s(1.0);
+  EXPECT_FALSE(outcome.lockstep.fell) << "at " << outcome.lockstep.fell_at_s << " s";
+  for (const Fault& fault : outcome.lockstep.faults) ADD_FAILURE() << describe(fault, test::z1());
+  EXPECT_EQ(outcome.mode, Mode::kStand);
+  EXPECT_LT(outcome.lockstep.tracking.pitch_mae_rad, 0.1);
+}
+
+struct Sabotaged {
+  const char* name;
+  double action_factor;
+  double within_s;  ///< of the start: a fall takes as long as an unstable pendulum needs to grow from its sway
+
+  friend void PrintTo(const Sabotaged& row, std::ostream* out) { *out << row.name; }
+};
+
+class Sabotage : public testing::TestWithParam<Sabotaged> {};
+
+TEST_P(Sabotage, TripsAFaultThatDampsAndStaysLatched) {
+  const Outcome outcome = stand_for_10_s(GetParam().action_factor);
+  ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
+  const Fault& fault = outcome.lockstep.faults[0];
+  EXPECT_LT(static_cast<double>(fault.stamp_ns) * 1e-9, GetParam().within_s) << describe(fault, test::z1());
+  EXPECT_EQ(outcome.mode, Mode::kFault);
+  EXPECT_EQ(outcome.command.kp.sum(), 0.0);
+  EXPECT_GT(outcome.command.kd.minCoeff(), 0.0);
+  RecordProperty("fault", describe(fault, test::z1()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Actions, Sabotage,
+                         testing::Values(Sabotaged{"TimesFive", 5.0, 1.0}, Sabotaged{"Negated", -1.0, 1.5},
+                                         Sabotaged{"Zero", 0.0, 3.0}),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+}  // namespace
+}  // namespace pmg::runtime
