@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/log_series.hpp"
+#include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
 #include "logs/replay.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pmg;
 
-enum ExitCode { kOk = 0, kDifferent = 1, kBadInput = 2 };
+enum ExitCode { kOk = 0, kDifferent = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 LOG is a log file, or a folder that pmg_controller or pmg_sil wrote. A log that was cut short (power lost, program killed) is
@@ -30,14 +31,35 @@ Examples:
   pmg_log export out/tour --mcap out/tour/tour.mcap
   pmg_log replay out/tour
 
-Exit codes: 0 done (replay: every output is the same, bit for bit), 1 replay: an output differs, 2 bad input or output.)";
+Exit codes: 0 done (replay: every output is the same, bit for bit), 1 replay: an output differs, 2 bad input or output,
+130 interrupted (what was exported until then is kept).)";
 
 struct Arguments {
   std::vector<fs::path> logs;
   bool json = false;
+  fs::path csv, mcap;
   logs::ReplayOptions replay;
   bool tolerant = false;
   double tolerance = 0.0;
+};
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+/// One line that renews itself, when somebody watches.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const char* what) : what_(what) {}
+  ~ProgressLine() {
+    if (watched_) std::cerr << "\r\033[K" << std::flush;
+  }
+  void show(double time_s) const {
+    if (watched_) std::cerr << fmt::format("\r{:8.1f} s {}", time_s, what_) << std::flush;
+  }
+
+ private:
+  const char* what_;
+  bool watched_ = isatty(STDERR_FILENO) == 1;
 };
 
 int info(const Arguments& arguments) {
@@ -84,13 +106,44 @@ void print_replay(const logs::ReplayReport& report) {
   for (const auto& [field, value] : report.largest) std::cout << fmt::format("largest: {} {:.3g}\n", field, value);
 }
 
+void print_export(const Arguments& arguments, const fs::path& into, const logs::ExportReport& report) {
+  if (arguments.json) {
+    std::cout << nlohmann::ordered_json(
+                     {{"file", into.string()}, {"messages", report.messages}, {"left_out", report.unknown}})
+                     .dump(2)
+              << '\n';
+    return;
+  }
+  std::int64_t all = 0;
+  for (const auto& [channel, count] : report.messages) all += count;
+  std::cout << fmt::format("{} messages of {} channels in {}\n", all, report.messages.size(), into.string());
+  if (report.unknown > 0) std::cout << fmt::format("{} messages that aren't known were left out\n", report.unknown);
+}
+
+int export_log(const Arguments& arguments) {
+  if (arguments.csv.empty() && arguments.mcap.empty())
+    throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
+  std::signal(SIGINT, on_interrupt);
+  const ProgressLine line("exported");
+  const auto progress = [&line](double time_s) {
+    line.show(time_s);
+    return interrupt_requested == 0;
+  };
+  const std::vector<fs::path> files = io::log_files(arguments.logs);
+  if (!arguments.csv.empty()) print_export(arguments, arguments.csv, logs::export_csv(files, arguments.csv, progress));
+  if (!arguments.mcap.empty() && interrupt_requested == 0) {
+    print_export(arguments, arguments.mcap, logs::export_mcap(files, arguments.mcap, progress));
+  }
+  return interrupt_requested == 0 ? kOk : kInterrupted;
+}
+
+logs::ReplayReport replay_with_progress(const Arguments& arguments) {
+  const ProgressLine line("replayed");
+  return logs::replay(io::log_files(arguments.logs), arguments.replay, [&line](double time_s) { line.show(time_s); });
+}
+
 int replay(const Arguments& arguments) {
-  const bool watched = isatty(STDERR_FILENO) == 1;
-  const logs::ReplayReport report =
-      logs::replay(io::log_files(arguments.logs), arguments.replay, [watched](double time_s) {
-        if (watched) std::cerr << fmt::format("\r{:8.1f} s replayed", time_s) << std::flush;
-      });
-  if (watched) std::cerr << '\r' << std::string(24, ' ') << '\r' << std::flush;
+  const logs::ReplayReport report = replay_with_progress(arguments);
   const bool passed = report.equal() || (arguments.tolerant && report.largest_difference() <= arguments.tolerance);
   if (arguments.json) {
     std::cout << replay_json(report, passed).dump(2) << '\n';
@@ -116,6 +169,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   CLI::App* info_command = command(app, arguments, "info", "who ran what, for how long, and what happened");
   info_command->add_flag("--json", arguments.json, "as JSON");
+  CLI::App* export_command = command(app, arguments, "export", "write a log for other programs");
+  export_command->add_option("--csv", arguments.csv, "folder for one CSV a channel");
+  export_command->add_option("--mcap", arguments.mcap, "MCAP file, for Foxglove");
+  export_command->add_flag("--json", arguments.json, "say as JSON what was written");
   CLI::App* replay_command =
       command(app, arguments, "replay", "compute every tick again and compare all outputs, bit for bit");
   replay_command->add_flag("--json", arguments.json, "as JSON");
@@ -132,7 +189,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? kOk : kBadInput;
   }
   try {
-    return info_command->parsed() ? info(arguments) : replay(arguments);
+    if (info_command->parsed()) return info(arguments);
+    return export_command->parsed() ? export_log(arguments) : replay(arguments);
   } catch (const std::exception& error) {
     std::cerr << "pmg_log: " << error.what() << '\n';
     return kBadInput;

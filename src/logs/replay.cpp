@@ -34,9 +34,15 @@ std::string text_of(const ordered_json& options, const char* key, const std::str
 runtime::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
                                const ReplayOptions& options) {
   runtime::ControlSetup setup;
-  setup.robot = options.robot.empty() ? text_of(logged, "robot", info.model) : options.robot;
+  setup.robot = options.robot;
   setup.clips = options.clips;
-  if (options.robot.empty() && options.clips.empty()) setup.clips = text_of(logged, "clips", "");
+  if (options.robot.empty()) {
+    // Where it was when the log was made, if it still is there; else this computer's robot of that name.
+    setup.robot = text_of(logged, "robot", info.model);
+    const fs::path clips = text_of(logged, "clips", "");
+    if (!fs::is_directory(setup.robot)) setup.robot = info.model;
+    if (setup.clips.empty() && fs::is_directory(clips)) setup.clips = clips;
+  }
   setup.policy = text_of(logged, "policy", info.policy);
   setup.blend = text_of(logged, "blend", setup.blend);
   return setup;
