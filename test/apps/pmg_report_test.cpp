@@ -1,0 +1,90 @@
+// pmg_report as its users see it: exit codes, messages, and the page.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/running_program.hpp"
+#include "runtime/small_log.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class PmgReport : public testing::Test {
+ protected:
+  PmgReport() { fs::create_directories(folder_); }
+  ~PmgReport() override { fs::remove_all(folder_); }
+
+  struct Finished {
+    int exit_code;
+    std::string out, err;
+  };
+  Finished run(const std::vector<std::string>& arguments) const {
+    test::RunningProgram program("pmg_report", arguments, folder_);
+    const int exit_code = program.wait();
+    return {exit_code, program.out(), program.err()};
+  }
+  std::string log(const std::string& name, const test::SmallLog& content = {}) const {
+    content.write(folder_ / name);
+    return (folder_ / name).string();
+  }
+  const fs::path folder_ = fs::path(testing::TempDir()) /
+                           ("report " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const std::string page_ = (folder_ / "page.html").string();
+};
+
+TEST_F(PmgReport, WritesAPageAndSaysWhatItSaw) {
+  const Finished done = run({log("a.lcm"), log("b.lcm", {.fault_at = 50}), "--out", page_});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out,
+              testing::AllOf(HasSubstr("a.lcm: tiny, policy none"), HasSubstr("FAULT at 0.50 s"), HasSubstr(page_)));
+  EXPECT_EQ(done.err, "") << "nobody watches: no progress line";
+  EXPECT_THAT(test::text_of(page_), testing::StartsWith("<!doctype html>"));
+}
+
+TEST_F(PmgReport, GivesMachinesTheFigures) {
+  const Finished done = run({log("a.lcm", {.fault_at = 50}), "--out", page_, "--json"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out);
+  EXPECT_EQ(json["report"], page_);
+  EXPECT_EQ(json["runs"][0]["robot"], "tiny");
+  EXPECT_EQ(json["runs"][0]["faults"].size(), 1U);
+  EXPECT_EQ(json["runs"][0]["fell"], false);
+}
+
+TEST_F(PmgReport, KeepsWhatIsReadableOfATruncatedLog) {
+  const std::string path = log("cut.lcm");
+  fs::resize_file(path, fs::file_size(path) / 2);
+  const Finished done = run({path, "--out", page_});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.out, HasSubstr("its end is missing"));
+  EXPECT_TRUE(fs::exists(page_));
+}
+
+TEST_F(PmgReport, RefusesBadInputInOneLine) {
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    const Finished done = run(arguments);
+    EXPECT_EQ(done.exit_code, 2) << message;
+    EXPECT_THAT(done.err, HasSubstr(message));
+    EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << done.err;
+    EXPECT_EQ(done.out, "");
+    EXPECT_FALSE(fs::exists(page_));
+  };
+  refused({(folder_ / "none.lcm").string(), "--out", page_}, "there is no such log");
+  refused({(folder_).string(), "--out", page_}, "holds no log.lcm");
+  refused({log("a.lcm"), "--out", "/dev/full"}, "can't be written");
+  const std::string a = log("a.lcm");
+  refused({a, a, a, a, a, "--out", page_}, "expected 4 at most");
+}
+
+TEST_F(PmgReport, HelpShowsAnExampleAndTheExitCodes) {
+  const Finished done = run({"--help"});
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("Example:"), HasSubstr("Exit codes:")));
+}
+
+}  // namespace
+}  // namespace pmg
