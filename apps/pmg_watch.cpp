@@ -1,5 +1,6 @@
 // pmg_watch: what the controllers on an LCM address do, live in a terminal.
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +24,8 @@ enum ExitCode { kOk = 0, kNotHeard = 1, kBadInput = 2 };
 
 constexpr const char* kFooter = R"(
 One robot fills a screen; of several each gets a line (--robot shows one of them at full length). Without a terminal: a line
-a second and robot, or a JSON object with --json.
+a second and robot, or a JSON object with --json. Commands are in m/s, rad/s, rad and m: asked by who drives, u as the generator admits
+it, u' as it is possible on the ground.
 
 Examples:
   pmg_watch
@@ -42,6 +44,13 @@ struct Arguments {
 
 volatile std::sig_atomic_t interrupt_requested = 0;
 void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+/// A longer line would wrap, and the next picture begin too high.
+std::size_t columns() {
+  winsize size{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
 
 class Watch {
  public:
@@ -108,7 +117,7 @@ class Watch {
     if (shown.empty()) lines = {elapsed_s() > kNotHeardAfter_s ? nobody() : "listening on " + link_.url()};
     std::string text;
     if (drawn_lines_ > 0) text += fmt::format("\x1b[{}A", drawn_lines_);  // up to where the last picture began
-    for (const std::string& line : lines) text += line + "\x1b[K\n";
+    for (const std::string& line : lines) text += line.substr(0, columns()) + "\x1b[K\n";
     text += "\x1b[J";
     drawn_lines_ = lines.size();
     std::cout << text << std::flush;

@@ -34,15 +34,17 @@ std::string driver(const pmg_msgs::status_t& status) {
 }
 
 std::string command_text(const double (&u)[kChannels]) {
-  return fmt::format(
-      "vx {:+.2f}  vy {:+.2f} m/s  omega {:+.2f} rad/s  pitch {:+.2f}  roll {:+.2f} rad  height {:+.3f} m", u[kVx],
-      u[kVy], u[kOmega], u[kPitch], u[kRoll], u[kHeight]);
+  return fmt::format("vx {:+.2f}  vy {:+.2f}  omega {:+.2f}  pitch {:+.2f}  roll {:+.2f}  h {:+.3f}", u[kVx], u[kVy],
+                     u[kOmega], u[kPitch], u[kRoll], u[kHeight]);
 }
 
-std::string limits_text(const pmg_msgs::status_t& status) {
+std::string limits_text(const RobotNews& news) {
+  const pmg_msgs::status_t& status = news.status;
   std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
                                  status.limited_torque);
+  if (news.reference && news.reference->command_limited) text += "; command";
   if (status.gco_held) text += "; ground-aware optimisation held";
+  if (status.policy_held) text += "; policy held";
   return text;
 }
 
@@ -61,10 +63,8 @@ std::string network_text(const pmg_msgs::link_t& link) {
 }
 
 std::string timing_text(const RobotNews& news) {
-  return fmt::format("wake-up p50 {:.0f} p99 {:.0f} us   tick p50 {:.0f} p99 {:.0f} us   missed ticks {}   {}",
-                     news.wake_us.percentile(50), news.wake_us.percentile(99), news.tick_us.percentile(50),
-                     news.tick_us.percentile(99), news.timing->missed_ticks,
-                     news.status.realtime ? "real-time" : "NOT real-time");
+  return fmt::format("wake-up p50 {:.0f} p99 {:.0f} us   tick p50 {:.0f} p99 {:.0f} us", news.wake_us.percentile(50),
+                     news.wake_us.percentile(99), news.tick_us.percentile(50), news.tick_us.percentile(99));
 }
 
 nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
@@ -97,10 +97,13 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   };
   std::string who = printable(status.robot);
   if (news.info) {
-    who += fmt::format("   model {}   policy {}   backend {}   bundle {:.12}", printable(news.info->model),
-                       printable(news.info->policy), printable(news.info->backend), printable(news.info->bundle));
+    who += fmt::format("   model {}   policy {}   backend {}", printable(news.info->model),
+                       printable(news.info->policy), printable(news.info->backend));
   }
   add("robot", who);
+  if (news.info) {
+    add("software", fmt::format("{}   bundle {:.12}", printable(news.info->software), printable(news.info->bundle)));
+  }
   add("mode", fmt::format("{}{}", mode_name(status.mode),
                           silence_s > kGone_s ? fmt::format("   NOT HEARD for {:.0f} s", silence_s) : ""));
   add("fault", status.fault.empty() ? "none" : printable(status.fault));
@@ -110,15 +113,19 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   if (news.reference) {
     const pmg_msgs::reference_t& reference = *news.reference;
     add("asked", command_text(reference.user));
-    add("u", command_text(reference.command) + (reference.command_limited ? "  limited" : ""));
+    add("u", command_text(reference.command));
     add("u'", command_text(reference.optimised));
     add("gait", fmt::format("phase {:.2f}   left {}   right {}", reference.phase, reference.contact[0] ? "##" : "..",
                             reference.contact[1] ? "##" : ".."));
   }
-  add("limited", limits_text(status));
+  add("limited", limits_text(news));
   if (const auto hot = hottest(news))
     add("hottest", fmt::format("{:.0f} degC at {}", hot->temperature_degC, hot->joint));
   if (news.timing) add("timing", timing_text(news));
+  if (news.timing)
+    add("lost",
+        fmt::format("ticks missed {}   ticks not logged {}", news.timing->missed_ticks, news.timing->dropped_records));
+  add("real-time", status.realtime ? "granted" : "NOT granted");
   if (news.link) add("messages", network_text(*news.link));
   if (news.info) {
     for (const std::string& refused : news.info->refused) add("refused", printable(refused));
@@ -140,6 +147,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"silence_s", silence_s},
       {"realtime", status.realtime != 0},
       {"gco_held", status.gco_held != 0},
+      {"policy_held", status.policy_held != 0},
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
   if (news.info) {
