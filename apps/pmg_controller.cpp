@@ -211,6 +211,7 @@ ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Con
     if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
   } catch (const std::exception& error) {
     failure = error.what();
+    controller.stop();  // before what its threads use goes away
   }
   recorder.close();
   if (!failure.empty()) spdlog::critical("{}", failure);

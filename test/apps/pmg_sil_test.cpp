@@ -161,6 +161,36 @@ TEST_F(PmgSil, MjcfIsExported) {
   EXPECT_THAT(text(file), HasSubstr("<mujoco"));
 }
 
+TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
+  const fs::path file = scenario(
+      "name: walk\nsteps:\n  - {for_s: 1.0, text: up, mode: stand}\n"
+      "  - {for_s: 1.5, text: walk, mode: walk, command: {vx_m_s: 0.4}}\n");
+  const Finished walk = run("--realtime --gantry --json --scenario " + file.string() + " --out " + out_folder());
+  const auto summary = nlohmann::json::parse(walk.out);
+  EXPECT_EQ(walk.exit_code, 0) << summary["faults"].dump();
+  // Ticks that ran; a shared host may have taken some.
+  EXPECT_GT(summary["duration_s"].get<double>(), 1.5);
+  EXPECT_LT(summary["duration_s"].get<double>(), 2.6);
+  EXPECT_GT(summary["reference_slip"]["before_mean_m_s"].get<double>(), 0.0) << "it walked";
+  EXPECT_GT(summary["timing_us"]["gco"]["p99"].get<double>(), 0.0);
+  EXPECT_GT(summary["punctuality"]["bus"]["wake_us"]["p99"].get<double>(), 0.0);
+  EXPECT_EQ(summary["punctuality"]["dropped_records"], 0);
+  EXPECT_EQ(summary["punctuality"]["realtime"].get<bool>(), summary["punctuality"]["refused"].empty());
+  int states = 0, timings = 0, truths = 0;
+  io::LogReader log(fs::path(out_folder()) / "log.lcm");
+  while (log.next()) {
+    states += log.channel() == "STATE" ? 1 : 0;
+    timings += log.channel() == "TIMING" ? 1 : 0;
+    truths += log.channel() == "GROUND_TRUTH" ? 1 : 0;
+  }
+  EXPECT_EQ(states, summary["punctuality"]["control"]["cycles"].get<int>());
+  EXPECT_EQ(timings, states);
+  EXPECT_EQ(truths, states);
+  const Finished film = run("--realtime --video --scenario " + file.string() + " --out " + out_folder());
+  EXPECT_EQ(film.exit_code, 2);
+  EXPECT_THAT(film.err, HasSubstr("--video"));
+}
+
 TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
   // Ten minutes of standing: long enough to be caught on any machine; the signal follows the first bytes of the log.
   const fs::path file = scenario("name: long\nsteps:\n  - {for_s: 600.0, text: stand, mode: stand}\n");
