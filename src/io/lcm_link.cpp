@@ -1,7 +1,6 @@
 #include "io/lcm_link.hpp"
 
 #include <chrono>
-#include <csignal>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -17,8 +16,6 @@ constexpr int kQueueCapacity = 200;
 
 LcmLink::LcmLink(const std::string& url) : url_(url), lcm_(nullptr, &lcm_destroy) {
   const std::string checked = checked_lcm_url(url);
-  // A relaying server that goes away must not take this process with it.
-  if (url.starts_with("tcpq")) std::signal(SIGPIPE, SIG_IGN);
   lcm_.reset(lcm_create(checked.c_str()));
   if (lcm_ == nullptr)
     throw std::runtime_error("LCM address \"" + url + "\": LCM does not open it; see its lines above");

@@ -3,15 +3,16 @@
 #include <arpa/inet.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -22,7 +23,7 @@ namespace {
 
 /// Bursts of 100 Hz topics and a flooded host: the kernel grants as much of it as net.core.rmem_max allows.
 constexpr const char* kReceiveBuffer = "recv_buf_size=4194304";
-constexpr int kServerAnswers_ms = 1000;
+constexpr int kServerAnswers_s = 1;
 
 struct Address {
   std::string host;
@@ -116,20 +117,24 @@ void check_multicast(const std::string& url, const Address& address) {
   require_multicast_route(url, group);
 }
 
-bool answers(const addrinfo& server) {
-  const Socket probe(server.ai_family, server.ai_socktype | SOCK_NONBLOCK);
-  if (probe.fd() < 0) return false;
-  if (::connect(probe.fd(), server.ai_addr, server.ai_addrlen) == 0) return true;
-  if (errno != EINPROGRESS) return false;
-  pollfd ready{probe.fd(), POLLOUT, 0};
-  int error = 0;
-  socklen_t size = sizeof(error);
-  return ::poll(&ready, 1, kServerAnswers_ms) == 1 &&
-         ::getsockopt(probe.fd(), SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+/// Connects and greets as liblcm does: whoever else listens there must not be taken for an LCM server.
+bool answers(const sockaddr_in& server) {
+  constexpr std::uint32_t kClientMagic = 0x287617fb, kServerMagic = 0x287617fa, kProtocolVersion = 0x0100;
+  const Socket probe(AF_INET, SOCK_STREAM);
+  const timeval patience{.tv_sec = kServerAnswers_s, .tv_usec = 0};
+  ::setsockopt(probe.fd(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));  // bounds connect() too
+  ::setsockopt(probe.fd(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  sockaddr address{};
+  std::memcpy(&address, &server, sizeof(server));
+  const std::array<std::uint32_t, 2> greeting = {htonl(kClientMagic), htonl(kProtocolVersion)};
+  std::uint32_t magic = 0;
+  return probe.fd() >= 0 && ::connect(probe.fd(), &address, sizeof(server)) == 0 &&
+         ::send(probe.fd(), greeting.data(), sizeof(greeting), MSG_NOSIGNAL) == sizeof(greeting) &&
+         ::recv(probe.fd(), &magic, sizeof(magic), MSG_WAITALL) == sizeof(magic) && ntohl(magic) == kServerMagic;
 }
 
-/// liblcm ends the process when nobody answers on a tcpq address.
-void require_server(const std::string& url, const Address& address) {
+/// The address with its host as a number: liblcm knows no names, and ends the process when nobody answers.
+std::string check_server(const std::string& url, const Address& address) {
   addrinfo hints{};
   hints.ai_family = AF_INET;  // all that liblcm tries
   hints.ai_socktype = SOCK_STREAM;
@@ -137,8 +142,13 @@ void require_server(const std::string& url, const Address& address) {
   if (::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found) != 0) {
     fail(url, "no host \"" + address.host + "\" is known");
   }
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> servers(found, &::freeaddrinfo);
-  if (!answers(*servers)) fail(url, "no LCM server answers there; start lcm-tcpq-server, or use a udpm:// address");
+  sockaddr_in server{};
+  std::memcpy(&server, found->ai_addr, sizeof(server));
+  ::freeaddrinfo(found);
+  if (!answers(server)) fail(url, "no LCM server answers there; start lcm-tcpq-server, or use a udpm:// address");
+  std::array<char, INET_ADDRSTRLEN> number{};
+  ::inet_ntop(AF_INET, &server.sin_addr, number.data(), number.size());
+  return "tcpq://" + std::string(number.data()) + ":" + std::to_string(address.port);
 }
 
 }  // namespace
@@ -162,7 +172,7 @@ std::string checked_lcm_url(const std::string& url) {
   const std::string_view options = question == std::string_view::npos ? std::string_view{} : rest.substr(question + 1);
   if (scheme != "udpm") {
     if (!options.empty()) refuse(url, "only udpm:// takes options");
-    if (scheme == "tcpq") require_server(url, parse_address(url, address));
+    if (scheme == "tcpq") return check_server(url, parse_address(url, address));
     if (scheme == "memq" && !address.empty()) refuse(url, "memq:// takes no address");
     return url;
   }

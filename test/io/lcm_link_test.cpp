@@ -7,8 +7,13 @@
 
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
@@ -93,9 +98,71 @@ TEST(LcmLink, AnEmptyNetworkNamespaceIsExplainedWithTheCommandThatMendsIt) {
   });
 }
 
+/// Listens on a TCP port of its own and greets whoever connects with these bytes.
+class FakeServer {
+ public:
+  explicit FakeServer(std::vector<std::uint8_t> greeting) : greeting_(std::move(greeting)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    sockaddr any{};
+    std::memcpy(&any, &address, size);
+    ::bind(listener_, &any, size);
+    ::getsockname(listener_, &any, &size);
+    std::memcpy(&address, &any, sizeof(address));
+    port_ = ntohs(address.sin_port);
+    ::listen(listener_, 8);
+    thread_ = std::thread([this] {
+      for (int client; (client = ::accept(listener_, nullptr, nullptr)) >= 0;) {
+        ::send(client, greeting_.data(), greeting_.size(), MSG_NOSIGNAL);
+        clients_.push_back(client);
+      }
+    });
+  }
+  ~FakeServer() { end(); }
+  FakeServer(const FakeServer&) = delete;
+  FakeServer& operator=(const FakeServer&) = delete;
+
+  std::string url() const { return "tcpq://localhost:" + std::to_string(port_); }
+  void end() {
+    if (!thread_.joinable()) return;
+    ::shutdown(listener_, SHUT_RDWR);
+    thread_.join();
+    ::close(listener_);
+    for (const int client : clients_) ::close(client);
+  }
+
+ private:
+  std::vector<std::uint8_t> greeting_;
+  std::vector<int> clients_;
+  int listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
+  int port_ = 0;
+  std::thread thread_;
+};
+
 TEST(LcmLink, ATcpqAddressWithoutItsServerIsRefusedInsteadOfEndingTheProcess) {
-  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback,
-                         [] { EXPECT_THAT(error_of("tcpq://127.0.0.1:7700"), HasSubstr("no LCM server answers")); });
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    EXPECT_THAT(error_of("tcpq://127.0.0.1:7700"), HasSubstr("no LCM server answers"));
+    const FakeServer silent({});
+    EXPECT_THAT(error_of(silent.url()), HasSubstr("no LCM server answers"));
+    const FakeServer other({'S', 'S', 'H', '-', '2', '.', '0', '-'});
+    EXPECT_THAT(error_of(other.url()), HasSubstr("no LCM server answers"));
+  });
+}
+
+TEST(LcmLink, ATcpqServerThatGoesAwayIsCountedAndEndsNothing) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    FakeServer server({0x28, 0x76, 0x17, 0xfa, 0, 0, 1, 0});
+    LcmLink link(server.url());
+    link.subscribe("COMMAND", [](Bytes) {});
+    EXPECT_TRUE(link.publish("STATUS", command(0.1)));
+    server.end();
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(link.receive(1), 0);
+    EXPECT_GE(link.receive_errors(), 1);
+    EXPECT_FALSE(link.publish("STATUS", command(0.1)));
+    EXPECT_GE(link.publish_errors(), 1);
+  });
 }
 
 TEST(LcmLink, AMessageArrivesOverMulticastOnLoopback) {
