@@ -1,6 +1,5 @@
 // pmg_sil: the controller against a MuJoCo simulation, playing a scenario in lockstep or with the robot's threads.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -11,9 +10,11 @@
 #include <optional>
 
 #include "hal/sil_hal.hpp"
+#include "progress_line.hpp"
 #include "runtime/control_setup.hpp"
 #include "runtime/controller_report.hpp"
 #include "runtime/film.hpp"
+#include "runtime/live_view.hpp"
 #include "runtime/lockstep.hpp"
 #include "runtime/realtime_run.hpp"
 #include "runtime/summary.hpp"
@@ -34,13 +35,13 @@ Example:
   pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
 
 Exit codes: 0 the scenario ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
-(what was done until then is kept).)";
+or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
   fs::path scenario, out, export_mjcf;
   std::uint64_t seed = 0;
-  bool gantry = false, realtime = false, video = false, json = false, print_config = false;
+  bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -61,7 +62,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
   CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
                                        "the robot's threads and the wall clock instead of lockstep; not reproducible");
-  app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)")->excludes(realtime);
+  CLI::Option* video = app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)")->excludes(realtime);
+  app.add_flag("--viewer", arguments.viewer, "watch the run in a window, at the speed of real time; Esc or q ends it")
+      ->excludes(video);
   app.add_option("--export-mjcf", arguments.export_mjcf, "write the robot's MuJoCo model to this file and exit");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
   app.add_flag("--json", arguments.json, "print summary.json on stdout instead of the short report");
@@ -87,23 +90,10 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   return json;
 }
 
-/// One line that renews itself, when somebody watches.
-class ProgressLine {
- public:
-  void after_tick(const runtime::RunProgress& progress) {
-    if (!watched_ || ++ticks_ % 50 != 0) return;
-    std::cerr << fmt::format("\r{:6.1f} / {:.1f} s  {:8} {:<60.60}", progress.time_s, progress.duration_s,
-                             runtime::to_string(progress.result.mode), progress.step.text)
-              << std::flush;
-  }
-  void end() const {
-    if (watched_) std::cerr << '\r' << std::string(90, ' ') << '\r' << std::flush;
-  }
-
- private:
-  bool watched_ = isatty(STDERR_FILENO) == 1;
-  std::int64_t ticks_ = 0;
-};
+void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
+  line.show(fmt::format("{:6.1f} / {:.1f} s  {:8} {}", progress.time_s, progress.duration_s,
+                        runtime::to_string(progress.result.mode), progress.step.text));
+}
 
 void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
   const runtime::TrackingSummary& tracking = outcome.tracking;
@@ -150,6 +140,8 @@ struct Stage {
   sim::World& world;
   io::LogWriter& log_file;
   runtime::Tick& tick;
+  runtime::LiveView* view;  // may be null
+  bool over() const { return interrupt_requested != 0 || (view != nullptr && view->closed()); }
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
 };
 
@@ -169,17 +161,18 @@ Played play_lockstep(const Stage& stage) {
   runtime::TickLog log(stage.log_file, robot, run_info(stage), rate_Hz);
   std::optional<runtime::Film> film;
   if (stage.arguments.video) film.emplace(stage.world, stage.arguments.out / "video.mp4");
-  ProgressLine progress;
+  apps::ProgressLine progress;
   runtime::Lockstep lockstep(
       robot, bus, plant, stage.tick, stage.scenario, &log,
       {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
-  lockstep.interrupted = [] { return interrupt_requested != 0; };
+  lockstep.interrupted = [&stage] { return stage.over(); };
   lockstep.after_tick = [&](const runtime::RunProgress& now) {
     if (film) film->after_tick(now);
-    progress.after_tick(now);
+    if (stage.view != nullptr) stage.view->after_tick(now);
+    show(progress, now);
   };
   const runtime::RunOutcome outcome = lockstep.run();
-  progress.end();
+  progress.clear();
   if (film) film->close();
   return {outcome, lockstep.timing(), nullptr};
 }
@@ -195,13 +188,19 @@ Played play_realtime(const Stage& stage) {
   info.realtime = controller.refused().empty();
   info.refused = controller.refused();
   runtime::TickLog log(stage.log_file, robot, info, rate_Hz);
-  ProgressLine progress;
+  apps::ProgressLine progress;
   runtime::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
                            !stage.balanced_by_policy() && !stage.arguments.gantry);
-  run.interrupted = [] { return interrupt_requested != 0; };
-  run.after_tick = [&](const runtime::RunProgress& now) { progress.after_tick(now); };
+  run.interrupted = [&] {
+    if (stage.view != nullptr) stage.view->draw(simulated);
+    return stage.over();
+  };
+  run.after_tick = [&](const runtime::RunProgress& now) {
+    if (stage.view != nullptr) stage.view->note(now);
+    show(progress, now);
+  };
   const runtime::RunOutcome outcome = run.run();
-  progress.end();
+  progress.clear();
   return {outcome, run.timing(), runtime::punctuality_json(controller)};
 }
 
@@ -217,11 +216,13 @@ int simulate(const Arguments& arguments) {
   }
   require(arguments.out, "--out");
   sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
+  std::optional<runtime::LiveView> view;
+  if (arguments.viewer) view.emplace(world, loaded.robot);
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
   const io::WallClock wall_clock;
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
-  const Stage stage{arguments, loaded, scenario, world, log_file, *tick};
+  const Stage stage{arguments, loaded, scenario, world, log_file, *tick, view ? &*view : nullptr};
 
   const std::int64_t start_ns = wall_clock.now_ns();
   const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);

@@ -1,31 +1,59 @@
 #include "sim/renderer.hpp"
 
 #include <GL/osmesa.h>
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "sim/scene.hpp"
+
 namespace pmg::sim {
 
 namespace {
 
-constexpr int kBaseBody = 1;  // body 0 is the world
-constexpr int kMaxGeoms = 2000;
+/// OSMesa, loaded by the first renderer: MuJoCo takes its OpenGL from the first such library that it finds in the
+/// process, and a window's (viewer.hpp) is another one. It stays loaded: MuJoCo keeps pointers into it.
+struct OsMesa {
+  decltype(&OSMesaCreateContextExt) create;
+  decltype(&OSMesaMakeCurrent) make_current;
+  decltype(&OSMesaDestroyContext) destroy;
 
-/// MuJoCo finds OSMesa by itself when it is linked and its context is current. It draws into a buffer of its own with
-/// antialiasing; the context's buffer only has to exist.
+  static const OsMesa& get() {
+    static const OsMesa library = load();
+    return library;
+  }
+
+ private:
+  static OsMesa load() {
+    void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) library = dlopen("libOSMesa.so", RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) throw std::runtime_error(std::string("OSMesa can't be loaded: ") + dlerror());
+    const auto find = [library]<typename Function>(Function*& function, const char* name) {
+      function = reinterpret_cast<Function*>(dlsym(library, name));
+      if (function == nullptr) throw std::runtime_error(std::string("OSMesa lacks ") + name);
+    };
+    OsMesa functions{};
+    find(functions.create, "OSMesaCreateContextExt");
+    find(functions.make_current, "OSMesaMakeCurrent");
+    find(functions.destroy, "OSMesaDestroyContext");
+    return functions;
+  }
+};
+
+/// MuJoCo draws into a buffer of its own with antialiasing; the context's buffer only has to exist.
 class GlContext {
  public:
-  GlContext() : context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr)) {
+  GlContext() : context_(OsMesa::get().create(OSMESA_RGBA, 24, 8, 0, nullptr)) {
     if (context_ == nullptr ||
-        OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == GL_FALSE) {
-      OSMesaDestroyContext(context_);
+        OsMesa::get().make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == GL_FALSE) {
+      OsMesa::get().destroy(context_);
       throw std::runtime_error("OSMesa gives no OpenGL context");
     }
   }
-  ~GlContext() { OSMesaDestroyContext(context_); }
+  ~GlContext() { OsMesa::get().destroy(context_); }
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
@@ -41,29 +69,20 @@ struct Renderer::Impl {
   Impl(const mjModel* mj_model, const RendererOptions& renderer_options)
       : options(renderer_options),
         model(mj_model),
+        scene(model),
         viewport{0, 0, options.width, options.height},
         rows(3 * pixels()),
         rgb(3 * pixels()) {
-    mjv_defaultOption(&visible);
-    std::fill(std::begin(visible.geomgroup), std::end(visible.geomgroup), mjtByte{0});
-    visible.geomgroup[0] = visible.geomgroup[1] = 1;  // the floor and the visual shapes
-    std::fill(std::begin(visible.sitegroup), std::end(visible.sitegroup), mjtByte{0});
-    mjv_defaultScene(&scene);
-    mjv_makeScene(model, &scene, kMaxGeoms);
     mjr_defaultContext(&context);
     mjr_makeContext(model, &context, mjFONTSCALE_150);
     mjr_setBuffer(mjFB_OFFSCREEN, &context);
-    scene.flags[mjRND_FOG] = 1;
     mjv_defaultCamera(&camera);
     camera.type = mjCAMERA_FREE;
     camera.distance = options.distance_m;
     camera.azimuth = options.azimuth_deg;
     camera.elevation = options.elevation_deg;
   }
-  ~Impl() {
-    mjr_freeContext(&context);
-    mjv_freeScene(&scene);
-  }
+  ~Impl() { mjr_freeContext(&context); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -72,7 +91,7 @@ struct Renderer::Impl {
   }
 
   void follow(const mjData* data) {
-    Eigen::Vector3d target = Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * kBaseBody);
+    Eigen::Vector3d target = Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * Scene::kBaseBody);
     const double elapsed_s = data->time - last_time_s.value_or(data->time);
     const bool first = !last_time_s || elapsed_s < 0.0;
     const double share = first ? 1.0 : 1.0 - std::exp(-elapsed_s / options.follow_s);
@@ -81,21 +100,10 @@ struct Renderer::Impl {
     last_time_s = data->time;
   }
 
-  void add(const Rope& rope) {
-    if (scene.ngeom >= scene.maxgeom) return;
-    constexpr double kRadius_m = 0.006;
-    constexpr float kColour[4] = {0.12F, 0.13F, 0.15F, 1.0F};
-    mjvGeom& geom = scene.geoms[scene.ngeom++];
-    mjv_initGeom(&geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, kColour);
-    const Eigen::Vector3d &a = rope.bottom_W, &b = rope.top_W;
-    mjv_makeConnector(&geom, mjGEOM_CAPSULE, kRadius_m, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
-  }
-
   RendererOptions options;
   const mjModel* model;
   GlContext gl;  // before everything that lives in it
-  mjvOption visible{};
-  mjvScene scene{};
+  Scene scene;
   mjvCamera camera{};
   mjrContext context{};
   mjrRect viewport;
@@ -112,9 +120,7 @@ const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::strin
                                                   const std::optional<Rope>& rope) {
   Impl& r = *impl_;
   r.follow(data);
-  mjv_updateScene(r.model, data, &r.visible, nullptr, &r.camera, mjCAT_ALL, &r.scene);
-  if (rope) r.add(*rope);
-  mjr_render(r.viewport, &r.scene, &r.context);
+  mjr_render(r.viewport, &r.scene.update(data, r.camera, rope), &r.context);
   if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, r.viewport, text.c_str(), nullptr, &r.context);
   mjr_readPixels(r.rows.data(), nullptr, r.viewport, &r.context);
   const std::size_t row = 3 * static_cast<std::size_t>(r.options.width);

@@ -1,0 +1,58 @@
+#include "runtime/live_view.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <thread>
+
+#include "runtime/mode.hpp"
+
+namespace pmg::runtime {
+
+LiveView::LiveView(sim::World& world, const model::RobotModel& robot)
+    : world_(world), robot_(robot), viewer_(world.mj_model(), {.title = "PMG: " + robot.name}) {}
+
+void LiveView::after_tick(const RunProgress& progress) {
+  constexpr int kTicksPerFrame = 2;
+  if (start_s_ < 0.0) {
+    start_s_ = progress.time_s;
+    start_ = std::chrono::steady_clock::now();
+  }
+  if (++ticks_ % kTicksPerFrame != 0) return;
+  const auto due = start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                std::chrono::duration<double>(progress.time_s - start_s_));
+  const auto now = std::chrono::steady_clock::now();
+  // A computer that draws slowly shows fewer frames; one that falls behind altogether starts counting anew.
+  constexpr std::chrono::milliseconds kBehind{50}, kLost{1000};
+  if (now - due > kLost) start_ += now - due;
+  if (now - due < kBehind || ticks_ % (10 * kTicksPerFrame) == 0) {
+    const mjModel& model = *world_.mj_model();
+    viewer_.show({world_.mj_data()->qpos, static_cast<std::size_t>(model.nq)}, text(progress), world_.gantry_rope());
+  }
+  std::this_thread::sleep_until(due);
+}
+
+void LiveView::note(const RunProgress& progress) {
+  std::string noted = text(progress);
+  const std::lock_guard lock(mutex_);
+  noted_ = std::move(noted);
+}
+
+void LiveView::draw(SimulatedRobot& robot) {
+  robot.take(pose_);
+  std::string noted;
+  {
+    const std::lock_guard lock(mutex_);
+    noted = noted_;
+  }
+  if (pose_.count > 0) viewer_.show({pose_.qpos.data(), pose_.count}, noted);
+}
+
+std::string LiveView::text(const RunProgress& progress) const {
+  const std::string fault =
+      progress.result.mode == Mode::kFault ? describe(progress.result.fault, robot_) : std::string();
+  return fmt::format("{:6.1f} s  {}\n{}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text,
+                     fault);
+}
+
+}  // namespace pmg::runtime

@@ -1,0 +1,33 @@
+// What a picture of a world shows, whoever draws it.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <optional>
+
+#include "sim/world.hpp"
+
+namespace pmg::sim {
+
+class Scene {
+ public:
+  static constexpr int kBaseBody = 1;  ///< the robot's base; body 0 is the world
+
+  explicit Scene(const mjModel* model);
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  /// The floor, the robot's visual shapes and the gantry's rope, as the camera sees them.
+  mjvScene& update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope);
+  mjvScene& last() { return scene_; }
+
+ private:
+  void add(const Rope& rope);
+
+  const mjModel* model_;
+  mjvOption visible_{};
+  mjvScene scene_{};
+};
+
+}  // namespace pmg::sim

@@ -1,0 +1,160 @@
+#include "sim/viewer.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim/scene.hpp"
+
+namespace pmg::sim {
+
+namespace {
+
+/// What the window system last complained of: GLFW tells it to a function, and only there before version 3.4.
+std::string& complaint() {
+  static std::string text;
+  return text;
+}
+void keep_complaint(int /*code*/, const char* description) { complaint() = description; }
+
+[[noreturn]] void refuse() {
+  throw std::runtime_error("no window can be opened: " + (complaint().empty() ? "no OpenGL" : complaint()) +
+                           "; a viewer needs a desktop (or use --video)");
+}
+
+class Window {
+ public:
+  explicit Window(const ViewerOptions& options) {
+    glfwSetErrorCallback(keep_complaint);
+    if (glfwInit() == GLFW_FALSE) refuse();
+    glfwWindowHint(GLFW_SAMPLES, 4);
+    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+    if (window_ == nullptr) {
+      glfwTerminate();
+      refuse();
+    }
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+  }
+  ~Window() {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+  }
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  GLFWwindow* get() const { return window_; }
+
+ private:
+  GLFWwindow* window_ = nullptr;
+};
+
+struct FreeData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+}  // namespace
+
+struct Viewer::Impl {
+  Impl(const mjModel* mj_model, const ViewerOptions& options)
+      : model(mj_model), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
+    mjr_defaultContext(&context);
+    mjr_makeContext(model, &context, mjFONTSCALE_150);
+    mjr_setBuffer(mjFB_WINDOW, &context);
+    mjv_defaultCamera(&camera);
+    camera.distance = 3.2;
+    camera.azimuth = 216.0;  // from the robot's front and left, as in films
+    camera.elevation = -9.0;
+    glfwSetWindowUserPointer(window.get(), this);
+    glfwSetKeyCallback(window.get(), on_key);
+    glfwSetScrollCallback(window.get(), on_scroll);
+    glfwSetCursorPosCallback(window.get(), on_move);
+  }
+  ~Impl() { mjr_freeContext(&context); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  static Impl& of(GLFWwindow* handle) { return *static_cast<Impl*>(glfwGetWindowUserPointer(handle)); }
+
+  static void on_key(GLFWwindow* handle, int key, int /*scancode*/, int action, int /*modifiers*/) {
+    if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q))
+      glfwSetWindowShouldClose(handle, GLFW_TRUE);
+  }
+  static void on_scroll(GLFWwindow* handle, double /*x*/, double y) {
+    constexpr double kPerNotch = -0.05;
+    Impl& viewer = of(handle);
+    mjv_moveCamera(viewer.model, mjMOUSE_ZOOM, 0.0, kPerNotch * y, &viewer.scene.last(), &viewer.camera);
+  }
+  static void on_move(GLFWwindow* handle, double x, double y) {
+    Impl& viewer = of(handle);
+    int width = 0, height = 0;
+    glfwGetWindowSize(handle, &width, &height);
+    const double dx = (x - viewer.mouse_x) / std::max(height, 1), dy = (y - viewer.mouse_y) / std::max(height, 1);
+    viewer.mouse_x = x;
+    viewer.mouse_y = y;
+    const auto pressed = [handle](int button) { return glfwGetMouseButton(handle, button) == GLFW_PRESS; };
+    const auto move = [&](mjtMouse how) {
+      mjv_moveCamera(viewer.model, how, dx, dy, &viewer.scene.last(), &viewer.camera);
+    };
+    if (pressed(GLFW_MOUSE_BUTTON_LEFT)) {
+      move(mjMOUSE_ROTATE_V);
+    } else if (pressed(GLFW_MOUSE_BUTTON_RIGHT)) {
+      move(mjMOUSE_MOVE_V);
+    }
+  }
+
+  /// Moves with the robot, and leaves what the user shifted as it is.
+  void follow() {
+    const mjtNum* base = data->xpos + 3 * Scene::kBaseBody;
+    for (int i = 0; i < 3; ++i) {
+      camera.lookat[i] += first ? base[i] - camera.lookat[i] : base[i] - followed[i];
+      followed[i] = base[i];
+    }
+    first = false;
+  }
+
+  const mjModel* model;
+  Window window;  // before everything that lives in its OpenGL context
+  std::unique_ptr<mjData, FreeData> data;
+  Scene scene;
+  mjrContext context{};
+  mjvCamera camera{};
+  double mouse_x = 0.0, mouse_y = 0.0;
+  double followed[3] = {};
+  bool first = true;
+  mjrRect viewport{};
+};
+
+Viewer::Viewer(const mjModel* model, const ViewerOptions& options) : impl_(std::make_unique<Impl>(model, options)) {}
+
+Viewer::~Viewer() = default;
+
+void Viewer::show(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope) {
+  Impl& v = *impl_;
+  if (closed()) return;
+  std::copy_n(qpos.begin(), std::min(qpos.size(), static_cast<std::size_t>(v.model->nq)), v.data->qpos);
+  mj_kinematics(v.model, v.data.get());
+  mj_comPos(v.model, v.data.get());
+  mj_camlight(v.model, v.data.get());
+  v.follow();
+  glfwGetFramebufferSize(v.window.get(), &v.viewport.width, &v.viewport.height);
+  mjr_render(v.viewport, &v.scene.update(v.data.get(), v.camera, rope), &v.context);
+  if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, v.viewport, text.c_str(), nullptr, &v.context);
+  glfwSwapBuffers(v.window.get());
+  glfwPollEvents();
+}
+
+bool Viewer::closed() const { return glfwWindowShouldClose(impl_->window.get()) == GLFW_TRUE; }
+
+std::vector<std::uint8_t> Viewer::pixels() {
+  Impl& v = *impl_;
+  std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(v.viewport.width) *
+                                static_cast<std::size_t>(v.viewport.height));
+  mjr_render(v.viewport, &v.scene.last(), &v.context);  // what was shown has gone to the screen
+  mjr_readPixels(rgb.data(), nullptr, v.viewport, &v.context);
+  return rgb;
+}
+
+}  // namespace pmg::sim

@@ -1,0 +1,45 @@
+// A window on a robot: MuJoCo's renderer on GLFW. Left button turns, right button shifts, wheel zooms; Esc or q closes.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/world.hpp"
+
+namespace pmg::sim {
+
+struct ViewerOptions {
+  int width = 1280, height = 800;  ///< of the window, in screen coordinates
+  std::string title = "PMG";
+};
+
+/// Belongs to the main thread, as the window system wants it. Draws from a copy of the positions, so the simulation may
+/// go on in another thread; model is only read. Not together with a Renderer in one process: MuJoCo keeps one OpenGL.
+class Viewer {
+ public:
+  /// Throws std::runtime_error, in one line, when no window can be opened (no display, no OpenGL).
+  explicit Viewer(const mjModel* model, const ViewerOptions& options = {});
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// One frame: the robot at qpos (the model's nq values), text over the top left corner. Handles mouse and keys; waits
+  /// for the screen's refresh where the driver does. Does nothing once closed.
+  void show(std::span<const double> qpos, const std::string& text = "", const std::optional<Rope>& rope = std::nullopt);
+  bool closed() const;  ///< by its user
+
+  /// The last frame without its text: RGB triples from the bottom left.
+  std::vector<std::uint8_t> pixels();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pmg::sim

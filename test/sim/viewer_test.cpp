@@ -1,0 +1,102 @@
+// The window, on a display if there is one, on Xvfb otherwise. An executable of its own: MuJoCo keeps the first OpenGL
+// that a process shows it, and the off-screen renderer's is another one.
+#include "sim/viewer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "robots.hpp"
+#include "sim/world.hpp"
+
+namespace pmg {
+namespace {
+
+/// A display for this process, or none. Xvfb writes its number once it is ready.
+class Display {
+ public:
+  Display() {
+    if (std::getenv("DISPLAY") != nullptr) return;
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return;
+    xvfb_ = fork();
+    if (xvfb_ == 0) {
+      close(ends[0]);
+      if (std::freopen("/dev/null", "w", stderr) == nullptr) _exit(126);
+      execlp("Xvfb", "Xvfb", "-displayfd", std::to_string(ends[1]).c_str(), "-screen", "0", "1280x1024x24", nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    std::string number;
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    close(ends[0]);
+    if (!number.empty()) setenv("DISPLAY", (":" + number).c_str(), 1);
+  }
+  ~Display() {
+    if (xvfb_ <= 0) return;
+    kill(xvfb_, SIGTERM);
+    waitpid(xvfb_, nullptr, 0);
+    unsetenv("DISPLAY");
+  }
+  Display(const Display&) = delete;
+  Display& operator=(const Display&) = delete;
+
+  static bool there() { return std::getenv("DISPLAY") != nullptr; }
+
+ private:
+  pid_t xvfb_ = 0;
+};
+
+std::span<const double> positions(sim::World& world) {
+  return {world.mj_data()->qpos, static_cast<std::size_t>(world.mj_model()->nq)};
+}
+
+std::size_t colours(const std::vector<std::uint8_t>& rgb) {
+  std::set<std::array<std::uint8_t, 3>> found;
+  for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) found.insert({rgb[i], rgb[i + 1], rgb[i + 2]});
+  return found.size();
+}
+
+TEST(Viewer, ShowsTheRobotInAWindow) {
+  const Display display;
+  if (!Display::there()) GTEST_SKIP() << "NOT TESTED: no display, and no Xvfb (package xvfb) to make one";
+  sim::World world(z1(), {});
+  sim::Viewer viewer(world.mj_model(), {.width = 320, .height = 240, .title = "test"});
+  viewer.show(positions(world), "Walk");
+  EXPECT_FALSE(viewer.closed());
+  const auto standing = viewer.pixels();
+  EXPECT_GE(standing.size(), 320U * 240U * 3U) << "more on a display of high density";
+  EXPECT_GT(colours(standing), 200U) << "sky, floor and a shaded robot";
+  // Another posture is another picture, though the simulation itself knows nothing of it.
+  std::vector<double> bent(positions(world).begin(), positions(world).end());
+  const int knee = mj_name2id(world.mj_model(), mjOBJ_JOINT, "left_knee");
+  ASSERT_GE(knee, 0);
+  bent[static_cast<std::size_t>(world.mj_model()->jnt_qposadr[knee])] += 1.0;
+  viewer.show(bent);
+  EXPECT_NE(viewer.pixels(), standing);
+}
+
+TEST(Viewer, SaysInOneLineThatThereIsNoDisplay) {
+  if (Display::there()) GTEST_SKIP() << "there is a display";
+  unsetenv("WAYLAND_DISPLAY");
+  sim::World world(z1(), {});
+  std::string message;
+  try {
+    sim::Viewer viewer(world.mj_model());
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  EXPECT_THAT(message, testing::HasSubstr("no window can be opened"));
+  EXPECT_THAT(message, testing::Not(testing::HasSubstr("\n")));
+}
+
+}  // namespace
+}  // namespace pmg
