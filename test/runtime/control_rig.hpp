@@ -106,6 +106,20 @@ class ControlRig {
     run(0.5);
   }
 
+  /// Bus cycles from the first one that carries what inject() does to the first one in which the drives are told to
+  /// damp; -1: none within a second.
+  int cycles_to_damping(const std::function<void()>& inject) {
+    const int first_cycle = cycles + 1;
+    inject();
+    int damped_in = 0;
+    after_cycle = [&] {
+      if (damped_in == 0 && bus.damping()) damped_in = cycles;
+    };
+    for (int k = 0; k < 500 && damped_in == 0; ++k) cycle();
+    after_cycle = nullptr;
+    return damped_in > 0 ? damped_in - first_cycle : -1;
+  }
+
   runtime::Mode mode() const { return tick.result().mode; }
   runtime::FaultCode fault() const { return tick.result().fault.code; }
 

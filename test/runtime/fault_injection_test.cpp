@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "control_rig.hpp"
-#include "generator_core/allocation_count.hpp"
 
 namespace pmg::runtime {
 namespace {
@@ -22,7 +21,6 @@ using test::ControlRig;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCyclesPerTick = 5;
-constexpr double kCycle_s = 0.002;
 
 const model::RobotModel& robot() { return test::biped(); }
 
@@ -69,12 +67,6 @@ void overrun(ControlRig& rig) {
   rig.control_delay_cycles = 2;
   rig.policy->meanwhile = [&rig] {
     for (int k = 0; k < 4; ++k) rig.world();
-  };
-}
-
-void block_the_policy(ControlRig& rig) {
-  rig.policy->meanwhile = [&rig] {
-    for (int k = 0; k < 6; ++k) rig.world();
   };
 }
 
@@ -142,22 +134,6 @@ struct Range {
   friend bool operator==(const Range&, const Range&) = default;
 };
 
-/// Bus cycles from the first one that carries the cause to the first one in which the drives are told to damp.
-int cycles_to_damping(ControlRig& rig, const std::function<void(ControlRig&)>& inject) {
-  const int first_cycle = rig.cycles + 1;
-  inject(rig);
-  for (int guard = 0; guard < 500; ++guard) {
-    int damped_in = 0;
-    rig.after_cycle = [&] {
-      if (damped_in == 0 && rig.bus.damping()) damped_in = rig.cycles;
-    };
-    rig.cycle();
-    rig.after_cycle = nullptr;
-    if (damped_in > 0) return damped_in - first_cycle;
-  }
-  return -1;
-}
-
 /// Whatever the moment between two ticks in which the cause appears.
 Range reaction_of(const Row& row) {
   Range range;
@@ -165,7 +141,7 @@ Range reaction_of(const Row& row) {
     ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
     rig.reach_walk();
     rig.align(moment);
-    const int cycles = cycles_to_damping(rig, row.inject);
+    const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
     EXPECT_GE(cycles, 0) << row.name << ": no reaction";
     range.least = std::min(range.least, cycles);
     range.most = std::max(range.most, cycles);
@@ -216,7 +192,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   const Row& row = GetParam();
   ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
   rig.reach_walk();
-  const int cycles = cycles_to_damping(rig, row.inject);
+  const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
   ASSERT_GE(cycles, 0);
   int undamped = 0, broken = 0;
   rig.after_cycle = [&] {
@@ -257,211 +233,23 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   rig.reach_walk();
 }
 
+TEST_P(FaultInjection, IsNoFaultInPassive) {
+  const Row& row = GetParam();
+  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  rig.run(0.1);
+  row.inject(rig);
+  int driven = 0;
+  rig.after_cycle = [&] { driven += rig.bus.last_command.kp.sum() == 0.0 ? 0 : 1; };
+  rig.run(0.2);
+  rig.after_cycle = nullptr;
+  heal(rig);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kPassive);
+  EXPECT_EQ(driven, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Table, FaultInjection, testing::ValuesIn(rows()),
                          [](const auto& row) { return std::string(row.param.name); });
-
-TEST(FaultInjectionBeside, AFrozenBusFindsADampingCommandWhenItReturns) {
-  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(robot());
-    rig.reach_walk();
-    rig.align(moment);
-    rig.bus_frozen = true;
-    rig.run(0.1);
-    rig.bus_frozen = false;
-    rig.cycle();
-    EXPECT_TRUE(rig.bus.damping());
-    EXPECT_EQ(rig.fault(), FaultCode::kStaleState);
-  }
-}
-
-TEST(FaultInjectionBeside, AHostThatStopsEverythingForAWhileIsNoFault) {
-  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(robot());
-    rig.reach_walk();
-    rig.align(moment);
-    rig.clock.advance_to(rig.clock.now_ns() + 150'000'000);
-    // The control thread may wake before the bus thread does.
-    rig.control_cycle.run(rig.clock.now_ns());
-    rig.run(0.5);
-    EXPECT_EQ(rig.mode(), Mode::kWalk);
-  }
-}
-
-TEST(FaultInjectionBeside, AStrangersStopBrakesInTheNextBusCycle) {
-  for (const Mode stop : {Mode::kDamping, Mode::kPassive}) {
-    for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-      ControlRig rig(robot());
-      rig.reach_walk();
-      rig.drive.command[kVx] = 0.3;
-      rig.run(1.0);
-      rig.align(moment);
-      EXPECT_EQ(cycles_to_damping(
-                    rig, [stop](ControlRig& stopped) { stopped.ask(Source::make("stranger", 77), stop, false); }),
-                0);
-      rig.after_cycle = [&] { EXPECT_TRUE(rig.bus.damping()); };
-      rig.run(0.2);
-      EXPECT_EQ(rig.mode(), Mode::kDamping);
-    }
-  }
-}
-
-TEST(FaultInjectionBeside, AStopBrakesEvenWhenNobodyReadsIt) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  rig.control_frozen = true;
-  for (int k = 0; k < 100; ++k) rig.ask(Mode::kStand);  // a flood that fills the queue
-  EXPECT_EQ(cycles_to_damping(rig, [](ControlRig& stopped) { stopped.ask(Mode::kDamping); }), 0);
-  rig.control_frozen = false;
-  rig.run(0.2);
-  EXPECT_EQ(rig.mode(), Mode::kDamping);
-}
-
-TEST(FaultInjectionBeside, AStopThatIsRepeatedUntilItIsAcknowledgedMakesNoRobotLimp) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  for (int k = 0; k < 20; ++k) {
-    rig.inbox.put(ModeRequest{.source = Source::make("stop", 1),
-                              .sequence = 5,
-                              .stamp_ns = rig.clock.now_ns(),
-                              .received_ns = rig.clock.now_ns(),
-                              .mode = Mode::kPassive});
-    rig.run(0.02);
-    EXPECT_EQ(rig.mode(), Mode::kDamping) << "limp only when told twice, and a repetition is no second time";
-  }
-  rig.ask(Mode::kPassive);
-  rig.run(0.02);
-  EXPECT_EQ(rig.mode(), Mode::kPassive);
-}
-
-TEST(FaultInjectionBeside, AKilledCommandSourceEndsInStandWithinItsTime) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  rig.drive.command[kVx] = 0.4;
-  rig.run(3.0);
-  ASSERT_GT(rig.tick.result().reference.gain, 0.5);
-  rig.silent = true;
-  rig.run(0.2);
-  EXPECT_EQ(rig.mode(), Mode::kWalk);
-  // Half a second to stop, and two ticks: one notices, one changes the mode.
-  rig.run(0.52);
-  EXPECT_EQ(rig.mode(), Mode::kStand);
-  EXPECT_NEAR(rig.tick.result().reference.gain, 0.0, 1e-9);
-  EXPECT_FALSE(rig.bus.damping()) << "it stands";
-  rig.silent = false;
-  rig.run(0.5);
-  EXPECT_EQ(rig.mode(), Mode::kStand) << "and walks only when asked again";
-  rig.ask(Mode::kWalk);
-  rig.run(0.1);
-  EXPECT_EQ(rig.mode(), Mode::kWalk);
-}
-
-TEST(FaultInjectionBeside, AnOperatorsNanIsIgnoredAndCounted) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  rig.drive.command[kVx] = 0.2;
-  rig.run(0.1);
-  Command good = rig.tick.result().user;
-  rig.drive.command[kPitch] = kNan;
-  rig.after_cycle = [&] { EXPECT_TRUE(rig.bus.finite()); };
-  rig.run(0.1);
-  EXPECT_EQ(rig.tick.result().ignored.not_finite, 10);
-  EXPECT_EQ(rig.tick.result().user, good);
-  EXPECT_EQ(rig.mode(), Mode::kWalk);
-  rig.run(1.0);
-  EXPECT_EQ(rig.mode(), Mode::kStand) << "nonsense is no sign of life";
-}
-
-TEST(FaultInjectionBeside, ASingleLateTickIsCountedAndNoFault) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  for (int k = 0; k < 10; ++k) {
-    rig.policy->meanwhile = [&rig, left = 2]() mutable {
-      for (int cycle = 0; cycle < 6 && left > 0; ++cycle) rig.world();
-      --left;
-    };
-    rig.run(0.1);
-  }
-  EXPECT_EQ(rig.mode(), Mode::kWalk);
-  EXPECT_EQ(rig.tick.result().late_ticks, 20);
-}
-
-TEST(FaultInjectionBeside, APolicyThatBlocksIsNamedAndNotTheOverrunThatItCauses) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  ASSERT_GE(cycles_to_damping(rig, block_the_policy), 0);
-  EXPECT_EQ(rig.fault(), FaultCode::kStalePolicy);
-}
-
-TEST(FaultInjectionBeside, ALatePolicysLastTargetIsHeldFirst) {
-  ControlRig rig(robot());
-  rig.reach_walk();
-  rig.drive.command[kVx] = 0.3;
-  rig.run(0.5);
-  rig.align(0);
-  rig.run(kCycle_s);
-  const JointVector held = rig.bus.last_command.q;
-  rig.policy->how = BreakablePolicy::Break::kLate;
-  for (int tick = 0; tick < 2; ++tick) {
-    rig.run(kCyclesPerTick * kCycle_s);
-    EXPECT_TRUE(rig.tick.result().policy_held);
-    EXPECT_EQ(rig.bus.last_command.q, held);
-    EXPECT_EQ(rig.mode(), Mode::kWalk);
-  }
-  rig.policy->how = BreakablePolicy::Break::kNone;
-  rig.run(1.0);
-  EXPECT_FALSE(rig.tick.result().policy_held);
-  EXPECT_EQ(rig.mode(), Mode::kWalk);
-}
-
-TEST(FaultInjectionBeside, NothingIsAFaultInPassive) {
-  for (const Row& row : rows()) {
-    ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
-    rig.run(0.1);
-    row.inject(rig);
-    rig.after_cycle = [&] { EXPECT_EQ(rig.bus.last_command.kp.sum(), 0.0); };
-    rig.run(0.2);
-    rig.after_cycle = nullptr;
-    heal(rig);
-    rig.run(0.1);
-    EXPECT_EQ(rig.mode(), Mode::kPassive) << row.name;
-  }
-}
-
-TEST(FaultInjectionBeside, NoCycleOfEitherThreadUsesTheHeap) {
-  if (test::allocation_count() < 0) GTEST_SKIP() << "allocations can't be counted in this build";
-  ControlRig rig(robot());
-  rig.drive.command = Command{{0.2, 0.1, 0.1, 0.1, 0.05, -0.02}};
-  const auto run = [&](double duration_s) { rig.run(duration_s); };
-  const long before = test::allocation_count();
-  rig.ask(Mode::kWalk);
-  run(3.0);
-  rig.ask(Mode::kStand);
-  run(1.0);
-  rig.ask(Source::make("stranger", 1), Mode::kDamping, false);
-  run(0.1);
-  rig.ask(Mode::kWalk);
-  run(1.0);
-  rig.policy->how = BreakablePolicy::Break::kNan;
-  run(0.1);
-  rig.policy->how = BreakablePolicy::Break::kNone;
-  rig.reset();
-  run(0.1);
-  rig.bus.status = hal::BusStatus::kStale;
-  run(0.1);
-  rig.control_frozen = true;
-  run(0.1);
-  EXPECT_EQ(test::allocation_count(), before);
-  rig.control_frozen = false;
-  rig.bus.status = hal::BusStatus::kOk;
-  run(0.1);
-  rig.reset();
-  rig.ask(Mode::kWalk);
-  rig.policy->how = BreakablePolicy::Break::kHeap;
-  run(1.0);
-  rig.ask(Mode::kWalk);
-  run(1.0);
-  EXPECT_GT(test::allocation_count(), before + 50) << "the count must see one that does";
-}
 
 }  // namespace
 }  // namespace pmg::runtime

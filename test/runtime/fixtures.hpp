@@ -90,7 +90,7 @@ class BreakablePolicy final : public policy::Policy {
     q_des = reference.q;
     if (how == Break::kNan) q_des[0] = std::numeric_limits<double>::quiet_NaN();
     if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
-    if (how == Break::kFarAction) q_des[3] += 0.8;
+    if (how == Break::kFarAction) q_des[3] += runtime::ActionMonitorOptions{}.bound_rad + 0.1;
     if (how == Break::kLate) q_des.setConstant(9.0);  // what a late policy leaves there must not count
     if (how == Break::kLate) return policy::Status::kLate;
     return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;
