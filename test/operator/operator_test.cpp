@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,10 @@ class OperatorTest : public testing::Test {
  protected:
   OperatorTest() {
     network_.link.subscribe("MODE", [this](io::Bytes) { ++requests_sent_; });
+    network_.link.subscribe("COMMAND", [this](io::Bytes bytes) {
+      if (const auto command = io::decode_message<pmg_msgs::command_t>(bytes))
+        speeds_sent_m_s_.push_back(command->vx_m_s);
+    });
     for (int k = 0; k < 3; ++k) network_.advance();
   }
   Progress ask(Goal goal, const std::string& robot = "biped") {
@@ -50,6 +55,7 @@ class OperatorTest : public testing::Test {
   OperatorSource mine_{network_.link, "pmg_send.1", 1, network_.clock};
   OperatorSource other_{network_.link, "gamepad", 1, network_.clock};
   int requests_sent_ = 0;
+  std::vector<double> speeds_sent_m_s_;
   std::vector<Answer> answers_;
   double elapsed_s_ = 0.0;
 };
@@ -172,6 +178,9 @@ TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
   EXPECT_EQ(progress, Progress::kReached) << drive.text();
   EXPECT_NEAR(drive.driven_s(), 2.0, 0.011);
   EXPECT_NEAR(fastest, 0.3, 1e-6);
+  EXPECT_EQ(speeds_sent_m_s_.front(), 0.0) << "it climbs at rest";
+  EXPECT_NEAR(static_cast<double>(std::ranges::count(speeds_sent_m_s_, 0.3)), 100.0, 2.0) << "50 Hz";
+  EXPECT_THAT(std::vector(speeds_sent_m_s_.end() - 25, speeds_sent_m_s_.end()), testing::Each(0.0)) << "and calms";
   EXPECT_EQ(robot_.result().mode, Mode::kStand);
   EXPECT_EQ(robot_.result().reference.command[kVx], 0.0);
   network_.advance();
