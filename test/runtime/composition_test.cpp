@@ -1,0 +1,137 @@
+// All threads of pmg_controller and of pmg_sil --realtime together: what ThreadSanitizer has to see.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "io/lcm_link.hpp"
+#include "io/log_reader.hpp"
+#include "pmg_msgs/command_t.hpp"
+#include "pmg_msgs/mode_t.hpp"
+#include "runtime/comms.hpp"
+#include "runtime/realtime_run.hpp"
+#include "runtime/recorder.hpp"
+#include "runtime/threaded_controller.hpp"
+
+namespace pmg::runtime {
+namespace {
+
+using test::ThreadedRobot;
+
+class Composition : public testing::Test {
+ protected:
+  ~Composition() override { std::filesystem::remove_all(folder_); }
+  std::map<std::string, int> events(const std::filesystem::path& file) {
+    std::map<std::string, int> counts;
+    io::LogReader reader(file);
+    while (reader.next()) ++counts[reader.channel()];
+    return counts;
+  }
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("pmg_composition_test_" + std::to_string(getpid()));
+};
+
+/// An operator on the controller's own network: memq hears itself. Speaks in the comms thread, between its steps.
+struct NetworkOperator {
+  explicit NetworkOperator(io::LcmLink& network) : link(network) {
+    drive.version = pmg_msgs::command_t::VERSION;
+    request.version = pmg_msgs::mode_t::VERSION;
+    drive.robot = request.robot = "z1";
+    drive.source = request.source = "test";
+    drive.session = request.session = 1;
+    drive.lease_s = 0.5;
+    drive.vx_m_s = 0.3;
+  }
+  void speak() {
+    drive.stamp_ns = request.stamp_ns = clock.now_ns();
+    if (drive.stamp_ns < next_ns) return;
+    next_ns = drive.stamp_ns + 20'000'000;
+    ++drive.sequence;
+    ++request.sequence;
+    request.mode = wanted;
+    link.publish("COMMAND", drive);
+    link.publish("MODE", request);
+  }
+  io::WallClock clock;
+  io::LcmLink& link;
+  std::int64_t next_ns = 0;
+  std::atomic<std::int8_t> wanted{pmg_msgs::mode_t::PASSIVE};
+  pmg_msgs::command_t drive{};
+  pmg_msgs::mode_t request{};
+};
+
+TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
+  ThreadedRobot run(test::z1());
+  const RunInfo info{.robot = "z1", .session = 7, .realtime = run.controller.refused().empty()};
+  io::LcmLink link("memq://");
+  Comms comms(link, run.controller.inbox(), run.controller.outbox(), test::z1(), info, 100.0, run.clock);
+  NetworkOperator human(link);
+  Recorder recorder(run.controller.outbox(), test::z1(), info, run.clock, {.directory = folder_}, [](const auto&) {});
+  recorder.after_record = [&](const TickRecord& record) {
+    const TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
+    if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
+  };
+  run.controller.start(
+      [&] {
+        human.speak();
+        comms.step(5);
+      },
+      [&] { recorder.drain(); });
+  human.wanted = pmg_msgs::mode_t::WALK;
+  ASSERT_TRUE(run.sees(Mode::kWalk));
+  run.bus.lost = true;
+  ASSERT_TRUE(run.sees(Mode::kFault));
+  EXPECT_TRUE(run.controller.stop());
+  recorder.close();
+  EXPECT_EQ(run.controller.failure(), "");
+  EXPECT_EQ(recorder.written(), run.controller.control_statistics().cycles());
+  EXPECT_EQ(recorder.lost(), 0);
+  const std::map<std::string, int> logged = events(recorder.file());
+  EXPECT_EQ(logged.at("FAULT"), 1);
+  EXPECT_EQ(logged.at("STATUS"), recorder.written());
+  EXPECT_EQ(recorder.flight().written(), 1) << "the flight recorder's file";
+}
+
+TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
+  std::filesystem::create_directories(folder_);
+  ThreadedRobot run(test::z1());
+  Scenario scenario{.name = "walk", .steps = {}};
+  scenario.steps.push_back({.start_s = 0.0, .duration_s = 0.8, .text = "stand", .mode = Mode::kStand, .command = {}});
+  scenario.steps.push_back({.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = Mode::kWalk, .command = {}});
+  scenario.steps.back().command[kVx] = 0.4;
+  io::LogWriter writer(folder_ / "log.lcm");
+  const RunInfo info{.robot = "z1"};
+  TickLog log(writer, test::z1(), info, 100.0);
+  RealtimeRun play(test::z1(), run.robot, run.controller, scenario, &log, false);
+  std::atomic<int> observed{0};
+  play.after_tick = [&](const RunProgress&) { ++observed; };
+  const RunOutcome outcome = play.run();
+  writer.flush();
+  EXPECT_FALSE(outcome.interrupted);
+  EXPECT_FALSE(outcome.fell);
+  EXPECT_TRUE(outcome.faults.empty());
+  EXPECT_NEAR(outcome.duration_s, 0.01 * observed, 1e-9);
+  EXPECT_NEAR(outcome.hoisted_s, outcome.duration_s, 1e-6);
+  EXPECT_EQ(events(folder_ / "log.lcm").at("GROUND_TRUTH"), run.controller.control_statistics().cycles());
+}
+
+TEST_F(Composition, AnInterruptedScenarioKeepsWhatWasDone) {
+  ThreadedRobot run(test::z1());
+  Scenario scenario{.name = "long", .steps = {}};
+  scenario.steps.push_back({.start_s = 0.0, .duration_s = 600.0, .text = "stand", .mode = Mode::kStand, .command = {}});
+  RealtimeRun play(test::z1(), run.robot, run.controller, scenario, nullptr, false);
+  std::atomic<int> observed{0};
+  play.after_tick = [&](const RunProgress&) { ++observed; };
+  play.interrupted = [&] { return observed > 10; };
+  const RunOutcome outcome = play.run();
+  EXPECT_TRUE(outcome.interrupted);
+  EXPECT_GT(outcome.duration_s, 0.1);
+  EXPECT_EQ(run.bus.last_kp_sum, 0.0);
+}
+
+}  // namespace
+}  // namespace pmg::runtime
