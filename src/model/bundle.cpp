@@ -42,14 +42,18 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-std::string hash_of_file(const fs::path& path) {
+void add_file(const fs::path& path, Sha256& hash) {
   std::ifstream file(path, std::ios::binary);
-  Sha256 hash;
   std::array<char, 65536> block{};
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
     hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
   }
   if (!file.is_open() || file.bad()) raise({path.string()}, "", "can't be read", "a readable file");
+}
+
+std::string hash_of_file(const fs::path& path) {
+  Sha256 hash;
+  add_file(path, hash);
   return hash.hex();
 }
 
@@ -90,6 +94,18 @@ Bundle bundle(const RobotModel& robot, const fs::path& clips, const std::vector<
   for (const auto& [name, sha256] : result.files) hash.add(fmt::format("{}  {}\n", sha256, name));
   result.sha256 = hash.hex();
   return result;
+}
+
+std::string clip_library_sha256(const fs::path& clips) {
+  std::vector<fs::path> files = clip_library_files(clips);
+  std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
+  Sha256 hash;
+  for (const fs::path& file : files) {
+    std::error_code unreadable;  // add_file says it
+    hash.add(fmt::format("{}\n{}\n", file.filename().string(), fs::file_size(file, unreadable)));
+    add_file(file, hash);
+  }
+  return hash.hex();
 }
 
 }  // namespace pmg::model

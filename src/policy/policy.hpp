@@ -26,6 +26,9 @@ class Policy {
   /// The gains that the policy was trained with; nothing: robot.yaml's. Asked once, before the first act().
   virtual std::optional<DriveGains> gains() const { return std::nullopt; }
 
+  /// Largest |q_des - q_ref| that the policy gives while it is in its element [rad]; nothing: the monitor's own bound.
+  virtual std::optional<double> action_bound_rad() const { return std::nullopt; }
+
   /// Forgets its history. On every entry into Stand, before the first act().
   virtual void reset() noexcept {}
 

@@ -48,6 +48,11 @@ policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::
   return *gains;
 }
 
+ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy::Policy& policy) {
+  options.bound_rad = policy.action_bound_rad().value_or(options.bound_rad);
+  return options;
+}
+
 bool finite(const Command& command) noexcept {
   return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
 }
@@ -80,7 +85,7 @@ Tick::Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
-      action_monitor_(options.action_monitor),
+      action_monitor_(monitor_options(options.action_monitor, *policy_)),
       target_(robot.q_stand()) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();

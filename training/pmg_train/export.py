@@ -20,6 +20,7 @@ from pmg_train.robot import policy_gains
 OPSET, IR_VERSION = 17, 8  # ONNX Runtime 1.21 reads IR 10 and below
 GOLDEN_PAIRS = 8
 GOLDEN_TOLERANCE = 1e-4
+ACTION_LIMIT = 4.0  # the environment's clamp
 
 
 def clip_library_hash(robot: Path) -> str:
@@ -51,7 +52,7 @@ def graph_of(actor: dict[str, torch.Tensor]) -> onnx.ModelProto:
         if not last:
             nodes.append(helper.make_node("Elu", [out], [f"e{i}"]))
             value = f"e{i}"
-    constants["action_low"], constants["action_high"] = np.array(-4.0), np.array(4.0)
+    constants["action_low"], constants["action_high"] = np.array(-ACTION_LIMIT), np.array(ACTION_LIMIT)
     nodes.append(helper.make_node("Clip", ["raw", "action_low", "action_high"], ["action"]))
     initializers = [numpy_helper.from_array(v.astype(np.float32), k) for k, v in constants.items()]
     actions = constants[f"b{len(layers) - 1}"].shape[0]
@@ -79,7 +80,7 @@ def golden(model: onnx.ModelProto, actor: dict[str, torch.Tensor], seed: int = 1
             h = weights[f"w{i}"] @ h + weights[f"b{i}"]
             if i < layers - 1:
                 h = np.where(h > 0, h, np.expm1(np.minimum(h, 0)))
-        pairs.append({"observation": [float(x) for x in seen], "action": [float(x) for x in np.clip(h, -4, 4)]})
+        pairs.append({"observation": [float(x) for x in seen], "action": [float(x) for x in np.clip(h, -ACTION_LIMIT, ACTION_LIMIT)]})
     return pairs
 
 
@@ -89,7 +90,7 @@ def metadata(checkpoint: dict, robot: Path) -> dict:
     names = [j["name"] for j in description["joints"]]
     return {
         "format": 1, "robot": description["robot"], "variant": checkpoint["variant"],
-        "joints": names, "action_joints": description["action_joints"], "action_scale": config["action_scale"],
+        "joints": names, "action_joints": description["action_joints"], "action_scale": config["action_scale"], "action_limit": ACTION_LIMIT,
         "observation": description["observation"], "stand_rad": [j["stand_rad"] for j in description["joints"]],
         "kp_Nm_per_rad": kp.tolist(), "kd_Nm_s_per_rad": kd.tolist(),
         "policy_rate_Hz": round(1 / config["tick_s"]), "clip_library_sha256": clip_library_hash(robot),

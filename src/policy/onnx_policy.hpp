@@ -1,0 +1,35 @@
+// A trained policy in ONNX Runtime: residual actions on the policy joints (paper III-B).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "policy/policy.hpp"
+#include "policy/policy_metadata.hpp"
+
+namespace pmg::policy {
+
+class OnnxPolicy final : public Policy {
+ public:
+  /// Loads, checks the metadata against the robot (policy_metadata.hpp) and the network's shape, and replays the golden
+  /// pairs. Throws std::invalid_argument "FILE: what differs; expected what".
+  OnnxPolicy(const std::filesystem::path& file, const model::RobotModel& robot, const std::string& clip_library_sha256,
+             double control_rate_Hz = 100.0);
+  ~OnnxPolicy() override;
+
+  const PolicyMetadata& metadata() const;
+  std::optional<DriveGains> gains() const override;
+  std::optional<double> action_bound_rad() const override;
+  void reset() noexcept override;
+
+  /// One thread, inputs and outputs bound beforehand; ONNX Runtime allocates a constant few times in it.
+  Status act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
+             JointVector& q_des) noexcept override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pmg::policy

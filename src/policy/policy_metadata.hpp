@@ -1,0 +1,32 @@
+// What an ONNX policy says of itself (metadata key "pmg_policy", JSON), checked against the robot it is to drive.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/robot_model.hpp"
+#include "policy/policy.hpp"
+
+namespace pmg::policy {
+
+/// An observation and the action that training computed for it: replayed when a policy is loaded.
+struct GoldenPair {
+  std::vector<float> observation, action;
+};
+
+struct PolicyMetadata {
+  std::string robot, variant;
+  double action_scale = 0.0;  ///< q_des = q_ref + action_scale * action on the policy joints [rad]
+  double action_limit = 0.0;  ///< the network's outputs are clamped to +- this
+  DriveGains gains;
+  double golden_tolerance = 0.0;
+  std::vector<GoldenPair> golden;  ///< at least one
+};
+
+/// Parses and checks. clip_library_sha256: of the library that the generator plays. Throws std::invalid_argument that
+/// says what differs and what was expected: format, robot, joints in and out, observation layout (term by term),
+/// standing posture, gains, rate, clip library, golden pairs.
+PolicyMetadata parse_policy_metadata(const std::string& json, const model::RobotModel& robot,
+                                     const std::string& clip_library_sha256, double control_rate_Hz);
+
+}  // namespace pmg::policy
