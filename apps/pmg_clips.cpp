@@ -18,6 +18,7 @@
 #include "model/clip_library_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
+#include "progress_line.hpp"
 
 namespace {
 
@@ -62,12 +63,14 @@ void require_writable(const std::filesystem::path& directory) {
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   require_writable(out);  // now, not after a minute's work
-  const ClipLibrary library = generator::synthesize(robot, [](const std::string& clip) {
+  apps::ProgressLine progress;
+  const ClipLibrary library = generator::synthesize(robot, [&progress](const std::string& clip) {
     if (interrupted != 0) {
       throw Interrupted{};
     }
-    std::cerr << "making " << clip << "\n";
+    progress.show("making " + clip);
   });
+  progress.clear();
   std::filesystem::create_directories(out);
   write_library(out, library, robot);
   return 0;

@@ -7,9 +7,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "logs/run_figures.hpp"
+#include "logs/run_report.hpp"
 #include "progress_line.hpp"
-#include "runtime/run_figures.hpp"
-#include "runtime/run_report.hpp"
 
 namespace {
 
@@ -37,11 +37,11 @@ struct Arguments {
 volatile std::sig_atomic_t interrupt_requested = 0;
 void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
-std::vector<runtime::RunSeries> read(const std::vector<fs::path>& logs) {
-  std::vector<runtime::RunSeries> runs;
+std::vector<logs::RunSeries> read(const std::vector<fs::path>& logs) {
+  std::vector<logs::RunSeries> runs;
   apps::ProgressLine progress;
   for (const fs::path& log : logs) {
-    runs.push_back(runtime::read_run(log, [&](double share) {
+    runs.push_back(logs::read_run(log, [&](double share) {
       progress.show(share, "reading " + log.string());
       return interrupt_requested == 0;
     }));
@@ -49,27 +49,27 @@ std::vector<runtime::RunSeries> read(const std::vector<fs::path>& logs) {
   return runs;
 }
 
-void tell(const Arguments& arguments, const std::vector<runtime::RunSeries>& runs) {
+void tell(const Arguments& arguments, const std::vector<logs::RunSeries>& runs) {
   if (arguments.json) {
     nlohmann::ordered_json json = {{"report", arguments.out.string()}, {"runs", nlohmann::ordered_json::array()}};
-    for (const runtime::RunSeries& run : runs) json["runs"].push_back(runtime::run_json(run));
+    for (const logs::RunSeries& run : runs) json["runs"].push_back(logs::run_json(run));
     std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     return;
   }
-  for (const runtime::RunSeries& run : runs) {
-    std::cout << runtime::verdict(run) << '\n';
+  for (const logs::RunSeries& run : runs) {
+    std::cout << logs::verdict(run) << '\n';
     for (const std::string& problem : run.problems) std::cout << "  " << problem << '\n';
   }
   std::cout << fmt::format("report in {}\n", arguments.out.string());
 }
 
 int report(const Arguments& arguments) {
-  if (arguments.logs.size() > runtime::kMostRuns) {
+  if (arguments.logs.size() > logs::kMostRuns) {
     throw std::invalid_argument(
-        fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), runtime::kMostRuns));
+        fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), logs::kMostRuns));
   }
-  const std::vector<runtime::RunSeries> runs = read(arguments.logs);
-  runtime::run_report(runs).write(arguments.out);
+  const std::vector<logs::RunSeries> runs = read(arguments.logs);
+  logs::run_report(runs).write(arguments.out);
   tell(arguments, runs);
   if (interrupt_requested != 0) return kInterrupted;
   return std::ranges::all_of(runs, [](const auto& run) { return run.problems.empty(); }) ? kOk : kIncomplete;

@@ -22,12 +22,13 @@ void LiveView::after_tick(const RunProgress& progress) {
   const auto due = start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                 std::chrono::duration<double>(progress.time_s - start_s_));
   const auto now = std::chrono::steady_clock::now();
-  // A computer that draws slowly shows fewer frames; one that falls behind altogether starts counting anew.
-  constexpr std::chrono::milliseconds kBehind{50}, kLost{1000};
+  // A computer that draws slowly shows fewer frames, but some; one that falls behind altogether starts counting anew.
+  constexpr std::chrono::milliseconds kBehind{50}, kLongestWait{500}, kLost{1000};
   if (now - due > kLost) start_ += now - due;
-  if (now - due < kBehind || ticks_ % (10 * kTicksPerFrame) == 0) {
+  if (now - due < kBehind || now - last_frame_ > kLongestWait) {
     const mjModel& model = *world_.mj_model();
     viewer_.show({world_.mj_data()->qpos, static_cast<std::size_t>(model.nq)}, text(progress), world_.gantry_rope());
+    last_frame_ = std::chrono::steady_clock::now();
   }
   std::this_thread::sleep_until(due);
 }

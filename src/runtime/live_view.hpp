@@ -34,7 +34,7 @@ class LiveView {
   sim::World& world_;
   const model::RobotModel& robot_;
   sim::Viewer viewer_;
-  std::chrono::steady_clock::time_point start_{};
+  std::chrono::steady_clock::time_point start_{}, last_frame_{};
   double start_s_ = -1.0;  // of the run's time; negative: not yet begun
   std::int64_t ticks_ = 0;
   PoseSample pose_;

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/running_program.hpp"
-#include "runtime/small_log.hpp"
+#include "logs/small_log.hpp"
 
 namespace pmg {
 namespace {
@@ -73,8 +73,8 @@ TEST_F(PmgReport, RefusesBadInputInOneLine) {
     EXPECT_EQ(done.out, "");
     EXPECT_FALSE(fs::exists(page_));
   };
-  refused({(folder_ / "none.lcm").string(), "--out", page_}, "there is no such log");
-  refused({(folder_).string(), "--out", page_}, "holds no log.lcm");
+  refused({(folder_ / "none.lcm").string(), "--out", page_}, "there is no such file");
+  refused({(folder_).string(), "--out", page_}, "no log in this folder");
   refused({log("a.lcm"), "--out", "/dev/full"}, "can't be written");
   const std::string a = log("a.lcm");
   refused({a, a, a, a, a, "--out", page_}, "expected 4 at most");

@@ -1,4 +1,4 @@
-#include "runtime/run_series.hpp"
+#include "logs/run_series.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "io/log_reader.hpp"
+#include "io/log_series.hpp"
+#include "logs/measured_command.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
@@ -20,30 +21,15 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
-#include "runtime/measured_command.hpp"
 #include "runtime/mode.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 namespace fs = std::filesystem;
 
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<fs::path> files_of(const fs::path& log) {
-  if (!fs::exists(log)) throw std::runtime_error(log.string() + ": there is no such log");
-  if (!fs::is_directory(log)) return {log};
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(log)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".lcm" && (name == "log.lcm" || name.starts_with("log-")))
-      files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  if (files.empty()) throw std::runtime_error(log.string() + ": holds no log.lcm and no log-NNNN.lcm");
-  return files;
-}
 
 /// The file's name, with its folder's, which tells runs apart whose logs are all called log.lcm.
 std::string short_name(const fs::path& log) {
@@ -63,17 +49,14 @@ void extend(std::vector<RunSeries::Stretch>& stretches, double t_s, const std::s
   if (stretches.empty() || stretches.back().text != text) stretches.push_back({t_s, t_s, text});
 }
 
-/// Gathers the events of one run.
+/// Gathers the events of one run; of several, the last one's.
 class Gathering {
  public:
-  explicit Gathering(RunSeries& run) : run_(run) {}
+  explicit Gathering(std::string name) { run_.name = std::move(name); }
 
   void add(const io::LogReader& event) {
     const std::string& channel = event.channel();
-    if (channel == "ROBOT_INFO") {
-      if (!first_ns_ && !info_ns_) info_ns_ = event.stamp_ns();
-      return with(event, &Gathering::info);
-    }
+    if (channel == "ROBOT_INFO") return take_info(event);
     if (!first_ns_) first_ns_ = beginning(event.stamp_ns());
     t_s_ = static_cast<double>(event.stamp_ns() - *first_ns_) * 1e-9;
     double& channel_t_s = newest_s_.try_emplace(channel, t_s_).first->second;
@@ -83,6 +66,7 @@ class Gathering {
     }
     channel_t_s = t_s_;
     run_.duration_s = std::max(run_.duration_s, t_s_);
+    newest_ns_ = std::max(newest_ns_, event.stamp_ns());
     if (channel == "STATE") return with(event, &Gathering::state);
     if (channel == "REFERENCE") return with(event, &Gathering::reference);
     if (channel == "STATUS") return with(event, &Gathering::status);
@@ -92,7 +76,8 @@ class Gathering {
     if (channel == "FAULT") return with(event, &Gathering::fault);
   }
 
-  void finish() {
+  /// The run; nothing can be added any more.
+  RunSeries finish() {
     for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted}) {
       std::erase_if(*stretches, [](const auto& stretch) { return stretch.text.empty(); });
     }
@@ -109,6 +94,8 @@ class Gathering {
     tell(unreadable_, "messages of another type or another robot were skipped");
     tell(back_in_time_, "messages run back in time and were skipped");
     tell(run_.lost_ticks, "ticks are missing in the log");
+    tell(earlier_runs_, "earlier runs in the same log are not shown: the last one is");
+    return std::move(run_);
   }
 
  private:
@@ -125,14 +112,32 @@ class Gathering {
     if (!event.decode_into(message) || !(this->*take)(message)) ++unreadable_;
   }
 
-  bool info(const pmg_msgs::robot_info_t& message) {
-    if (!run_.joint_names.empty() && message.joint_count != static_cast<int>(run_.joint_names.size())) return false;
-    if (run_.identified) return true;
+  /// Rotated files repeat their run's. Another run's differs in its session; lockstep runs have none, and their clocks
+  /// begin anew.
+  void take_info(const io::LogReader& event) {
+    auto info = event.decode<pmg_msgs::robot_info_t>();
+    if (!info) {
+      ++unreadable_;
+      return;
+    }
+    const bool another = run_.identified && (info->session != run_.info.session || info->robot != run_.info.robot);
+    if (first_ns_ && (another || event.stamp_ns() < newest_ns_)) begin_anew();
+    if (run_.identified) return;
+    if (!first_ns_) info_ns_ = event.stamp_ns();
+    if (!run_.joint_names.empty() && info->joint_count != static_cast<int>(run_.joint_names.size())) {
+      ++unreadable_;
+      return;
+    }
     run_.identified = true;
-    run_.info = message;
-    run_.joint_names = message.joint_names;
+    run_.info = std::move(*info);
+    run_.joint_names = run_.info.joint_names;
     make_joints();
-    return true;
+  }
+
+  void begin_anew() {
+    Gathering next(run_.name);
+    next.earlier_runs_ = earlier_runs_ + 1;
+    *this = std::move(next);
   }
 
   /// Whether a message has this run's joints; without ROBOT_INFO the first message decides.
@@ -183,9 +188,9 @@ class Gathering {
 
   bool status(const pmg_msgs::status_t& message) {
     if (message.mode < 0 || message.mode > pmg_msgs::mode_t::FAULT) return false;
-    const auto mode = static_cast<Mode>(message.mode);
-    const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(Mode::kFault);
-    if (mode == Mode::kFault && !was_fault) {
+    const auto mode = static_cast<runtime::Mode>(message.mode);
+    const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(runtime::Mode::kFault);
+    if (mode == runtime::Mode::kFault && !was_fault) {
       latched_.push_back(
           {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
     }
@@ -226,8 +231,9 @@ class Gathering {
     to.generator_us.push_back(stage_us(message.generator_ns));
     to.gco_us.push_back(stage_us(message.gco_ns));
     to.policy_us.push_back(stage_us(message.policy_ns));
-    to.bus_wake_us.push_back(us(message.bus_wake_max_ns));
-    to.bus_exchange_us.push_back(us(message.bus_exchange_max_ns));
+    const bool cycles = message.bus_cycles > 0;
+    to.bus_wake_us.push_back(cycles ? us(message.bus_wake_max_ns) : kNone);
+    to.bus_exchange_us.push_back(cycles ? us(message.bus_exchange_max_ns) : kNone);
     to.missed_ticks = message.missed_ticks;
     to.bus_missed_cycles = message.bus_missed_cycles;
     to.dropped_records = message.dropped_records;
@@ -250,13 +256,14 @@ class Gathering {
     return true;
   }
 
-  RunSeries& run_;
+  RunSeries run_;
   MeasuredCommand measured_command_;
   std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;
   std::map<std::string, double> newest_s_;  // of each channel
   std::vector<RunSeries::Event> latched_;
-  std::int64_t unreadable_ = 0, back_in_time_ = 0;
+  std::int64_t newest_ns_ = 0;
+  std::int64_t unreadable_ = 0, back_in_time_ = 0, earlier_runs_ = 0;
 };
 
 /// timing.csv of a lockstep run: time_s,tick_us,generator_us,gco_us,policy_us.
@@ -286,34 +293,28 @@ void read_timing_csv(const fs::path& file, RunSeries& run) {
 }  // namespace
 
 RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
-  const std::vector<fs::path> files = files_of(log);
-  RunSeries run;
-  run.name = short_name(log);
+  const std::vector<fs::path> files = io::log_files({log});
   double total_bytes = 0.0, read_bytes = 0.0;
   for (const fs::path& file : files) total_bytes += static_cast<double>(fs::file_size(file));
 
   constexpr std::size_t kEventHeader_bytes = 28;
   constexpr int kEventsPerCall = 2000;
-  Gathering gathering(run);
-  int events = 0;
+  Gathering gathering(short_name(log));
+  io::LogSeries series(files);
   bool interrupted = false;
-  for (const fs::path& file : files) {
-    io::LogReader reader(file);
-    while (!interrupted && reader.next()) {
-      gathering.add(reader);
-      read_bytes += static_cast<double>(kEventHeader_bytes + reader.channel().size() + reader.data().size());
-      if (progress && ++events % kEventsPerCall == 0) interrupted = !progress(std::min(1.0, read_bytes / total_bytes));
-    }
-    if (reader.cut_short()) {
-      run.problems.push_back(
-          fmt::format("{} ends in the middle of an event: its end is missing", file.filename().string()));
-    } else if (reader.skipped_bytes() > 0) {
-      run.problems.push_back(
-          fmt::format("{}: {} damaged bytes were skipped", file.filename().string(), reader.skipped_bytes()));
-    }
+  for (int events = 1; !interrupted && series.next(); ++events) {
+    const io::LogReader& event = series.event();
+    gathering.add(event);
+    read_bytes += static_cast<double>(kEventHeader_bytes + event.channel().size() + event.data().size());
+    if (progress && events % kEventsPerCall == 0) interrupted = !progress(std::min(1.0, read_bytes / total_bytes));
+  }
+  RunSeries run = gathering.finish();
+  if (series.cut_short()) {
+    run.problems.push_back("a log file ends in the middle of an event: its end is missing");
+  } else if (series.skipped_bytes() > 0) {
+    run.problems.push_back(fmt::format("{} damaged bytes were skipped", series.skipped_bytes()));
   }
   if (interrupted) run.problems.push_back("reading was interrupted: the rest of the log is not shown");
-  gathering.finish();
   if (run.state.t_s.empty() && run.status.t_s.empty() && run.reference.t_s.empty() && !interrupted) {
     throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read");
   }
@@ -323,4 +324,4 @@ RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
   return run;
 }
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

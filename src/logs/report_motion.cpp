@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "runtime/report_sections.hpp"
-#include "runtime/run_figures.hpp"
+#include "logs/report_sections.hpp"
+#include "logs/run_figures.hpp"
 
-namespace pmg::runtime::report {
+namespace pmg::logs::report {
 
 namespace {
 
@@ -136,4 +136,4 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   });
 }
 
-}  // namespace pmg::runtime::report
+}  // namespace pmg::logs::report

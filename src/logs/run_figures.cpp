@@ -1,4 +1,4 @@
-#include "runtime/run_figures.hpp"
+#include "logs/run_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "pages/histogram.hpp"
 #include "runtime/mode.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 namespace {
 
@@ -37,7 +37,8 @@ std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s) {
   for (std::size_t i = 0; i < t_s.size() && !run.modes.empty(); ++i) {
     while (at + 1 < run.modes.size() && run.modes[at + 1].from_s <= t_s[i]) ++at;
     const std::string& mode = run.modes[at].text;
-    held[i] = run.modes[at].from_s <= t_s[i] && (mode == to_string(Mode::kStand) || mode == to_string(Mode::kWalk));
+    held[i] = run.modes[at].from_s <= t_s[i] &&
+              (mode == to_string(runtime::Mode::kStand) || mode == to_string(runtime::Mode::kWalk));
   }
   return held;
 }
@@ -145,4 +146,4 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"problems", run.problems}};
 }
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

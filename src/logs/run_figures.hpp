@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "runtime/run_series.hpp"
+#include "logs/run_series.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 /// Whether the drives followed the reference at each of these increasing times: mode stand or walk. Always, when the
 /// log says nothing of modes.
@@ -31,4 +31,4 @@ std::string verdict(const RunSeries& run);
 
 nlohmann::ordered_json run_json(const RunSeries& run);
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

@@ -5,10 +5,10 @@
 #include <map>
 #include <numeric>
 
-#include "runtime/report_sections.hpp"
-#include "runtime/run_figures.hpp"
+#include "logs/report_sections.hpp"
+#include "logs/run_figures.hpp"
 
-namespace pmg::runtime::report {
+namespace pmg::logs::report {
 
 namespace {
 
@@ -115,4 +115,4 @@ void joints(pages::Page& page, const Runs& runs) {
   });
 }
 
-}  // namespace pmg::runtime::report
+}  // namespace pmg::logs::report

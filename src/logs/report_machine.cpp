@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "logs/report_sections.hpp"
 #include "pages/histogram.hpp"
 #include "pages/text.hpp"
-#include "runtime/report_sections.hpp"
 
-namespace pmg::runtime::report {
+namespace pmg::logs::report {
 
 namespace {
 
@@ -169,4 +169,4 @@ void timing(pages::Page& page, const Runs& runs) {
   delays(page, runs);
 }
 
-}  // namespace pmg::runtime::report
+}  // namespace pmg::logs::report

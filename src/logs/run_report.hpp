@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "logs/run_series.hpp"
 #include "pages/page.hpp"
-#include "runtime/run_series.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 inline constexpr std::size_t kMostRuns = 4;  ///< that one picture can hold and a reader can tell apart
 
@@ -14,4 +14,4 @@ inline constexpr std::size_t kMostRuns = 4;  ///< that one picture can hold and 
 /// more than kMostRuns.
 pages::Page run_report(const std::vector<RunSeries>& runs);
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

@@ -1,4 +1,4 @@
-#include "runtime/run_report.hpp"
+#include "logs/run_report.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "logs/report_sections.hpp"
+#include "logs/run_figures.hpp"
 #include "runtime/mode.hpp"
-#include "runtime/report_sections.hpp"
-#include "runtime/run_figures.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 namespace report {
 
@@ -19,10 +19,10 @@ namespace {
 using pages::Lanes;
 
 const char* mode_colour(const std::string& mode) {
-  if (mode == to_string(Mode::kDamping)) return "#f3d9a6";
-  if (mode == to_string(Mode::kStand)) return "#b9dcf2";
-  if (mode == to_string(Mode::kWalk)) return "#a8dcc8";
-  if (mode == to_string(Mode::kFault)) return "#f2a58c";
+  if (mode == to_string(runtime::Mode::kDamping)) return "#f3d9a6";
+  if (mode == to_string(runtime::Mode::kStand)) return "#b9dcf2";
+  if (mode == to_string(runtime::Mode::kWalk)) return "#a8dcc8";
+  if (mode == to_string(runtime::Mode::kFault)) return "#f2a58c";
   return "#e3e7ec";
 }
 
@@ -58,7 +58,8 @@ std::vector<pages::Band> fault_bands(const Runs& runs) {
   std::vector<pages::Band> bands;
   for (const RunSeries& run : runs) {
     for (const RunSeries::Stretch& mode : run.modes) {
-      if (mode.text == to_string(Mode::kFault)) bands.push_back({mode.from_s, mode.to_s, "rgba(213,94,0,0.10)"});
+      if (mode.text == to_string(runtime::Mode::kFault))
+        bands.push_back({mode.from_s, mode.to_s, "rgba(213,94,0,0.10)"});
     }
   }
   return bands;
@@ -133,7 +134,9 @@ void who_ran_what(pages::Page& page, const Runs& runs) {
   row("drives", [](const Info& info) { return info.backend; });
   row("bundle", [](const Info& info) { return info.bundle; });
   row("control rate [Hz]", [](const Info& info) { return fmt::format("{:g}", info.control_rate_hz); });
-  row("real time refused", [](const Info& info) { return fmt::format("{}", fmt::join(info.refused, "; ")); });
+  row("real time refused", [](const Info& info) {
+    return info.refused.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(info.refused, "; "));
+  });
   page.table(table);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Info& info = runs[i].info;
@@ -170,4 +173,4 @@ pages::Page run_report(const std::vector<RunSeries>& runs) {
   return page;
 }
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "logs/run_series.hpp"
 #include "pages/page.hpp"
-#include "runtime/run_series.hpp"
 
-namespace pmg::runtime::report {
+namespace pmg::logs::report {
 
 using Runs = std::vector<RunSeries>;
 
@@ -42,4 +42,4 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs);
 void timing(pages::Page& page, const Runs& runs);
 void who_ran_what(pages::Page& page, const Runs& runs);
 
-}  // namespace pmg::runtime::report
+}  // namespace pmg::logs::report

@@ -1,4 +1,4 @@
-#include "runtime/run_report.hpp"
+#include "logs/run_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "small_log.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,7 +73,7 @@ TEST_F(RunReport, TellsWhatCouldNotBeRead) {
   const fs::path log = folder_ / "cut.lcm";
   SmallLog{}.write(log);
   fs::resize_file(log, fs::file_size(log) - 100);
-  EXPECT_THAT(run_report({read_run(log)}).html(), HasSubstr("cut.lcm ends in the middle of an event"));
+  EXPECT_THAT(run_report({read_run(log)}).html(), HasSubstr("a log file ends in the middle of an event"));
 }
 
 TEST_F(RunReport, NamesOfALogNeverBecomeMarkup) {
@@ -96,4 +96,4 @@ TEST_F(RunReport, RefusesNoneAndTooMany) {
 }
 
 }  // namespace
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

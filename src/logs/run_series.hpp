@@ -11,7 +11,7 @@
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 
 /// One row a tick and channel; t_s counts from the log's beginning. A channel that the log lacks is empty. Of per-joint
 /// arrays the first index is the joint; they are float because a long run has many.
@@ -77,9 +77,9 @@ struct RunSeries {
 /// Called now and then with the share of the bytes that are read; false ends the reading, what was read is kept.
 using ReadingProgress = std::function<bool(double share)>;
 
-/// log: a .lcm file, or a run's folder, whose log.lcm or log-NNNN.lcm are taken as one. Wall times come from the log,
-/// or from a timing.csv beside it. Reads on over what is damaged. Throws std::runtime_error when nothing of a run can
-/// be read there.
+/// log: a .lcm file, or a run's folder, whose log.lcm or log-NNNN.lcm are taken as one; of several runs the last. Wall
+/// times come from the log, or from a timing.csv beside it. Reads on over what is damaged. Throws std::runtime_error
+/// when nothing of a run can be read there.
 RunSeries read_run(const std::filesystem::path& log, const ReadingProgress& progress = {});
 
-}  // namespace pmg::runtime
+}  // namespace pmg::logs

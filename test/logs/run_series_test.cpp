@@ -1,4 +1,4 @@
-#include "runtime/run_series.hpp"
+#include "logs/run_series.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "runtime/measured_command.hpp"
-#include "runtime/run_figures.hpp"
+#include "logs/measured_command.hpp"
+#include "logs/run_figures.hpp"
 #include "small_log.hpp"
 
-namespace pmg::runtime {
+namespace pmg::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,8 +129,8 @@ TEST_F(RunSeriesTest, RefusesWhatIsNoLogInOneLine) {
     }
     return "";
   };
-  EXPECT_THAT(refusal(folder_ / "none.lcm"), HasSubstr("there is no such log"));
-  EXPECT_THAT(refusal(folder_), HasSubstr("holds no log.lcm"));
+  EXPECT_THAT(refusal(folder_ / "none.lcm"), HasSubstr("there is no such file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("no log in this folder"));
   std::ofstream(folder_ / "text.lcm") << std::string(100000, 'x');
   EXPECT_THAT(refusal(folder_ / "text.lcm"), HasSubstr("no log of a run"));
   std::ofstream(folder_ / "empty.lcm").flush();
@@ -146,9 +146,20 @@ TEST_F(RunSeriesTest, TakesTheFilesOfAFolderAsOneRun) {
   EXPECT_NEAR(run.duration_s, 1.99, 1e-9);
 }
 
+TEST_F(RunSeriesTest, OfSeveralRunsTheLastOneIsShown) {
+  write({.ticks = 100}, "log-0000.lcm");
+  write({.robot = "other", .ticks = 50, .start_ns = 9'000'000'000}, "log-0001.lcm");
+  write({.robot = "other", .ticks = 80, .start_ns = 1'000'000'000}, "log-0002.lcm");  // its clock begins anew
+  const RunSeries run = read_run(folder_);
+  EXPECT_EQ(run.info.robot, "other");
+  EXPECT_EQ(run.state.t_s.size(), 80U);
+  EXPECT_NEAR(run.duration_s, 0.79, 1e-9);
+  EXPECT_THAT(run.problems, ElementsAre(HasSubstr("2 earlier runs")));
+}
+
 TEST_F(RunSeriesTest, SkipsMessagesThatRunBackInTimeAndSaysSo) {
   write({.ticks = 100}, "log-0000.lcm");
-  write({.ticks = 100, .start_ns = 1'000'000'000}, "log-0001.lcm");
+  write({.ticks = 100, .left_out = {"ROBOT_INFO"}, .start_ns = 1'000'000'000}, "log-0001.lcm");
   const RunSeries run = read_run(folder_);
   EXPECT_EQ(run.state.t_s.size(), 100U);
   EXPECT_THAT(run.problems, Contains(HasSubstr("run back in time")));
@@ -222,4 +233,4 @@ TEST(MeasuredCommand, AveragesOverOneGaitPeriod) {
 }
 
 }  // namespace
-}  // namespace pmg::runtime
+}  // namespace pmg::logs
