@@ -13,6 +13,7 @@ namespace pmg::runtime {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
 
 }  // namespace
 
@@ -39,7 +40,10 @@ void Comms::hear_status(io::Bytes bytes) {
   const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
   if (!status) return;  // nobody's request: not counted as one
   if (status->robot != run_.robot) {
-    if (listening_ && std::ranges::find(others_, status->robot) == others_.end()) others_.push_back(status->robot);
+    const bool known = std::ranges::find(others_, status->robot) != others_.end();
+    if (listening_ && !known && others_.size() < kMostOthers && presentable(status->robot)) {
+      others_.push_back(status->robot);
+    }
   } else if (status->session != run_.session) {
     ++impostors_heard_;
     impostor_session_ = status->session;

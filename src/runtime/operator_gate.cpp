@@ -9,15 +9,10 @@
 
 namespace pmg::runtime {
 
-namespace {
-
-/// A name that fits Source and can be shown on a terminal.
 bool presentable(const std::string& name) {
   return !name.empty() && name.size() < Source{}.name.size() &&
          std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
 }
-
-}  // namespace
 
 OperatorGate::OperatorGate(OperatorInbox& inbox, std::string robot, const io::Clock& clock)
     : inbox_(inbox), robot_(std::move(robot)), clock_(clock) {}

@@ -21,6 +21,9 @@ struct GateCounts {
   friend bool operator==(const GateCounts&, const GateCounts&) = default;
 };
 
+/// A name that fits Source and can be shown on a terminal: 1 to 23 printable ASCII characters.
+bool presentable(const std::string& name);
+
 /// The inbox's one writer. Finiteness, order, age, lease and who drives are for CommandIntake to judge.
 class OperatorGate {
  public:

@@ -161,6 +161,7 @@ TEST_F(CommsTest, AControllerOfTheSameNameIsRefusedInOneLineThatSaysWhatToDo) {
 TEST_F(CommsTest, RobotsOfOtherNamesAreWelcomeAndNamed) {
   for (int k = 0; k < 3; ++k) say_status("z1", 16);
   say_status("z2", 16);
+  say_status("\x1b[2J", 16);
   EXPECT_THAT(comms_.listen_for_others(0.0), ElementsAre("z1", "z2"));
 }
 
