@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr std::int64_t kEventsAProgress = 2000;
+constexpr std::int64_t kEventsAProgress = 500;
 
 /// One message, read.
 struct Row {

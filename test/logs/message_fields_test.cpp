@@ -1,0 +1,140 @@
+// Every field of every message type in msgs/ is written down, under its own name.
+#include "logs/message_fields.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "log_surgery.hpp"
+#include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/link_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+#include "recorded_run.hpp"
+
+namespace pmg::logs {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_info_t"},
+                                                        {"STATE", "robot_state_t"},
+                                                        {"COMMAND", "command_t"},
+                                                        {"MODE", "mode_t"},
+                                                        {"TICK", "tick_input_t"},
+                                                        {"REFERENCE", "reference_t"},
+                                                        {"STATUS", "status_t"},
+                                                        {"MOTOR_COMMAND", "motor_command_t"},
+                                                        {"FAULT", "fault_t"},
+                                                        {"TIMING", "timing_t"},
+                                                        {"GROUND_TRUTH", "ground_truth_t"},
+                                                        {"ACK", "ack_t"},
+                                                        {"LINK", "link_t"}};
+
+/// Names of a type's fields, lengths of others left out.
+std::vector<std::string> fields_of(const std::string& type) {
+  std::ifstream file(fs::path(PMG_SOURCE_DIR) / "msgs" / (type + ".lcm"));
+  std::vector<std::string> names;
+  std::set<std::string> lengths;
+  const std::regex field(R"(^\s+(?:int\d+_t|double|float|boolean|string)\s+(\w+)(?:\[(\w+)\])?;.*)");
+  std::smatch match;
+  for (std::string line; std::getline(file, line);) {
+    if (!std::regex_match(line, match, field)) continue;
+    names.push_back(match[1]);
+    if (match[2].matched) lengths.insert(match[2]);
+  }
+  std::erase_if(names, [&](const std::string& name) { return lengths.contains(name); });
+  return names;
+}
+
+/// A message of this type with all numbers zero and all vectors of two entries.
+template <typename Message>
+std::vector<std::uint8_t> bytes_of(const Message& message) {
+  test::LogEvent event;
+  event.set(message);
+  return event.data;
+}
+
+class MessageFields : public testing::Test {
+ protected:
+  MessageFields() {
+    const fs::path file = fs::temp_directory_path() / ("pmg_fields_test_" + std::to_string(getpid()) + ".lcm");
+    test::record_run(file);
+    for (const test::LogEvent& event : test::read_events(file)) examples_.emplace(event.channel, event.data);
+    fs::remove(file);
+    // What that run has none of.
+    examples_.emplace("TIMING", bytes_of(pmg_msgs::timing_t{}));
+    examples_.emplace("GROUND_TRUTH", bytes_of(pmg_msgs::ground_truth_t{}));
+    examples_.emplace("ACK", bytes_of(pmg_msgs::ack_t{}));
+    examples_.emplace("LINK", bytes_of(pmg_msgs::link_t{}));
+  }
+  std::map<std::string, std::vector<std::uint8_t>> examples_;
+  const std::vector<std::string> joints_ = model::load_robot(test::kRecordedRobot).joint_index.names();
+};
+
+TEST_F(MessageFields, NamesAreThoseOfTheMessageFilesInTheirOrder) {
+  ASSERT_EQ(known_channels().size(), kTypes.size());
+  std::size_t types = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(PMG_SOURCE_DIR) / "msgs")) {
+    types += entry.path().extension() == ".lcm" ? 1 : 0;
+  }
+  EXPECT_EQ(types, kTypes.size()) << "a message type that no log tool knows";
+  for (const std::string_view channel : known_channels()) {
+    std::vector<Field> fields;
+    ASSERT_TRUE(read_fields(channel, examples_.at(std::string(channel)), joints_, fields)) << channel;
+    std::vector<std::string> names;
+    for (const Field& field : fields) {
+      if (names.empty() || names.back() != field.name) names.push_back(field.name);
+    }
+    EXPECT_EQ(names, fields_of(kTypes.at(channel))) << channel;
+  }
+}
+
+TEST_F(MessageFields, VectorsAreLabelledByJointFootAxisAndChannel) {
+  std::vector<Field> fields;
+  ASSERT_TRUE(read_fields("STATE", examples_.at("STATE"), joints_, fields));
+  std::set<std::string> paths;
+  for (const Field& field : fields) paths.insert(field.path());
+  for (const std::string& joint : joints_) EXPECT_TRUE(paths.contains("q_rad." + joint)) << joint;
+  EXPECT_TRUE(paths.contains("gyro_rad_s.z"));
+  EXPECT_TRUE(paths.contains("orientation_WI.w"));
+  ASSERT_TRUE(read_fields("REFERENCE", examples_.at("REFERENCE"), joints_, fields));
+  paths.clear();
+  for (const Field& field : fields) paths.insert(field.path());
+  EXPECT_TRUE(paths.contains("contact.left"));
+  EXPECT_TRUE(paths.contains("optimised.height_m"));
+}
+
+TEST_F(MessageFields, ValuesAreTheMessages) {
+  std::vector<Field> fields;
+  auto state = test::LogEvent{"STATE", 0, examples_.at("STATE")}.as<pmg_msgs::robot_state_t>();
+  ASSERT_TRUE(read_fields("STATE", examples_.at("STATE"), joints_, fields));
+  for (const Field& field : fields) {
+    if (field.path() == "q_rad." + joints_[4]) {
+      EXPECT_EQ(std::get<double>(field.value), state.q_rad[4]);
+    }
+    if (field.name == "bus_sample") {
+      EXPECT_EQ(std::get<std::int64_t>(field.value), state.bus_sample);
+    }
+  }
+  EXPECT_EQ(to_text(Field::Value(0.1)), "0.1");
+  EXPECT_EQ(to_text(Field::Value(1.0 / 3.0)), "0.3333333333333333") << "reads back exactly";
+  EXPECT_EQ(to_text(Field::Value(true)), "1");
+  EXPECT_EQ(to_text(Field::Value(std::vector<std::string>{"a", "b"})), "a;b");
+}
+
+TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
+  std::vector<Field> fields;
+  EXPECT_FALSE(read_fields("CHATTER", examples_.at("STATE"), joints_, fields));
+  EXPECT_FALSE(read_fields("REFERENCE", examples_.at("STATE"), joints_, fields)) << "another type's bytes";
+  EXPECT_FALSE(read_fields("STATE", {1, 2, 3}, joints_, fields));
+}
+
+}  // namespace
+}  // namespace pmg::logs
