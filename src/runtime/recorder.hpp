@@ -22,7 +22,7 @@ namespace pmg::runtime {
 struct RecorderOptions {
   std::filesystem::path directory;      ///< made if absent
   bool log = true;                      ///< false: the flight recorder alone
-  std::int64_t file_bytes = 256 << 20;  ///< then the next file: some eight minutes of 31 joints
+  std::int64_t file_bytes = 256 << 20;  ///< then the next file: some ten minutes of 31 joints
   int files = 8;                        ///< log-NNNN.lcm in the folder at most, those of earlier runs included
   std::int64_t spare_bytes = 64 << 20;  ///< after a refusal, nothing is written until the disk has as much room
   double retry_s = 1.0;                 ///< after a refusal

@@ -166,11 +166,10 @@ TEST_F(LogExport, UnknownChannelsAreLeftOutAndCounted) {
 
 TEST_F(LogExport, InterruptedItKeepsWhatWasDone) {
   const ExportReport report = export_mcap({log_}, folder_ / "part.mcap", [](double) { return false; });
-  // Told every 2000 events; this log has fewer, so it is read twice over.
-  EXPECT_GT(report.messages.at("STATE"), 0);
-  const ExportReport twice = export_mcap({log_, log_}, folder_ / "part.mcap", [](double) { return false; });
-  EXPECT_LT(twice.messages.at("STATE"), 2 * 260);
-  EXPECT_EQ(read_mcap(folder_ / "part.mcap")["topics"]["STATE"]["count"], twice.messages.at("STATE"));
+  const std::int64_t kept = report.messages.at("STATE");
+  EXPECT_GT(kept, 0);
+  EXPECT_LT(kept, 260);
+  EXPECT_EQ(read_mcap(folder_ / "part.mcap")["topics"]["STATE"]["count"], kept) << "a whole file";
 }
 
 TEST_F(LogExport, WhatCannotBeWrittenOrReadIsTold) {
