@@ -66,7 +66,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
-  CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; logs/NAME-TIME if not given");
+  CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; out/NAME-TIME if not given");
   app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
   app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
   app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
@@ -238,7 +238,7 @@ int control(Arguments& arguments) {
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
   runtime::expect_shared_host(loaded.options);
   if (arguments.name.empty()) arguments.name = loaded.robot.name;
-  if (arguments.log.empty()) arguments.log = fs::path("logs") / (arguments.name + "-" + utc_time());
+  if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
   arguments.threads.realtime = !arguments.no_realtime;
   if (arguments.print_config) {
