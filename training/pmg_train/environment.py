@@ -48,7 +48,8 @@ class Environment:
             raise ValueError("the policy joints must come first in the joint order")
         self.actions = len(legs)
         self.leg_effort = self._tensor([joints[i]["effort_limit_Nm"] for i in legs])
-        self.leg_weight = self._tensor([0.5 if "ankle" in joints[i]["name"] else 1.0 for i in legs])
+        weight = self.config["joint_weight"]
+        self.leg_weight = self._tensor([weight.get(joint_kind(joints[i]["name"]), 1.0) for i in legs])
         self.torso, self.feet = model.body(torso).id, [model.body(f).id for f in feet]
         self.foot_slice = slice(self.feet[0], self.feet[1] + 1, self.feet[1] - self.feet[0])
         self.sole_center = self._tensor(model.geom(f"{feet[0]}_sole").pos)

@@ -24,7 +24,7 @@ ACTION_LIMIT = 4.0  # the environment's clamp
 
 
 def clip_library_hash(robot: Path) -> str:
-    """SHA-256 over the names and bytes of clips/*.{csv,yaml} in name order, each as "name\\nlength\\nbytes"."""
+    """The same as model::clip_library_sha256 (src/model/bundle.hpp)."""
     digest = hashlib.sha256()
     for path in sorted((robot / "clips").iterdir()):
         if path.suffix in (".csv", ".yaml"):

@@ -49,6 +49,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=0, help="for making references; 0: all cores")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--resume", action="store_true")
+    parser.add_argument("--initial", type=Path, help="start with the networks of this last.pt")
     parser.add_argument("--checkpoint-s", type=float, default=60.0)
     parser.add_argument("--keep-every-s", type=float, default=240.0, help="checkpoints that are kept beside the last")
     return parser.parse_args()
@@ -102,6 +103,8 @@ class Training:
             self.env.look()
         if a.resume:
             self._load()
+        elif a.initial:
+            self._start_from(a.initial)
         if self.rank == 0:
             (a.out / "training.yaml").write_text(yaml.safe_dump(dict(
                 variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges), sort_keys=False))
@@ -304,6 +307,14 @@ class Training:
             if self.cuda:
                 torch.cuda.set_rng_state(momentary["random_device"], self.device)
         self.log(f"goes on from iteration {self.iteration}" + ("" if exact else ", with new worlds"))
+
+
+    def _start_from(self, path: Path) -> None:
+        """Another run's networks and exploration; steps and curve begin at zero."""
+        state = torch.load(path, map_location=self.device, weights_only=False)
+        self.network.load_state_dict(state["network"])
+        low, high = self.config["ppo"]["learning_rate"]
+        self.ppo.rate.fill_((low * high) ** 0.5)
 
 
 def _write(state: dict, path: Path) -> None:
