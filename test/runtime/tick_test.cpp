@@ -105,6 +105,31 @@ TEST(Tick, DampingComesInTheTickThatAsksForItEvenFromAStranger) {
   EXPECT_EQ(result.acks[0].mode, Mode::kDamping);
 }
 
+TEST(Tick, AStopIsCarriedOutHoweverOldItIs) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kWalk;
+  driven.run(2.0);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kWalk);
+  driven.request.mode = Mode::kDamping;
+  driven.request.sequence = -1000;  // overtaken by all that was asked before
+  const TickResult& result = driven.step();
+  EXPECT_EQ(result.acks[0].verdict, Verdict::kTaken);
+  EXPECT_EQ(result.mode, Mode::kDamping);
+}
+
+TEST(Tick, ATorsoThatIsFoundBentMayRiseIntoStand) {
+  const model::RobotModel& robot = test::z1();
+  test::DrivenTick driven(robot);
+  driven.state.q[robot.joint_index.at("waist_pitch")] += 0.45;
+  driven.state.orientation_WI = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) * driven.state.orientation_WI;
+  driven.request.mode = Mode::kStand;
+  driven.run(3.0);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << describe(driven.tick.result().fault, robot);
+  driven.state.orientation_WI = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY()) * driven.state.orientation_WI;
+  driven.run(0.05);
+  EXPECT_EQ(driven.tick.result().fault.code, FaultCode::kTorsoAttitude) << "once it stands it must stay there";
+}
+
 TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
   for (const auto how : {test::BreakablePolicy::Break::kNan, test::BreakablePolicy::Break::kStatus}) {
     test::DrivenTick driven(test::z1());
