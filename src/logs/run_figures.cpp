@@ -100,7 +100,7 @@ std::string verdict(const RunSeries& run) {
   }
   text += fmt::format(", {:.1f} s. ", run.duration_s);
   if (run.faults.empty()) {
-    text += "No fault";
+    text += run.modes.empty() ? "Whether there was a fault is unknown" : "No fault";
   } else {
     text += fmt::format("FAULT at {:.2f} s: {}", run.faults.front().t_s, run.faults.front().text);
     if (run.faults.size() > 1) text += fmt::format(" (and {} more)", run.faults.size() - 1);

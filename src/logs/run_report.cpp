@@ -88,7 +88,10 @@ void verdicts(pages::Page& page, const Runs& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     const std::string letter = runs.size() > 1 ? fmt::format("{}  ", static_cast<char>('A' + i)) : "";
-    page.verdict(run.fell || !run.faults.empty() ? pages::Tone::kBad : pages::Tone::kGood, letter + verdict(run));
+    const pages::Tone tone = run.fell || !run.faults.empty() ? pages::Tone::kBad
+                             : run.modes.empty()             ? pages::Tone::kNeutral
+                                                             : pages::Tone::kGood;
+    page.verdict(tone, letter + verdict(run));
     for (const std::string& problem : run.problems) page.verdict(pages::Tone::kNeutral, letter + problem);
   }
 }

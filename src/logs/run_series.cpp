@@ -83,8 +83,7 @@ class Gathering {
     }
     // A log that begins in a fault, or whose FAULT is lost, still has its words in every status.
     for (const RunSeries::Event& fault : latched_) {
-      const auto same = [&](const RunSeries::Event& known) { return std::abs(known.t_s - fault.t_s) < 0.05; };
-      if (std::ranges::none_of(run_.faults, same)) run_.faults.push_back(fault);
+      if (!is_known(fault)) run_.faults.push_back(fault);
     }
     std::ranges::sort(run_.faults, {}, &RunSeries::Event::t_s);
     if (!run_.identified) run_.problems.push_back("no ROBOT_INFO: who ran what is unknown, joints have numbers");
@@ -251,9 +250,19 @@ class Gathering {
     return true;
   }
 
+  /// Its own stamp says when it latched: a flight recorder's log tells its fault at the beginning, and again in its
+  /// place.
   bool fault(const pmg_msgs::fault_t& message) {
-    run_.faults.push_back({t_s_, message.text});
+    const double latched_s = static_cast<double>(message.stamp_ns - *first_ns_) * 1e-9;
+    const RunSeries::Event told{latched_s >= 0.0 ? latched_s : t_s_, message.text};
+    if (!is_known(told)) run_.faults.push_back(told);
     return true;
+  }
+
+  bool is_known(const RunSeries::Event& fault) const {
+    constexpr double kSame_s = 0.05;  // found in one tick, told in the next
+    return std::ranges::any_of(
+        run_.faults, [&](const RunSeries::Event& known) { return std::abs(known.t_s - fault.t_s) < kSame_s; });
   }
 
   RunSeries run_;

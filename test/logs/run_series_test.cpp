@@ -68,6 +68,17 @@ TEST_F(RunSeriesTest, TakesAFaultFromTheStatusWhenItsMessageIsLost) {
   EXPECT_THAT(run.faults[0].text, HasSubstr("leans 1.20 rad"));
 }
 
+TEST_F(RunSeriesTest, TakesAnAnnouncedFaultAtItsOwnTime) {
+  const RunSeries run = read_run(write({.fault_at = 250, .announced = true}));
+  ASSERT_EQ(run.faults.size(), 1U);
+  EXPECT_NEAR(run.faults[0].t_s, 2.5, 1e-9);
+}
+
+TEST_F(RunSeriesTest, ClaimsNoFaultOnlyWhereALogWouldTellOne) {
+  EXPECT_THAT(verdict(read_run(write({}))), HasSubstr("No fault"));
+  EXPECT_THAT(verdict(read_run(write({.left_out = {"STATUS"}}))), HasSubstr("unknown"));
+}
+
 TEST_F(RunSeriesTest, SeesAFall) {
   const RunSeries run = read_run(write({.falls_at = 120}));
   EXPECT_TRUE(run.fell);

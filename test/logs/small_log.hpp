@@ -27,6 +27,7 @@ struct SmallLog {
   int ticks = 300;
   int fault_at = -1;  ///< tick from which on it is in a fault
   std::string fault_text = "tilt: the IMU's link leans 1.20 rad from upright, limit 1.00 rad";
+  bool announced = false;  ///< the fault is told at the log's beginning too, as a flight recorder does
   int falls_at = -1;
   std::int64_t first_tick = 0;       ///< its number
   std::set<std::string> left_out{};  ///< channels
@@ -41,6 +42,7 @@ struct SmallLog {
       if (!left_out.contains(channel)) log.write(channel, stamp_ns, message);
     };
     put("ROBOT_INFO", start_ns, info());
+    if (announced) put("FAULT", start_ns, fault(start_ns + fault_at * kTick_ns));
     for (int tick = 0; tick < ticks; ++tick) {
       const std::int64_t now_ns = start_ns + tick * kTick_ns;
       put("STATE", now_ns, state(now_ns));

@@ -1,0 +1,30 @@
+// pmg_sil --viewer where there is nothing to view on. The window itself: test/sim/viewer_test.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "apps/running_program.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(PmgSilViewer, WithoutADisplayIsRefusedInOneLineBeforeAnythingIsWritten) {
+  const fs::path folder = fs::path(testing::TempDir()) / "pmg_sil viewer";
+  fs::create_directories(folder);
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const fs::path out = folder / "out";
+  test::RunningProgram program(
+      "pmg_sil", {"--scenario", "config/scenarios/stand.yaml", "--viewer", "--out", out.string()}, folder);
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_THAT(program.err(), testing::HasSubstr("no window can be opened"));
+  EXPECT_EQ(std::ranges::count(program.err(), '\n'), 1) << program.err();
+  EXPECT_FALSE(fs::exists(out));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace pmg
