@@ -70,7 +70,7 @@ void note_bundle(const pmg_msgs::robot_info_t& info, const runtime::LoadedContro
   for (const auto& [name, sha256] : logged) notes.push_back(fmt::format("{} was there when the log was made", name));
 }
 
-/// Numbers of the configuration that aren't those of the log; where files lie and how a run was made doesn't matter.
+/// Options that by themselves would not be those of the log, whose own are replayed; where files lie doesn't matter.
 void note_options(const ordered_json& logged, const ordered_json& now, std::vector<std::string>& notes) {
   if (!logged.is_object()) return;
   const ordered_json before = logged.flatten(), after = now.flatten();
@@ -79,7 +79,8 @@ void note_options(const ordered_json& logged, const ordered_json& now, std::vect
     if (!before.contains(key)) {
       notes.push_back(fmt::format("option {} is {}; the log doesn't name it", key.substr(1), value.dump()));
     } else if (before[key] != value) {
-      notes.push_back(fmt::format("option {} is {}; it was {}", key.substr(1), value.dump(), before[key].dump()));
+      notes.push_back(
+          fmt::format("option {} is the log's {}, not {}", key.substr(1), before[key].dump(), value.dump()));
     }
   }
 }
@@ -168,6 +169,7 @@ class Replay {
           fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
     }
     note_options(logged, runtime::control_json(setup, loaded_), report_.notes);
+    runtime::restore_options(logged, loaded_.options);
     run_.robot = info.robot;
     run_.session = info.session;
     joint_count_ = loaded_.robot.joint_index.size();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "hal/bus_cycle.hpp"
@@ -43,42 +44,47 @@ Blend blend_named(const std::string& name) {
   throw std::invalid_argument(fmt::format("--blend {}: expected gain or paper", name));
 }
 
-nlohmann::ordered_json channels_json(const std::array<double, kChannels>& values) {
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = values[i];
-  return json;
+/// Every option of the tick that a configuration shows, by its place there. Options: TickOptions, const or not.
+template <typename Options, typename Visit>
+void for_each_option(Options& tick, Visit&& visit) {
+  visit("/control_period_s", tick.dt_s);
+  auto& limits = tick.generator.limits;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const std::string channel = kChannelNames[i];
+    visit("/command/lower/" + channel, limits.lower[i]);
+    visit("/command/upper/" + channel, limits.upper[i]);
+    visit("/command/rate_per_s/" + channel, limits.rate_per_s[i]);
+  }
+  visit("/gco/prior_weight", tick.gco.prior_weight);
+  visit("/gco/optimise_roll_pitch", tick.gco.optimise_roll_pitch);
+  visit("/limiter/target_rate_factor", tick.limiter.target_rate_factor);
+  visit("/entry/speed_rad_s", tick.entry.speed_rad_s);
+  visit("/entry/shortest_s", tick.entry.shortest_s);
+  visit("/entry/longest_s", tick.entry.longest_s);
+  visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
+  visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
+  visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);
+  visit("/late_policy_ticks", tick.late_policy_ticks);
+  visit("/action_monitor/bound_rad", tick.action_monitor.bound_rad);
+  visit("/action_monitor/persist_ticks", tick.action_monitor.persist_ticks);
+  auto& faults = tick.supervisor.fault_limits;
+  visit("/faults/stale_state_s", faults.stale_state_s);
+  visit("/faults/stale_state_ticks", faults.stale_state_ticks);
+  visit("/faults/temperature_degC", faults.temperature_degC);
+  visit("/faults/joint_limit_margin_rad", faults.joint_limit_margin_rad);
+  visit("/faults/velocity_factor", faults.velocity_factor);
+  visit("/faults/torque_factor", faults.torque_factor);
+  visit("/faults/tilt_rad", faults.tilt_rad);
+  visit("/faults/torso_error_rad", faults.torso_error_rad);
+  visit("/faults/persist_ticks", faults.persist_ticks);
 }
 
 nlohmann::ordered_json tick_json(const TickOptions& tick) {
-  const FaultLimits& faults = tick.supervisor.fault_limits;
-  return {{"control_period_s", tick.dt_s},
-          {"command",
-           {{"lower", channels_json(tick.generator.limits.lower)},
-            {"upper", channels_json(tick.generator.limits.upper)},
-            {"rate_per_s", channels_json(tick.generator.limits.rate_per_s)}}},
-          {"gco", {{"prior_weight", tick.gco.prior_weight}, {"optimise_roll_pitch", tick.gco.optimise_roll_pitch}}},
-          {"limiter", {{"target_rate_factor", tick.limiter.target_rate_factor}}},
-          {"entry",
-           {{"speed_rad_s", tick.entry.speed_rad_s},
-            {"shortest_s", tick.entry.shortest_s},
-            {"longest_s", tick.entry.longest_s}}},
-          {"supervisor",
-           {{"stale_command_s", tick.supervisor.stale_command_s},
-            {"stop_within_s", tick.supervisor.stop_within_s},
-            {"gco_held_ticks", tick.supervisor.gco_held_ticks}}},
-          {"late_policy_ticks", tick.late_policy_ticks},
-          {"action_monitor",
-           {{"bound_rad", tick.action_monitor.bound_rad}, {"persist_ticks", tick.action_monitor.persist_ticks}}},
-          {"faults",
-           {{"stale_state_s", faults.stale_state_s},
-            {"stale_state_ticks", faults.stale_state_ticks},
-            {"temperature_degC", faults.temperature_degC},
-            {"joint_limit_margin_rad", faults.joint_limit_margin_rad},
-            {"velocity_factor", faults.velocity_factor},
-            {"torque_factor", faults.torque_factor},
-            {"tilt_rad", faults.tilt_rad},
-            {"torso_error_rad", faults.torso_error_rad},
-            {"persist_ticks", faults.persist_ticks}}}};
+  nlohmann::ordered_json json;
+  for_each_option(tick, [&json](const std::string& place, const auto& value) {
+    json[nlohmann::ordered_json::json_pointer(place)] = value;
+  });
+  return json;
 }
 
 }  // namespace
@@ -103,6 +109,13 @@ LoadedControl load_control(const ControlSetup& setup) {
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch) {
   return std::make_unique<Tick>(loaded.robot, std::move(loaded.library), std::move(loaded.policy), stopwatch,
                                 loaded.options);
+}
+
+void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
+  for_each_option(options, [&json](const std::string& place, auto& value) {
+    const nlohmann::ordered_json::json_pointer pointer(place);
+    if (json.is_object() && json.contains(pointer)) value = json[pointer].get<std::decay_t<decltype(value)>>();
+  });
 }
 
 nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded) {

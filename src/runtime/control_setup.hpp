@@ -41,4 +41,8 @@ std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatc
 /// The configuration in force, as --print-config shows it and a log's ROBOT_INFO keeps it.
 nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded);
 
+/// Back: the options of the tick that such a configuration names; what it doesn't name stays. Throws
+/// nlohmann::json::exception when a value is of another type.
+void restore_options(const nlohmann::ordered_json& json, TickOptions& options);
+
 }  // namespace pmg::runtime

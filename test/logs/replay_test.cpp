@@ -205,17 +205,24 @@ TEST_F(ReplayTest, ChangedFilesAreNamedBeforeAnythingElse) {
   EXPECT_THAT(report.notes, Contains(StartsWith("clips/forward.yaml is not the file")));
 }
 
-TEST_F(ReplayTest, AnotherConfigurationIsNamed) {
-  const fs::path other = copy([](test::LogEvent& event) {
-    if (event.channel != "ROBOT_INFO") return true;
-    auto info = event.as<pmg_msgs::robot_info_t>();
-    auto options = nlohmann::ordered_json::parse(info.options);
-    options["supervisor"]["stale_command_s"] = 0.4;
-    info.options = options.dump();
-    event.set(info);
-    return true;
-  });
-  EXPECT_THAT(replay({other}, {}).notes, Contains("option supervisor/stale_command_s is 0.2; it was 0.4"));
+TEST_F(ReplayTest, TheLogsConfigurationIsReplayedAndWhatIsUncommonInItNamed) {
+  const auto with_option = [&](const char* group, const char* name, double value) {
+    return copy([=](test::LogEvent& event) {
+      if (event.channel != "ROBOT_INFO") return true;
+      auto info = event.as<pmg_msgs::robot_info_t>();
+      auto options = nlohmann::ordered_json::parse(info.options);
+      options[group][name] = value;
+      info.options = options.dump();
+      event.set(info);
+      return true;
+    });
+  };
+  const ReplayReport milder = replay({with_option("faults", "temperature_degC", 96.0)}, {});
+  EXPECT_THAT(milder.notes, Contains("option faults/temperature_degC is the log's 96.0, not 90.0"));
+  EXPECT_FALSE(milder.equal()) << "with that limit there would have been no fault";
+  EXPECT_NEAR(milder.first->time_s, test::kRecordedFault_s, 0.02);
+  const ReplayReport other = replay({with_option("entry", "longest_s", 9.0)}, {});
+  EXPECT_TRUE(other.equal()) << "not used in this run";
 }
 
 TEST_F(ReplayTest, AnotherRobotIsRefused) {
