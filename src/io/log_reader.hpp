@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,7 +33,11 @@ class LogReader {
   /// Likewise, into a message whose memory is used again.
   template <typename Message>
   bool decode_into(Message& message) const {
-    return message.decode(data_.data(), 0, static_cast<int>(data_.size())) >= 0;
+    try {
+      return message.decode(data_.data(), 0, static_cast<int>(data_.size())) >= 0;
+    } catch (const std::exception&) {  // a length that no memory has: damaged bytes
+      return false;
+    }
   }
 
   /// So far: bytes that belong to no event, those of a last event that is cut short included.

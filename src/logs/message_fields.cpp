@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <exception>
 
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
@@ -256,7 +257,11 @@ using Names = std::vector<std::string>;
 template <typename Message>
 bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& fields) {
   static thread_local Message message;  // its memory is used again
-  if (message.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return false;
+  try {
+    if (message.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return false;
+  } catch (const std::exception&) {  // a length that no memory has: damaged bytes
+    return false;
+  }
   Gatherer to(joint_names, fields);
   gather(message, to);
   return true;

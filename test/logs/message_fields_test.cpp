@@ -134,6 +134,9 @@ TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
   EXPECT_FALSE(read_fields("CHATTER", examples_.at("STATE"), joints_, fields));
   EXPECT_FALSE(read_fields("REFERENCE", examples_.at("STATE"), joints_, fields)) << "another type's bytes";
   EXPECT_FALSE(read_fields("STATE", {1, 2, 3}, joints_, fields));
+  std::vector<std::uint8_t> damaged = examples_.at("STATE");
+  damaged[24] = 0xff;  // joint_count, behind hash, stamp and sample, becomes negative
+  EXPECT_FALSE(read_fields("STATE", damaged, joints_, fields));
 }
 
 }  // namespace
