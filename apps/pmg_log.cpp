@@ -1,6 +1,5 @@
 // pmg_log: what a log is about, what is in it for other programs, and whether the same controller does the same again.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -13,6 +12,7 @@
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
 #include "logs/replay.hpp"
+#include "progress_line.hpp"
 
 namespace {
 
@@ -45,22 +45,6 @@ struct Arguments {
 
 volatile std::sig_atomic_t interrupt_requested = 0;
 void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
-
-/// One line that renews itself, when somebody watches.
-class ProgressLine {
- public:
-  explicit ProgressLine(const char* what) : what_(what) {}
-  ~ProgressLine() {
-    if (watched_) std::cerr << "\r\033[K" << std::flush;
-  }
-  void show(double time_s) const {
-    if (watched_) std::cerr << fmt::format("\r{:8.1f} s {}", time_s, what_) << std::flush;
-  }
-
- private:
-  const char* what_;
-  bool watched_ = isatty(STDERR_FILENO) == 1;
-};
 
 int info(const Arguments& arguments) {
   const logs::LogSummary summary = logs::summarise_logs(io::log_files(arguments.logs));
@@ -124,22 +108,27 @@ int export_log(const Arguments& arguments) {
   if (arguments.csv.empty() && arguments.mcap.empty())
     throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
   std::signal(SIGINT, on_interrupt);
-  const ProgressLine line("exported");
+  apps::ProgressLine line;
   const auto progress = [&line](double time_s) {
-    line.show(time_s);
+    line.show(fmt::format("{:8.1f} s exported", time_s));
     return interrupt_requested == 0;
   };
   const std::vector<fs::path> files = io::log_files(arguments.logs);
-  if (!arguments.csv.empty()) print_export(arguments, arguments.csv, logs::export_csv(files, arguments.csv, progress));
+  const auto tell = [&](const fs::path& target, const logs::ExportReport& exported) {
+    line.clear();
+    print_export(arguments, target, exported);
+  };
+  if (!arguments.csv.empty()) tell(arguments.csv, logs::export_csv(files, arguments.csv, progress));
   if (!arguments.mcap.empty() && interrupt_requested == 0) {
-    print_export(arguments, arguments.mcap, logs::export_mcap(files, arguments.mcap, progress));
+    tell(arguments.mcap, logs::export_mcap(files, arguments.mcap, progress));
   }
   return interrupt_requested == 0 ? kOk : kInterrupted;
 }
 
 logs::ReplayReport replay_with_progress(const Arguments& arguments) {
-  const ProgressLine line("replayed");
-  return logs::replay(io::log_files(arguments.logs), arguments.replay, [&line](double time_s) { line.show(time_s); });
+  apps::ProgressLine line;
+  return logs::replay(io::log_files(arguments.logs), arguments.replay,
+                      [&line](double time_s) { line.show(fmt::format("{:8.1f} s replayed", time_s)); });
 }
 
 int replay(const Arguments& arguments) {
