@@ -139,11 +139,6 @@ class Console {
   Console(const model::RobotModel& robot, std::string name) : robot_(robot), name_(std::move(name)) {}
 
   void show(const runtime::ControllerNews& news) {
-    if (news.guard_trip != hal::TripCause::kNone) {
-      spdlog::error("the bus took over and damps: {}", news.guard_trip == hal::TripCause::kControlFrozen
-                                                           ? "no command came from the control thread"
-                                                           : "the control thread's command was not finite");
-    }
     if (news.mode == mode_) return;
     mode_ = news.mode;
     if (news.mode == runtime::Mode::kFault) {

@@ -38,7 +38,6 @@ struct ControllerNews {
   Mode mode = Mode::kPassive;
   Fault fault;
   Source driving;
-  hal::TripCause guard_trip = hal::TripCause::kNone;
 };
 
 class Controller {
