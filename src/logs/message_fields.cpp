@@ -100,6 +100,7 @@ void gather(const pmg_msgs::robot_info_t& m, Gatherer& to) {
 }
 
 void gather(const pmg_msgs::robot_state_t& m, Gatherer& to) {
+  to.text("robot", m.robot);
   to.number("stamp_ns", m.stamp_ns);
   to.number("bus_sample", m.bus_sample);
   to.joints("q_rad", m.q_rad);
@@ -141,6 +142,7 @@ void gather(const pmg_msgs::tick_input_t& m, Gatherer& to) {
 }
 
 void gather(const pmg_msgs::reference_t& m, Gatherer& to) {
+  to.text("robot", m.robot);
   to.number("stamp_ns", m.stamp_ns);
   to.joints("q_ref_rad", m.q_ref_rad);
   to.joints("dq_ref_rad_s", m.dq_ref_rad_s);
@@ -166,6 +168,7 @@ void gather(const pmg_msgs::reference_t& m, Gatherer& to) {
 }
 
 void gather(const pmg_msgs::motor_command_t& m, Gatherer& to) {
+  to.text("robot", m.robot);
   to.number("stamp_ns", m.stamp_ns);
   to.number("bus_sample", m.bus_sample);
   to.joints("q_rad", m.q_rad);
@@ -200,6 +203,7 @@ void gather(const pmg_msgs::fault_t& m, Gatherer& to) {
 }
 
 void gather(const pmg_msgs::timing_t& m, Gatherer& to) {
+  to.text("robot", m.robot);
   to.number("stamp_ns", m.stamp_ns);
   to.number("wake_ns", m.wake_ns);
   to.number("tick_ns", m.tick_ns);

@@ -170,7 +170,7 @@ class Replay {
     }
     note_options(logged, runtime::control_json(setup, loaded_), report_.notes);
     runtime::restore_options(logged, loaded_.options);
-    run_.robot = info.robot;
+    run_.robot = reference_.robot = motor_command_.robot = info.robot;
     run_.session = info.session;
     joint_count_ = loaded_.robot.joint_index.size();
     tick_ = runtime::make_tick(loaded_, stopwatch_);
@@ -270,7 +270,9 @@ class Replay {
     if (!read_fields(event.channel(), event.data(), loaded_.robot.joint_index.names(), logged_fields_))
       throw std::runtime_error(event.channel() + " is no message that this program knows (another version?)");
     read_fields(event.channel(), bytes_, loaded_.robot.joint_index.names(), replayed_fields_);
-    for (std::size_t i = 0; i < std::min(logged_fields_.size(), replayed_fields_.size()); ++i) {
+    if (logged_fields_.size() != replayed_fields_.size())
+      throw std::runtime_error(event.channel() + " has vectors of another length than this robot");
+    for (std::size_t i = 0; i < logged_fields_.size(); ++i) {
       const Field& logged = logged_fields_[i];
       const Field& replayed = replayed_fields_[i];
       if (same(logged.value, replayed.value)) continue;

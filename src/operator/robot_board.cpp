@@ -35,21 +35,19 @@ RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock) : clock_(clock
   });
   link.subscribe("REFERENCE", [this](io::Bytes bytes) {
     const auto reference = io::decode_message<pmg_msgs::reference_t>(bytes);
-    RobotNews* news = reference ? of_tick(reference->stamp_ns) : nullptr;
-    if (news != nullptr) news->reference = reference;
+    if (reference && robots_.contains(reference->robot)) robots_[reference->robot].reference = reference;
   });
   link.subscribe("TIMING", [this](io::Bytes bytes) {
     const auto timing = io::decode_message<pmg_msgs::timing_t>(bytes);
-    RobotNews* news = timing ? of_tick(timing->stamp_ns) : nullptr;
-    if (news == nullptr) return;
-    news->timing = timing;
-    news->wake_us.add(static_cast<double>(timing->wake_ns) * 1e-3);
-    news->tick_us.add(static_cast<double>(timing->tick_ns) * 1e-3);
+    if (!timing || !robots_.contains(timing->robot)) return;
+    RobotNews& news = robots_[timing->robot];
+    news.timing = timing;
+    news.wake_us.add(static_cast<double>(timing->wake_ns) * 1e-3);
+    news.tick_us.add(static_cast<double>(timing->tick_ns) * 1e-3);
   });
   link.subscribe("STATE", [this](io::Bytes bytes) {
-    // A state carries its sample's stamp, not its tick's: whose it is can be told of one robot only.
     const auto state = io::decode_message<pmg_msgs::robot_state_t>(bytes);
-    if (state && robots_.size() == 1) robots_.begin()->second.state = state;
+    if (state && robots_.contains(state->robot)) robots_[state->robot].state = state;
   });
 }
 
@@ -65,13 +63,6 @@ void RobotBoard::hear_status(io::Bytes bytes) {
   if (news.heard_ns != 0 && news.status.session != status->session) ++news.sessions;
   news.status = *status;
   news.heard_ns = clock_.now_ns();
-}
-
-RobotNews* RobotBoard::of_tick(std::int64_t stamp_ns) {
-  for (auto& [name, news] : robots_) {
-    if (news.status.stamp_ns == stamp_ns) return &news;
-  }
-  return nullptr;
 }
 
 }  // namespace pmg::ops

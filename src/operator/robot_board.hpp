@@ -59,8 +59,6 @@ class RobotBoard {
 
  private:
   void hear_status(io::Bytes message);
-  /// The robot whose status was of the same tick: references and timing don't carry a name. Null: none.
-  RobotNews* of_tick(std::int64_t stamp_ns);
 
   const io::Clock& clock_;
   std::map<std::string, RobotNews> robots_;

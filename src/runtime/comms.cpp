@@ -27,6 +27,7 @@ Comms::Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, 
       clock_(clock),
       gate_(inbox, run.robot, clock),
       next_second_ns_(clock.now_ns()) {
+  state_.robot = reference_.robot = motor_command_.robot = timing_.robot = run_.robot;
   link_.subscribe("COMMAND", [this](io::Bytes message) {
     if (!listening_) gate_.take_command(message);
   });

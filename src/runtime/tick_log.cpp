@@ -9,6 +9,7 @@ bool same(const Fault& a, const Fault& b) { return a.code == b.code && a.stamp_n
 TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz,
                  std::int64_t stamp_ns)
     : writer_(&writer), robot_(robot), run_(run), joint_count_(robot.joint_index.size()) {
+  state_.robot = reference_.robot = motor_command_.robot = timing_.robot = run_.robot;
   fill(run_, robot_, control_rate_Hz, stamp_ns, info_);
   writer_->write("ROBOT_INFO", stamp_ns, info_);
 }

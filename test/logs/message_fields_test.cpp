@@ -135,7 +135,9 @@ TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
   EXPECT_FALSE(read_fields("REFERENCE", examples_.at("STATE"), joints_, fields)) << "another type's bytes";
   EXPECT_FALSE(read_fields("STATE", {1, 2, 3}, joints_, fields));
   std::vector<std::uint8_t> damaged = examples_.at("STATE");
-  damaged[24] = 0xff;  // joint_count, behind hash, stamp and sample, becomes negative
+  // joint_count, behind hash, robot's name (length and closing zero included), stamp and sample, becomes negative
+  const auto state = test::LogEvent{"STATE", 0, damaged}.as<pmg_msgs::robot_state_t>();
+  damaged[8 + 4 + state.robot.size() + 1 + 8 + 8] = 0xff;
   EXPECT_FALSE(read_fields("STATE", damaged, joints_, fields));
 }
 
