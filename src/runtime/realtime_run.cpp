@@ -20,7 +20,8 @@ RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, 
       log_(log),
       hoists_(hoists),
       player_(scenario),
-      measure_(model.standing_height_m) {
+      measure_(model.standing_height_m),
+      bus_cycles_(controller.outbox()) {
   timing_.reserve(static_cast<std::size_t>(std::ceil(scenario.duration_s() / kTickPeriod_s)) + 1);
 }
 
@@ -57,8 +58,7 @@ void RealtimeRun::speak() {
 void RealtimeRun::record() {
   ControllerOutbox& outbox = controller_.outbox();
   while (outbox.records.pop(record_)) {
-    CycleTiming cycle;
-    while (outbox.bus_cycles.pop(cycle)) bus_.add(cycle);
+    bus_cycles_.take_until(record_.timing.woke_ns, bus_);
     record_tick();
     bus_.start_anew();
   }

@@ -55,6 +55,7 @@ class RealtimeRun {
   StageTiming timing_;
   TickRecord record_;
   BusTiming bus_;
+  BusCycleReader bus_cycles_;
   Command asked_;
   std::int64_t ticks_ = 0, first_tick_ns_ = 0;
   std::atomic<bool> measuring_{true};  // damping at the end is no part of the run

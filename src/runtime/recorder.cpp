@@ -36,7 +36,8 @@ Recorder::Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, con
       options_(options),
       say_(std::move(say)),
       flight_(made(options.directory), robot, run, options.control_rate_Hz, clock, options.flight,
-              [this](const std::string& text) { this->say(text); }) {
+              [this](const std::string& text) { this->say(text); }),
+      bus_cycles_(outbox) {
   const auto earlier = io::rotated_log_files(options_.directory);
   if (!earlier.empty()) next_number_ = earlier.rbegin()->first + 1;
   if (options_.log) begin_file(clock_.now_ns());
@@ -86,19 +87,11 @@ void Recorder::take_records() {
   note_queue_losses();
   // Bounded: a disk slower than the ticks must not keep this pass for ever.
   for (std::size_t taken = 0; taken < ControllerOutbox::kRecords && outbox_.records.pop(record_); ++taken) {
-    take_bus_cycles(record_.timing.woke_ns);
+    bus_cycles_.take_until(record_.timing.woke_ns, bus_);
     guarded([this] { flight_.add(record_, bus_, lost()); });
     if (options_.log) log_record();
     bus_.start_anew();
     if (after_record) guarded([this] { after_record(record_); });
-  }
-}
-
-void Recorder::take_bus_cycles(std::int64_t until_ns) {
-  while (bus_cycle_held_ || outbox_.bus_cycles.pop(bus_cycle_)) {
-    bus_cycle_held_ = bus_cycle_.done_ns > until_ns;
-    if (bus_cycle_held_) return;
-    bus_.add(bus_cycle_);
   }
 }
 

@@ -61,7 +61,6 @@ class Recorder {
 
  private:
   void take_records();
-  void take_bus_cycles(std::int64_t until_ns);
   void note_queue_losses();
   void log_record();
   void flush();
@@ -87,8 +86,7 @@ class Recorder {
   FlightRecorder flight_;
   TickRecord record_;
   BusTiming bus_;
-  CycleTiming bus_cycle_;  // taken out of the queue, but younger than the record
-  bool bus_cycle_held_ = false;
+  BusCycleReader bus_cycles_;
   std::int64_t unflushed_ = 0, written_ = 0, queue_lost_ = 0, disk_lost_ = 0;
   std::int64_t told_lost_ = 0, lost_before_refusal_ = 0;
   std::int64_t try_ns_ = 0;

@@ -52,15 +52,6 @@ bool take(const std::vector<double>& from, int joint_count, JointVector& to) {
 
 }  // namespace
 
-void BusTiming::add(const CycleTiming& cycle) noexcept {
-  ++cycles;
-  wake_max_ns = std::max(wake_max_ns, cycle.woke_ns - cycle.planned_ns);
-  exchange_max_ns = std::max(exchange_max_ns, cycle.done_ns - cycle.woke_ns);
-  missed = cycle.missed;
-}
-
-void BusTiming::start_anew() noexcept { *this = {.missed = missed}; }
-
 void fill(const RunInfo& run, const model::RobotModel& robot, double control_rate_Hz, std::int64_t stamp_ns,
           pmg_msgs::robot_info_t& message) {
   const int n = robot.joint_index.size();

@@ -18,21 +18,12 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
+#include "runtime/bus_timing.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_record.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::runtime {
-
-/// The bus cycles between two ticks, as TIMING tells them.
-struct BusTiming {
-  std::int32_t cycles = 0;
-  std::int64_t wake_max_ns = 0, exchange_max_ns = 0;
-  std::int64_t missed = 0;  ///< since the start
-
-  void add(const CycleTiming& cycle) noexcept;
-  void start_anew() noexcept;  ///< all but missed
-};
 
 void fill(const RunInfo& run, const model::RobotModel& robot, double control_rate_Hz, std::int64_t stamp_ns,
           pmg_msgs::robot_info_t& message);

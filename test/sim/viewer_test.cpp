@@ -24,7 +24,7 @@ namespace {
 class Display {
  public:
   Display() {
-    if (std::getenv("DISPLAY") != nullptr) return;
+    if (there()) return;
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) return;
     xvfb_ = fork();
@@ -49,7 +49,10 @@ class Display {
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
-  static bool there() { return std::getenv("DISPLAY") != nullptr; }
+  static bool there() {
+    const char* display = std::getenv("DISPLAY");
+    return display != nullptr && *display != '\0';
+  }
 
  private:
   pid_t xvfb_ = 0;
