@@ -14,6 +14,7 @@ namespace pmg::policy {
 namespace {
 
 constexpr int kFormat = 1;
+constexpr const char* kVariant = "pmg";         // others are baselines, trained on other references than a tick makes
 constexpr double kPostureTolerance_rad = 1e-6;  // the same number, written and read as text
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
@@ -97,6 +98,7 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   metadata.robot = json.at("robot").get<std::string>();
   metadata.variant = json.at("variant").get<std::string>();
   expect_equal("its robot", metadata.robot, robot.name);
+  expect_equal("its variant", metadata.variant, std::string(kVariant));
   expect_names("joints", json.at("joints").get<std::vector<std::string>>(), robot.joint_index.names());
   const ObservationLayout layout(robot);
   expect_names("action joints", json.at("action_joints").get<std::vector<std::string>>(), layout.action_joints());
