@@ -114,6 +114,19 @@ TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
   EXPECT_TRUE(text(folder_ / "a/log.lcm") == text(folder_ / "b/log.lcm"));
 }
 
+TEST_F(PmgSil, ThePolicyOfZ1WalksOnTheGround) {
+  const fs::path file = scenario(
+      "name: walk\nsteps:\n  - {for_s: 2.0, text: stand, mode: stand}\n"
+      "  - {for_s: 6.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n  - {for_s: 2.0, text: stand, mode: stand}\n");
+  const Finished walk = run("--policy pmg --scenario " + file.string() + " --out " + out_folder() + " --json");
+  ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
+  const auto summary = nlohmann::json::parse(walk.out);
+  EXPECT_EQ(summary["fell"], false);
+  EXPECT_EQ(summary["hoisted_s"], 0.0);
+  // A robot that stood still all the time would have 0.3 m/s.
+  EXPECT_LT(summary["tracking"]["lin_vel_mae_m_s"], 0.1);
+}
+
 TEST_F(PmgSil, AFallExitsWithOne) {
   const fs::path file = scenario("name: limp\nsteps:\n  - {for_s: 4.0, text: drives off, mode: passive}\n");
   const Finished limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
