@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.22)
 # Script: writes HEADER with VERSION and the git revision of SOURCE_DIR; "-dirty" when files differ from it. A source tree
 # without git has the version alone.
 execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=12 --exclude=*
