@@ -26,7 +26,9 @@ SensorNoise::SensorNoise(const WorldOptions& options, int joints)
       gyro_deviation_rad_s_(options.gyro_noise_rad_s),
       encoder_deviation_rad_(options.encoder_noise_rad),
       orientation_deviation_rad_(options.orientation_noise_rad),
-      encoder_rad_(JointVector::Zero(joints)) {
+      velocity_deviation_rad_s_(options.velocity_noise_rad_s),
+      encoder_rad_(JointVector::Zero(joints)),
+      velocity_rad_s_(JointVector::Zero(joints)) {
   draw();
 }
 
@@ -36,6 +38,8 @@ void SensorNoise::draw() noexcept {
   gyro_rad_s_ = vector(gyro_deviation_rad_s_);
   const Eigen::Vector3d half_rotation = 0.5 * vector(orientation_deviation_rad_);
   orientation_ = Eigen::Quaterniond(1.0, half_rotation.x(), half_rotation.y(), half_rotation.z()).normalized();
+  if (velocity_deviation_rad_s_ > 0.0)
+    for (double& v : velocity_rad_s_) v = velocity_deviation_rad_s_ * normal_.next();
 }
 
 Eigen::Vector3d SensorNoise::vector(double standard_deviation) noexcept {

@@ -30,6 +30,7 @@ class SensorNoise {
   void draw() noexcept;
 
   const JointVector& encoder_rad() const { return encoder_rad_; }
+  const JointVector& velocity_rad_s() const { return velocity_rad_s_; }
   const Eigen::Vector3d& gyro_rad_s() const { return gyro_rad_s_; }
   const Eigen::Quaterniond& orientation() const { return orientation_; }
 
@@ -37,8 +38,8 @@ class SensorNoise {
   Eigen::Vector3d vector(double standard_deviation) noexcept;
 
   NormalSource normal_;
-  double gyro_deviation_rad_s_, encoder_deviation_rad_, orientation_deviation_rad_;
-  JointVector encoder_rad_;
+  double gyro_deviation_rad_s_, encoder_deviation_rad_, orientation_deviation_rad_, velocity_deviation_rad_s_;
+  JointVector encoder_rad_, velocity_rad_s_;
   Eigen::Vector3d gyro_rad_s_ = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  ///< a small rotation
 };

@@ -53,6 +53,11 @@ int find(const mjModel* model, mjtObj type, const std::string& name) {
   return id;
 }
 
+model::JointCommand limp(int joints) {
+  const JointVector zero = JointVector::Zero(joints);
+  return {.q = zero, .dq = zero, .kp = zero, .kd = zero, .tau_ff = zero};
+}
+
 Eigen::Quaterniond quaternion(const mjtNum* q) { return {q[0], q[1], q[2], q[3]}; }
 
 }  // namespace
@@ -63,7 +68,16 @@ struct World::Impl {
         model(compile(mjcf(robot, world_options))),
         data(mj_makeData(model.get())),
         suspension(robot.total_mass_kg, robot.standing_height_m),
-        noise(world_options, robot.joint_index.size()) {
+        noise(world_options, robot.joint_index.size()),
+        underway(1 +
+                 static_cast<std::size_t>(std::lround(world_options.variation.delay_s / world_options.timestep_s))) {
+    const int joints = robot.joint_index.size();
+    const Variation& variation = options.variation;
+    apply(variation, robot, model.get(), data.get());
+    kp_factor = variation.kp_factor.size() > 0 ? variation.kp_factor : JointVector::Ones(joints);
+    kd_factor = variation.kd_factor.size() > 0 ? variation.kd_factor : JointVector::Ones(joints);
+    encoder_offset_rad =
+        variation.encoder_offset_rad.size() > 0 ? variation.encoder_offset_rad : JointVector::Zero(joints);
     for (const auto& joint : robot.joints) {
       const int id = find(model.get(), mjOBJ_JOINT, joint.name);
       qpos_address.push_back(model->jnt_qposadr[id]);
@@ -88,6 +102,9 @@ struct World::Impl {
   std::unique_ptr<mjData, FreeData> data;
   Suspension suspension;
   SensorNoise noise;
+  std::vector<model::JointCommand> underway;  // to the drives: a ring as long as the delay, the newest included
+  std::size_t newest_command = 0;
+  JointVector kp_factor, kd_factor, encoder_offset_rad;
   Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
   std::vector<int> qpos_address, dof_address;  // in joint order, as the actuators are
   int base_body = 0, torso_body = 0;
@@ -121,6 +138,7 @@ void World::reset() {
     mj_forward(model_, data_);
   }
   w.noise = SensorNoise(w.options, robot_.joint_index.size());
+  std::ranges::fill(w.underway, limp(robot_.joint_index.size()));
   w.push_W_N.setZero();
   w.foot_force_N = w.foot_slip_m_s = {};
   w.steps = 0;
@@ -133,7 +151,9 @@ void World::reset() {
 void World::step(const model::JointCommand& command) noexcept {
   Impl& w = *impl_;
   if (w.diverged) return;
-  set_drives(command);
+  w.newest_command = (w.newest_command + 1) % w.underway.size();
+  w.underway[w.newest_command] = command;
+  set_drives(w.underway[(w.newest_command + 1) % w.underway.size()]);
   mjtNum* torso_wrench = data_->xfrc_applied + 6 * w.torso_body;
   mju_zero(torso_wrench, 6);
   Eigen::Map<Eigen::Vector3d>(torso_wrench) += w.push_W_N;
@@ -152,11 +172,13 @@ void World::step(const model::JointCommand& command) noexcept {
 }
 
 void World::set_drives(const model::JointCommand& command) noexcept {
+  const Impl& w = *impl_;
   for (int j = 0; j < model_->nu; ++j) {
+    const double kp = w.kp_factor[j] * command.kp[j], kd = w.kd_factor[j] * command.kd[j];
     mjtNum* bias = model_->actuator_biasprm + j * mjNBIAS;
-    bias[1] = -command.kp[j];
-    bias[2] = -command.kd[j];
-    data_->ctrl[j] = command.kp[j] * command.q[j] + command.kd[j] * command.dq[j] + command.tau_ff[j];
+    bias[1] = -kp;
+    bias[2] = -kd;
+    data_->ctrl[j] = kp * (command.q[j] - w.encoder_offset_rad[j]) + kd * command.dq[j] + command.tau_ff[j];
   }
 }
 
@@ -203,8 +225,8 @@ void World::read(model::RobotState& state) noexcept {
   state.temperature_degC.setConstant(joints, kDriveTemperature_degC);
   for (int j = 0; j < joints; ++j) {
     const auto index = static_cast<std::size_t>(j);
-    state.q[j] = data_->qpos[w.qpos_address[index]] + w.noise.encoder_rad()[j];
-    state.dq[j] = data_->qvel[w.dof_address[index]];
+    state.q[j] = data_->qpos[w.qpos_address[index]] + w.encoder_offset_rad[j] + w.noise.encoder_rad()[j];
+    state.dq[j] = data_->qvel[w.dof_address[index]] + w.noise.velocity_rad_s()[j];
   }
   state.gyro_rad_s = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.gyro_address) + w.noise.gyro_rad_s();
   state.acceleration_m_s2 = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.accelerometer_address);

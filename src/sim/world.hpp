@@ -11,6 +11,7 @@
 
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
+#include "sim/variation.hpp"
 
 namespace pmg::sim {
 
@@ -20,6 +21,8 @@ struct WorldOptions {
   double floor_friction = 0.8;
   std::uint64_t seed = 0;                                                               ///< of the sensor noise
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
+  double velocity_noise_rad_s = 0.0;  ///< of measured joint velocities, likewise
+  Variation variation;                ///< what else is not as the model says
 };
 
 /// What only a simulation knows; for metrics and pictures, never for control.
@@ -54,7 +57,8 @@ class World {
   void reset();  ///< standing posture, soles on the ground (or hanging on the gantry), at rest, time zero
 
   /// One physics step under the command (held); the drives' PD runs inside MuJoCo's affine-bias actuators. No heap.
-  /// The command's vectors have one element a joint. After divergence nothing moves any more until reset().
+  /// The command's vectors have one element a joint. A variation's delay holds it back for so many steps; until the
+  /// first arrives the drives are limp. After divergence nothing moves any more until reset().
   void step(const model::JointCommand& command) noexcept;
   void read(model::RobotState& state) noexcept;  ///< sensors of the current step
   Truth truth() const noexcept;
