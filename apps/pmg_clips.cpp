@@ -1,4 +1,5 @@
 // Makes and shows clip libraries.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,9 +15,11 @@
 #include <string>
 #include <system_error>
 
+#include "gco/make_command_inverse.hpp"
 #include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/command_inverse_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
 #include "progress_line.hpp"
@@ -43,6 +47,14 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   posture("squat", kHeight);
 }
 
+/// From the clips as they are read back, so that it belongs to the files.
+void write_inverse(const std::filesystem::path& directory, const model::RobotModel& robot,
+                   const std::function<void(double)>& progress) {
+  std::filesystem::remove(model::command_inverse_file(directory));
+  const ClipLibrary library = model::load_clip_library(directory, robot);
+  model::write_command_inverse(directory, gco::make_command_inverse(robot, library, progress));
+}
+
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Interrupted {};
@@ -60,6 +72,19 @@ void require_writable(const std::filesystem::path& directory) {
   }
 }
 
+int invert(const std::string& robot_name, const std::filesystem::path& clips) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
+  const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
+  require_writable(directory);
+  apps::ProgressLine progress;
+  write_inverse(directory, robot, [&progress](double share) {
+    if (interrupted != 0) throw Interrupted{};
+    progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
+  });
+  progress.clear();
+  return 0;
+}
+
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   require_writable(out);  // now, not after a minute's work
@@ -73,7 +98,7 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
   progress.clear();
   std::filesystem::create_directories(out);
   write_library(out, library, robot);
-  return 0;
+  return invert(robot_name, out);
 }
 
 struct ShowOptions {
@@ -176,6 +201,11 @@ int main(int argc, char** argv) {
   show_command->add_option("--clips", options.clips, "directory of the clips; the robot's own if left out");
   show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with");
   show_command->add_flag("--json", options.json, "for machines");
+  std::filesystem::path inverse_clips;
+  CLI::App* invert_command = app.add_subcommand(
+      "invert", "Make inverse.csv: what to ask of the clips so that the mean optimised command is the user's");
+  invert_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
+  invert_command->add_option("--clips", inverse_clips, "directory of the clips; the robot's own if left out");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -183,6 +213,7 @@ int main(int argc, char** argv) {
   }
   std::signal(SIGINT, [](int) { interrupted = 1; });
   try {
+    if (invert_command->parsed()) return invert(robot, inverse_clips);
     return synth_command->parsed() ? synth(robot, out) : show(options);
   } catch (const model::ConfigError& error) {
     std::cerr << error.what() << "\n";

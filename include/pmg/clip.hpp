@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pmg/command.hpp"
+#include "pmg/command_inverse.hpp"
 #include "pmg/types.hpp"
 
 namespace pmg {
@@ -43,6 +44,7 @@ struct ClipLibrary {
   JointVector q_stand;                                                 ///< [rad]
   JointVector q_lower, q_upper;                                        ///< joint limits [rad]
   MirrorMap mirror;
+  CommandInverse inverse;                                              ///< empty: the command as it is
 };
 
 }  // namespace pmg

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "model/clip_table.hpp"
+#include "model/command_inverse_file.hpp"
 #include "model/config_reader.hpp"
 
 namespace pmg::model {
@@ -229,6 +230,7 @@ std::vector<fs::path> clip_library_files(const fs::path& directory) {
   add_all(kPositiveNames);
   add_all(kNegativeNames);
   add_all(kPostureNames);
+  if (fs::exists(command_inverse_file(directory))) files.push_back(command_inverse_file(directory));
   return files;
 }
 
@@ -245,6 +247,7 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   for (std::size_t i = 0; i < library.posture.size(); ++i) {
     library.posture[i] = read_static(directory, kPostureNames[i], robot, kVelocityChannels + i);
   }
+  if (fs::exists(command_inverse_file(directory))) library.inverse = read_command_inverse(directory);
   library.q_stand = robot.q_stand();
   library.q_lower = robot.q_lower();
   library.q_upper = robot.q_upper();

@@ -20,7 +20,7 @@ struct ClipTable {
   Place place(std::size_t row) const { return {file.string(), line[row]}; }
 };
 
-/// The columns are every joint by name, in any order, and `command` first where it is asked for. Throws ConfigError on
+/// The columns are every joint by name and, where it is asked for, `command`, in any order. Throws ConfigError on
 /// a missing, unknown or repeated column, a row of another length, and what isn't a finite number.
 ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& joints, bool with_command);
 

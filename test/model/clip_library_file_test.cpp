@@ -208,7 +208,7 @@ TEST_F(RefusedClips, RepeatedColumn) {
   expect_changed("turn.csv", "waist_pitch", "right_knee", "right_knee", "is there twice");
 }
 TEST_F(RefusedClips, StaticClipWithoutCommand) {
-  expect_changed("bend.csv", "command,", "", "command", "is missing; expected it as the first");
+  expect_changed("bend.csv", "command,", "", "command", "is missing; expected a column for `command` and every joint");
 }
 TEST_F(RefusedClips, RowOfAnotherLength) {
   set_cell("turn.csv", 3, 0, "0,0");
