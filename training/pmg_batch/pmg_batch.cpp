@@ -18,11 +18,18 @@ namespace {
 
 thread_local std::string last_error;
 
+pmg::Variant variant_of(const std::string& name) {
+  const auto variant = pmg::variant_named(name);
+  if (!variant) throw std::invalid_argument("variant " + name + "; expected pmg, without_gco or single_gait");
+  return *variant;
+}
+
 nlohmann::ordered_json describe(const pmg::model::RobotModel& robot, const std::string& variant,
                                 const std::vector<pmg::training::Field>& fields) {
   using nlohmann::ordered_json;
   ordered_json joints = ordered_json::array(), columns = ordered_json::array(), range = ordered_json::array();
-  for (const pmg::model::Joint& joint : robot.joints) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const pmg::model::Joint& joint = robot.joints[i];
     joints.push_back({{"name", joint.name},
                       {"stand_rad", joint.stand_rad},
                       {"lower_rad", joint.lower_rad},
@@ -30,7 +37,9 @@ nlohmann::ordered_json describe(const pmg::model::RobotModel& robot, const std::
                       {"effort_limit_Nm", joint.effort_limit_Nm},
                       {"kp_Nm_per_rad", joint.kp_Nm_per_rad},
                       {"kd_Nm_s_per_rad", joint.kd_Nm_s_per_rad},
-                      {"policy", joint.policy}});
+                      {"policy", joint.policy},
+                      {"mirror_joint", robot.joint_index.name(robot.mirror.partner[i])},
+                      {"mirror_sign", robot.mirror.sign[i]}});
   }
   for (const auto& field : fields) {
     columns.push_back({{"name", field.name}, {"offset", field.offset}, {"size", field.size}});
@@ -63,7 +72,7 @@ struct pmg_batch {
             int thread_count)
       : robot(pmg::model::load_robot(directory)), observation(robot), threads(std::max(1, thread_count)) {
     const auto library = pmg::model::load_clip_library(robot.directory / "clips", robot);
-    const auto variant = pmg::training::variant_of(variant_name);
+    const pmg::Variant variant = variant_of(variant_name);
     if (streams < 1) throw std::invalid_argument("streams; expected 1 or more");
     stream.reserve(static_cast<std::size_t>(streams));
     for (int i = 0; i < streams; ++i) {
@@ -158,7 +167,7 @@ int32_t pmg_batch_observe(pmg_batch* batch, int32_t first, const double* gyro, c
   state.dq = Eigen::Map<const Eigen::VectorXd>(dq, joints);
   const Eigen::VectorXf action = Eigen::Map<const Eigen::VectorXf>(last_action, actions);
   const auto& stream = *batch->stream.front();
-  const Eigen::VectorXf& seen = batch->observation.assemble(state, stream.reference(), stream.optimised(), action);
+  const Eigen::VectorXf& seen = batch->observation.assemble(state, stream.reference(), stream.observed(), action);
   std::copy(seen.begin(), seen.end(), out);
   return 0;
 }

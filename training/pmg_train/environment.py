@@ -48,8 +48,9 @@ class Environment:
             raise ValueError("the policy joints must come first in the joint order")
         self.actions = len(legs)
         self.leg_effort = self._tensor([joints[i]["effort_limit_Nm"] for i in legs])
-        weight = self.config["joint_weight"]
-        self.leg_weight = self._tensor([weight.get(joint_kind(joints[i]["name"]), 1.0) for i in legs])
+        self.leg_kinds = [joint_kind(joints[i]["name"]) for i in legs]
+        self.leg_weight = self._of_kinds(self.config["joint_weight"], 1.0)
+        self.leg_linear_weight = self._of_kinds(self.config["rewards"]["joint_position_linear"], 0.0)
         self.torso, self.feet = model.body(torso).id, [model.body(f).id for f in feet]
         self.foot_slice = slice(self.feet[0], self.feet[1] + 1, self.feet[1] - self.feet[0])
         self.sole_center = self._tensor(model.geom(f"{feet[0]}_sole").pos)
@@ -62,6 +63,13 @@ class Environment:
         self.kick = self._tensor([kicks["linear_m_s"]] * 2 + [kicks["vertical_m_s"]] + [kicks["angular_rad_s"]] * 3)
         self.action_scale = self.config["action_scale"]
         self.action_unit = (self.action_scale / 0.25) ** 2  # penalties on actions are meant in radians
+
+    def _of_kinds(self, values: dict[str, float], otherwise: float) -> torch.Tensor:
+        """One number a leg joint from a table by kind; ValueError on a kind that the legs don't have."""
+        unknown = set(values) - set(self.leg_kinds)
+        if unknown:
+            raise ValueError(f"joint kinds {sorted(unknown)}; expected some of {sorted(set(self.leg_kinds))}")
+        return self._tensor([values.get(kind, otherwise) for kind in self.leg_kinds])
 
     def _state(self) -> None:
         n, joints, actions = self.n, len(self.stand), self.actions
@@ -77,7 +85,8 @@ class Environment:
         self.sway = zeros(n, 4, joints)  # offset, amplitude, frequency, phase
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
         self.history = zeros(n, HISTORY, 6 + 3 * actions)
-        self.velocity, self.wanted = zeros(n, 3), zeros(n, 3)  # slow averages
+        # Slow averages: what the base does, what u' asks, what the admissible command wants.
+        self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
         self.reward, self.done, self.timeout = zeros(n), zeros(n), zeros(n)
         self.terms: dict[str, torch.Tensor] = {}
@@ -135,9 +144,10 @@ class Environment:
         put(self.sway, start["sway"], one[:, None])
         put(self.q_ref, start["q_ref"], one)
         self.targets.copy_(torch.where(one[None], start["q_ref"][None], self.targets))
-        wanted = self.get("command")[:, :3]
-        put(self.velocity, wanted, one)
-        put(self.wanted, wanted, one)
+        asked = self.get("optimised")[:, :3]
+        put(self.velocity, asked, one)
+        put(self.asked, asked, one)
+        put(self.wanted, self.get("command")[:, :3], one)
         keep = (~where).float()
         self.time_s.mul_(keep)
         for action in (self.action, self.action_1, self.action_2, self.previous_dq):
@@ -152,7 +162,7 @@ class Environment:
         self.kick_in_s.uniform_(low, high)
 
     MOMENTARY = ("stream", "tick", "row", "time_s", "kick_in_s", "action", "action_1", "action_2", "targets", "q_ref", "sway",
-                 "fresh", "history", "velocity", "wanted", "previous_dq", "previous_sole", "observation",
+                 "fresh", "history", "velocity", "asked", "wanted", "previous_dq", "previous_sole", "observation",
                  "critic_observation")
     MOMENTARY_PHYSICS = ("qpos", "qvel", "warmstart")
 
@@ -236,9 +246,10 @@ class Environment:
         share = self.tick_s / self.config["velocity_average_s"]
         command, optimised = self.get("command"), self.get("optimised")
         self.velocity += share * (now - self.velocity)
+        self.asked += share * (optimised[:, :3] - self.asked)
         self.wanted += share * (command[:, :3] - self.wanted)
         torso_roll, torso_pitch, _ = roll_pitch_yaw(torch.nan_to_num(w.xquat[:, self.torso]))
-        attitude = torch.stack([torso_pitch, torso_roll], 1)
+        attitude, height = torch.stack([torso_pitch, torso_roll], 1), qpos[:, 2] - self.standing_height
         q, dq = qpos[:, 7:], qvel[:, 6:]
         sole_quat = torch.nan_to_num(w.xquat[:, self.foot_slice])
         sole = torch.nan_to_num(w.xpos[:, self.foot_slice]) + rotate(sole_quat, self.sole_center.expand(self.n, 2, 3))
@@ -247,10 +258,10 @@ class Environment:
         self.previous_sole.copy_(sole)
         leg_q, leg_dq = q[:, :legs], dq[:, :legs]
         m = dict(
-            slow_error=self.velocity - self.wanted, fast_error=now - optimised[:, :3],
-            attitude_error=attitude - command[:, 3:5], height_error=qpos[:, 2] - self.standing_height - command[:, 5],
+            slow_error=self.velocity - self.asked, fast_error=now - optimised[:, :3],
+            attitude_error=attitude - optimised[:, 3:5], height_error=height - optimised[:, 5],
             q_error=leg_q - self.q_ref[:, :legs], dq_error=leg_dq - self.get("dq_ref")[:, :legs],
-            leg_weight=self.leg_weight, gain=self.row[:, self.fields["phase"]][:, 2],
+            leg_weight=self.leg_weight, leg_linear_weight=self.leg_linear_weight, gain=self.row[:, self.fields["phase"]][:, 2],
             touching=(torch.nan_to_num(w.sole_force) > 5.0).float(), contact=self.get("contact"),
             sole_velocity=sole_velocity, sole_tilt=2 * (sole_quat[..., 1] ** 2 + sole_quat[..., 2] ** 2),
             vertical_velocity=qvel[:, 2] - self.get("base_velocity_H")[:, 2], gyro=qvel[:, 3:6],
@@ -262,13 +273,20 @@ class Environment:
         upright = rotate_back(quat, self.up.expand(self.n, 3))[:, 2]
         fall = self.config["fall"]
         fallen = (qpos[:, 2] < fall["height_share"] * self.standing_height) | (upright < fall["upright"]) | broken
-        self.errors = dict(velocity=m["slow_error"][:, :2].norm(dim=1), yaw_rate=m["slow_error"][:, 2].abs(),
-                           pitch=m["attitude_error"][:, 0].abs(), roll=m["attitude_error"][:, 1].abs(),
-                           height=m["height_error"].abs(), joint=m["q_error"].abs().mean(1),
-                           contact=(m["touching"] != m["contact"]).float().mean(1),
-                           torque=m["leg_torque"].abs().mean(1), action=self.action.abs().mean(1),
-                           broken=broken.float())
+        self.errors = self._errors(m, command, attitude, height) | dict(broken=broken.float())
         return m, fallen
+
+    def _errors(self, m: dict, command: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
+        """For the curves. Velocities to height: against the admissible command, not against u' as rewards are."""
+        slow, q_error = self.velocity - self.wanted, m["q_error"].abs()
+        errors = dict(velocity=slow[:, :2].norm(dim=1), yaw_rate=slow[:, 2].abs(),
+                      pitch=(attitude[:, 0] - command[:, 3]).abs(), roll=(attitude[:, 1] - command[:, 4]).abs(),
+                      height=(height - command[:, 5]).abs(), velocity_optimised=m["slow_error"][:, :2].norm(dim=1),
+                      yaw_rate_optimised=m["slow_error"][:, 2].abs(), joint=q_error.mean(1))
+        for kind in dict.fromkeys(self.leg_kinds):
+            errors[kind] = torch.stack([q_error[:, i] for i, k in enumerate(self.leg_kinds) if k == kind]).mean(0)
+        return errors | dict(contact=(m["touching"] != m["contact"]).float().mean(1), torque=m["leg_torque"].abs().mean(1),
+                             action=self.action.abs().mean(1))
 
     # -------------------------------------------------------------------------------------------------- observation
 
@@ -310,7 +328,7 @@ class Environment:
         relative = rotate_back(quat[:, None].expand(-1, 2, -1), feet - w.qpos[:, None, :3])
         torso_roll, torso_pitch, _ = roll_pitch_yaw(w.xquat[:, self.torso])
         return torch.cat([velocity, w.qpos[:, 2:3], w.sole_force / 300, (w.sole_force > 5).float(), self.get("contact"),
-                          feet[..., 2], relative.flatten(1), self.velocity, self.wanted, self.get("command"),
+                          feet[..., 2], relative.flatten(1), self.velocity, self.asked, self.get("command"),
                           torso_pitch[:, None], torso_roll[:, None], self.robots.privileged, self.action_1,
                           w.torque[:, :self.actions] / self.leg_effort], 1)
 

@@ -9,6 +9,7 @@ import torch.distributed as dist
 from torch import nn
 
 from pmg_train.networks import ActorCritic, log_probability
+from pmg_train.symmetry import Mirror
 
 
 class Rollout:
@@ -34,8 +35,12 @@ class Rollout:
 
 
 class Ppo:
-    def __init__(self, network: ActorCritic, config: dict, device):
+    """mirrors: of observations and of actions. symmetry: the weight of the mirror loss; 0 leaves the sides to themselves."""
+
+    def __init__(self, network: ActorCritic, config: dict, device, mirrors: tuple[Mirror, Mirror], symmetry: float):
         self.network, self.config = network, config
+        self.mirror_seen, self.mirror_action = mirrors
+        self.symmetry = symmetry
         self.rate = torch.tensor(config["learning_rate"][1], device=device)
         cuda = self.rate.is_cuda
         self.optimizer = torch.optim.Adam(network.parameters(), lr=self.rate if cuda else float(self.rate), fused=cuda)
@@ -52,12 +57,13 @@ class Ppo:
         old_log, old_mean, old_std = flat(rollout.log_probability), flat(rollout.mean), net.std().detach().clone()
         samples = action.shape[0]
         size = samples // c["minibatches"]
-        sums = torch.zeros(3, device=action.device)
+        sums = torch.zeros(4, device=action.device)
         for _ in range(c["epochs"]):
             order = torch.randperm(samples, device=action.device)
             for k in range(c["minibatches"]):
                 i = order[k * size:(k + 1) * size]
-                mean, std = net.mean(seen[i]), net.std()
+                seen_i = seen[i]
+                mean, std = net.mean(seen_i), net.std()
                 with torch.no_grad():
                     kl = (torch.log(std / old_std) + (old_std ** 2 + (old_mean[i] - mean) ** 2) / (2 * std ** 2)
                           - 0.5).sum(1).mean()
@@ -68,17 +74,27 @@ class Ppo:
                 policy_loss = -torch.min(ratio * gain, clipped * gain).mean()
                 value_loss = ((net.value(critic_seen[i]) - returns[i]) ** 2).mean()
                 loss = policy_loss + value_loss - entropy * std.log().sum()
+                asymmetry = torch.zeros_like(kl)
+                if self.symmetry:
+                    asymmetry = self._asymmetry(seen_i, mean)
+                    loss = loss + self.symmetry * asymmetry
                 self.optimizer.zero_grad(set_to_none=True)
                 loss.backward()
                 self._average_gradients()
                 nn.utils.clip_grad_norm_(net.parameters(), c["gradient_norm"], foreach=True)
                 self.optimizer.step()
-                sums += torch.stack([kl, value_loss.detach(), policy_loss.detach()])
-        kl, value_loss, policy_loss = sums / (c["epochs"] * c["minibatches"])
+                sums += torch.stack([kl, value_loss.detach(), policy_loss.detach(), asymmetry.detach()])
+        kl, value_loss, policy_loss, asymmetry = sums / (c["epochs"] * c["minibatches"])
         with torch.no_grad():
-            net.actor_norm.update(seen[::4])
+            some = seen[::4]
+            # With its mirror image: what is normalised alike on both sides can be answered alike.
+            net.actor_norm.update(torch.cat([some, self.mirror_seen(some)]) if self.symmetry else some)
             net.critic_norm.update(critic_seen[::4])
-        return dict(kl=kl, value_loss=value_loss, policy_loss=policy_loss)
+        return dict(kl=kl, value_loss=value_loss, policy_loss=policy_loss, asymmetry=asymmetry)
+
+    def _asymmetry(self, seen: torch.Tensor, mean: torch.Tensor) -> torch.Tensor:
+        """Mean over the samples of |mean(M s) - M mean(s)|^2, summed over the joints, in units of the action."""
+        return ((self.network.mean(self.mirror_seen(seen)) - self.mirror_action(mean)) ** 2).sum(1).mean()
 
     def _adapt(self, kl: torch.Tensor) -> None:
         if self.world_size > 1:

@@ -21,6 +21,8 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     exponential("attitude", (attitude ** 2).sum(1))
     exponential("joint_position", (m["leg_weight"] * m["q_error"] ** 2).sum(1))
     exponential("joint_velocity", (m["leg_weight"] * m["dq_error"] ** 2).sum(1))
+    # Sharp where the exponential is flat; bounded, so that a pushed robot isn't held to its reference.
+    terms["joint_position_linear"] = (m["leg_linear_weight"] * m["q_error"].abs().clamp(max=0.3)).sum(1)
     terms["alive"] = torch.full_like(m["gain"], weights["alive"])
     linear("velocity_linear", slow[:, :2].abs().sum(1))
     linear("yaw_rate_linear", slow[:, 2].abs())

@@ -27,6 +27,7 @@ from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
 from pmg_train.reference_pool import ReferencePool
 from pmg_train.references import ReferenceBatch
+from pmg_train.symmetry import action_mirror, observation_mirror
 
 HERE = Path(__file__).resolve().parent.parent
 
@@ -86,7 +87,8 @@ class Training:
         if dist.is_initialized():
             for tensor in self.network.state_dict().values():
                 dist.broadcast(tensor, 0)
-        self.ppo = Ppo(self.network, ppo, self.device)
+        mirrors = observation_mirror(batch.description, self.device), action_mirror(batch.description, self.device)
+        self.ppo = Ppo(self.network, ppo, self.device, mirrors, c["symmetry"]["weight"])
         self.rollout = Rollout(ppo["steps"], ppo["worlds"], seen, self.env.critic_observation.shape[1],
                                self.env.actions, self.device)
         n, actions = ppo["worlds"], self.env.actions
@@ -247,7 +249,8 @@ class Training:
         self.sums.zero_()
         row = dict(iteration=self.iteration, minutes=self.learned_s / 60, steps=self.steps,
                    steps_per_s=self.steps / max(1e-9, self.learned_s), learning_rate=float(self.ppo.rate),
-                   std=float(self.network.std().detach().mean()), kl=float(info["kl"]), value_loss=float(info["value_loss"]))
+                   std=float(self.network.std().detach().mean()), kl=float(info["kl"]), value_loss=float(info["value_loss"]),
+                   asymmetry=float(info["asymmetry"]))
         row |= dict(zip(self._names(), values))
         row["falls_per_minute"] = row.pop("falls") * 60 / self.env.tick_s
         self.curve.append(row)
@@ -255,9 +258,9 @@ class Training:
         e = lambda name: row[f"error/{name}"]
         self.log(f"{self.iteration} {row['minutes']:.2f} min {self.steps / 1e6:.0f}M {row['steps_per_s'] / 1e3:.0f}k/s "
                  f"reward {row['reward']:.4f} falls/min {row['falls_per_minute']:.2f} v {e('velocity'):.3f} yaw {e('yaw_rate'):.3f} "
-                 f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} contact {e('contact'):.3f} "
+                 f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} ankle {e('ankle_pitch'):.3f} contact {e('contact'):.3f} "
                  f"tau {e('torque'):.1f} a {e('action'):.2f} std {row['std']:.2f} kl {row['kl']:.4f} lr {row['learning_rate']:.1e} "
-                 f"vl {row['value_loss']:.3f} broken {e('broken'):.1e}" + (f" rows {constraints} contacts {contacts}" if constraints else ""))
+                 f"vl {row['value_loss']:.3f} sides {row['asymmetry']:.3f} broken {e('broken'):.1e}" + (f" rows {constraints} contacts {contacts}" if constraints else ""))
         if self.rank == 0:
             with open(self.a.out / "curve.csv", "w", newline="") as file:
                 writer = csv.DictWriter(file, fieldnames=list(self.curve[-1]))
