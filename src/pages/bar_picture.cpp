@@ -27,18 +27,37 @@ std::string legend_entry(double x, double y, const std::string& colour, const st
                      y - 10, colour, x + 16, y, escape_html(text));
 }
 
+double largest_shown(const Bars& bars) {
+  double largest = 0.0;
+  const auto show = [&largest](double value) { largest = std::isfinite(value) ? std::max(largest, value) : largest; };
+  for (const Bars::Set& set : bars.sets) {
+    for (const double value : set.values) show(value);
+    for (const Interval& interval : set.intervals) show(interval.upper);
+  }
+  for (const Mark& mark : bars.marks) show(mark.x);
+  return largest;
+}
+
+/// A whisker through the middle of a bar; x in pixels.
+std::string whisker(double from, double to, double y) {
+  return fmt::format(
+      R"(<path d="M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}V{4:.1f}M{1:.1f} {3:.1f}V{4:.1f}" stroke="{5}" )"
+      R"(stroke-width="1.2" fill="none"/>)",
+      from, to, y, y - 3, y + 3, colour::kInk);
+}
+
 }  // namespace
 
 std::string svg(const Bars& bars) {
-  constexpr int kWidth = 640, kLeft = 190, kRight = 70, kTop = 6, kAxis = 22;
+  constexpr int kWidth = 640, kLeft = 190, kRight = 70, kAxis = 22;
+  constexpr int kRoomyBars = 12;  // few enough for a number at each
   const int per_row = static_cast<int>(bars.sets.size());
-  const int bar = per_row > 1 ? 7 : 10, row = per_row * bar + 7;
+  const bool numbered = per_row == 1 || per_row * static_cast<int>(bars.names.size()) <= kRoomyBars;
+  const int bar = per_row == 1 ? 10 : numbered ? 14 : 7, row = per_row * bar + 7;
   const int legend = per_row > 1 ? 20 * per_row : 0;
-  const int height = kTop + row * static_cast<int>(bars.names.size()) + kAxis + legend;
-  double largest = 0.0;
-  for (const Bars::Set& set : bars.sets) {
-    for (const double value : set.values) largest = std::isfinite(value) ? std::max(largest, value) : largest;
-  }
+  const int top_margin = bars.marks.empty() ? 6 : 18;
+  const int height = top_margin + row * static_cast<int>(bars.names.size()) + kAxis + legend;
+  const double largest = largest_shown(bars);
   const double full = largest > 0.0 ? largest : 1.0;
   const double scale = (kWidth - kLeft - kRight) / full;
   const int bottom = height - kAxis - legend;
@@ -50,11 +69,11 @@ std::string svg(const Bars& bars) {
   for (double tick = 0.0; tick <= full * 1.0001; tick += step) {
     const double x = kLeft + tick * scale;
     fmt::format_to(add, R"(<path class="grid" d="M{:.1f} {}V{}"/><text class="tick" x="{:.1f}" y="{}">{}</text>)", x,
-                   kTop, bottom, x, bottom + 15, number(tick));
+                   top_margin, bottom, x, bottom + 15, number(tick));
   }
   fmt::format_to(add, R"(<text x="{}" y="{}">{}</text>)", kWidth - kRight + 12, bottom + 15, escape_html(bars.unit));
   for (std::size_t i = 0; i < bars.names.size(); ++i) {
-    const int y = kTop + row * static_cast<int>(i) + 3;
+    const int y = top_margin + row * static_cast<int>(i) + 3;
     fmt::format_to(add, R"(<text class="name" x="{}" y="{}">{}</text>)", kLeft - 8, y + (row - 7) / 2 + 4,
                    escape_html(bars.names[i]));
     for (std::size_t set = 0; set < bars.sets.size(); ++set) {
@@ -64,9 +83,24 @@ std::string svg(const Bars& bars) {
       const int top = y + static_cast<int>(set) * bar;
       fmt::format_to(add, R"(<rect x="{}" y="{}" width="{:.1f}" height="{}" fill="{}"/>)", kLeft, top, length, bar - 1,
                      bars.sets[set].colour);
-      if (per_row == 1)
-        fmt::format_to(add, R"(<text x="{:.1f}" y="{}">{}</text>)", kLeft + length + 5, top + 9, number(value));
+      double end = kLeft + length;
+      if (i < bars.sets[set].intervals.size()) {
+        const auto [lower, upper] = bars.sets[set].intervals[i];
+        if (std::isfinite(lower) && std::isfinite(upper)) {
+          out += whisker(kLeft + std::max(0.0, lower) * scale, kLeft + std::max(0.0, upper) * scale,
+                         top + 0.5 * (bar - 1));
+          end = std::max(end, kLeft + upper * scale);
+        }
+      }
+      if (numbered) fmt::format_to(add, R"(<text x="{:.1f}" y="{}">{}</text>)", end + 5, top + bar - 2, number(value));
     }
+  }
+  for (const Mark& mark : bars.marks) {
+    const double x = kLeft + mark.x * scale;
+    fmt::format_to(add,
+                   R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
+                   R"(<text class="tick" x="{0:.1f}" y="{4}">{5}</text>)",
+                   x, top_margin, bottom, colour::kInk, top_margin - 5, escape_html(mark.text));
   }
   for (std::size_t set = 0; legend > 0 && set < bars.sets.size(); ++set) {
     out += legend_entry(kLeft, height - legend + 20 * static_cast<double>(set) + 16, bars.sets[set].colour,

@@ -68,17 +68,24 @@ struct Lanes {
   std::vector<Mark> marks = {};
 };
 
+/// How sure a value is.
+struct Interval {
+  double lower, upper;
+};
+
 /// Horizontal bars, names.size() rows of one bar a set.
 struct Bars {
   struct Set {
     std::string name;
     std::vector<double> values;
     std::string colour = colour::kBlue;
+    std::vector<Interval> intervals = {};  ///< whiskers, one a value; those that aren't finite are left out
   };
   std::string title;
   std::string unit;
   std::vector<std::string> names;
   std::vector<Set> sets;
+  std::vector<Mark> marks = {};  ///< lines across all bars: limits
 };
 
 struct Histogram {
