@@ -205,7 +205,19 @@ def errors(record: Record) -> np.ndarray:
                      np.abs(attitude[:, 1]), np.abs(height), np.linalg.norm(e[:, :2], axis=1)], 1)
 
 
-def table(record: Record, scenario) -> list[dict]:
+def joint_table(record: Record, ticks: np.ndarray, names: list[str]) -> dict[str, dict]:
+    """How the leg joints follow their references [rad]; correlation is NaN where the reference rests."""
+    out = {}
+    for i, name in enumerate(names):
+        q, wanted = (np.array(x)[ticks, i] for x in (record.joints, record.reference))
+        moves = np.ptp(wanted) > 0.02
+        out[name] = dict(rms=float(np.sqrt(((q - wanted) ** 2).mean())), bias=float((q - wanted).mean()),
+                         range=float(np.ptp(q)), reference_range=float(np.ptp(wanted)),
+                         correlation=float(np.corrcoef(q, wanted)[0, 1]) if moves else float("nan"))
+    return out
+
+
+def table(record: Record, scenario, names: list[str]) -> list[dict]:
     e, step = errors(record), np.array(record.step)
     state, force, contact = np.array(record.state), np.array(record.force), np.array(record.contact)
     rows = []
@@ -220,7 +232,8 @@ def table(record: Record, scenario) -> list[dict]:
                          mean_height=state[settled, 5].mean(), mean_yaw_rate=state[settled, 2].mean(),
                          duty=touching.mean(0).tolist(), contact_match=float((touching == (contact[settled] > .5)).mean()),
                          joint_rms=float(np.sqrt(((np.array(record.joints)[settled, :12]
-                                                   - np.array(record.reference)[settled, :12]) ** 2).mean()))))
+                                                   - np.array(record.reference)[settled, :12]) ** 2).mean())),
+                         joints=joint_table(record, settled, names)))
     return rows
 
 
@@ -249,7 +262,8 @@ def main() -> int:
         falls += record.fell_at_s is not None
         result = dict(seed=seed, fell_at_s=record.fell_at_s, duration_s=len(record.user) * TICK_S, lin_vel=mean[0],
                       yaw_vel=mean[1], pitch=mean[2], roll=mean[3], height=mean[4], lin_vel_raw=mean[5],
-                      torque_rms=float(np.sqrt((np.array(record.torque) ** 2).mean())), steps=table(record, scenario))
+                      torque_rms=float(np.sqrt((np.array(record.torque) ** 2).mean())),
+                      steps=table(record, scenario, policy.meta["action_joints"]))
         runs.append(result)
         print(f"seed {seed}: " + (f"fell at {record.fell_at_s:.1f} s in '{scenario[record.step[-1]][0]}'" if record.fell_at_s else "no fall")
               + f"; lin {mean[0]:.3f} m/s yaw {mean[1]:.3f} rad/s pitch {mean[2]:.3f} roll {mean[3]:.3f} rad height {mean[4]:.4f} m "
@@ -258,7 +272,8 @@ def main() -> int:
             for row in result["steps"]:
                 print(f"  {row['text'][:28]:28s} lin {row['lin_vel']:.3f} yaw {row['yaw_vel']:.3f} pitch {row['pitch']:.3f} roll {row['roll']:.3f} "
                       f"h {row['height']:.4f} | mean h {row['mean_height']:+.3f} duty {row['duty'][0]:.2f} {row['duty'][1]:.2f} "
-                      f"contact match {row['contact_match']:.2f} joint rms {row['joint_rms']:.3f}")
+                      f"contact match {row['contact_match']:.2f} joint rms {row['joint_rms']:.3f} ankles "
+                      + " ".join(f"{j['rms']:.3f} (r {j['correlation']:.2f})" for n, j in row["joints"].items() if "ankle_pitch" in n))
             if a.motion:
                 np.save(a.motion, np.array(record.qpos))
     if a.json:
