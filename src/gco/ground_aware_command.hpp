@@ -23,7 +23,8 @@ enum class Status {
   kConverged,
   kNotConverged,  ///< the reference is not finite or the solver failed: everything else in Result is of the last good
                   ///< solve
-  kNoContact      ///< both contact weights are zero: u' is the command, h' stays where it was
+  kNoContact,     ///< both contact weights are zero: u' is the command, h' stays where it was
+  kNotAsked       ///< a baseline runs without it (motion_composition.hpp): u' is the command, nothing else is known
 };
 
 struct FootSlip {

@@ -25,7 +25,7 @@ void SlipStatistics::add(const Reference& reference, const Result& result) noexc
     ++extremes_.not_converged_ticks;
     return;
   }
-  if (!left && !right) return;
+  if (result.status == Status::kNotAsked || (!left && !right)) return;
   add_heights(left, right, result);
   if (reference.gain == 0.0) return;
   for (const Foot foot : {kLeft, kRight}) {

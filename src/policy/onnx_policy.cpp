@@ -131,6 +131,8 @@ OnnxPolicy::~OnnxPolicy() = default;
 
 const PolicyMetadata& OnnxPolicy::metadata() const { return impl_->metadata; }
 
+Variant OnnxPolicy::variant() const { return impl_->metadata.variant; }
+
 std::optional<DriveGains> OnnxPolicy::gains() const { return impl_->metadata.gains; }
 
 std::optional<double> OnnxPolicy::action_bound_rad() const {
@@ -143,10 +145,10 @@ void OnnxPolicy::reset() noexcept {
   impl_->action.setZero();
 }
 
-Status OnnxPolicy::act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
+Status OnnxPolicy::act(const model::RobotState& state, const Reference& reference, const Command& observed,
                        JointVector& q_des) noexcept {
   Impl& impl = *impl_;
-  const Eigen::VectorXf& seen = impl.observation.assemble(state, reference, optimised_command, impl.action);
+  const Eigen::VectorXf& seen = impl.observation.assemble(state, reference, observed, impl.action);
   if (!seen.allFinite()) return Status::kNotFinite;
   std::copy_n(seen.data(), seen.size(), impl.input.data());
   try {

@@ -19,12 +19,13 @@ class OnnxPolicy final : public Policy {
   ~OnnxPolicy() override;
 
   const PolicyMetadata& metadata() const;
+  Variant variant() const override;
   std::optional<DriveGains> gains() const override;
   std::optional<double> action_bound_rad() const override;
   void reset() noexcept override;
 
   /// One thread, inputs and outputs bound beforehand; ONNX Runtime allocates a constant few times in it.
-  Status act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
+  Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
              JointVector& q_des) noexcept override;
 
  private:

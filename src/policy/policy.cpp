@@ -2,8 +2,8 @@
 
 namespace pmg::policy {
 
-Status ReferencePolicy::act(const model::RobotState& /*state*/, const Reference& reference,
-                            const Command& /*optimised_command*/, JointVector& q_des) noexcept {
+Status ReferencePolicy::act(const model::RobotState& /*state*/, const Reference& reference, const Command& /*observed*/,
+                            JointVector& q_des) noexcept {
   q_des = reference.q;
   return Status::kOk;
 }

@@ -5,6 +5,7 @@
 
 #include "model/robot_io.hpp"
 #include "pmg/reference.hpp"
+#include "pmg/variant.hpp"
 
 namespace pmg::policy {
 
@@ -23,6 +24,9 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
+  /// What it imitates and observes: decides how a tick is composed. Asked once, before the first act().
+  virtual Variant variant() const { return Variant::kPmg; }
+
   /// The gains that the policy was trained with; nothing: robot.yaml's. Asked once, before the first act().
   virtual std::optional<DriveGains> gains() const { return std::nullopt; }
 
@@ -32,15 +36,16 @@ class Policy {
   /// Forgets its history. On every entry into Stand, before the first act().
   virtual void reset() noexcept {}
 
-  /// q_des for every joint, rad, from what a robot can sense. No exception. q_des counts only with kOk.
-  virtual Status act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
+  /// q_des for every joint, rad, from what a robot can sense. observed: u' for PMG, u for the baselines. No exception.
+  /// q_des counts only with kOk.
+  virtual Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept = 0;
 };
 
 /// `--policy none`: q_des = q_ref.
 class ReferencePolicy final : public Policy {
  public:
-  Status act(const model::RobotState& state, const Reference& reference, const Command& optimised_command,
+  Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
              JointVector& q_des) noexcept override;
 };
 

@@ -1,10 +1,12 @@
 #include "policy/policy_metadata.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "policy/observation_layout.hpp"
@@ -14,7 +16,6 @@ namespace pmg::policy {
 namespace {
 
 constexpr int kFormat = 1;
-constexpr const char* kVariant = "pmg";         // others are baselines, trained on other references than a tick makes
 constexpr double kPostureTolerance_rad = 1e-6;  // the same number, written and read as text
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
@@ -34,6 +35,12 @@ void expect_names(const char* name, const std::vector<std::string>& found, const
   if (found.size() != expected.size()) {
     refuse(fmt::format("{}: {} of them; this robot has {}", name, found.size(), expected.size()));
   }
+}
+
+Variant known_variant(const std::string& name) {
+  const std::optional<Variant> variant = variant_named(name);
+  if (!variant) refuse(fmt::format("its variant is {}; this controller has {}", name, fmt::join(kVariantNames, ", ")));
+  return *variant;
 }
 
 std::string term_text(const nlohmann::json& term) {
@@ -96,9 +103,8 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   expect_equal("the metadata's format", json.at("format").get<int>(), kFormat);
   PolicyMetadata metadata;
   metadata.robot = json.at("robot").get<std::string>();
-  metadata.variant = json.at("variant").get<std::string>();
   expect_equal("its robot", metadata.robot, robot.name);
-  expect_equal("its variant", metadata.variant, std::string(kVariant));
+  metadata.variant = known_variant(json.at("variant").get<std::string>());
   expect_names("joints", json.at("joints").get<std::vector<std::string>>(), robot.joint_index.names());
   const ObservationLayout layout(robot);
   expect_names("action joints", json.at("action_joints").get<std::vector<std::string>>(), layout.action_joints());

@@ -15,7 +15,8 @@ struct GoldenPair {
 };
 
 struct PolicyMetadata {
-  std::string robot, variant;
+  std::string robot;
+  Variant variant = Variant::kPmg;
   double action_scale = 0.0;  ///< q_des = q_ref + action_scale * action on the policy joints [rad]
   double action_limit = 0.0;  ///< the network's outputs are clamped to +- this
   DriveGains gains;
@@ -24,8 +25,8 @@ struct PolicyMetadata {
 };
 
 /// Parses and checks. clip_library_sha256: of the library that the generator plays. Throws std::invalid_argument that
-/// says what differs and what was expected: format, robot, joints in and out, observation layout (term by term),
-/// standing posture, gains, rate, clip library, golden pairs.
+/// says what differs and what was expected: format, robot, variant, joints in and out, observation layout (term by
+/// term), standing posture, gains, rate, clip library, golden pairs.
 PolicyMetadata parse_policy_metadata(const std::string& json, const model::RobotModel& robot,
                                      const std::string& clip_library_sha256, double control_rate_Hz);
 

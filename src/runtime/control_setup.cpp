@@ -98,6 +98,7 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.options.generator.blend = blend_named(setup.blend);
   const std::optional<fs::path> policy = policy_file(setup.policy, loaded.robot);
   loaded.policy = load_policy(policy, loaded);
+  loaded.variant = loaded.policy->variant();
   std::vector<fs::path> policies;
   if (policy) policies.push_back(*policy);
   model::Bundle bundle = model::bundle(loaded.robot, loaded.clips, policies);
@@ -107,8 +108,7 @@ LoadedControl load_control(const ControlSetup& setup) {
 }
 
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch) {
-  return std::make_unique<Tick>(loaded.robot, std::move(loaded.library), std::move(loaded.policy), stopwatch,
-                                loaded.options);
+  return std::make_unique<Tick>(loaded.robot, loaded.library, std::move(loaded.policy), stopwatch, loaded.options);
 }
 
 void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
@@ -122,6 +122,7 @@ nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedContr
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
                                  {"policy", setup.policy},
+                                 {"variant", to_string(loaded.variant)},
                                  {"blend", setup.blend},
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
   json.update(tick_json(loaded.options));

@@ -27,6 +27,7 @@ struct LoadedControl {
   std::filesystem::path clips;
   ClipLibrary library;
   std::unique_ptr<policy::Policy> policy;
+  Variant variant = Variant::kPmg;  ///< the policy's
   TickOptions options;
   std::string bundle;                                      ///< as RunInfo's
   std::vector<std::pair<std::string, std::string>> files;  ///< likewise
@@ -35,7 +36,7 @@ struct LoadedControl {
 /// Throws model::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);
 
-/// Takes library and policy out of loaded. Keeps a reference to the stopwatch.
+/// Takes the policy out of loaded. Keeps a reference to the stopwatch.
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch);
 
 /// The configuration in force, as --print-config shows it and a log's ROBOT_INFO keeps it.

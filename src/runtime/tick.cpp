@@ -66,21 +66,18 @@ bool finite(const Reference& reference) noexcept {
 
 TickOptions tick_options(const model::RobotModel& robot) {
   TickOptions options;
-  options.generator.limits = robot.command_limits;
-  options.generator.scale_positive = robot.velocity_scale_positive;
-  options.generator.scale_negative = robot.velocity_scale_negative;
+  options.generator = gco::generator_options(robot);
   return options;
 }
 
-Tick::Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<policy::Policy> policy,
+Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::unique_ptr<policy::Policy> policy,
            const io::Clock& stopwatch, const TickOptions& options)
     : stopwatch_(stopwatch),
       dt_s_(options.dt_s),
       policy_may_owe_ticks_(options.late_policy_ticks),
       gains_(gains_in_force(robot, *policy)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
-      generator_(std::move(library), options.generator),
-      gco_(robot, options.gco),
+      motion_(robot, library, policy->variant(), options.generator, options.gco),
       policy_(std::move(policy)),
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
@@ -92,8 +89,7 @@ Tick::Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<
   for (JointVector* values : {&command.dq, &command.kp, &command.kd, &command.tau_ff}) {
     values->setZero(robot.joint_index.size());
   }
-  generator_.reset();
-  result_.reference = generator_.reference();
+  result_.reference = motion_.reference();
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {
@@ -154,7 +150,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                                      .now_ns = input.now_ns},
                         .command_age_s = result_.command_age_s,
                         .entry_done = entry_.done(),
-                        .at_rest = generator_.reference().gain == 0.0,
+                        .at_rest = motion_.reference().gain == 0.0,
                         .gco_held_ticks = gco_held_ticks_};
   const bool holding = result_.mode == Mode::kStand || result_.mode == Mode::kWalk;
   // On its way from the posture in which it was found the torso may be anywhere.
@@ -166,11 +162,10 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
 }
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
-  generator_.reset();
-  gco_.reset();
+  motion_.reset();
   policy_->reset();
   action_monitor_.reset();
-  target_ = generator_.reference().q;
+  target_ = motion_.reference().q;
   policy_owes_ticks_ = gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
   limiter_.start_from(state.q);
@@ -194,12 +189,12 @@ Fault Tick::drive(const model::RobotState& state) noexcept {
 
 Fault Tick::make_reference() noexcept {
   Lap generator(stopwatch_);
-  result_.reference = generator_.step(result_.user, dt_s_);
+  result_.reference = motion_.advance(result_.user, dt_s_);
   result_.times.generator_ns = generator.end_ns();
   if (!finite(result_.reference)) return {.code = FaultCode::kReferenceNotFinite};
 
   Lap gco(stopwatch_);
-  result_.optimised = gco_.solve(result_.reference);
+  result_.optimised = motion_.ground();
   result_.times.gco_ns = gco.end_ns();
   if (!finite(result_.optimised.command)) return {.code = FaultCode::kReferenceNotFinite};
   gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;

@@ -7,13 +7,12 @@
 #include <memory>
 #include <span>
 
-#include "gco/ground_aware_command.hpp"
+#include "gco/motion_composition.hpp"
 #include "hal/command_guard.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
-#include "pmg/generator.hpp"
 #include "policy/policy.hpp"
 #include "runtime/action_monitor.hpp"
 #include "runtime/command_intake.hpp"
@@ -64,7 +63,7 @@ struct TickResult {
   Fault fault;               ///< kNone unless mode is kFault
   Command user;              ///< the driving source's command as far as the mode admits it
   Reference reference;       ///< of this tick in Stand and Walk; otherwise of the last such tick
-  gco::Result optimised;     ///< likewise
+  gco::Result optimised;     ///< likewise; its command is what the policy observes
   bool policy_held = false;  ///< the policy gave no result for this tick: its last target is in force
   LimitReport limited;
   IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
@@ -80,7 +79,7 @@ class Tick {
  public:
   /// Keeps a reference to the stopwatch, whose times are reported and decide nothing. Throws std::invalid_argument when
   /// library, policy and robot don't fit together.
-  Tick(const model::RobotModel& robot, ClipLibrary library, std::unique_ptr<policy::Policy> policy,
+  Tick(const model::RobotModel& robot, const ClipLibrary& library, std::unique_ptr<policy::Policy> policy,
        const io::Clock& stopwatch, const TickOptions& options);
 
   /// No exception, no lock, no I/O; no heap but the policy's own.
@@ -102,8 +101,7 @@ class Tick {
   int policy_may_owe_ticks_;
   policy::DriveGains gains_;
   JointVector brake_kd_;
-  Generator generator_;
-  gco::GroundAwareCommand gco_;
+  gco::MotionComposition motion_;
   std::unique_ptr<policy::Policy> policy_;
   CommandIntake intake_;
   Supervisor supervisor_;

@@ -1,21 +1,20 @@
 // A policy is checked before it is trusted: what doesn't fit the robot is refused and named.
-// test/data/policies/linear.onnx is one random linear layer with the metadata of a trained policy
-// (training/tests/make_linear_policy.py).
 #include "policy/onnx_policy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <limits>
 
+#include "policy/linear_policy.hpp"
 #include "policy/observation.hpp"
 
 namespace pmg::policy {
 namespace {
 
 namespace fs = std::filesystem;
+using test::LinearPolicyFile;
 using testing::HasSubstr;
 
 const model::RobotModel& z1() {
@@ -23,8 +22,8 @@ const model::RobotModel& z1() {
   return robot;
 }
 
-const fs::path kFile = PMG_SOURCE_DIR "/test/data/policies/linear.onnx";
-const std::string kClips(64, '0');
+const fs::path& kFile = test::kLinearPolicy;
+const std::string& kClips = test::kNoClips;
 
 model::RobotState standing() {
   model::RobotState state;
@@ -41,39 +40,30 @@ Reference reference() {
   return reference;
 }
 
-class OnnxPolicyFile : public testing::Test {
- protected:
-  ~OnnxPolicyFile() override { fs::remove(copy_); }
-
-  /// The file with one text in it exchanged for another of the same length, so that the protobuf around it stays whole.
-  std::string refusal_after(const std::string& text, const std::string& instead) {
-    EXPECT_EQ(text.size(), instead.size());
-    std::ifstream in(kFile, std::ios::binary);
-    std::string bytes(std::istreambuf_iterator<char>(in), {});
-    const std::size_t at = bytes.find(text);
-    EXPECT_NE(at, std::string::npos) << text;
-    if (at != std::string::npos) bytes.replace(at, text.size(), instead);
-    std::ofstream(copy_, std::ios::binary) << bytes;
-    return refusal(copy_, kClips);
+/// What loading says against it.
+std::string refusal(const fs::path& file, const std::string& clips = kClips, double rate_Hz = 100.0) {
+  try {
+    const OnnxPolicy policy(file, z1(), clips, rate_Hz);
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr(file.string()));
+    EXPECT_THAT(error.what(), testing::Not(HasSubstr("\n"))) << "one line";
+    return error.what();
   }
-  static std::string refusal(const fs::path& file, const std::string& clips, double rate_Hz = 100.0) {
-    try {
-      const OnnxPolicy policy(file, z1(), clips, rate_Hz);
-    } catch (const std::invalid_argument& error) {
-      EXPECT_THAT(error.what(), HasSubstr(file.string()));
-      return error.what();
-    }
-    return "was accepted";
-  }
+  return "was accepted";
+}
 
-  fs::path copy_ = fs::temp_directory_path() / ("pmg_policy_test_" + std::to_string(getpid()) + ".onnx");
-};
+std::string refusal_after(const std::string& text, const std::string& instead) {
+  LinearPolicyFile policy;
+  policy.exchange(text, instead);
+  return refusal(policy.file());
+}
 
-TEST_F(OnnxPolicyFile, WhatWasExportedForThisRobotIsAccepted) { EXPECT_EQ(refusal(kFile, kClips), "was accepted"); }
+TEST(OnnxPolicyFile, WhatWasExportedForThisRobotIsAccepted) { EXPECT_EQ(refusal(kFile), "was accepted"); }
 
-TEST_F(OnnxPolicyFile, WhatDoesNotFitTheRobotIsRefusedAndNamed) {
+TEST(OnnxPolicyFile, WhatDoesNotFitTheRobotIsRefusedAndNamed) {
   EXPECT_THAT(refusal_after("\"robot\": \"z1\"", "\"robot\": \"z2\""), HasSubstr("its robot is z2"));
-  EXPECT_THAT(refusal_after("\"variant\": \"pmg\"", "\"variant\": \"abc\""), HasSubstr("variant is abc"));
+  EXPECT_THAT(refusal_after("\"variant\": \"pmg\"", "\"variant\": \"abc\""),
+              HasSubstr("variant is abc; this controller has pmg, without_gco, single_gait"));
   EXPECT_THAT(refusal_after("\"left_knee\"", "\"left_kgee\""), HasSubstr("joints: number 3 is left_kgee"));
   EXPECT_THAT(refusal_after("\"action_joints\": [\"left_hip_pitch\"", "\"action_joints\": [\"left_hip_yitch\""),
               HasSubstr("action joints: number 0 is left_hip_yitch"));
@@ -87,15 +77,39 @@ TEST_F(OnnxPolicyFile, WhatDoesNotFitTheRobotIsRefusedAndNamed) {
   EXPECT_THAT(refusal(kFile, kClips, 50.0), HasSubstr("rate in Hz is 100"));
 }
 
-TEST_F(OnnxPolicyFile, ANetworkThatGivesOtherActionsThanInTrainingIsRefused) {
+TEST(OnnxPolicyFile, ANetworkThatGivesOtherActionsThanInTrainingIsRefused) {
   EXPECT_THAT(refusal_after("\"golden\": [{\"observation\": [0.", "\"golden\": [{\"observation\": [9."),
               HasSubstr("golden pair 0"));
 }
 
-TEST_F(OnnxPolicyFile, BytesThatAreNoNetworkAreRefused) {
-  std::ofstream(copy_) << "no network";
-  EXPECT_NE(refusal(copy_, kClips), "was accepted");
-  EXPECT_NE(refusal("absent.onnx", kClips), "was accepted");
+TEST(OnnxPolicyFile, BytesThatAreNoNetworkAreRefused) {
+  const LinearPolicyFile policy;
+  std::ofstream(policy.file()) << "no network";
+  EXPECT_NE(refusal(policy.file()), "was accepted");
+  EXPECT_NE(refusal("absent.onnx"), "was accepted");
+}
+
+TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
+  EXPECT_THAT(refusal_after("\"action_limit\"", "\"aktion_limit\""), HasSubstr("action_limit"));
+  EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": 0.0"), HasSubstr("action_limit is 0"));
+  EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": -1 "), HasSubstr("action_limit is -1"));
+  EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": NaN"), HasSubstr("metadata can't be read"));
+  EXPECT_THAT(refusal_after("\"action_scale\": 0.", "\"action_scale\": -0"), HasSubstr("metadata can't be read"));
+  EXPECT_THAT(refusal_after("\"action_scale\": 0", "\"action_scale\":-1"), HasSubstr("action_scale is -1"));
+  EXPECT_THAT(refusal_after("\"variant\"", "\"variamt\""), HasSubstr("variant"));
+  EXPECT_THAT(refusal_after("\"golden\"", "\"silver\""), HasSubstr("golden"));
+  EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [120.0,", "\"kp_Nm_per_rad\": [1.0, 2,"), HasSubstr("kp_Nm_per_rad"));
+}
+
+/// Every variant, and what each is trained to observe, comes from the file alone.
+TEST(OnnxPolicyFile, SaysWhichVariantItIs) {
+  for (const Variant variant : {Variant::kPmg, Variant::kWithoutGco, Variant::kSingleGait}) {
+    const fs::path clips = z1().directory / "clips";
+    const LinearPolicyFile file(clips, variant);
+    const OnnxPolicy policy(file.file(), z1(), model::clip_library_sha256(clips));
+    EXPECT_EQ(policy.variant(), variant);
+    EXPECT_EQ(policy.metadata().variant, variant);
+  }
 }
 
 TEST(OnnxPolicy, AddsScaledActionsToTheReferenceOfItsJointsAlone) {

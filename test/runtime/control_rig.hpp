@@ -55,7 +55,7 @@ class ControlRig {
       : bus(robot),
         policy(new BreakablePolicy),
         inbox(link.stop),
-        tick(robot, std::move(library), std::unique_ptr<policy::Policy>(policy), clock, options),
+        tick(robot, library, std::unique_ptr<policy::Policy>(policy), clock, options),
         bus_cycle(bus, link, robot, clock),
         control_cycle(tick, link, inbox, clock) {
     drive.source = runtime::Source::make("operator", 1);

@@ -117,7 +117,7 @@ struct DrivenTick {
   DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy, ClipLibrary library)
       : state(standing_state(robot)),
         policy(any_policy.get()),
-        tick(robot, std::move(library), std::move(any_policy), clock, runtime::tick_options(robot)) {
+        tick(robot, library, std::move(any_policy), clock, runtime::tick_options(robot)) {
     drive.source = request.source = runtime::Source::make("test", 1);
     drive.lease_s = 0.5;
   }

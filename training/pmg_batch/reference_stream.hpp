@@ -2,26 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "command_stream.hpp"
-#include "gco/ground_aware_command.hpp"
+#include "gco/motion_composition.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
-#include "pmg/generator.hpp"
 
 namespace pmg::training {
-
-enum class Variant {
-  kPmg,         ///< generator and ground-aware optimisation: u' is what the actor sees
-  kWithoutGco,  ///< the same references, u' = u
-  kSingleGait,  ///< the forward clip alone, played as strongly as the command is large; u' = u
-};
-
-Variant variant_of(const std::string& name);  ///< "pmg", "without_gco", "single_gait"; throws std::invalid_argument
 
 /// Columns of a row, in their order.
 struct Field {
@@ -41,26 +30,19 @@ class ReferenceStream {
   void step(const Command& user, float* row);
 
   void reset();
-  const Reference& reference() const { return reference_; }
-  const Command& optimised() const { return optimised_; }
+  const Reference& reference() const { return motion_.reference(); }
+  const Command& observed() const { return ground_.command; }
 
   static constexpr double kTick_s = 0.01;
 
  private:
-  void single_gait(const Reference& wanted);
   void write(const Command& user, float* row);
 
-  Variant variant_;
-  GeneratorOptions options_;
   CommandStream random_command_;
-  Generator generator_;
-  std::optional<Generator> forward_only_;
-  gco::GroundAwareCommand gco_;
+  gco::MotionComposition motion_;
   model::BaseAttitude base_attitude_;
   double standing_height_m_;
-  Reference reference_;
-  Command optimised_;
-  double vz_m_s_ = 0.0;
+  gco::Result ground_;
 };
 
 }  // namespace pmg::training

@@ -1,0 +1,68 @@
+#include "gco/motion_composition.hpp"
+
+namespace pmg::gco {
+
+namespace {
+
+/// Every other direction and every posture is missing.
+ClipLibrary forward_clip_only(ClipLibrary library) {
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    if (channel != kVx) library.positive[channel].reset();
+    library.negative[channel].reset();
+  }
+  return library;
+}
+
+}  // namespace
+
+GeneratorOptions generator_options(const model::RobotModel& robot) {
+  GeneratorOptions options;
+  options.limits = robot.command_limits;
+  options.scale_positive = robot.velocity_scale_positive;
+  options.scale_negative = robot.velocity_scale_negative;
+  return options;
+}
+
+MotionComposition::MotionComposition(const model::RobotModel& robot, const ClipLibrary& library, Variant variant,
+                                     const GeneratorOptions& generator, const Options& gco)
+    : variant_(variant),
+      forward_scale_m_s_(generator.scale_positive[kVx]),
+      generator_(library, generator),
+      gco_(robot, gco) {
+  if (variant_ == Variant::kSingleGait) forward_only_.emplace(forward_clip_only(library), generator);
+  unasked_.status = Status::kNotAsked;
+  reset();
+}
+
+void MotionComposition::reset() noexcept {
+  generator_.reset();
+  if (forward_only_) forward_only_->reset();
+  gco_.reset();
+  reference_ = generator_.reference();
+}
+
+const Reference& MotionComposition::advance(const Command& user, double dt_s) noexcept {
+  reference_ = generator_.step(user, dt_s);
+  if (forward_only_) play_forward_clip(dt_s);
+  return reference_;
+}
+
+/// The command stays the user's, admissible and rate-limited; gait, joints and contacts are the forward clip's.
+void MotionComposition::play_forward_clip(double dt_s) noexcept {
+  Command forward;
+  forward[kVx] = reference_.gain * forward_scale_m_s_;
+  const Command command = reference_.command, rate = reference_.command_rate;
+  const bool limited = reference_.command_limited;
+  reference_ = forward_only_->step(forward, dt_s);
+  reference_.command = command;
+  reference_.command_rate = rate;
+  reference_.command_limited = limited;
+}
+
+const Result& MotionComposition::ground() noexcept {
+  if (variant_ == Variant::kPmg) return gco_.solve(reference_);
+  unasked_.command = reference_.command;
+  return unasked_;
+}
+
+}  // namespace pmg::gco
