@@ -26,6 +26,7 @@ GeneratorOptions generator_options(const model::RobotModel& robot) {
 MotionComposition::MotionComposition(const model::RobotModel& robot, const ClipLibrary& library, Variant variant,
                                      const GeneratorOptions& generator, const Options& gco)
     : variant_(variant),
+      inverse_(variant == Variant::kPmg ? library.inverse : CommandInverse()),
       forward_scale_m_s_(generator.scale_positive[kVx]),
       generator_(library, generator),
       gco_(robot, gco) {
@@ -42,7 +43,7 @@ void MotionComposition::reset() noexcept {
 }
 
 const Reference& MotionComposition::advance(const Command& user, double dt_s) noexcept {
-  reference_ = generator_.step(user, dt_s);
+  reference_ = generator_.step(inverse_.apply(user), dt_s);
   if (forward_only_) play_forward_clip(dt_s);
   return reference_;
 }
