@@ -175,9 +175,9 @@ class Environment:
         return {name: value.clone() for name, value in self._momentary().items()}
 
     def restore(self, state: dict[str, torch.Tensor]) -> bool:
-        """False, and nothing done, when the state is of another number of worlds."""
+        """False, and nothing done, when the state is of another number of worlds or of an earlier version."""
         mine = self._momentary()
-        if any(mine[name].shape != value.shape for name, value in state.items()):
+        if set(mine) != set(state) or any(mine[name].shape != value.shape for name, value in state.items()):
             return False
         for name, value in state.items():
             mine[name].copy_(value)

@@ -3,6 +3,7 @@
 import math
 
 import torch
+import torch.distributed as dist
 from torch import nn
 
 
@@ -28,11 +29,17 @@ class Normalizer(nn.Module):
 
     @torch.no_grad()
     def update(self, x: torch.Tensor) -> None:
+        """With the samples of all processes, so that their networks stay equal."""
+        moments = torch.stack([x.mean(0), (x ** 2).mean(0)])
+        if dist.is_initialized():
+            dist.all_reduce(moments)
+            moments /= dist.get_world_size()
+        mean, square = moments
         share = torch.clamp(1 / (self.count + 1), min=0.002)
         self.count += 1
-        delta = x.mean(0) - self.mean
+        delta = mean - self.mean
         self.mean += share * delta
-        self.variance += share * (x.var(0) - self.variance) + share * (1 - share) * delta ** 2
+        self.variance += share * ((square - mean ** 2).clamp(min=0) - self.variance) + share * (1 - share) * delta ** 2
 
 
 class ActorCritic(nn.Module):

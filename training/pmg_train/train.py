@@ -197,7 +197,7 @@ class Training:
     def run(self) -> None:
         a, ppo, env, r = self.a, self.config["ppo"], self.env, self.rollout
         last_saved = last_kept = time.time()
-        while not self._finished():
+        while not self._any_rank(self.stop or self.learned_s >= 60 * a.minutes or self.iteration >= a.iterations):
             start = time.time()
             kicks = self.ranges["kicks"]
             ramp = min(1.0, self.iteration / kicks["ramp_iterations"])
@@ -224,24 +224,24 @@ class Training:
             self.learned_s += time.time() - start
             if self.iteration in (1, 2, 5, 10) or self.iteration % 25 == 0 or not self.cuda:
                 self._report(info)
-            if self.rank == 0 and time.time() - last_saved > a.checkpoint_s:
+            if self._any_rank(time.time() - last_saved > a.checkpoint_s):
                 last_saved = time.time()
                 self.save()
-                if time.time() - last_kept > a.keep_every_s:
+                if self.rank == 0 and time.time() - last_kept > a.keep_every_s:
                     last_kept = time.time()
                     self.save_actor(a.out / f"actor_{self.iteration}.pt")
+        self.save()
         if self.rank == 0:
-            self.save()
             self.save_actor(a.out / "actor.pt")
         self.log(f"done: {self.iteration} iterations, {self.steps / 1e6:.0f} M steps, {self.learned_s / 60:.1f} min")
 
-    def _finished(self) -> bool:
-        end = self.stop or self.learned_s >= 60 * self.a.minutes or self.iteration >= self.a.iterations
-        if dist.is_initialized():
-            flag = torch.tensor(float(end), device=self.device)
-            dist.all_reduce(flag, op=dist.ReduceOp.MAX)
-            end = bool(flag)
-        return end
+    def _any_rank(self, true_here: bool) -> bool:
+        """All ranks end and save together."""
+        if not dist.is_initialized():
+            return true_here
+        flag = torch.tensor(float(true_here), device=self.device)
+        dist.all_reduce(flag, op=dist.ReduceOp.MAX)
+        return bool(flag)
 
     def _report(self, info: dict) -> None:
         since = self.iteration - (self.curve[-1]["iteration"] if self.curve else 0)
@@ -269,6 +269,7 @@ class Training:
         if self.board:
             for name, value in row.items():
                 self.board.add_scalar(name, value, self.iteration)
+            self.board.flush()
 
     # ---------------------------------------------------------------------------------------------------- checkpoints
 
@@ -281,12 +282,16 @@ class Training:
         torch.save(dict(actor=actor, **self._meta()), path)
 
     def save(self) -> None:
-        """last.pt: what was learned and how. worlds.pt: the momentary state, for an exact continuation."""
-        _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
-                    curve=self.curve, **self._meta()), self.a.out / "last.pt")
-        _write(dict(iteration=self.iteration, worlds=self.env.state(), random=torch.get_rng_state(),
+        """last.pt: what was learned and how. worlds.pt: each process' momentary state, for an exact continuation."""
+        if self.rank == 0:
+            _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
+                        curve=self.curve, **self._meta()), self.a.out / "last.pt")
+        _write(dict(processes=self.ppo.world_size, iteration=self.iteration, worlds=self.env.state(), random=torch.get_rng_state(),
                     random_device=torch.cuda.get_rng_state(self.device) if self.cuda else None),
-               self.a.out / "worlds.pt")
+               self._worlds_file())
+
+    def _worlds_file(self) -> Path:
+        return self.a.out / ("worlds.pt" if self.rank == 0 else f"worlds_{self.rank}.pt")
 
     def _load(self) -> None:
         """Goes on exactly where the run ended; without its worlds.pt (another number of worlds, say) from new starts."""
@@ -302,15 +307,15 @@ class Training:
                 group["lr"] = self.ppo.rate
         self.iteration, self.steps, self.learned_s = state["iteration"], state["steps"], state["learned_s"]
         self.curve = state["curve"]
-        worlds = self.a.out / "worlds.pt"
+        worlds = self._worlds_file()
         momentary = torch.load(worlds, map_location="cpu", weights_only=False) if worlds.exists() else None
-        exact = momentary is not None and momentary["iteration"] == self.iteration and self.env.restore(momentary["worlds"])
-        if exact and self.ppo.world_size == 1:
+        exact = (momentary is not None and momentary["iteration"] == self.iteration
+                 and momentary.get("processes", 1) == self.ppo.world_size and self.env.restore(momentary["worlds"]))
+        if exact:
             torch.set_rng_state(momentary["random"])
             if self.cuda:
                 torch.cuda.set_rng_state(momentary["random_device"], self.device)
         self.log(f"goes on from iteration {self.iteration}" + ("" if exact else ", with new worlds"))
-
 
     def _start_from(self, path: Path) -> None:
         """Another run's networks and exploration; steps and curve begin at zero."""
@@ -353,6 +358,10 @@ def main() -> int:
     bare = training.bare_steps_per_s
     training.log(f"bare stepping {bare / 1e3:.0f}k world ticks a second")
     training.run()
+    if training.board:
+        training.board.close()
+    if training.rank != 0:
+        return 0
     speed = training.curve[-1]["steps_per_s"] if training.curve else 0.0
     summary = dict(variant=a.variant, iterations=training.iteration, steps=training.steps, minutes=training.learned_s / 60,
                    steps_per_s=speed, bare_steps_per_s=bare, share_of_bare=speed / bare)

@@ -1,4 +1,4 @@
-"""A run that is interrupted and resumed learns exactly what an uninterrupted one learns."""
+"""A run that is interrupted and resumed learns exactly what an uninterrupted one learns, in one process and in several."""
 
 import os
 import subprocess
@@ -13,17 +13,24 @@ LIBRARY, ROBOT, MJCF = (os.environ.get(name) for name in ("PMG_BATCH_LIBRARY", "
 pytestmark = pytest.mark.skipif(not (LIBRARY and ROBOT and MJCF), reason="PMG_BATCH_LIBRARY, PMG_ROBOT, PMG_MJCF not set")
 
 
-def train(out: Path, iterations: int, *more: str) -> dict:
-    subprocess.run([sys.executable, "-m", "pmg_train.train", "--robot", ROBOT, "--mjcf", MJCF, "--library", LIBRARY,
-                    "--out", str(out), "--worlds", "4", "--streams", "4", "--ticks", "400", "--threads", "1", "--seed", "3",
-                    "--device", "cpu", "--iterations", str(iterations), *more], cwd=HERE, check=True)
+def train(out: Path, processes: int, iterations: int, *more: str) -> dict:
+    start = [sys.executable, "-m"]
+    if processes > 1:
+        start += ["torch.distributed.run", "--standalone", "--nproc-per-node", str(processes), "-m"]
+    subprocess.run([*start, "pmg_train.train", "--robot", ROBOT, "--mjcf", MJCF, "--library", LIBRARY,
+                    "--out", str(out), "--worlds", "8", "--streams", "4", "--ticks", "400", "--threads", "1", "--seed", "3",
+                    "--device", "cpu", "--iterations", str(iterations), *more],
+                   # Tiny tensors: more threads a process only wait for each other.
+                   cwd=HERE, check=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
     return torch.load(out / "last.pt", weights_only=False)
 
 
-def test_resumed_run_equals_the_uninterrupted_one(tmp_path):
-    whole = train(tmp_path / "whole", 2)
-    train(tmp_path / "parts", 1)
-    parts = train(tmp_path / "parts", 2, "--resume")
+@pytest.mark.parametrize("processes", [1, 2])
+def test_resumed_run_equals_the_uninterrupted_one(tmp_path, processes):
+    whole = train(tmp_path / "whole", processes, 2)
+    train(tmp_path / "parts", processes, 1)
+    parts = train(tmp_path / "parts", processes, 2, "--resume")
     assert parts["iteration"] == 2
+    assert parts["steps"] == whole["steps"] == 2 * 24 * 8 * processes
     for name, value in whole["network"].items():
         assert torch.equal(value, parts["network"][name]), name
