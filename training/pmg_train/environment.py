@@ -55,6 +55,8 @@ class Environment:
         self.foot_slice = slice(self.feet[0], self.feet[1] + 1, self.feet[1] - self.feet[0])
         self.sole_center = self._tensor(model.geom(f"{feet[0]}_sole").pos)
         self.standing_height = description["standing_height_m"]
+        self.command_lower = self._tensor([c["lower"] for c in description["command"]])
+        self.command_upper = self._tensor([c["upper"] for c in description["command"]])
         self.substeps = substeps
         self.down, self.up = self._tensor([[0, 0, -1.0]]), self._tensor([[0, 0, 1.0]])
         amplitude = self.ranges["upper_body"]["amplitude_rad"]
@@ -85,7 +87,7 @@ class Environment:
         self.sway = zeros(n, 4, joints)  # offset, amplitude, frequency, phase
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
         self.history = zeros(n, HISTORY, 6 + 3 * actions)
-        # Slow averages: what the base does, what u' asks, what the admissible command wants.
+        # Slow averages: what the base does, what u' asks, what the user wants.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
         self.reward, self.done, self.timeout = zeros(n), zeros(n), zeros(n)
@@ -97,6 +99,10 @@ class Environment:
 
     def get(self, name: str) -> torch.Tensor:
         return self.row[:, self.fields[name]]
+
+    def _user(self) -> torch.Tensor:
+        """The user's command within the robot's ranges; training asks for a little more at times."""
+        return torch.minimum(torch.maximum(self.get("user"), self.command_lower), self.command_upper)
 
     # ------------------------------------------------------------------------------------------------------- resets
 
@@ -147,7 +153,7 @@ class Environment:
         asked = self.get("optimised")[:, :3]
         put(self.velocity, asked, one)
         put(self.asked, asked, one)
-        put(self.wanted, self.get("command")[:, :3], one)
+        put(self.wanted, self._user()[:, :3], one)
         keep = (~where).float()
         self.time_s.mul_(keep)
         for action in (self.action, self.action_1, self.action_2, self.previous_dq):
@@ -192,7 +198,8 @@ class Environment:
         self.action.copy_(action.clamp(-4, 4))
         target = self.q_ref.clone()
         target[:, :self.actions] += self.action_scale * self.action
-        target = torch.maximum(torch.minimum(target, self.upper), self.lower)
+        # The drive holds what its encoder says, as in the controller's simulation.
+        target = torch.maximum(torch.minimum(target, self.upper), self.lower) - self.robots.encoder_offset
         self.targets.copy_(torch.cat([target[None], self.targets[:2]], 0))
         for k in range(self.substeps):
             ago = ((self.robots.delay_steps - k).clamp(min=0) + self.substeps - 1) // self.substeps
@@ -244,10 +251,10 @@ class Environment:
         yaw_rate = rotate(quat, qvel[:, 3:6])[:, 2]
         now = torch.stack([vx, vy, yaw_rate], 1)
         share = self.tick_s / self.config["velocity_average_s"]
-        command, optimised = self.get("command"), self.get("optimised")
+        user, optimised = self._user(), self.get("optimised")
         self.velocity += share * (now - self.velocity)
         self.asked += share * (optimised[:, :3] - self.asked)
-        self.wanted += share * (command[:, :3] - self.wanted)
+        self.wanted += share * (user[:, :3] - self.wanted)
         torso_roll, torso_pitch, _ = roll_pitch_yaw(torch.nan_to_num(w.xquat[:, self.torso]))
         attitude, height = torch.stack([torso_pitch, torso_roll], 1), qpos[:, 2] - self.standing_height
         q, dq = qpos[:, 7:], qvel[:, 6:]
@@ -273,15 +280,15 @@ class Environment:
         upright = rotate_back(quat, self.up.expand(self.n, 3))[:, 2]
         fall = self.config["fall"]
         fallen = (qpos[:, 2] < fall["height_share"] * self.standing_height) | (upright < fall["upright"]) | broken
-        self.errors = self._errors(m, command, attitude, height) | dict(broken=broken.float())
+        self.errors = self._errors(m, user, attitude, height) | dict(broken=broken.float())
         return m, fallen
 
-    def _errors(self, m: dict, command: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
-        """For the curves. Velocities to height: against the admissible command, not against u' as rewards are."""
+    def _errors(self, m: dict, user: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
+        """For the curves. Velocities to height: against the user's command, not against u' as rewards are."""
         slow, q_error = self.velocity - self.wanted, m["q_error"].abs()
         errors = dict(velocity=slow[:, :2].norm(dim=1), yaw_rate=slow[:, 2].abs(),
-                      pitch=(attitude[:, 0] - command[:, 3]).abs(), roll=(attitude[:, 1] - command[:, 4]).abs(),
-                      height=(height - command[:, 5]).abs(), velocity_optimised=m["slow_error"][:, :2].norm(dim=1),
+                      pitch=(attitude[:, 0] - user[:, 3]).abs(), roll=(attitude[:, 1] - user[:, 4]).abs(),
+                      height=(height - user[:, 5]).abs(), velocity_optimised=m["slow_error"][:, :2].norm(dim=1),
                       yaw_rate_optimised=m["slow_error"][:, 2].abs(), joint=q_error.mean(1))
         for kind in dict.fromkeys(self.leg_kinds):
             errors[kind] = torch.stack([q_error[:, i] for i, k in enumerate(self.leg_kinds) if k == kind]).mean(0)

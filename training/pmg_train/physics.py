@@ -7,7 +7,7 @@ import warp as wp
 
 from pmg_train.randomization import Robots
 
-BATCHED = ("geom_friction", "body_mass", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature",
+BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature",
            "dof_frictionloss")
 
 
@@ -61,6 +61,7 @@ class Worlds:
         for sole in self._soles:
             view(self.m.geom_friction)[:, sole, 0] = robots.friction
         view(self.m.body_mass).copy_(robots.body_mass)
+        view(self.m.body_inertia)[:] *= robots.link_mass[:, :, None]
         view(self.m.body_ipos)[:, model.body(torso).id] += robots.torso_com
         view(self.m.actuator_gainprm)[:, :, 0] *= robots.kp
         bias = view(self.m.actuator_biasprm)

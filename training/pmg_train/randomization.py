@@ -10,6 +10,7 @@ import torch
 class Robots:
     friction: torch.Tensor
     body_mass: torch.Tensor       # [kg], all bodies
+    link_mass: torch.Tensor       # factor a body: of mass and inertia
     torso_com: torch.Tensor       # offset [m]
     armature: torch.Tensor        # factor a joint
     joint_friction: torch.Tensor  # factor a joint
@@ -26,8 +27,8 @@ def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, timestep_
         return low + (high - low) * torch.rand(worlds, *shape, device=device)
 
     joints = model.nu
-    mass = torch.tensor(model.body_mass, dtype=torch.float32, device=device) * uniform(ranges["link_mass_factor"],
-                                                                                       model.nbody)
+    link_mass = uniform(ranges["link_mass_factor"], model.nbody)
+    mass = torch.tensor(model.body_mass, dtype=torch.float32, device=device) * link_mass
     torso_mass = uniform(ranges["torso_mass_kg"])
     mass[:, model.body(torso).id] += torso_mass
     carries = (torch.rand(worlds, device=device) < ranges["payload_share"]).float()
@@ -39,6 +40,6 @@ def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, timestep_
     delay = torch.randint(round(low), round(high) + 1, (worlds,), device=device)
     armature = uniform(ranges["armature_factor"], joints)
     privileged = torch.cat([friction[:, None], torso_mass[:, None] / 3, com * 30, delay[:, None] / 4.0, payload], 1)
-    return Robots(friction, mass, com, armature, uniform(ranges["joint_friction_factor"], joints),
+    return Robots(friction, mass, link_mass, com, armature, uniform(ranges["joint_friction_factor"], joints),
                   uniform(ranges["kp_factor"], joints), uniform(ranges["kd_factor"], joints), delay,
                   uniform(ranges["encoder_offset_rad"], joints), privileged)
