@@ -1,0 +1,110 @@
+#include "evaluation/campaign.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "runtime/simulated_robot.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json errors_json(const Errors& errors) {
+  ordered_json json;
+  for (std::size_t e = 0; e < kErrors; ++e) json[kErrorKeys[e]] = errors[e];  // NaN becomes null
+  return json;
+}
+
+}  // namespace
+
+sim::WorldOptions Plants::of(const model::RobotModel& robot, std::uint64_t seed) const {
+  sim::WorldOptions world = runtime::world_with_noise(seed, false);
+  if (ranges) sim::vary(world, *ranges, robot, seed);
+  if (fixed) fixed(world);
+  return world;
+}
+
+ordered_json plant_json(const sim::WorldOptions& world) {
+  const sim::Variation& v = world.variation;
+  return {{"friction", world.floor_friction},
+          {"torso_mass_kg", v.torso_mass_kg},
+          {"torso_center_of_mass_m",
+           {v.torso_center_of_mass_m.x(), v.torso_center_of_mass_m.y(), v.torso_center_of_mass_m.z()}},
+          {"hand_payload_kg", {v.hand_payload_kg[kLeft], v.hand_payload_kg[kRight]}},
+          {"delay_s", v.delay_s}};
+}
+
+CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenario& scenario, int seeds, bool gantry,
+                          const Supervision& supervision) {
+  CampaignRuns campaign;
+  campaign.runs.assign(cases.size(), std::vector<TrialResult>(static_cast<std::size_t>(seeds)));
+  std::vector<model::RobotModel> robots;
+  for (const Case& c : cases) robots.push_back(model::load_robot(model::find_robot(c.candidate.control.robot)));
+  // Seed by seed, so that what an interruption leaves is paired.
+  for_each_piece(cases.size() * static_cast<std::size_t>(seeds), supervision, [&](std::size_t piece) {
+    const std::size_t c = piece % cases.size(), seed = piece / cases.size();
+    campaign.runs[c][seed] = run_trial(cases[c].candidate, scenario, cases[c].plants.of(robots[c], seed + 1),
+                                       {.gantry = gantry, .interrupted = supervision.interrupted, .observer = {}});
+  });
+  for (const auto& runs : campaign.runs) {
+    for (const TrialResult& run : runs) campaign.complete = campaign.complete && run.complete;
+  }
+  return campaign;
+}
+
+CaseSummary summarise(const std::vector<TrialResult>& runs) {
+  CaseSummary summary;
+  std::array<std::vector<double>, kErrors> samples;
+  for (const TrialResult& run : runs) {
+    if (!run.complete) continue;
+    ++summary.trials;
+    summary.falls += run.fell ? 1 : 0;
+    summary.survived += run.survived() ? 1 : 0;
+    if (run.judged_s <= 0.0) continue;
+    for (std::size_t e = 0; e < kErrors; ++e) samples[e].push_back(run.errors[e]);
+    summary.step_errors.resize(std::max(summary.step_errors.size(), run.step_errors.size()), Errors{});
+  }
+  for (std::size_t e = 0; e < kErrors; ++e) summary.errors[e] = mean_interval(samples[e]);
+  for (std::size_t step = 0; step < summary.step_errors.size(); ++step) {
+    int count = 0;
+    for (const TrialResult& run : runs) {
+      if (!run.complete || step >= run.step_errors.size() || std::isnan(run.step_errors[step][0])) continue;
+      ++count;
+      for (std::size_t e = 0; e < kErrors; ++e) summary.step_errors[step][e] += run.step_errors[step][e];
+    }
+    for (double& error : summary.step_errors[step]) {
+      error = count > 0 ? error / count : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return summary;
+}
+
+ordered_json to_json(const Estimate& estimate) {
+  return {{"mean", estimate.mean}, {"ci95", {estimate.lower, estimate.upper}}};
+}
+
+ordered_json to_json(const TrialResult& trial) {
+  return {{"fell", trial.fell},
+          {"fell_at_s", trial.fell ? ordered_json(trial.fell_at_s) : ordered_json(nullptr)},
+          {"faults", trial.faults},
+          {"judged_s", trial.judged_s},
+          {"errors", errors_json(trial.errors)}};
+}
+
+ordered_json to_json(const CaseSummary& summary, const runtime::Scenario& scenario) {
+  ordered_json json = {{"trials", summary.trials}, {"falls", summary.falls}, {"survived", summary.survived}};
+  for (std::size_t e = 0; e < kErrors; ++e) json["errors"][kErrorKeys[e]] = to_json(summary.errors[e]);
+  json["segments"] = ordered_json::array();
+  for (std::size_t step = 0; step < summary.step_errors.size() && step < scenario.steps.size(); ++step) {
+    json["segments"].push_back({{"text", scenario.steps[step].text},
+                                {"for_s", scenario.steps[step].duration_s},
+                                {"command", scenario.steps[step].command.u},
+                                {"errors", errors_json(summary.step_errors[step])}});
+  }
+  return json;
+}
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,48 @@
+#include "evaluation/statistics.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace pmg::evaluation {
+
+namespace {
+constexpr double kUpperTail = 0.975;               // of a two-sided 95 % interval
+constexpr double kNormalQuantile = 1.95996398454;  // at kUpperTail
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+}  // namespace
+
+Estimate mean_interval(std::span<const double> samples) {
+  if (samples.empty()) return {kNaN, kNaN, kNaN};
+  const auto n = static_cast<double>(samples.size());
+  double mean = 0.0;
+  for (const double sample : samples) mean += sample / n;
+  if (samples.size() < 2) return {mean, kNaN, kNaN};
+  double squares = 0.0;
+  for (const double sample : samples) squares += (sample - mean) * (sample - mean);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), kUpperTail);
+  const double half_width = t * std::sqrt(squares / (n - 1.0) / n);
+  return {mean, mean - half_width, mean + half_width};
+}
+
+Estimate paired_difference(std::span<const double> a, std::span<const double> b) {
+  if (a.size() != b.size()) throw std::invalid_argument("paired samples must be equally many");
+  std::vector<double> differences(a.size());
+  std::ranges::transform(a, b, differences.begin(), std::minus<>{});
+  return mean_interval(differences);
+}
+
+Estimate share_interval(std::int64_t successes, std::int64_t trials) {
+  if (trials <= 0) return {kNaN, 0.0, 1.0};
+  const auto n = static_cast<double>(trials);
+  const double share = static_cast<double>(successes) / n, z2 = kNormalQuantile * kNormalQuantile;
+  const double center = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
+  const double half_width =
+      kNormalQuantile * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
+  return {share, std::max(0.0, center - half_width), std::min(1.0, center + half_width)};
+}
+
+}  // namespace pmg::evaluation

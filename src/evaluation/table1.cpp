@@ -1,0 +1,154 @@
+#include "evaluation/table1.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace pmg::evaluation {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json by_error(const Errors& errors) {
+  ordered_json json;
+  for (std::size_t e = 0; e < kErrors; ++e) json[kErrorKeys[e]] = errors[e];
+  return json;
+}
+
+ordered_json policy_json(const Table1& table, std::size_t c) {
+  ordered_json json = {{"name", table.cases[c].name}, {"policy", table.cases[c].candidate.control.policy}};
+  json.update(to_json(table.summaries[c], table.scenario));
+  const std::optional<Errors> published = published_errors(table.cases[c].name);
+  json["paper"] = published ? by_error(*published) : ordered_json(nullptr);
+  json["runs"] = ordered_json::array();
+  for (std::size_t seed = 0; seed < table.campaign.runs[c].size(); ++seed) {
+    const TrialResult& run = table.campaign.runs[c][seed];
+    if (!run.complete) continue;
+    ordered_json entry = {{"seed", seed + 1}};
+    entry.update(to_json(run));
+    json["runs"].push_back(entry);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::optional<Errors> published_errors(const std::string& policy) {
+  if (policy == "single_gait") return Errors{0.0824, 0.4121, 0.1966, 0.3891, 0.0873};
+  if (policy == "without_gco") return Errors{0.3762, 0.5131, 0.1595, 0.1981, 0.0656};
+  if (policy == "pmg") return Errors{0.1228, 0.1612, 0.0769, 0.0697, 0.0351};
+  return std::nullopt;
+}
+
+bool Table1::reached(std::size_t error) const { return summaries[judged].errors[error].mean <= kErrorLimits[error]; }
+
+bool Table1::all_reached() const {
+  bool all = summaries[judged].falls == 0;
+  for (std::size_t e = 0; e < kErrors; ++e) all = all && reached(e);
+  return all;
+}
+
+Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, const Case& other,
+                   const std::vector<TrialResult>& other_runs) {
+  Comparison comparison{.policy = policy.name, .other = other.name, .pairs = 0, .difference = {}};
+  std::array<std::vector<double>, kErrors> a, b;
+  for (std::size_t seed = 0; seed < std::min(runs.size(), other_runs.size()); ++seed) {
+    if (!runs[seed].complete || !other_runs[seed].complete) continue;
+    ++comparison.pairs;
+    for (std::size_t e = 0; e < kErrors; ++e) {
+      a[e].push_back(runs[seed].errors[e]);
+      b[e].push_back(other_runs[seed].errors[e]);
+    }
+  }
+  for (std::size_t e = 0; e < kErrors; ++e) comparison.difference[e] = paired_difference(a[e], b[e]);
+  return comparison;
+}
+
+void evaluate(Table1& table) {
+  const auto named_pmg = std::ranges::find(table.cases, "pmg", &Case::name);
+  table.judged = named_pmg != table.cases.end() ? static_cast<std::size_t>(named_pmg - table.cases.begin()) : 0;
+  table.summaries.clear();
+  table.comparisons.clear();
+  for (const auto& runs : table.campaign.runs) table.summaries.push_back(summarise(runs));
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    if (c == table.judged) continue;
+    table.comparisons.push_back(
+        compare(table.cases[table.judged], table.campaign.runs[table.judged], table.cases[c], table.campaign.runs[c]));
+  }
+}
+
+ordered_json to_json(const Table1& table) {
+  ordered_json json = {
+      {"kind", "table1"},
+      {"complete", table.campaign.complete},
+      {"robot", table.robot},
+      {"scenario", table.scenario_file},
+      {"duration_s", table.scenario.duration_s()},
+      {"variation", table.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(table.ranges_file)},
+      {"seeds", table.seeds},
+      {"limits", {{"policy", table.cases[table.judged].name}, {"falls", 0}}}};
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    json["limits"][kErrorKeys[e]] = {{"limit", kErrorLimits[e]}, {"reached", table.reached(e)}};
+  }
+  json["limits"]["all_reached"] = table.all_reached();
+  for (std::size_t c = 0; c < table.cases.size(); ++c) json["policies"].push_back(policy_json(table, c));
+  json["differences"] = ordered_json::array();
+  for (const Comparison& comparison : table.comparisons) {
+    ordered_json entry = {{"policy", comparison.policy}, {"minus", comparison.other}, {"pairs", comparison.pairs}};
+    for (std::size_t e = 0; e < kErrors; ++e) {
+      entry[kErrorKeys[e]] = to_json(comparison.difference[e]);
+      entry[kErrorKeys[e]]["excludes_zero"] = comparison.difference[e].excludes_zero();
+    }
+    json["differences"].push_back(entry);
+  }
+  json["plants"] = ordered_json::array();
+  for (std::size_t seed = 0; seed < table.plants.size(); ++seed) {
+    ordered_json entry = {{"seed", seed + 1}};
+    entry.update(table.plants[seed]);
+    json["plants"].push_back(entry);
+  }
+  return json;
+}
+
+std::vector<std::string> text_of(const Table1& table) {
+  std::vector<std::string> lines = {fmt::format("{:<22}{:>16}{:>16}{:>16}{:>16}{:>16}{:>9}", "mean absolute error",
+                                                "lin vel m/s", "yaw vel rad/s", "roll rad", "pitch rad", "height m",
+                                                "falls")};
+  const auto add = [&lines](const std::string& name, const auto& cell, const std::string& falls) {
+    std::string line = fmt::format("{:<22}", name);
+    for (std::size_t e = 0; e < kErrors; ++e) line += fmt::format("{:>16}", cell(e));
+    lines.push_back(line + fmt::format("{:>9}", falls));
+  };
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    const CaseSummary& summary = table.summaries[c];
+    add(
+        table.cases[c].name,
+        [&](std::size_t e) {
+          const Estimate& error = summary.errors[e];
+          return fmt::format("{:.4f} +-{:.4f}", error.mean, error.upper - error.mean);
+        },
+        fmt::format("{}/{}", summary.falls, summary.trials));
+    if (const auto published = published_errors(table.cases[c].name)) {
+      add(
+          "  paper", [&](std::size_t e) { return fmt::format("{:.4f}        ", (*published)[e]); }, "");
+    }
+  }
+  add(
+      fmt::format("limit for {}", table.cases[table.judged].name),
+      [&](std::size_t e) { return fmt::format("{:.4f} {:<7}", kErrorLimits[e], table.reached(e) ? "ok" : "MISSED"); },
+      table.summaries[table.judged].falls == 0 ? "ok" : "MISSED");
+  for (const Comparison& comparison : table.comparisons) {
+    add(
+        fmt::format("{} - {}", comparison.policy, comparison.other),
+        [&](std::size_t e) {
+          const Estimate& d = comparison.difference[e];
+          return fmt::format("{:+.4f} {:<7}", d.mean, d.upper < 0.0 ? "better" : d.lower > 0.0 ? "worse" : "?");
+        },
+        fmt::format("{} pairs", comparison.pairs));
+  }
+  return lines;
+}
+
+}  // namespace pmg::evaluation

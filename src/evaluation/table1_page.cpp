@@ -1,0 +1,166 @@
+// The tracking table in pictures.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "evaluation/table1.hpp"
+#include "pages/text.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+constexpr std::array<const char*, 6> kColours = {pages::colour::kBlue,   pages::colour::kVermillion,
+                                                 pages::colour::kGreen,  pages::colour::kOrange,
+                                                 pages::colour::kPurple, pages::colour::kSky};
+
+std::vector<std::string> case_names(const Table1& table) {
+  std::vector<std::string> names;
+  for (const Case& c : table.cases) names.push_back(c.name);
+  return names;
+}
+
+std::string titled(std::size_t error) { return fmt::format("{} error [{}]", kErrorNames[error], kErrorUnits[error]); }
+
+pages::Bars overall_bars(const Table1& table, std::size_t error) {
+  pages::Bars bars{.title = titled(error), .unit = kErrorUnits[error], .names = case_names(table), .sets = {}};
+  pages::Bars::Set measured{.name = "measured, mean and 95 % interval over seeds", .values = {}},
+      published{.name = "paper", .values = {}, .colour = pages::colour::kGrey};
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    const Estimate& estimate = table.summaries[c].errors[error];
+    measured.values.push_back(estimate.mean);
+    measured.intervals.push_back({estimate.lower, estimate.upper});
+    const auto figures = published_errors(table.cases[c].name);
+    published.values.push_back(figures ? (*figures)[error] : std::numeric_limits<double>::quiet_NaN());
+  }
+  bars.sets = {measured, published};
+  bars.marks = {{kErrorLimits[error], fmt::format("limit {}", kErrorLimits[error])}};
+  return bars;
+}
+
+pages::Bars step_bars(const Table1& table, std::size_t error) {
+  pages::Bars bars{.title = titled(error), .unit = kErrorUnits[error], .names = {}, .sets = {}};
+  for (const runtime::ScenarioStep& step : table.scenario.steps) bars.names.push_back(step.text);
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    pages::Bars::Set set{.name = table.cases[c].name, .values = {}, .colour = kColours[c % kColours.size()]};
+    for (const Errors& errors : table.summaries[c].step_errors) set.values.push_back(errors[error]);
+    bars.sets.push_back(set);
+  }
+  bars.marks = {{kErrorLimits[error], fmt::format("limit of the mean {}", kErrorLimits[error])}};
+  return bars;
+}
+
+std::string interval_text(const Estimate& estimate) {
+  return fmt::format("{:.4f} [{:.4f}, {:.4f}]", estimate.mean, estimate.lower, estimate.upper);
+}
+
+void add_verdicts(const Table1& table, pages::Page& page) {
+  const CaseSummary& judged = table.summaries[table.judged];
+  if (!table.campaign.complete) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
+  std::string missed;
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    if (table.reached(e)) continue;
+    missed += fmt::format("{}{} {:.4f} {} over {}", missed.empty() ? "" : "; ", kErrorNames[e], judged.errors[e].mean,
+                          kErrorUnits[e], kErrorLimits[e]);
+  }
+  const std::string name = table.cases[table.judged].name;
+  page.verdict(judged.falls == 0 ? pages::Tone::kGood : pages::Tone::kBad,
+               fmt::format("{}: fell in {} of {} runs", name, judged.falls, judged.trials));
+  page.verdict(missed.empty() ? pages::Tone::kGood : pages::Tone::kBad,
+               missed.empty() ? fmt::format("{}: every error is within its limit", name)
+                              : fmt::format("{} misses: {}", name, missed));
+  for (const Comparison& comparison : table.comparisons) {
+    std::string better, open, worse;
+    for (std::size_t e = 0; e < kErrors; ++e) {
+      const Estimate& d = comparison.difference[e];
+      std::string& list = d.upper < 0.0 ? better : d.lower > 0.0 ? worse : open;
+      list += std::string(list.empty() ? "" : ", ") + kErrorNames[e];
+    }
+    std::string text = fmt::format("{} against {}: better in {}", comparison.policy, comparison.other,
+                                   better.empty() ? "nothing" : better);
+    if (!worse.empty()) text += "; worse in " + worse;
+    if (!open.empty()) text += "; undecided in " + open;
+    page.verdict(open.empty() && worse.empty() ? pages::Tone::kGood : pages::Tone::kNeutral, text);
+  }
+}
+
+pages::Table errors_table(const Table1& table) {
+  pages::Table out{.header = {"policy"}, .rows = {}};
+  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
+  out.header.push_back("falls");
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    std::vector<std::string> row = {table.cases[c].name};
+    for (const Estimate& estimate : table.summaries[c].errors) row.push_back(interval_text(estimate));
+    row.push_back(fmt::format("{} of {}", table.summaries[c].falls, table.summaries[c].trials));
+    out.rows.push_back(row);
+    const auto published = published_errors(table.cases[c].name);
+    if (!published) continue;
+    row = {table.cases[c].name + ", paper"};
+    for (const double figure : *published) row.push_back(fmt::format("{:.4f}", figure));
+    row.push_back("not told");
+    out.rows.push_back(row);
+  }
+  return out;
+}
+
+pages::Table differences_table(const Table1& table) {
+  pages::Table out{.header = {"difference, by seed"}, .rows = {}};
+  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
+  out.header.push_back("pairs");
+  for (const Comparison& comparison : table.comparisons) {
+    std::vector<std::string> row = {comparison.policy + " - " + comparison.other};
+    for (const Estimate& d : comparison.difference) {
+      row.push_back(interval_text(d) + (d.excludes_zero() ? " excludes zero" : ""));
+    }
+    row.push_back(std::to_string(comparison.pairs));
+    out.rows.push_back(row);
+  }
+  return out;
+}
+
+pages::Table runs_table(const Table1& table) {
+  pages::Table out{.header = {"policy", "seed", "end"}, .rows = {}};
+  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    for (std::size_t seed = 0; seed < table.campaign.runs[c].size(); ++seed) {
+      const TrialResult& run = table.campaign.runs[c][seed];
+      if (!run.complete) continue;
+      std::string end = run.fell ? fmt::format("fell at {:.1f} s", run.fell_at_s) : "stood";
+      if (!run.faults.empty()) end += ", " + run.faults.front();
+      std::vector<std::string> row = {table.cases[c].name, std::to_string(seed + 1), end};
+      for (const double error : run.errors) row.push_back(pages::number(error));
+      out.rows.push_back(row);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+pages::Page page_of(const Table1& table) {
+  pages::Page page("Command tracking: " + table.robot);
+  add_verdicts(table, page);
+  page.heading("Errors against the user's command");
+  page.columns([&] {
+    for (std::size_t e = 0; e < kErrors; ++e) page.bars(overall_bars(table, e));
+  });
+  page.table(errors_table(table));
+  if (!table.comparisons.empty()) page.table(differences_table(table));
+  page.heading("By command");
+  page.columns([&] {
+    for (std::size_t e = 0; e < kErrors; ++e) page.bars(step_bars(table, e));
+  });
+  page.heading("How it was measured");
+  page.paragraph(fmt::format(
+      "{} runs a policy of {:.1f} s ({}), the same commands, simulated robots and sensor noise for every policy ({}). "
+      "Every "
+      "tick from the first standing counts, transitions included; velocities are averaged over one gait period in the "
+      "heading frame; after a fall velocity and height count as zero and attitude as measured, to the end. Intervals "
+      "are Student's, over seeds. The paper's figures are from its own robot in Isaac Gym.",
+      table.seeds, table.scenario.duration_s(), table.scenario_file,
+      table.ranges_file.empty() ? "as the model says" : table.ranges_file));
+  page.folded("Every run", [&] { page.table(runs_table(table)); });
+  return page;
+}
+
+}  // namespace pmg::evaluation
