@@ -9,12 +9,11 @@ import math
 import torch
 
 from pmg_train import randomization, rewards
+from pmg_train.observation import Observation
 from pmg_train.physics import Worlds
 from pmg_train.reference_pool import ReferencePool
 from pmg_train.robot import joint_kind, training_model
 from pmg_train.rotations import roll_pitch_yaw, rotate, rotate_back
-
-HISTORY = 6  # ticks that the oldest frame lies back
 
 
 class Environment:
@@ -58,7 +57,7 @@ class Environment:
         self.command_lower = self._tensor([c["lower"] for c in description["command"]])
         self.command_upper = self._tensor([c["upper"] for c in description["command"]])
         self.substeps = substeps
-        self.down, self.up = self._tensor([[0, 0, -1.0]]), self._tensor([[0, 0, 1.0]])
+        self.up = self._tensor([[0, 0, 1.0]])
         amplitude = self.ranges["upper_body"]["amplitude_rad"]
         self.upper_amplitude = self._tensor([0.0 if j["policy"] else _amplitude(j["name"], amplitude) for j in joints])
         kicks = self.ranges["kicks"]
@@ -86,7 +85,8 @@ class Environment:
         self.q_ref = zeros(n, joints)
         self.sway = zeros(n, 4, joints)  # offset, amplitude, frequency, phase
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
-        self.history = zeros(n, HISTORY, 6 + 3 * actions)
+        self.layout = Observation(self.stand, actions, n)
+        self.history = self.layout.history
         # Slow averages: what the base does, what u' asks, what the user wants.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
@@ -297,34 +297,16 @@ class Environment:
 
     # -------------------------------------------------------------------------------------------------- observation
 
-    def sense(self) -> tuple[torch.Tensor, ...]:
-        """gyro, gravity direction, q, dq as a robot without noise would report them."""
-        w = self.worlds
-        quat = w.qpos[:, 3:7] / w.qpos[:, 3:7].norm(dim=1, keepdim=True)
-        return w.qvel[:, 3:6], rotate_back(quat, self.down.expand(self.n, 3)), w.qpos[:, 7:], w.qvel[:, 6:]
-
-    def pack(self, gyro, gravity, q, dq) -> torch.Tensor:
-        """The terms of the layout that belong to this tick, in its order and scale (src/policy/observation_layout)."""
-        legs = self.actions
-        return torch.cat([gyro, gravity, self.get("optimised"), self.get("phase"), self.q_ref - self.stand,
-                          0.1 * self.get("dq_ref")[:, :legs], q - self.stand, 0.1 * dq, self.action], 1)
-
-    def frame(self, gyro, gravity, q, dq) -> torch.Tensor:
-        legs = self.actions
-        return torch.cat([gyro, gravity, q[:, :legs] - self.stand[:legs], 0.1 * dq[:, :legs], self.action], 1)
-
     def _observations(self) -> tuple[torch.Tensor, torch.Tensor]:
-        gyro, gravity, q, dq = self.sense()
-        clean = self.pack(gyro, gravity, q, dq)
-        noise = self.ranges["noise"]
+        w, noise = self.worlds, self.ranges["noise"]
+        true = (w.qvel[:, 3:6], self.layout.gravity_direction(w.qpos[:, 3:7]), w.qpos[:, 7:], w.qvel[:, 6:])
+        gyro, gravity, q, dq = true
         noisy = lambda x, size: x + size * (2 * torch.rand_like(x) - 1)
         sensed = (noisy(gyro, noise["gyro_rad_s"]), noisy(gravity, noise["gravity_direction"]),
                   noisy(q + self.robots.encoder_offset, noise["q_rad"]), noisy(dq, noise["dq_rad_s"]))
-        frame = self.frame(*sensed)
-        self.history.copy_(torch.where(self.fresh[:, None, None], frame[:, None], self.history))
-        seen = torch.cat([self.pack(*sensed), self.history[:, 1], self.history[:, 3], self.history[:, 5]], 1)
-        self.history.copy_(torch.cat([frame[:, None], self.history[:, :-1]], 1))
-        critic = torch.cat([clean, self._privileged()], 1)
+        given = (self.get("optimised"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
+        seen = self.layout.with_history(self.layout.now(*sensed, *given), *sensed, self.action, self.fresh)
+        critic = torch.cat([self.layout.now(*true, *given), self._privileged()], 1)
         return torch.nan_to_num(seen).clamp(-50, 50), torch.nan_to_num(critic).clamp(-50, 50)
 
     def _privileged(self) -> torch.Tensor:

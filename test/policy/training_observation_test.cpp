@@ -1,0 +1,80 @@
+// The controller sees what training saw: its assembler against what training's torch code made of the same states.
+// test/data/training/observations.json is written by training/tests/make_observations.py, which says when.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "policy/observation.hpp"
+
+namespace pmg::policy {
+namespace {
+
+constexpr float kRounding = 1e-6F;  // training computes in float; the elements are of order one
+
+using nlohmann::json;
+
+json recorded() { return json::parse(std::ifstream(PMG_SOURCE_DIR "/test/data/training/observations.json")); }
+
+Eigen::VectorXd vector(const json& numbers) {
+  const auto values = numbers.get<std::vector<double>>();
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+model::RobotState state_of(const json& tick) {
+  model::RobotState state;
+  state.gyro_rad_s = vector(tick["gyro_rad_s"]);
+  const Eigen::VectorXd wxyz = vector(tick["quat_wxyz"]);
+  state.orientation_WI = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+  state.q = vector(tick["q_rad"]);
+  state.dq = vector(tick["dq_rad_s"]);
+  return state;
+}
+
+Reference reference_of(const json& tick) {
+  Reference reference;
+  reference.q = vector(tick["q_ref_rad"]);
+  reference.dq = vector(tick["dq_ref_rad_s"]);
+  reference.phase = tick["phase"].get<double>();
+  reference.gain = tick["gain"].get<double>();
+  return reference;
+}
+
+std::vector<std::string> layout_of(const ObservationLayout& layout) {
+  std::vector<std::string> names;
+  for (const ObservationTerm& term : layout.terms()) {
+    for (const std::string& element : term.element) {
+      names.push_back(term.name + ", " + std::to_string(term.age_ticks) + " ticks old: " + element);
+    }
+  }
+  return names;
+}
+
+TEST(TrainingObservation, EqualsTheControllersElementByElement) {
+  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const json training = recorded();
+  ASSERT_EQ(training["joints"].get<std::vector<std::string>>(), robot.joint_index.names());
+  ASSERT_EQ(vector(training["stand_rad"]), Eigen::VectorXd(robot.q_stand()));
+  Observation observation(robot);
+  const std::vector<std::string> names = layout_of(observation.layout());
+  ASSERT_EQ(training["layout"].get<std::vector<std::string>>(), names);
+  ASSERT_GT(training["ticks"].size(), static_cast<std::size_t>(ObservationLayout::kOldest_ticks) + 1)
+      << "too few for the oldest frame";
+  for (std::size_t t = 0; t < training["ticks"].size(); ++t) {
+    const json& tick = training["ticks"][t];
+    Command command;
+    for (std::size_t c = 0; c < kChannels; ++c) command.u[c] = tick["command"][c].get<double>();
+    const Eigen::VectorXf action = vector(tick["last_action"]).cast<float>();
+    const Eigen::VectorXf& seen = observation.assemble(state_of(tick), reference_of(tick), command, action);
+    const auto expected = tick["observation"].get<std::vector<float>>();
+    ASSERT_EQ(expected.size(), names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      EXPECT_NEAR(seen[static_cast<Eigen::Index>(i)], expected[i], kRounding) << names[i] << ", tick " << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pmg::policy

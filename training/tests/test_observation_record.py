@@ -1,0 +1,17 @@
+"""test/data/training/observations.json, which the controller's assembler is tested against, is what this code gives. Torch is enough."""
+
+import json
+from pathlib import Path
+
+from make_observations import observations
+
+RECORD = Path(__file__).resolve().parents[2] / "test" / "data" / "training" / "observations.json"
+TOLERANCE = 1e-7  # of the same arithmetic on another machine, elements of order one
+
+
+def test_the_recorded_observations_are_trainings():
+    record = json.loads(RECORD.read_text())
+    seen = observations(record["ticks"], record["stand_rad"], len(record["action_joints"]))
+    for number, (tick, found) in enumerate(zip(record["ticks"], seen, strict=True)):
+        for name, expected, value in zip(record["layout"], tick["observation"], found, strict=True):
+            assert abs(value - expected) <= TOLERANCE * max(1, abs(expected)), f"{name}, tick {number}"
