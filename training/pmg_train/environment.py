@@ -59,6 +59,9 @@ class Environment:
         self.substeps = substeps
         self.up = self._tensor([[0, 0, 1.0]])
         amplitude = self.ranges["upper_body"]["amplitude_rad"]
+        for key in amplitude:
+            if not any(joint_kind(j["name"]).startswith(key) for j in joints if not j["policy"]):
+                raise ValueError(f"upper_body: amplitude_rad of {key}: no such joint above the legs")
         self.upper_amplitude = self._tensor([0.0 if j["policy"] else _amplitude(j["name"], amplitude) for j in joints])
         kicks = self.ranges["kicks"]
         self.kick = self._tensor([kicks["linear_m_s"]] * 2 + [kicks["vertical_m_s"]] + [kicks["angular_rad_s"]] * 3)

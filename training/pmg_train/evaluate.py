@@ -18,7 +18,7 @@ import onnxruntime
 import yaml
 
 from pmg_train.references import ReferenceBatch
-from pmg_train.robot import evaluation_model
+from pmg_train.robot import evaluation_model, joint_kind
 
 CHANNELS = ("vx_m_s", "vy_m_s", "omega_rad_s", "pitch_rad", "roll_rad", "height_m")
 TICK_S, AVERAGE_TICKS = 0.01, 100
@@ -81,7 +81,8 @@ class Simulation:
         self.policy, self.c, self.random = policy, conditions, np.random.default_rng(seed)
         gains = {}
         for joint, kp, kd in zip(description["joints"], policy.meta["kp_Nm_per_rad"], policy.meta["kd_Nm_s_per_rad"]):
-            gains[joint["name"].split("_", 1)[1]] = (kp, kd)
+            if joint["policy"]:
+                gains[joint_kind(joint["name"])] = (kp, kd)
         self.model = m = evaluation_model(mjcf, description, gains)
         m.geom_friction[:, 0] = conditions.friction
         m.body_mass[m.body(description["torso_link"]).id] += conditions.torso_mass_kg

@@ -15,6 +15,9 @@ def joint_kind(name: str) -> str:
 
 def policy_gains(description: dict, gains: dict) -> tuple[np.ndarray, np.ndarray]:
     """kp, kd of every joint in the robot's order [Nm/rad], [Nm s/rad]: the policy's on its joints, robot.yaml's elsewhere."""
+    kinds = {joint_kind(j["name"]) for j in description["joints"] if j["policy"]}
+    if kinds != set(gains):
+        raise ValueError(f"gains of {', '.join(sorted(gains))}; expected exactly {', '.join(sorted(kinds))}")
     kp, kd = [], []
     for joint in description["joints"]:
         pair = (joint["kp_Nm_per_rad"], joint["kd_Nm_s_per_rad"])

@@ -22,6 +22,7 @@ import torch.distributed as dist
 import warp as wp
 import yaml
 
+from pmg_train.configuration import load_config, load_randomization
 from pmg_train.environment import Environment
 from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
@@ -64,8 +65,7 @@ class Training:
         if self.device == "cuda":
             self.device = f"cuda:{os.environ.get('LOCAL_RANK', 0)}"
         self.cuda = self.device.startswith("cuda")
-        self.config = yaml.safe_load(a.config.read_text())
-        self.ranges = yaml.safe_load(a.randomization.read_text())
+        self.config, self.ranges = load_config(a.config), load_randomization(a.randomization)
         c, ppo = self.config, self.config["ppo"]
         for key, value in (("streams", a.streams), ("ticks", a.ticks)):
             c["references"][key] = value or c["references"][key]

@@ -1,6 +1,5 @@
 """Training sees what the controller sees: the batched observation equals the C++ assembler's, name by name."""
 
-import copy
 import os
 from pathlib import Path
 
@@ -8,8 +7,8 @@ import numpy as np
 import pytest
 import torch
 import warp as wp
-import yaml
 
+from pmg_train.configuration import load_config, load_randomization
 from pmg_train.environment import Environment
 from pmg_train.reference_pool import ReferencePool
 from pmg_train.references import ReferenceBatch
@@ -26,8 +25,7 @@ TOLERANCE = 1e-6  # of values of order one in float32; velocities are scaled to 
 @pytest.fixture(scope="module")
 def setting():
     wp.config.quiet = True
-    config = yaml.safe_load((HERE / "config.yaml").read_text())
-    ranges = copy.deepcopy(yaml.safe_load((HERE / "randomization.yaml").read_text()))
+    config, ranges = load_config(HERE / "config.yaml"), load_randomization(HERE / "randomization.yaml")
     ranges["noise"] = dict.fromkeys(ranges["noise"], 0.0)
     ranges["encoder_offset_rad"] = 0.0
     ranges["upper_body"]["share"] = 0.0
