@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "sim/actuator_joint.hpp"
 #include "sim/sensor_noise.hpp"
 #include "sim/suspension.hpp"
 
@@ -73,6 +74,7 @@ struct World::Impl {
                  static_cast<std::size_t>(std::lround(world_options.variation.delay_s / world_options.timestep_s))) {
     const int joints = robot.joint_index.size();
     const Variation& variation = options.variation;
+    for (int j = 0; j < joints; ++j) make_motor(robot.joints[static_cast<std::size_t>(j)], j);
     apply(variation, robot, model.get(), data.get());
     kp_factor = variation.kp_factor.size() > 0 ? variation.kp_factor : JointVector::Ones(joints);
     kd_factor = variation.kd_factor.size() > 0 ? variation.kd_factor : JointVector::Ones(joints);
@@ -97,6 +99,17 @@ struct World::Impl {
     for (int a = 0; a < model->nu; ++a) model->actuator_gainprm[a * mjNGAIN] = 1.0;
   }
 
+  /// A drive that motor.yaml gives no limit keeps the joint's.
+  void make_motor(const model::Joint& joint, int index) {
+    motors.emplace_back();
+    const auto found = options.motors.find(joint.name);
+    if (found == options.motors.end()) return;
+    ActuatorParameters parameters = found->second;
+    if (!std::isfinite(parameters.drive.limit)) parameters.drive.limit = joint.effort_limit_Nm;
+    motors.back().emplace(parameters, options.timestep_s);
+    hand_over(model.get(), index, *motors.back());
+  }
+
   WorldOptions options;
   std::unique_ptr<mjModel, FreeModel> model;
   std::unique_ptr<mjData, FreeData> data;
@@ -104,6 +117,7 @@ struct World::Impl {
   SensorNoise noise;
   std::vector<model::JointCommand> underway;  // to the drives: a ring as long as the delay, the newest included
   std::size_t newest_command = 0;
+  std::vector<std::optional<ActuatorModel>> motors;  // in joint order
   JointVector kp_factor, kd_factor, encoder_offset_rad;
   Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
   std::vector<int> qpos_address, dof_address;  // in joint order, as the actuators are
@@ -139,6 +153,9 @@ void World::reset() {
   }
   w.noise = SensorNoise(w.options, robot_.joint_index.size());
   std::ranges::fill(w.underway, limp(robot_.joint_index.size()));
+  for (std::size_t j = 0; j < w.motors.size(); ++j) {
+    if (w.motors[j]) w.motors[j]->reset(data_->qpos[w.qpos_address[j]]);
+  }
   w.push_W_N.setZero();
   w.foot_force_N = w.foot_slip_m_s = {};
   w.steps = 0;
@@ -172,9 +189,20 @@ void World::step(const model::JointCommand& command) noexcept {
 }
 
 void World::set_drives(const model::JointCommand& command) noexcept {
-  const Impl& w = *impl_;
+  Impl& w = *impl_;
   for (int j = 0; j < model_->nu; ++j) {
     const double kp = w.kp_factor[j] * command.kp[j], kd = w.kd_factor[j] * command.kd[j];
+    const auto index = static_cast<std::size_t>(j);
+    if (w.motors[index]) {
+      const double q_rad = data_->qpos[w.qpos_address[index]], dq_rad_s = data_->qvel[w.dof_address[index]];
+      const ActuatorInput input{.q_rad = command.q[j] - w.encoder_offset_rad[j],
+                                .dq_rad_s = command.dq[j],
+                                .kp = kp,
+                                .kd = kd,
+                                .feed_forward = command.tau_ff[j]};
+      apply(model_, data_, j, w.motors[index]->step(input, q_rad, dq_rad_s), dq_rad_s);
+      continue;
+    }
     mjtNum* bias = model_->actuator_biasprm + j * mjNBIAS;
     bias[1] = -kp;
     bias[2] = -kd;
@@ -225,7 +253,9 @@ void World::read(model::RobotState& state) noexcept {
   state.temperature_degC.setConstant(joints, kDriveTemperature_degC);
   for (int j = 0; j < joints; ++j) {
     const auto index = static_cast<std::size_t>(j);
-    state.q[j] = data_->qpos[w.qpos_address[index]] + w.encoder_offset_rad[j] + w.noise.encoder_rad()[j];
+    const double q_rad = data_->qpos[w.qpos_address[index]];
+    const double reading_rad = w.motors[index] ? w.motors[index]->reading_rad(q_rad) : q_rad;
+    state.q[j] = reading_rad + w.encoder_offset_rad[j] + w.noise.encoder_rad()[j];
     state.dq[j] = data_->qvel[w.dof_address[index]] + w.noise.velocity_rad_s()[j];
   }
   state.gyro_rad_s = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.gyro_address) + w.noise.gyro_rad_s();

@@ -11,6 +11,7 @@
 
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
+#include "sim/motor_file.hpp"
 #include "sim/variation.hpp"
 
 namespace pmg::sim {
@@ -22,6 +23,7 @@ struct WorldOptions {
   std::uint64_t seed = 0;                                                               ///< of the sensor noise
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
   double velocity_noise_rad_s = 0.0;  ///< of measured joint velocities, likewise
+  ActuatorsByJoint motors;            ///< joints that have more than a PD and MuJoCo's own friction
   Variation variation;                ///< what else is not as the model says
 };
 

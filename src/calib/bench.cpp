@@ -1,0 +1,193 @@
+#include "calib/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "model/config_reader.hpp"
+
+namespace pmg::calib {
+
+namespace {
+
+using model::ConfigReader;
+
+constexpr double kGravity_m_s2 = 9.81;
+
+/// A positive number, or nothing where the file says "unknown" or nothing at all.
+std::optional<double> known_number(ConfigReader& reader, const std::string& key) {
+  if (!reader.has(key)) return std::nullopt;
+  try {
+    return reader.required<double>(key, model::positive());
+  } catch (const model::ConfigError&) {
+    if (reader.required<std::string>(key) == "unknown") return std::nullopt;
+    reader.fail(key, "is '" + reader.required<std::string>(key) + "'", "a number above 0, or unknown");
+  }
+}
+
+void take(Bench& bench, ConfigReader& drive, const std::string& key, const std::string& parameter) {
+  const std::optional<double> value = known_number(drive, key);
+  if (value)
+    sim::actuator_parameter(parameter).in(bench.known) = *value;
+  else
+    bench.unknown.push_back(parameter);
+}
+
+void read_servo(Bench& bench, ConfigReader& drive) {
+  bench.known.drive.limit = 1.0;  // duty
+  take(bench, drive, "error_gain_per_rad", "drive.kp_scale");
+  take(bench, drive, "torque_Nm_per_V", "drive.torque_per_unit_Nm");
+  take(bench, drive, "kt_V_s_per_rad", "drive.back_emf_s_per_rad");
+  if (!drive.has("bus_V")) return;
+  try {  // a number, or the remarks of whoever recorded it
+    bench.supply_V = drive.required<double>("bus_V", model::positive());
+  } catch (const model::ConfigError&) {
+    drive.map("bus_V");
+  }
+}
+
+void read_cascade(Bench& bench, ConfigReader& drive, const std::string& length) {
+  const double kp_per_s = drive.required<double>("kp_per_s", model::positive());
+  bench.kd_of_law = drive.required<double>("kv_V_s_per_" + length, model::positive());
+  bench.kp_of_law = kp_per_s * bench.kd_of_law;
+  bench.known.drive.limit = drive.optional<double>("limit_V", 10.0, model::positive());
+  take(bench, drive, length == "m" ? "gtau_N_per_V" : "gtau_Nm_per_V", "drive.torque_per_unit_Nm");
+}
+
+void read_position_pd(Bench& bench, ConfigReader& drive) {
+  bench.kp_of_law = known_number(drive, "kp_Nm_per_rad").value_or(1.0);
+  bench.kd_of_law = known_number(drive, "kd_Nm_s_per_rad").value_or(1.0);
+  bench.known.drive.limit = known_number(drive, "limit_Nm").value_or(bench.known.drive.limit);
+}
+
+void read_drive(Bench& bench, ConfigReader drive) {
+  const std::string law = drive.one_of("law", {"servo_voltage", "position_pd", "cascade_pd", "torque"});
+  if (law == "servo_voltage") {
+    bench.law = DriveLaw::kServoVoltage;
+    read_servo(bench, drive);
+  } else if (law == "cascade_pd") {
+    bench.law = DriveLaw::kCascadePd;
+    read_cascade(bench, drive, bench.rig == Rig::kLinear ? "m" : "rad");
+  } else if (law == "position_pd") {
+    bench.law = DriveLaw::kPositionPd;
+    read_position_pd(bench, drive);
+  } else {
+    bench.law = DriveLaw::kTorque;
+    bench.kp_of_law = bench.kd_of_law = 0.0;
+  }
+  drive.finish();
+}
+
+BenchLoad read_load(ConfigReader reader, bool hangs) {
+  BenchLoad load;
+  load.mass_kg = reader.required<double>("mass_kg", model::positive());
+  load.length_m = reader.optional<double>("length_m", 0.0, model::non_negative());
+  const auto inertia = known_number(reader, "inertia_kg_m2"), gravity = known_number(reader, "gravity_Nm");
+  load.inertia_known = inertia.has_value();
+  load.gravity_known = gravity.has_value();
+  const double point = load.length_m > 0.0 ? load.mass_kg * load.length_m * load.length_m : load.mass_kg;
+  load.load.inertia_kg_m2 = inertia.value_or(point);
+  load.load.gravity_Nm = hangs ? gravity.value_or(load.mass_kg * kGravity_m_s2 * load.length_m) : 0.0;
+  reader.finish();
+  return load;
+}
+
+void check_units(ConfigReader units, bool linear) {
+  const std::string expected = linear ? "m" : "rad";
+  if (units.has("q") && units.required<std::string>("q") != expected)
+    units.fail("q", "is '" + units.required<std::string>("q") + "'", expected);
+  if (units.has("t") && units.required<std::string>("t") != "s")
+    units.fail("t", "is '" + units.required<std::string>("t") + "'", "s");
+}
+
+std::optional<std::string> cell(const CsvTable& table, std::size_t row, const std::string& column) {
+  const auto c = table.find(column);
+  if (!c || table.rows[row][*c].empty()) return std::nullopt;
+  return table.rows[row][*c];
+}
+
+std::optional<double> number(const CsvTable& table, std::size_t row, const std::string& column) {
+  const auto text = cell(table, row, column);
+  if (!text) return std::nullopt;
+  const auto value = to_number(*text);
+  if (!value || !std::isfinite(*value)) model::raise(table.place(row), column, "is '" + *text + "'", "a finite number");
+  return value;
+}
+
+/// The row's load among bench.yaml's; both round their masses.
+JointLoad load_of(const Bench& bench, std::size_t row) {
+  if (bench.loads.empty()) return {};
+  const auto mass = number(bench.runs, row, "load_mass_kg"), length = number(bench.runs, row, "load_length_m");
+  if (!mass && bench.loads.size() == 1) return bench.loads.front().load;
+  for (const BenchLoad& load : bench.loads) {
+    const bool same_mass = mass && std::abs(*mass - load.mass_kg) <= 2e-3 * load.mass_kg;
+    const bool same_length = !length || std::abs(*length - load.length_m) <= 1e-6 + 2e-3 * load.length_m;
+    if (same_mass && same_length) return load.load;
+  }
+  model::raise(bench.runs.place(row), "load_mass_kg", "no such load in bench.yaml", "one of `loads`");
+}
+
+BenchRun describe(const Bench& bench, std::size_t row) {
+  BenchRun run;
+  const auto file = cell(bench.runs, row, "file"), trajectory = cell(bench.runs, row, "trajectory");
+  if (!file) model::raise(bench.runs.place(row), "file", "is missing", "a file of runs/");
+  run.file = *file;
+  run.trajectory = trajectory.value_or("");
+  run.repeat = static_cast<int>(number(bench.runs, row, "repeat").value_or(0.0));
+  const bool firmware = bench.law == DriveLaw::kServoVoltage;
+  run.kp = number(bench.runs, row, firmware ? "kp_firmware" : "kp_Nm_per_rad").value_or(bench.kp_of_law);
+  run.kd = number(bench.runs, row, "kd_Nm_s_per_rad").value_or(bench.kd_of_law);
+  run.load = load_of(bench, row);
+  return run;
+}
+
+}  // namespace
+
+Bench read_bench(const std::filesystem::path& folder) {
+  ConfigReader reader = ConfigReader::from_file(folder / "bench.yaml");
+  Bench bench;
+  bench.folder = folder;
+  const std::string rig = reader.one_of("rig", {"pendulum", "horizontal", "linear", "robot"});
+  bench.rig = rig == "pendulum" ? Rig::kPendulum
+              : rig == "linear" ? Rig::kLinear
+              : rig == "robot"  ? Rig::kRobot
+                                : Rig::kHorizontal;
+  bench.sample_rate_hz = reader.required<double>("sample_rate_hz", model::positive());
+  if (reader.has("units")) check_units(reader.map("units"), bench.rig == Rig::kLinear);
+  if (reader.has("command_hold")) bench.linear_hold = reader.one_of("command_hold", {"hold", "linear"}) == "linear";
+  read_drive(bench, reader.map("drive"));
+  if (reader.has("loads")) {
+    for (ConfigReader& load : reader.maps("loads")) bench.loads.push_back(read_load(load, bench.rig == Rig::kPendulum));
+  }
+  if (reader.has("rotor")) {
+    ConfigReader rotor = reader.map("rotor");
+    bench.known.transmission.armature_kg_m2 = known_number(rotor, "armature_kg_m2").value_or(0.0);
+    known_number(rotor, "gear_ratio");
+    rotor.finish();
+  }
+  if (reader.has("design")) reader.required<std::string>("design");
+  if (reader.has("reference")) reader.map("reference");  // for who compares, not for a fit
+  reader.finish();
+  bench.runs = read_csv(folder / "runs.csv");
+  return bench;
+}
+
+std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const Progress& progress) const {
+  const std::vector<bool> kept = filter.keeps(runs);
+  std::vector<BenchRun> found;
+  const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque};
+  for (std::size_t row = 0; row < kept.size(); ++row) {
+    if (!kept[row]) continue;
+    found.push_back(describe(*this, row));
+    found.back().recording = read_recording(folder / "runs" / found.back().file, format);
+    if (progress && !progress(static_cast<double>(row + 1) / static_cast<double>(kept.size()))) break;
+  }
+  if (found.empty()) {
+    throw std::invalid_argument(fmt::format("{}: no run matches '{}' among {}; expected at least one",
+                                            runs.file.string(), filter.text(), kept.size()));
+  }
+  return found;
+}
+
+}  // namespace pmg::calib

@@ -1,0 +1,92 @@
+#include "calib/csv_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+namespace pmg::calib {
+
+namespace {
+
+std::vector<std::string> cells(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> found;
+  std::size_t from = 0;
+  for (std::size_t comma = line.find(','); comma != std::string::npos; comma = line.find(',', from)) {
+    found.push_back(line.substr(from, comma - from));
+    from = comma + 1;
+  }
+  found.push_back(line.substr(from));
+  return found;
+}
+
+void check_header(const CsvTable& table) {
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    const std::string& name = table.header[c];
+    const model::Place place{table.file.string(), 1};
+    if (name.empty()) model::raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
+    if (std::count(table.header.begin(), table.header.end(), name) > 1) {
+      model::raise(place, name, "is there twice", "it once");
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<double> to_number(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+std::optional<std::size_t> CsvTable::find(const std::string& column) const {
+  const auto found = std::find(header.begin(), header.end(), column);
+  if (found == header.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header.begin());
+}
+
+std::vector<double> CsvTable::numbers(const std::string& column) const {
+  const std::optional<std::size_t> c = find(column);
+  if (!c) model::raise({file.string(), 1}, column, "is missing", "a column of that name");
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::string& text = rows[r][*c];
+    const std::optional<double> value = to_number(text);
+    if (!value || !std::isfinite(*value)) {
+      model::raise(place(r), column, text.empty() ? "is empty" : "is '" + text + "'", "a finite number");
+    }
+    values.push_back(*value);
+  }
+  return values;
+}
+
+CsvTable read_csv(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream)
+    model::raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a CSV file");
+  CsvTable table;
+  table.file = file;
+  std::string line;
+  if (std::getline(stream, line)) table.header = cells(line);
+  check_header(table);
+  while (std::getline(stream, line)) {
+    if (line.empty() && stream.peek() == std::ifstream::traits_type::eof()) break;
+    table.rows.push_back(cells(line));
+    const std::size_t count = table.rows.back().size();
+    if (count == table.header.size()) continue;
+    model::raise(table.place(table.rows.size() - 1), "", fmt::format("{} cells", count),
+                 fmt::format("{} as in the header", table.header.size()));
+  }
+  if (table.rows.empty()) model::raise({file.string()}, "", "no rows below the header", "at least one");
+  return table;
+}
+
+}  // namespace pmg::calib

@@ -1,0 +1,31 @@
+// A CSV file with a header: cells as text, and columns of numbers with errors that name file, line and column.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/config_error.hpp"
+
+namespace pmg::calib {
+
+struct CsvTable {
+  std::filesystem::path file;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;  ///< each of header.size() cells; row k stands in line k + 2
+
+  std::optional<std::size_t> find(const std::string& column) const;
+  model::Place place(std::size_t row) const { return {file.string(), static_cast<int>(row) + 2}; }
+  /// Throws model::ConfigError on a missing column and on what isn't a finite number.
+  std::vector<double> numbers(const std::string& column) const;
+};
+
+/// A comma between cells, no quoting, "\n" or "\r\n". Throws model::ConfigError on a file that can't be read, an empty
+/// or repeated column name, a row of another length, and a table without rows.
+CsvTable read_csv(const std::filesystem::path& file);
+
+/// Nothing when the text isn't a number; NaN and infinities are numbers here.
+std::optional<double> to_number(const std::string& text);
+
+}  // namespace pmg::calib

@@ -1,0 +1,149 @@
+#include "calib/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/csv_table.hpp"
+
+namespace pmg::calib {
+
+namespace {
+
+constexpr std::size_t kFewestSamples = 50;
+constexpr double kLongestGap_samples = 5.0;
+constexpr double kLargestAngle_rad = 100.0;  // sixteen turns: no bench's joint; degrees reach it at a quarter turn
+constexpr double kLargestPosition_m = 20.0;  // no bench's axis; millimetres reach it at two centimetres
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void check_times(const CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
+  const double step_s = 1.0 / sample_rate_hz;
+  std::vector<double> steps_s;
+  for (std::size_t k = 1; k < t_s.size(); ++k) {
+    steps_s.push_back(t_s[k] - t_s[k - 1]);
+    if (steps_s.back() == 0.0)
+      model::raise(table.place(k), "t_s", fmt::format("{} is there twice", t_s[k]), "times that increase");
+    if (steps_s.back() < 0.0) {
+      model::raise(table.place(k), "t_s", fmt::format("{} after {}", t_s[k], t_s[k - 1]), "times that increase");
+    }
+  }
+  const double usual_s = median(steps_s);
+  if (usual_s > 2.0 * step_s || usual_s < 0.5 * step_s) {
+    model::raise({table.file.string()}, "t_s", fmt::format("steps of {:.4g}", usual_s),
+                 fmt::format("seconds, {:.4g} apart as sample_rate_hz of bench.yaml says", step_s));
+  }
+  for (std::size_t k = 1; k < t_s.size(); ++k) {
+    if (steps_s[k - 1] <= kLongestGap_samples * step_s) continue;
+    model::raise(table.place(k), "t_s", fmt::format("a gap of {:.4g} s", steps_s[k - 1]),
+                 fmt::format("at most {:.4g} s between samples", kLongestGap_samples * step_s));
+  }
+}
+
+void check_positions(const CsvTable& table, const std::string& column, const std::vector<double>& values, bool linear) {
+  const double most = linear ? kLargestPosition_m : kLargestAngle_rad;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::abs(values[k]) <= most) continue;
+    model::raise(table.place(k), column, fmt::format("is {}", values[k]),
+                 fmt::format("{} within +-{}; is it in {}?", linear ? "metres" : "radians", most,
+                             linear ? "millimetres" : "degrees"));
+  }
+}
+
+/// One sample far off between two that agree. Twenty usual steps away and five times what its neighbours differ by: no
+/// joint gets there and back in two samples.
+std::vector<bool> find_valid(const std::vector<double>& q_rad) {
+  std::vector<double> moves_rad;
+  for (std::size_t k = 1; k < q_rad.size(); ++k) {
+    if (q_rad[k] != q_rad[k - 1]) moves_rad.push_back(std::abs(q_rad[k] - q_rad[k - 1]));
+  }
+  std::vector<bool> valid(q_rad.size(), true);
+  if (moves_rad.empty()) return valid;
+  const double far_rad = 20.0 * median(moves_rad);
+  for (std::size_t k = 0; k < q_rad.size(); ++k) {
+    const double before_rad = q_rad[k == 0 ? 1 : k - 1], after_rad = q_rad[k + 1 == q_rad.size() ? k - 1 : k + 1];
+    const double there_rad = q_rad[k] - before_rad, back_rad = q_rad[k] - after_rad;
+    const double nearest_rad = std::min(std::abs(there_rad), std::abs(back_rad));
+    valid[k] =
+        !(there_rad * back_rad > 0.0 && nearest_rad > far_rad && nearest_rad > 5.0 * std::abs(after_rad - before_rad));
+  }
+  return valid;
+}
+
+/// The host's readings of the bus voltage fail now and then (zero, or double); the run's median replaces those.
+void mend_bus(std::vector<double>& bus_V) {
+  if (bus_V.empty()) return;
+  const double usual_V = median(bus_V);
+  for (double& value : bus_V) {
+    if (value < 0.7 * usual_V || value > 1.3 * usual_V) value = usual_V;
+  }
+}
+
+}  // namespace
+
+std::size_t Recording::dropouts() const {
+  return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), false));
+}
+
+Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format) {
+  const CsvTable table = read_csv(file);
+  const std::string unit = format.linear ? "_m" : "_rad", rate = unit + "_s";
+  const std::string force = format.linear ? "_N" : "_Nm";
+  const auto column = [&](const std::string& quantity) {  // with the hint that makes a wrong unit plain
+    const std::string name = quantity + unit;
+    if (table.find(name)) return table.numbers(name);
+    for (const std::string& other : table.header) {
+      if (other.starts_with(quantity + "_") && !other.ends_with("_raw")) {
+        model::raise({file.string(), 1}, other, "is in another unit", name);
+      }
+    }
+    return table.numbers(name);
+  };
+  const auto if_there = [&](const std::string& name) {
+    return table.find(name) ? table.numbers(name) : std::vector<double>{};
+  };
+  Recording recording;
+  recording.file = file;
+  recording.t_s = table.numbers("t_s");
+  recording.q_cmd_rad = column("q_cmd");
+  recording.q_rad = column("q");
+  recording.dq_cmd_rad_s = if_there("dq_cmd" + rate);
+  recording.tau_ff_Nm = if_there("tau_ff" + force);
+  recording.torque_Nm = if_there("torque" + force);
+  recording.bus_V = if_there("bus_V");
+  recording.drive_V = if_there("drive_V");
+  recording.temp_C = if_there("temp_C");
+  for (const double on : if_there("enabled")) recording.enabled.push_back(on != 0.0);
+
+  if (table.rows.size() < kFewestSamples) {
+    model::raise({file.string()}, "", fmt::format("{} samples", table.rows.size()),
+                 fmt::format("at least {}", kFewestSamples));
+  }
+  check_times(table, recording.t_s, format.sample_rate_hz);
+  check_positions(table, "q_cmd" + unit, recording.q_cmd_rad, format.linear);
+  check_positions(table, "q" + unit, recording.q_rad, format.linear);
+  const auto constant = [](const std::vector<double>& values) {
+    return values.empty() || std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
+  };
+  if (format.commanded && constant(recording.q_cmd_rad) && constant(recording.tau_ff_Nm)) {
+    model::raise({file.string()}, "q_cmd" + unit, "never changes", "a command that excites the joint");
+  }
+  if (!format.commanded && constant(recording.torque_Nm)) {
+    model::raise({file.string()}, "torque" + force, "is missing or never changes", "the torque that drove the joint");
+  }
+  mend_bus(recording.bus_V);
+  recording.valid = find_valid(recording.q_rad);
+  if (recording.dropouts() > table.rows.size() / 50) {
+    model::raise({file.string()}, "q" + unit, fmt::format("the sensor drops out in {} samples", recording.dropouts()),
+                 "at most one in 50");
+  }
+  return recording;
+}
+
+}  // namespace pmg::calib

@@ -1,0 +1,101 @@
+#include "calib/single_joint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pmg::calib {
+
+namespace {
+
+constexpr double kSilStep_s = 0.002;
+constexpr double kLost_rad = 1e3;  // a rollout that gets here has diverged
+
+sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t sample) {
+  const Recording& r = run.recording;
+  sim::ActuatorInput input;
+  input.q_rad = r.q_cmd_rad[sample];
+  input.kp = run.kp;
+  input.kd = run.kd;
+  if (!r.dq_cmd_rad_s.empty()) input.dq_rad_s = r.dq_cmd_rad_s[sample];
+  if (!r.tau_ff_Nm.empty()) input.feed_forward = r.tau_ff_Nm[sample];
+  if (bench.law == DriveLaw::kTorque) input.feed_forward = r.torque_Nm[sample];
+  if (bench.law == DriveLaw::kServoVoltage) input.supply = r.bus_V.empty() ? bench.supply_V : r.bus_V[sample];
+  if (!r.enabled.empty()) input.enabled = r.enabled[sample];
+  return input;
+}
+
+}  // namespace
+
+double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 1.0 / bench.sample_rate_hz); }
+
+SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s) : run_(std::move(run)), step_s_(step_s) {
+  const Recording& r = run_.recording;
+  for (std::size_t s = 0; s < r.t_s.size(); ++s) inputs_.push_back(input_at(bench, run_, s));
+  const double start_s = r.t_s.front();
+  const auto steps = static_cast<std::size_t>(std::ceil((r.t_s.back() - start_s) / step_s - 1e-9));
+  std::size_t sample = 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const double t_s = start_s + static_cast<double>(k) * step_s + 1e-9;
+    while (sample + 1 < r.t_s.size() && r.t_s[sample + 1] <= t_s) ++sample;
+    sample_of_step_.push_back(sample);
+    double q_cmd_rad = r.q_cmd_rad[sample];
+    if (bench.linear_hold && sample + 1 < r.t_s.size()) {
+      const double share = (t_s - r.t_s[sample]) / (r.t_s[sample + 1] - r.t_s[sample]);
+      q_cmd_rad += share * (r.q_cmd_rad[sample + 1] - q_cmd_rad);
+    }
+    q_cmd_of_step_rad_.push_back(q_cmd_rad);
+  }
+  for (const double t_s : r.t_s) {
+    const double position = std::max(0.0, (t_s - start_s) / step_s - 1e-9);
+    const std::size_t step = std::min(static_cast<std::size_t>(position), steps - 1);
+    place_of_sample_.push_back({step, std::clamp((t_s - start_s) / step_s - static_cast<double>(step), 0.0, 1.0)});
+  }
+}
+
+sim::ActuatorInput SingleJoint::input(std::size_t step) const {
+  sim::ActuatorInput input = inputs_[sample_of_step_[step]];
+  input.q_rad = q_cmd_of_step_rad_[step];
+  return input;
+}
+
+template <typename Seen>
+void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
+  sim::ActuatorModel actuator(model.actuator, step_s_);
+  double q_rad = start_rad(model), dq_rad_s = 0.0;
+  actuator.reset(q_rad);
+  const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
+  const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  std::size_t sample = 0;
+  for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
+    const sim::ActuatorTorque drive = actuator.step(input(k), q_rad, dq_rad_s);
+    const double torque_Nm = drive.torque_Nm - (gravity_Nm != 0.0 ? gravity_Nm * std::sin(q_rad) : 0.0);
+    dq_rad_s += step_s_ * torque_Nm / (inertia_kg_m2 - step_s_ * drive.slope_Nm_s_per_rad);
+    const double before_rad = q_rad;
+    q_rad += step_s_ * dq_rad_s;
+    if (!(std::abs(q_rad) < kLost_rad)) q_rad = std::copysign(kLost_rad, q_rad), dq_rad_s = 0.0;
+    while (sample < place_of_sample_.size() && place_of_sample_[sample].step == k) {
+      seen(sample, actuator.reading_rad(before_rad + place_of_sample_[sample].share * (q_rad - before_rad)));
+      ++sample;
+    }
+  }
+}
+
+std::vector<double> SingleJoint::rollout(const JointModel& model) const {
+  std::vector<double> reading_rad(place_of_sample_.size());
+  simulate(model, [&](std::size_t sample, double reading) { reading_rad[sample] = reading; });
+  return reading_rad;
+}
+
+RolloutError SingleJoint::error(const JointModel& model) const {
+  RolloutError error;
+  simulate(model, [&](std::size_t sample, double reading) {
+    if (!run_.recording.valid[sample]) return;
+    ++error.samples;
+    const double miss_rad = reading - run_.recording.q_rad[sample];
+    error.sum_of_squares_rad2 += miss_rad * miss_rad;
+    error.sum_of_absolutes_rad += std::abs(miss_rad);
+  });
+  return error;
+}
+
+}  // namespace pmg::calib

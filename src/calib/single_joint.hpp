@@ -1,0 +1,66 @@
+// One joint on its bench, simulated fast enough to be fitted: the actuator model, a pendulum load, and nothing else.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "calib/bench.hpp"
+#include "sim/actuator_model.hpp"
+
+namespace pmg::calib {
+
+/// Everything that a fit may change.
+struct JointModel {
+  sim::ActuatorParameters actuator;
+  double inertia_scale = 1.0, gravity_scale = 1.0;  ///< of the bench's loads
+};
+
+/// What a simulated rollout missed by, over the recording's valid samples.
+struct RolloutError {
+  double sum_of_squares_rad2 = 0.0, sum_of_absolutes_rad = 0.0;
+  std::size_t samples = 0;
+  double mean_square_rad2() const { return sum_of_squares_rad2 / static_cast<double>(samples); }
+  double mean_absolute_rad() const { return sum_of_absolutes_rad / static_cast<double>(samples); }
+};
+
+/// A recording made ready: its inputs on the simulation's steps. Semi-implicit Euler, dq' = dq + h tau / (I - h slope),
+/// q' = q + h dq': what MuJoCo's `implicit` integrator does with one hinge, step for step.
+class SingleJoint {
+ public:
+  SingleJoint(const Bench& bench, BenchRun run, double step_s);
+
+  /// The drive's reading at each of the recording's samples, open loop from the first one, at rest there.
+  std::vector<double> rollout(const JointModel& model) const;
+
+  RolloutError error(const JointModel& model) const;
+
+  const BenchRun& run() const { return run_; }
+  double step_s() const { return step_s_; }
+  std::size_t steps() const { return sample_of_step_.size(); }
+  sim::ActuatorInput input(std::size_t step) const;
+  double start_rad(const JointModel& model) const {
+    return run_.recording.q_rad.front() - model.actuator.sensor.zero_offset_rad;
+  }
+
+ private:
+  template <typename Seen>
+  void simulate(const JointModel& model, Seen&& seen) const;
+
+  struct Place {  // of a sample between two steps
+    std::size_t step;
+    double share;
+  };
+  BenchRun run_;
+  double step_s_;
+  double supply_;
+  std::vector<sim::ActuatorInput> inputs_;  // one a sample
+  std::vector<std::size_t> sample_of_step_;
+  std::vector<double> q_cmd_of_step_rad_;
+  std::vector<Place> place_of_sample_;
+};
+
+/// The simulation's step for a bench: the SIL's 2 ms, or the recording's own period where that is shorter.
+double simulation_step_s(const Bench& bench);
+
+}  // namespace pmg::calib

@@ -1,0 +1,197 @@
+#include "sim/actuator_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace pmg::sim {
+
+namespace {
+
+void expect(bool holds, const char* text) {
+  if (!holds) throw std::invalid_argument(text);
+}
+
+}  // namespace
+
+ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s)
+    : parameters_(parameters),
+      step_s_(step_s),
+      elastic_(std::isfinite(parameters.transmission.stiffness_Nm_per_rad)),
+      lagging_(parameters.sensor.lag_s > 0.0),
+      delaying_(parameters.command.delay_s > 0.0),
+      rate_limited_(std::isfinite(parameters.command.rate_limit_rad_s)),
+      torque_speed_(std::isfinite(parameters.drive.stall_torque_Nm)),
+      load_dependent_(parameters.friction.load_driving != 0.0 || parameters.friction.load_backdriving != 0.0) {
+  expect(step_s > 0.0, "an actuator's step isn't above 0");
+  const auto& [command, drive, sensor, transmission, friction, ripple] = parameters_;
+  if (command.delay_s < 0.0 || command.delay_s > kDelaySteps * step_s) {
+    throw std::invalid_argument("a delay of " + std::to_string(command.delay_s) + " s; expected at most " +
+                                std::to_string(kDelaySteps) + " steps");
+  }
+  expect(command.rate_limit_rad_s > 0.0, "a rate limit isn't above 0");
+  expect(friction.presliding_rad > 0.0, "friction.presliding_rad isn't above 0");
+  expect(friction.stribeck_rad_s > 0.0, "friction.stribeck_rad_s isn't above 0");
+  expect(drive.no_load_rad_s > 0.0, "drive.no_load_rad_s isn't above 0");
+  expect(!elastic_ || transmission.armature_kg_m2 > 0.0, "a rotor behind a spring needs an armature");
+  expect(elastic_ || (transmission.backlash_rad == 0.0 && transmission.damping_Nm_s_per_rad == 0.0),
+         "backlash and shaft damping need a transmission.stiffness_Nm_per_rad");
+  reset(0.0);
+}
+
+void ActuatorModel::reset(double q_rad) {
+  const double reading = reading_rad(q_rad);
+  past_commands_rad_.fill(reading);
+  newest_ = 0;
+  command_rad_ = lagged_rad_ = sensed_before_rad_ = reading;
+  held_for_s_ = parameters_.command.hold_s;
+  held_output_ = bristle_rad_ = load_Nm_ = 0.0;
+  rotor_rad_ = q_rad;
+  rotor_rad_s_ = 0.0;
+  given_ = {};
+  given_at_rad_s_ = 0.0;
+}
+
+double ActuatorModel::joint_armature_kg_m2() const { return elastic_ ? 0.0 : parameters_.transmission.armature_kg_m2; }
+
+double ActuatorModel::reading_rad(double q_rad) const {
+  const double reading = q_rad + parameters_.sensor.zero_offset_rad;
+  const double quantum = parameters_.sensor.quantum_rad;
+  return quantum > 0.0 ? quantum * std::round(reading / quantum) : reading;
+}
+
+/// Between two stored commands by a straight line: the mean of a held command over the step, smooth in the delay.
+double ActuatorModel::delayed(double q_command_rad) noexcept {
+  constexpr int kSize = kDelaySteps + 2;
+  newest_ = newest_ + 1 == kSize ? 0 : newest_ + 1;
+  past_commands_rad_[static_cast<std::size_t>(newest_)] = q_command_rad;
+  const double steps = parameters_.command.delay_s / step_s_;
+  const int whole = static_cast<int>(steps);
+  const double share = steps - whole;
+  int later = newest_ - whole;
+  if (later < 0) later += kSize;
+  const int earlier = later == 0 ? kSize - 1 : later - 1;
+  return past_commands_rad_[static_cast<std::size_t>(later)] * (1.0 - share) +
+         past_commands_rad_[static_cast<std::size_t>(earlier)] * share;
+}
+
+double ActuatorModel::limited(double q_command_rad) noexcept {
+  const double most = parameters_.command.rate_limit_rad_s * step_s_;
+  return command_rad_ + std::clamp(q_command_rad - command_rad_, -most, most);
+}
+
+double ActuatorModel::sensed(double q_rad) noexcept {
+  const double reading = reading_rad(q_rad);
+  if (!lagging_) return reading;
+  lagged_rad_ += step_s_ / (parameters_.sensor.lag_s + step_s_) * (reading - lagged_rad_);
+  return lagged_rad_;
+}
+
+ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
+  const ActuatorParameters::Drive& p = parameters_.drive;
+  const double in_time_rad = delaying_ ? delayed(input.q_rad) : input.q_rad;
+  command_rad_ = rate_limited_ ? limited(in_time_rad) : in_time_rad;
+  const double q_sensed_rad = sensed(q_rad);
+  const double dq_sensed_rad_s = lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s;
+  sensed_before_rad_ = q_sensed_rad;
+  if (!input.enabled) {
+    const double slope = -p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
+    return {slope * dq_rad_s, slope};
+  }
+
+  const double sag = std::max(0.0, 1.0 - p.supply_sag_per_Nm * std::abs(given_.torque_Nm));
+  const double scale = p.torque_per_unit_Nm * input.supply * sag;
+  const double kd = p.kd_scale * input.kd;
+  bool follows_speed = !lagging_;
+  held_for_s_ += step_s_;
+  if (held_for_s_ >= parameters_.command.hold_s) {
+    held_for_s_ = std::min(held_for_s_ - parameters_.command.hold_s, step_s_);
+    double error_rad = command_rad_ - q_sensed_rad;
+    if (std::abs(error_rad) < p.dead_band_rad) error_rad = 0.0;
+    const double wish =
+        p.kp_scale * input.kp * error_rad + kd * (input.dq_rad_s - dq_sensed_rad_s) + input.feed_forward;
+    held_output_ = std::clamp(wish, -p.limit, p.limit);
+    follows_speed = follows_speed && held_output_ == wish && parameters_.command.hold_s <= step_s_;
+  } else {
+    follows_speed = false;
+  }
+  Line motor{scale * held_output_ - p.torque_per_unit_Nm * p.back_emf_s_per_rad * dq_rad_s,
+             -p.torque_per_unit_Nm * p.back_emf_s_per_rad - (follows_speed ? scale * kd : 0.0)};
+  if (!torque_speed_) return motor;
+  const double along = motor.torque_Nm >= 0.0 ? 1.0 : -1.0;
+  const double available_Nm =
+      std::clamp(p.stall_torque_Nm * (1.0 - along * dq_rad_s / p.no_load_rad_s), 0.0, p.stall_torque_Nm);
+  if (along * motor.torque_Nm <= available_Nm) return motor;
+  const bool on_slope = available_Nm > 0.0 && available_Nm < p.stall_torque_Nm;
+  return {along * available_Nm, on_slope ? -p.stall_torque_Nm / p.no_load_rad_s : 0.0};
+}
+
+ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) noexcept {
+  const ActuatorParameters::Friction& p = parameters_.friction;
+  const double bend_rad = bristle_rad_ + step_s_ * dq_rad_s;
+  const double direction = bend_rad >= 0.0 ? 1.0 : -1.0;
+  double most_Nm = p.coulomb_Nm;
+  if (p.stribeck_Nm != 0.0) {
+    const double ratio = dq_rad_s / p.stribeck_rad_s;
+    most_Nm += p.stribeck_Nm * std::exp(-ratio * ratio);
+  }
+  if (load_dependent_) {
+    most_Nm += (load_Nm_ * direction > 0.0 ? p.load_driving : p.load_backdriving) * std::abs(load_Nm_);
+  }
+  most_Nm *= 1.0 + p.asymmetry * direction;
+  if (std::abs(bend_rad) >= p.presliding_rad) return {-direction * most_Nm, 0.0};
+  const double stiffness = most_Nm / p.presliding_rad;
+  return {-stiffness * bend_rad, -stiffness * step_s_};
+}
+
+ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
+  const double motor_rad_s = elastic_ ? rotor_rad_s_ : dq_rad_s;
+  const double motor_rad = elastic_ ? rotor_rad_ : q_rad;
+  const double most_rad = parameters_.friction.presliding_rad;
+  bristle_rad_ = std::clamp(bristle_rad_ + step_s_ * motor_rad_s, -most_rad, most_rad);
+  if (load_dependent_ && !elastic_) {
+    const double change_rad_s = dq_rad_s - given_at_rad_s_;
+    load_Nm_ = given_.torque_Nm +
+               (given_.slope_Nm_s_per_rad - parameters_.transmission.armature_kg_m2 / step_s_) * change_rad_s;
+  }
+  Line motor = drive(input, q_rad, motor_rad_s);
+  const Line dry = dry_friction(motor_rad_s);
+  motor.torque_Nm += dry.torque_Nm - parameters_.friction.viscous_Nm_s_per_rad * motor_rad_s;
+  motor.slope += dry.slope - parameters_.friction.viscous_Nm_s_per_rad;
+  const ActuatorParameters::Ripple& ripple = parameters_.ripple;
+  motor.torque_Nm += ripple.offset_Nm;
+  if (ripple.amplitude_Nm != 0.0) {
+    motor.torque_Nm += ripple.amplitude_Nm * std::sin(ripple.order * motor_rad + ripple.phase_rad);
+  }
+  given_ = elastic_ ? elastic(motor, q_rad, dq_rad_s) : ActuatorTorque{motor.torque_Nm, motor.slope};
+  given_at_rad_s_ = dq_rad_s;
+  return given_;
+}
+
+/// The rotor moves first, against a shaft whose other end goes on as it does; then the shaft's torque meets the joint.
+/// Both are implicit in their own speed, so a stiff shaft stays stable.
+ActuatorTorque ActuatorModel::elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept {
+  const ActuatorParameters::Transmission& p = parameters_.transmission;
+  const double half_play_rad = 0.5 * p.backlash_rad;
+  const auto wound_rad = [&](double twist_rad) {
+    return twist_rad - std::clamp(twist_rad, -half_play_rad, half_play_rad);
+  };
+  const auto shaft = [&](double rotor_rad,
+                         double rotor_rad_s) -> Line {  // torque on the joint, slope in relative speed
+    const double relative_rad_s = rotor_rad_s - dq_rad_s;
+    const double wound = wound_rad(rotor_rad - q_rad + step_s_ * relative_rad_s);
+    if (wound == 0.0) return {0.0, 0.0};
+    return {p.stiffness_Nm_per_rad * wound + p.damping_Nm_s_per_rad * relative_rad_s,
+            p.stiffness_Nm_per_rad * step_s_ + p.damping_Nm_s_per_rad};
+  };
+  const Line before = shaft(rotor_rad_, rotor_rad_s_);
+  rotor_rad_s_ += (motor.torque_Nm - before.torque_Nm) / (p.armature_kg_m2 / step_s_ - motor.slope + before.slope);
+  const double old_rotor_rad = rotor_rad_;
+  rotor_rad_ += step_s_ * rotor_rad_s_;
+  const Line after = shaft(old_rotor_rad, rotor_rad_s_);
+  load_Nm_ = after.torque_Nm;
+  return {after.torque_Nm, -after.slope};
+}
+
+}  // namespace pmg::sim

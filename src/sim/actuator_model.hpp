@@ -1,0 +1,76 @@
+// One joint's drive and transmission: from command and joint state to torque.
+#pragma once
+
+#include <array>
+
+#include "sim/actuator_parameters.hpp"
+
+namespace pmg::sim {
+
+/// What the drive is told, and what it is fed with. Units as in ActuatorParameters.
+struct ActuatorInput {
+  double q_rad = 0.0, dq_rad_s = 0.0;
+  double kp = 0.0, kd = 0.0;  ///< [unit of output per rad, per rad/s]
+  double feed_forward = 0.0;  ///< [unit of output]
+  double supply = 1.0;        ///< bus voltage of a voltage servo
+  bool enabled = true;
+};
+
+/// Torque at the joint as a line in the joint's speed: whoever integrates takes the slope implicitly,
+/// dq' = dq + h torque / (I - h slope), as MuJoCo's `implicit` does with an actuator's velocity bias.
+struct ActuatorTorque {
+  double torque_Nm = 0.0;           ///< at the speed given
+  double slope_Nm_s_per_rad = 0.0;  ///< d torque / d dq, never positive
+};
+
+/// No heap, no I/O; one object a joint. The joint's integrator is semi-implicit Euler with the same step.
+class ActuatorModel {
+ public:
+  static constexpr int kDelaySteps = 128;  ///< the longest delay, in steps
+
+  /// Throws std::invalid_argument when the delay doesn't fit or a value makes no sense.
+  ActuatorModel(const ActuatorParameters& parameters, double step_s);
+
+  void reset(double q_rad);  ///< at rest there, commanded there
+
+  /// The torque during the step that begins with the joint at (q, dq).
+  ActuatorTorque step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
+
+  /// What the joint's own inertia grows by; a rotor behind a spring turns on its own.
+  double joint_armature_kg_m2() const;
+
+  /// What the drive reports for a joint at q.
+  double reading_rad(double q_rad) const;
+
+  const ActuatorParameters& parameters() const { return parameters_; }
+
+ private:
+  struct Line {  // torque in the motor's speed, as ActuatorTorque
+    double torque_Nm, slope;
+  };
+  double delayed(double q_command_rad) noexcept;
+  double limited(double q_command_rad) noexcept;
+  double sensed(double q_rad) noexcept;
+  Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
+  Line dry_friction(double dq_rad_s) noexcept;
+  ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
+  ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;
+
+  ActuatorParameters parameters_;
+  double step_s_;
+  bool elastic_, lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_;
+
+  std::array<double, kDelaySteps + 2> past_commands_rad_{};
+  int newest_ = 0;
+  double command_rad_ = 0.0;  // after delay and rate limit
+  double held_for_s_ = 0.0, held_output_ = 0.0;
+  double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0;
+  double bristle_rad_ = 0.0;
+  double load_Nm_ = 0.0;  // through the gear, as of the step before
+  double rotor_rad_ = 0.0, rotor_rad_s_ = 0.0;
+  // of the step before, to learn from the speed that came of it what the gear carried
+  ActuatorTorque given_;
+  double given_at_rad_s_ = 0.0;
+};
+
+}  // namespace pmg::sim

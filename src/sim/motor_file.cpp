@@ -1,0 +1,89 @@
+#include "sim/motor_file.hpp"
+
+#include <fmt/format.h>
+
+#include "model/config_reader.hpp"
+#include "sim/actuator_model.hpp"
+
+namespace pmg::sim {
+
+namespace {
+
+constexpr double kSilStep_s = 0.002;
+
+/// Reads the groups in the table's order; a group's keys stand together there.
+ActuatorParameters read_actuator(model::ConfigReader& joint) {
+  ActuatorParameters parameters;
+  const auto table = actuator_parameters();
+  for (std::size_t i = 0; i < table.size();) {
+    const std::string group(table[i].group());
+    const bool there = joint.has(group);
+    std::optional<model::ConfigReader> reader;
+    if (there) reader = joint.map(group);
+    for (; i < table.size() && table[i].group() == group; ++i) {
+      const ActuatorParameter& p = table[i];
+      if (!reader || !reader->has(std::string(p.key()))) {
+        if (reader) reader->optional<double>(std::string(p.key()), 0.0);
+        continue;
+      }
+      p.in(parameters) = reader->required<double>(std::string(p.key()),
+                                                  p.may_be_negative ? model::any_number() : model::non_negative());
+    }
+    if (reader)
+      reader->finish();
+    else
+      joint.optional<std::string>(group, "");
+  }
+  joint.finish();
+  return parameters;
+}
+
+}  // namespace
+
+ActuatorsByJoint read_motor_file(const std::filesystem::path& file) {
+  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  ActuatorsByJoint actuators;
+  model::ConfigReader joints = reader.map("joints");
+  for (const std::string& name : joints.keys()) {
+    model::ConfigReader joint = joints.map(name);
+    const ActuatorParameters parameters = read_actuator(joint);
+    try {
+      ActuatorModel(parameters, kSilStep_s);
+    } catch (const std::invalid_argument& error) {
+      joints.fail(name, error.what(), "an actuator that can be simulated");
+    }
+    actuators.emplace(name, parameters);
+  }
+  reader.finish();
+  return actuators;
+}
+
+ActuatorsByJoint read_motor_file(const std::filesystem::path& file, const model::JointIndex& joints) {
+  const ActuatorsByJoint actuators = read_motor_file(file);
+  for (const auto& [name, parameters] : actuators) {
+    if (joints.find(name)) continue;
+    model::ConfigReader reader = model::ConfigReader::from_file(file);
+    reader.map("joints").fail(name, "isn't a joint of this robot", "names of robot.yaml's `joints`");
+  }
+  return actuators;
+}
+
+std::string motor_yaml(const ActuatorsByJoint& actuators, const std::vector<std::string>& remarks) {
+  std::string text;
+  for (const std::string& remark : remarks) text += fmt::format("# {}\n", remark);
+  text += "joints:\n";
+  ActuatorParameters neutral;
+  for (const auto& [name, parameters] : actuators) {
+    text += fmt::format("  {}:{}\n", name, parameters == neutral ? " {}" : "");
+    std::string_view group;
+    for (const ActuatorParameter& p : actuator_parameters()) {
+      if (p.value(parameters) == p.value(neutral)) continue;
+      if (p.group() != group) text += fmt::format("    {}:\n", p.group());
+      group = p.group();
+      text += fmt::format("      {}: {}\n", p.key(), p.value(parameters));
+    }
+  }
+  return text;
+}
+
+}  // namespace pmg::sim
