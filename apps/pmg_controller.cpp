@@ -156,9 +156,10 @@ class Console {
   runtime::Mode mode_ = runtime::Mode::kPassive;
 };
 
-void announce(const Arguments& arguments, const runtime::RunInfo& run) {
+void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant variant) {
   spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", runtime::software_version(), run.robot, run.backend,
                run.bundle.substr(0, 12), run.policy);
+  if (variant != Variant::kPmg) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
   spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
                arguments.no_log ? " (after a fault only)" : "");
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
@@ -249,7 +250,7 @@ int control(Arguments& arguments) {
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
   const runtime::RunInfo info = run_info(arguments, loaded, controller);
-  announce(arguments, info);
+  announce(arguments, info, loaded.variant);
 
   const double rate_Hz = 1.0 / loaded.options.dt_s;
   const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };

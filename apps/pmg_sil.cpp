@@ -220,6 +220,9 @@ int simulate(const Arguments& arguments) {
   if (arguments.viewer) view.emplace(world, loaded.robot);
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
+  if (loaded.variant != Variant::kPmg) {
+    std::cerr << fmt::format("baseline {}: this policy is there for comparison\n", to_string(loaded.variant));
+  }
   const io::WallClock wall_clock;
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
   const Stage stage{arguments, loaded, scenario, world, log_file, *tick, view ? &*view : nullptr};
@@ -230,7 +233,8 @@ int simulate(const Arguments& arguments) {
   log_file.flush();
   played.timing.write_csv(arguments.out / "timing.csv");
   nlohmann::ordered_json summary =
-      runtime::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s},
+      runtime::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s,
+                             arguments.control.policy == "none" ? "" : to_string(loaded.variant)},
                             played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   runtime::write_json(arguments.out / "summary.json", summary);

@@ -10,6 +10,7 @@
 
 #include "operator/words.hpp"
 #include "pmg/command.hpp"
+#include "pmg/variant.hpp"
 
 namespace pmg::ops {
 
@@ -27,6 +28,15 @@ std::optional<Hottest> hottest(const RobotNews& news) {
   const auto index = static_cast<std::size_t>(found - degC.begin());
   const bool named = news.info && index < news.info->joint_names.size();
   return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
+}
+
+/// The policy's variant (docs/file-formats.md) as the configuration in force tells it; pmg where it doesn't.
+std::string variant(const pmg_msgs::robot_info_t& info) {
+  const auto options = nlohmann::json::parse(info.options, nullptr, false);
+  if (!options.is_object() || !options.contains("variant") || !options["variant"].is_string()) {
+    return to_string(Variant::kPmg);
+  }
+  return options["variant"].get<std::string>();
 }
 
 std::string driver(const pmg_msgs::status_t& status) {
@@ -101,6 +111,10 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
                        printable(news.info->policy), printable(news.info->backend));
   }
   add("robot", who);
+  if (news.info && variant(*news.info) != to_string(Variant::kPmg)) {
+    add("BASELINE",
+        fmt::format("{}: a policy for comparison, not the controller's own", printable(variant(*news.info))));
+  }
   if (news.info) {
     add("software", fmt::format("{}   bundle {:.12}", printable(news.info->software), printable(news.info->bundle)));
   }
@@ -151,9 +165,9 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
   if (news.info) {
-    json["info"] = {{"model", news.info->model},   {"software", news.info->software},
-                    {"policy", news.info->policy}, {"backend", news.info->backend},
-                    {"bundle", news.info->bundle}, {"refused", news.info->refused}};
+    json["info"] = {{"model", news.info->model},      {"software", news.info->software}, {"policy", news.info->policy},
+                    {"variant", variant(*news.info)}, {"backend", news.info->backend},   {"bundle", news.info->bundle},
+                    {"refused", news.info->refused}};
   }
   if (news.reference) {
     json["user"] = command_json(news.reference->user);

@@ -122,9 +122,9 @@ nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedContr
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
                                  {"policy", setup.policy},
-                                 {"variant", to_string(loaded.variant)},
                                  {"blend", setup.blend},
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
+  if (setup.policy != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));
   return json;
 }

@@ -49,6 +49,7 @@ nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& ou
       {"robot", run.robot},
       {"scenario", run.scenario},
       {"policy", run.policy},
+      {"variant", run.variant.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(run.variant)},
       {"seed", run.seed},
       {"fell", outcome.fell},
       {"fell_at_s", outcome.fell ? nlohmann::ordered_json(outcome.fell_at_s) : nlohmann::ordered_json(nullptr)},

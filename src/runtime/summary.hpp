@@ -17,6 +17,7 @@ struct RunIdentity {
   std::string robot, scenario, policy;
   std::uint64_t seed = 0;
   double wall_s = 0.0;
+  std::string variant{};  ///< the policy's; empty without one
 };
 
 nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,

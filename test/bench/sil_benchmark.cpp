@@ -4,9 +4,11 @@
 #include <mujoco/mujoco.h>
 #include <time.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
+#include "bench/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "hal/sil_hal.hpp"
 #include "io/clock.hpp"
@@ -44,37 +46,52 @@ runtime::Scenario scenario() {
   return scenario;
 }
 
-void BM_sil(benchmark::State& state) {
+using MakePolicy = std::unique_ptr<policy::Policy> (*)(const model::RobotModel&);
+
+void sil(benchmark::State& state, MakePolicy make_policy) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
   const runtime::Scenario played = scenario();
   const runtime::TickOptions options = runtime::tick_options(robot);
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "pmg_sil_benchmark.lcm";
   const io::WallClock clock;
-  constexpr int kTicks = 200, kSettledTicks = 100;
-  long allocations = 0;
+  constexpr int kSettledTicks = 100;
+  long least = 1L << 30, most = 0;
   for (auto _ : state) {
     sim::World world(robot, {});
-    runtime::Tick tick(robot, library, std::make_unique<policy::ReferencePolicy>(), clock, options);
+    runtime::Tick tick(robot, library, make_policy(robot), clock, options);
     hal::SilHal bus(world);
     runtime::WorldPlant plant(world);
     io::LogWriter writer(file);
     runtime::TickLog log(writer, robot, {.robot = robot.name}, 1.0 / options.dt_s);
     runtime::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
     int ticks = 0;
-    long settled = 0;
+    long before = 0;
     lockstep.after_tick = [&](const runtime::RunProgress&) {
-      if (++ticks == kSettledTicks) settled = allocation_count();
-      if (ticks == kTicks) allocations = allocation_count() - settled;
+      const long now = allocation_count();
+      if (++ticks > kSettledTicks) {
+        least = std::min(least, now - before);
+        most = std::max(most, now - before);
+      }
+      before = now;
     };
     const double start_s = thread_cpu_s();
     const runtime::RunOutcome outcome = lockstep.run();
     state.SetIterationTime(thread_cpu_s() - start_s);
     if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
   }
-  state.counters["allocations_per_call"] =
-      static_cast<double>(allocations) / (kTicks - kSettledTicks);  // a call is a tick
+  state.counters["allocations_per_call"] = static_cast<double>(most);  // a call is a tick
+  state.counters["allocations_vary_by"] = static_cast<double>(most - least);
   std::filesystem::remove(file);
+}
+
+void BM_sil(benchmark::State& state) {
+  sil(state, [](const model::RobotModel&) -> std::unique_ptr<policy::Policy> {
+    return std::make_unique<policy::ReferencePolicy>();
+  });
+}
+void BM_sil_policy(benchmark::State& state) {
+  sil(state, [](const model::RobotModel& robot) -> std::unique_ptr<policy::Policy> { return trained_policy(robot); });
 }
 
 void BM_sil_floor(benchmark::State& state) {
@@ -93,6 +110,12 @@ void BM_sil_floor(benchmark::State& state) {
 
 BENCHMARK(BM_sil)->UseManualTime()->Iterations(1)->Repetitions(9)->ReportAggregatesOnly()->Unit(
     benchmark::kMillisecond);
+BENCHMARK(BM_sil_policy)
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Repetitions(9)
+    ->ReportAggregatesOnly()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_sil_floor)
     ->UseManualTime()
     ->Iterations(1)

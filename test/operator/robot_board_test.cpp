@@ -57,6 +57,19 @@ TEST_F(RobotBoardTest, OneRobotFillsAScreen) {
   EXPECT_EQ(json["messages"]["accepted"], 0);
 }
 
+TEST_F(RobotBoardTest, ABaselineIsAnnounced) {
+  EXPECT_THAT(screen(news("biped"), 0.0), Not(Contains(HasSubstr("BASELINE"))));
+  EXPECT_EQ(news_json(news("biped"), 0.0)["info"]["variant"], "pmg");
+  RobotNews baseline = news("biped");
+  baseline.info->options = R"({"policy": "other", "variant": "single_gait"})";
+  EXPECT_THAT(screen(baseline, 0.0), Contains(AllOf(HasSubstr("BASELINE"), HasSubstr("single_gait"))));
+  EXPECT_EQ(news_json(baseline, 0.0)["info"]["variant"], "single_gait");
+  for (const char* broken : {"", "{", R"({"variant": 3})", "[]"}) {
+    baseline.info->options = broken;
+    EXPECT_THAT(screen(baseline, 0.0), Not(Contains(HasSubstr("BASELINE")))) << broken;
+  }
+}
+
 TEST_F(RobotBoardTest, NewsOfTwoRobotsAreNotMixed) {
   test::NetworkedRobot& second = network_.add_robot("second");
   pmg_msgs::status_t status{};

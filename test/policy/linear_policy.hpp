@@ -50,6 +50,10 @@ class LinearPolicyFile {
     bytes_.replace(at, text.size(), instead);
     save();
   }
+  /// So many bytes from where this text begins.
+  std::string text_at(const std::string& text, std::size_t size) const {
+    return bytes_.substr(bytes_.find(text), size);
+  }
   const std::filesystem::path& file() const { return file_; }
 
  private:

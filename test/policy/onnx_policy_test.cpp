@@ -82,6 +82,23 @@ TEST(OnnxPolicyFile, ANetworkThatGivesOtherActionsThanInTrainingIsRefused) {
               HasSubstr("golden pair 0"));
 }
 
+TEST(OnnxPolicyFile, ANetworkWhoseWeightsAreNoNumbersIsRefused) {
+  const std::string weights = "w0J";  // name, then raw data with its length in two bytes
+  LinearPolicyFile policy;
+  const std::string broken = policy.text_at(weights, weights.size() + 2 + sizeof(float));
+  const std::string quiet_nan = {'\x00', '\x00', '\xC0', '\x7F'};
+  policy.exchange(broken, broken.substr(0, weights.size() + 2) + quiet_nan);
+  EXPECT_THAT(refusal(policy.file()), HasSubstr("the network gives nan"));
+}
+
+TEST(OnnxPolicyFile, ANetworkOfAnotherSizeIsRefused) {
+  // Protocol buffers: the output's dimensions 1 and 12, the input's 1 and 258.
+  EXPECT_NE(refusal_after("action\x12\x0e\n\x0c\x08\x01\x12\x08\n\x02\x08\x01\n\x02\x08\x0c",
+                          "action\x12\x0e\n\x0c\x08\x01\x12\x08\n\x02\x08\x01\n\x02\x08\x0b"),
+            "was accepted");
+  EXPECT_NE(refusal_after("\n\x02\x08\x01\n\x03\x08\x82\x02", "\n\x02\x08\x01\n\x03\x08\x83\x02"), "was accepted");
+}
+
 TEST(OnnxPolicyFile, BytesThatAreNoNetworkAreRefused) {
   const LinearPolicyFile policy;
   std::ofstream(policy.file()) << "no network";
@@ -98,7 +115,7 @@ TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
   EXPECT_THAT(refusal_after("\"action_scale\": 0", "\"action_scale\":-1"), HasSubstr("action_scale is -1"));
   EXPECT_THAT(refusal_after("\"variant\"", "\"variamt\""), HasSubstr("variant"));
   EXPECT_THAT(refusal_after("\"golden\"", "\"silver\""), HasSubstr("golden"));
-  EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [120.0,", "\"kp_Nm_per_rad\": [1.0, 2,"), HasSubstr("kp_Nm_per_rad"));
+  EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [120.0, ", "\"kp_Nm_per_rad\": [10, 2, "), HasSubstr("kp_Nm_per_rad"));
 }
 
 /// Every variant, and what each is trained to observe, comes from the file alone.

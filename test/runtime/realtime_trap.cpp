@@ -16,10 +16,17 @@ std::atomic<bool> armed{false};
 std::atomic<long> heap_calls{0}, lock_calls{0};
 std::atomic<void*> first_caller{nullptr};
 thread_local pid_t this_thread = 0;
+thread_local bool apart = false;
+thread_local pmg::test::Trapped counted_apart;
 
 // Sanitizers leave nobody to call it.
-[[maybe_unused]] void count_if_watched(std::atomic<long>& calls, void* caller) noexcept {
+[[maybe_unused]] void count_if_watched(std::atomic<long>& calls, long pmg::test::Trapped::*kind,
+                                       void* caller) noexcept {
   if (!armed.load(std::memory_order_relaxed)) return;
+  if (apart) {
+    ++(counted_apart.*kind);
+    return;
+  }
   if (this_thread == 0) this_thread = gettid();
   for (const std::atomic<pid_t>& thread : watched) {
     if (thread.load(std::memory_order_relaxed) != this_thread) continue;
@@ -43,6 +50,15 @@ void arm_trap(const std::vector<pid_t>& threads) noexcept {
 void disarm_trap() noexcept { armed = false; }
 
 Trapped trapped() noexcept { return {heap_calls, lock_calls}; }
+
+CountedApart::CountedApart() noexcept {
+  counted_apart = {};
+  apart = true;
+}
+
+CountedApart::~CountedApart() { apart = false; }
+
+Trapped CountedApart::so_far() const noexcept { return counted_apart; }
 
 std::string first_trapped() {
   void* caller = first_caller;
@@ -89,8 +105,8 @@ void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* memory);
 
-#define PMG_HEAP() count_if_watched(heap_calls, __builtin_return_address(0))
-#define PMG_LOCK() count_if_watched(lock_calls, __builtin_return_address(0))
+#define PMG_HEAP() count_if_watched(heap_calls, &pmg::test::Trapped::heap, __builtin_return_address(0))
+#define PMG_LOCK() count_if_watched(lock_calls, &pmg::test::Trapped::locks, __builtin_return_address(0))
 
 void* malloc(std::size_t size) {
   PMG_HEAP();

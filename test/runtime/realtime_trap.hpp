@@ -19,6 +19,15 @@ bool trap_available() noexcept;
 void arm_trap(const std::vector<pid_t>& threads) noexcept;
 void disarm_trap() noexcept;
 Trapped trapped() noexcept;
+/// While it lives, this thread's calls are counted apart from the rest.
+class CountedApart {
+ public:
+  CountedApart() noexcept;
+  ~CountedApart();
+  CountedApart(const CountedApart&) = delete;
+  CountedApart& operator=(const CountedApart&) = delete;
+  Trapped so_far() const noexcept;  ///< since the trap was armed or it came to life
+};
 /// Where the first call came from, for whoever has to find it.
 std::string first_trapped();
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "policy/linear_policy.hpp"
+#include "policy/onnx_policy.hpp"
 #include "runtime/threaded_controller.hpp"
 
 namespace pmg::runtime {
@@ -58,6 +60,68 @@ TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAnd
   test::disarm_trap();
   EXPECT_EQ(test::trapped().heap, 0) << test::first_trapped();
   EXPECT_EQ(test::trapped().locks, 0) << test::first_trapped();
+  EXPECT_TRUE(run.controller.stop());
+}
+
+/// An ONNX policy whose own calls are counted apart, act by act.
+class CountedOnnxPolicy final : public policy::Policy {
+ public:
+  explicit CountedOnnxPolicy(const model::RobotModel& robot) {
+    const std::filesystem::path clips = robot.directory / "clips";
+    const test::LinearPolicyFile file(clips, Variant::kPmg);
+    onnx_ = std::make_unique<policy::OnnxPolicy>(file.file(), robot, model::clip_library_sha256(clips));
+  }
+  std::optional<policy::DriveGains> gains() const override { return onnx_->gains(); }
+  std::optional<double> action_bound_rad() const override { return onnx_->action_bound_rad(); }
+  void reset() noexcept override { onnx_->reset(); }
+  policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
+                     JointVector& q_des) noexcept override {
+    const test::CountedApart counted;
+    const policy::Status status = onnx_->act(state, reference, observed, q_des);
+    const test::Trapped now = counted.so_far();
+    if (counting) {
+      least_heap = std::min<long>(least_heap, now.heap);
+      most_heap = std::max<long>(most_heap, now.heap);
+      locks += now.locks;
+      ++acts;
+    }
+    return status;
+  }
+  std::atomic<bool> counting{false};
+  std::atomic<long> least_heap{1L << 30}, most_heap{0}, locks{0}, acts{0};
+
+ private:
+  std::unique_ptr<policy::OnnxPolicy> onnx_;
+};
+
+TEST_F(RealtimeTrap, AnOnnxPolicyTakesNoLockAndAsManyAllocationsInEveryTickAndNothingElseTakesAny) {
+  auto own = std::make_unique<CountedOnnxPolicy>(test::z1());
+  CountedOnnxPolicy& onnx = *own;
+  ThreadedRobot run(test::z1(), {}, std::move(own));
+  run.controller.start([&] { run.speaker(); },
+                       [&] {
+                         TickRecord tick;
+                         while (run.controller.outbox().records.pop(tick)) {
+                         }
+                       });
+  ASSERT_TRUE(run.sees(Mode::kPassive));
+  arm(run);
+  onnx.counting = true;
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(Mode::kWalk));
+  ASSERT_TRUE(ticks(run, 200));
+  ASSERT_TRUE(run.reach(Mode::kDamping));
+  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(ticks(run, 20));
+  onnx.counting = false;
+  test::disarm_trap();
+  EXPECT_EQ(test::trapped().heap, 0) << test::first_trapped();
+  EXPECT_EQ(test::trapped().locks, 0) << test::first_trapped();
+  EXPECT_GT(onnx.acts, 200);
+  EXPECT_EQ(onnx.locks, 0);
+  EXPECT_GT(onnx.least_heap, 0) << "ONNX Runtime can't do without: the count must see it";
+  EXPECT_EQ(onnx.least_heap, onnx.most_heap) << "as many in every tick";
+  RecordProperty("heap_calls_per_tick", static_cast<int>(onnx.most_heap));
   EXPECT_TRUE(run.controller.stop());
 }
 

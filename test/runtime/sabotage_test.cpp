@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 
 #include "fixtures.hpp"
@@ -64,7 +65,7 @@ struct Outcome {
   model::JointCommand command;
 };
 
-Outcome stand_for_10_s(double action_factor) {
+Outcome stand_for_10_s(std::unique_ptr<policy::Policy> policy) {
   const model::RobotModel& robot = test::z1();
   sim::WorldOptions options;
   options.seed = 3;
@@ -75,8 +76,7 @@ Outcome stand_for_10_s(double action_factor) {
   hal::SilHal bus(world);
   WorldPlant plant(world);
   const io::SimulationClock stopwatch;
-  Tick tick(robot, test::clips(robot), std::make_unique<AnkleBalance>(robot, action_factor), stopwatch,
-            tick_options(robot));
+  Tick tick(robot, test::clips(robot), std::move(policy), stopwatch, tick_options(robot));
   Scenario scenario;
   scenario.name = "stand";
   scenario.steps.resize(1);
@@ -88,6 +88,40 @@ Outcome stand_for_10_s(double action_factor) {
   outcome.mode = tick.result().mode;
   outcome.command = tick.result().command;
   return outcome;
+}
+
+Outcome stand_for_10_s(double action_factor) {
+  return stand_for_10_s(std::make_unique<AnkleBalance>(test::z1(), action_factor));
+}
+
+/// Balances, until one of its targets is no number.
+class BreaksDown final : public policy::Policy {
+ public:
+  explicit BreaksDown(int after_ticks) : left_(after_ticks) {}
+  std::optional<policy::DriveGains> gains() const override { return sound_.gains(); }
+  policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
+                     JointVector& q_des) noexcept override {
+    const policy::Status status = sound_.act(state, reference, observed, q_des);
+    if (--left_ < 0) q_des[3] = std::numeric_limits<double>::quiet_NaN();
+    return status;
+  }
+
+ private:
+  AnkleBalance sound_{test::z1(), 1.0};
+  int left_;
+};
+
+TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToTheEnd) {
+  constexpr int kSoundTicks = 300;
+  const Outcome outcome = stand_for_10_s(std::make_unique<BreaksDown>(kSoundTicks));
+  ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
+  EXPECT_EQ(outcome.lockstep.faults[0].code, FaultCode::kPolicyNotFinite);
+  // Every tick but the first few, in which it is not yet standing, asks the policy.
+  EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.05);
+  EXPECT_EQ(outcome.mode, Mode::kFault);
+  EXPECT_TRUE(outcome.command.q.allFinite());
+  EXPECT_EQ(outcome.command.kp.sum(), 0.0);
+  EXPECT_GT(outcome.command.kd.minCoeff(), 0.0);
 }
 
 TEST(Sabotage, ThePolicyAsItIsBalances) {

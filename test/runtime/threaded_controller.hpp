@@ -41,20 +41,26 @@ class BreakableBus final : public hal::Hal {
   hal::Hal& bus_;
 };
 
-/// Follows the reference; other threads may make it stand still or use the heap.
+/// Another policy (the reference alone unless told); other threads may make it stand still or use the heap.
 class SwitchablePolicy final : public policy::Policy {
  public:
-  policy::Status act(const model::RobotState&, const Reference& reference, const Command&,
+  explicit SwitchablePolicy(std::unique_ptr<policy::Policy> inner = nullptr)
+      : inner_(inner ? std::move(inner) : std::make_unique<policy::ReferencePolicy>()) {}
+  Variant variant() const override { return inner_->variant(); }
+  std::optional<policy::DriveGains> gains() const override { return inner_->gains(); }
+  std::optional<double> action_bound_rad() const override { return inner_->action_bound_rad(); }
+  void reset() noexcept override { inner_->reset(); }
+  policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {
     while (freeze) std::this_thread::yield();
     if (use_heap) heap_ = std::make_unique<double>(reference.phase);
     if (use_lock) const std::lock_guard lock(mutex_);
-    q_des = reference.q;
-    return policy::Status::kOk;
+    return inner_->act(state, reference, observed, q_des);
   }
   std::atomic<bool> freeze{false}, use_heap{false}, use_lock{false};
 
  private:
+  std::unique_ptr<policy::Policy> inner_;
   std::unique_ptr<double> heap_;
   std::mutex mutex_;
 };
@@ -96,11 +102,12 @@ class TestOperator {
 
 /// A simulated robot on the gantry under the threaded controller.
 struct ThreadedRobot {
-  explicit ThreadedRobot(const model::RobotModel& model, const runtime::ControllerOptions& options = {})
+  explicit ThreadedRobot(const model::RobotModel& model, const runtime::ControllerOptions& options = {},
+                         std::unique_ptr<policy::Policy> walker = nullptr)
       : world(model, runtime::world_with_noise(1, true)),
         robot(world, true, true),
         bus(robot),
-        policy(new SwitchablePolicy),
+        policy(new SwitchablePolicy(std::move(walker))),
         tick(model, clips(model), std::unique_ptr<policy::Policy>(policy), clock, tick_options(model)),
         controller(model, bus, tick, options),
         speaker(controller.inbox()) {}

@@ -1,0 +1,111 @@
+// The whole control tick with a trained policy in it, walking through all channels in simulation: p50 and p99 of its
+// stages in CPU time of the thread, and its heap allocations. The physics runs between the ticks, so caches are as cold
+// as they get.
+#include <benchmark/benchmark.h>
+#include <time.h>
+
+#include <algorithm>
+#include <string>
+
+#include "bench/trained_policy.hpp"
+#include "generator_core/allocation_count.hpp"
+#include "hal/sil_hal.hpp"
+#include "model/clip_library_file.hpp"
+#include "runtime/lockstep.hpp"
+#include "runtime/simulated_robot.hpp"
+
+namespace pmg::test {
+namespace {
+
+/// What other programs on the machine use doesn't count.
+class ThreadCpuClock final : public io::Clock {
+ public:
+  std::int64_t now_ns() const noexcept override {
+    timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+  }
+};
+
+runtime::Scenario walking() {
+  runtime::Scenario scenario;
+  scenario.name = "benchmark";
+  const std::array<Command, 4> commands = {Command{{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}},
+                                           Command{{0.3, 0.0, 0.4, 0.1, 0.0, 0.0}},
+                                           Command{{0.2, 0.1, 0.2, 0.1, 0.05, -0.04}}, Command{}};
+  for (const Command& command : commands) {
+    runtime::ScenarioStep step;
+    step.start_s = scenario.duration_s();
+    step.duration_s = 3.0;
+    step.text = "walk";
+    step.mode = runtime::Mode::kWalk;
+    step.command = command;
+    scenario.steps.push_back(step);
+  }
+  return scenario;
+}
+
+/// Counted from tick to tick: the tick, its bus cycles, and the physics, which uses none.
+class AllocationsPerTick {
+ public:
+  void tick(bool driving) {
+    const long now = allocation_count();
+    if (driving && was_driving_) {
+      least = std::min(least, now - before_);
+      most = std::max(most, now - before_);
+    }
+    was_driving_ = driving;
+    before_ = now;
+  }
+  long least = 1L << 30, most = 0;
+
+ private:
+  long before_ = 0;
+  bool was_driving_ = false;
+};
+
+/// On the gantry: what a tick costs doesn't depend on how well the policy fits today's clips.
+void BM_tick(benchmark::State& state) {
+  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
+  const runtime::Scenario played = walking();
+  const ThreadCpuClock stopwatch;
+  for (auto _ : state) {
+    sim::World world(robot, runtime::world_with_noise(1, true));
+    runtime::Tick tick(robot, library, trained_policy(robot), stopwatch, runtime::tick_options(robot));
+    hal::SilHal bus(world);
+    runtime::WorldPlant plant(world);
+    runtime::Lockstep lockstep(robot, bus, plant, tick, played, nullptr,
+                               {.balanced_by_policy = true, .always_hoisted = true});
+    AllocationsPerTick allocations;
+    int walked = 0;
+    lockstep.after_tick = [&](const runtime::RunProgress& now) {
+      const bool walks = now.result.mode == runtime::Mode::kWalk;
+      walked += walks;
+      allocations.tick(walks);
+    };
+    const runtime::RunOutcome outcome = lockstep.run();
+    if (walked < 1000) {
+      state.SkipWithError(outcome.faults.empty() ? "the robot hardly walked" : to_string(outcome.faults[0].code));
+      break;
+    }
+    const auto report = [&](const std::string& stage, std::int64_t runtime::StageTimes::*time) {
+      const runtime::Percentiles times = lockstep.timing().percentiles(time);
+      state.counters[stage + "_p50_ns"] = 1e3 * times.p50_us;
+      state.counters[stage + "_p99_ns"] = 1e3 * times.p99_us;
+    };
+    report("tick", &runtime::StageTimes::tick_ns);
+    report("generator", &runtime::StageTimes::generator_ns);
+    report("gco", &runtime::StageTimes::gco_ns);
+    report("policy", &runtime::StageTimes::policy_ns);
+    state.counters["allocations_per_call"] = static_cast<double>(allocations.most);
+    state.counters["allocations_vary_by"] = static_cast<double>(allocations.most - allocations.least);
+  }
+}
+
+BENCHMARK(BM_tick)->Iterations(1)->Repetitions(5)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace pmg::test
+
+BENCHMARK_MAIN();
