@@ -1,0 +1,260 @@
+#include "evaluation/gait.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "generator/joint_roles.hpp"
+#include "runtime/control_cycle.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kStand_s = 1.5, kUntilSteady_s = 4.0;
+constexpr double kLoadedFoot_N = 20.0;
+constexpr double kShortestSwing_s = 0.1;  // a shorter one is a foot that bounces
+constexpr const char* kSideNames[] = {"left", "right"};
+
+runtime::Scenario gait_scenario(const GaitTest& test) {
+  runtime::ScenarioStep stand{.start_s = 0.0,
+                              .duration_s = kStand_s,
+                              .text = "stand",
+                              .mode = runtime::Mode::kStand,
+                              .command = {},
+                              .hoist_without_policy = false};
+  runtime::ScenarioStep walk = stand;
+  walk.start_s = kStand_s;
+  walk.duration_s = kUntilSteady_s + test.steady_s;
+  walk.text = "walk";
+  walk.mode = runtime::Mode::kWalk;
+  walk.command[kVx] = test.speed_m_s;
+  return {.name = "gait", .steps = {stand, walk}};
+}
+
+/// Flexions [deg] of one leg; positive as in gait analysis.
+std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return {-kDegrees * q[leg[generator::kHipPitch]], kDegrees * q[leg[generator::kKnee]],
+          -kDegrees * q[leg[generator::kAnklePitch]]};
+}
+
+FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
+  const std::vector<std::size_t> contacts = initial_contacts(recording.loaded, kTickPeriod_s);
+  if (contacts.size() < 2) throw std::runtime_error("the robot doesn't walk: a foot makes no two steps");
+  FootGait gait;
+  gait.cycles = static_cast<int>(contacts.size()) - 1;
+  const auto begin = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.front());
+  const auto end = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.back());
+  gait.period_s = static_cast<double>(end - begin) * kTickPeriod_s / gait.cycles;
+  gait.duty_factor = static_cast<double>(std::count(begin, end, true)) / static_cast<double>(end - begin);
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+    gait.measured_deg[joint] = mean_cycle(recording.measured_deg[joint], contacts);
+    gait.reference_deg[joint] = mean_cycle(recording.reference_deg[joint], contacts);
+    gait.measured[joint] = agreement(gait.measured_deg[joint], norms.deg[joint]);
+    gait.reference[joint] = agreement(gait.reference_deg[joint], norms.deg[joint]);
+  }
+  return gait;
+}
+
+ordered_json agreement_json(const CurveAgreement& a) {
+  return {{"correlation", a.correlation}, {"rms_deg", a.rms_deg}, {"shape_rms_deg", a.shape_rms_deg}};
+}
+
+}  // namespace
+
+std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s) {
+  const auto shortest = static_cast<std::size_t>(std::lround(kShortestSwing_s / dt_s));
+  std::vector<std::size_t> contacts;
+  std::size_t in_air = 0;
+  for (std::size_t tick = 0; tick < loaded.size(); ++tick) {
+    if (loaded[tick] && in_air >= shortest) contacts.push_back(tick);
+    in_air = loaded[tick] ? 0 : in_air + 1;
+  }
+  return contacts;
+}
+
+std::vector<double> mean_cycle(const std::vector<double>& values, const std::vector<std::size_t>& contacts) {
+  std::vector<double> mean(kCyclePoints, 0.0);
+  const double share = 1.0 / static_cast<double>(contacts.size() - 1);
+  for (std::size_t cycle = 0; cycle + 1 < contacts.size(); ++cycle) {
+    const auto ticks = static_cast<double>(contacts[cycle + 1] - contacts[cycle]);
+    for (std::size_t k = 0; k < kCyclePoints; ++k) {
+      const double at = static_cast<double>(contacts[cycle]) + ticks * static_cast<double>(k) / kCyclePoints;
+      const auto below = static_cast<std::size_t>(at);
+      mean[k] += share * std::lerp(values[below], values[below + 1], at - static_cast<double>(below));
+    }
+  }
+  return mean;
+}
+
+CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published) {
+  const auto n = static_cast<Eigen::Index>(ours.size());
+  const Eigen::Map<const Eigen::ArrayXd> a(ours.data(), n), b(published.data(), n);
+  const Eigen::ArrayXd da = a - a.mean(), db = b - b.mean();
+  return {.correlation = (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()),
+          .rms_deg = std::sqrt((a - b).square().mean()),
+          .shape_rms_deg = std::sqrt((da - db).square().mean())};
+}
+
+bool GaitTest::duty_reached(Foot foot) const {
+  return std::abs(feet[foot].duty_factor - kPublishedDutyFactor) <= kAskedDutyDifference;
+}
+
+bool GaitTest::reached() const {
+  bool all = trial.survived();
+  for (const Foot foot : {kLeft, kRight}) {
+    all = all && duty_reached(foot);
+    for (const CurveAgreement& curve : feet[foot].measured) all = all && curve.correlation >= kAskedCorrelation;
+  }
+  return all;
+}
+
+void run_gait(GaitTest& test, const Supervision& supervision) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
+  const generator::JointRoles roles = generator::find_joint_roles(robot);
+  PerFoot<FootRecording> recordings;
+  model::RobotState state;
+  Eigen::Vector3d start_W = Eigen::Vector3d::Zero(), end_W = start_W;
+  double duty_sum = 0.0;
+  const TrialObserver observer = [&](const runtime::RunProgress& now, sim::World& world) {
+    if (now.time_s < kStand_s + kUntilSteady_s) return true;
+    const sim::Truth truth = world.truth();
+    world.read(state);
+    if (recordings[kLeft].loaded.empty()) start_W = truth.p_WB;
+    end_W = truth.p_WB;
+    duty_sum += now.result.reference.duty_factor[kLeft];
+    for (const Foot foot : {kLeft, kRight}) {
+      recordings[foot].loaded.push_back(truth.foot_force_N[foot] > kLoadedFoot_N);
+      const auto measured = flexions_deg(state.q, roles.leg[foot]);
+      const auto reference = flexions_deg(now.result.reference.q, roles.leg[foot]);
+      for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+        recordings[foot].measured_deg[joint].push_back(measured[joint]);
+        recordings[foot].reference_deg[joint].push_back(reference[joint]);
+      }
+    }
+    return now.result.mode != runtime::Mode::kFault;
+  };
+  test.trial = run_trial(test.evaluated.candidate, gait_scenario(test), test.evaluated.plants.of(robot, 1),
+                         {.gantry = false, .interrupted = supervision.interrupted, .observer = observer});
+  const auto ticks = static_cast<double>(recordings[kLeft].loaded.size());
+  if (ticks > 1.0) {
+    test.walked_m_s = (end_W - start_W).head<2>().norm() / ((ticks - 1.0) * kTickPeriod_s);
+    test.reference_duty_factor = duty_sum / ticks;
+  }
+  for (const Foot foot : {kLeft, kRight}) test.feet[foot] = foot_gait(recordings[foot], test.norms);
+}
+
+ordered_json to_json(const GaitTest& test) {
+  ordered_json json = {
+      {"kind", "gait"},
+      {"complete", test.trial.complete},
+      {"robot", test.robot},
+      {"policy", test.evaluated.name},
+      {"commanded_m_s", test.speed_m_s},
+      {"walked_m_s", test.walked_m_s},
+      {"fell", test.trial.fell},
+      {"norms", test.norms.source},
+      {"limits",
+       {{"correlation", kAskedCorrelation},
+        {"duty_factor", {kPublishedDutyFactor - kAskedDutyDifference, kPublishedDutyFactor + kAskedDutyDifference}},
+        {"reached", test.reached()}}},
+      {"reference_duty_factor", test.reference_duty_factor},
+      {"published_duty_factor", kPublishedDutyFactor}};
+  for (const Foot foot : {kLeft, kRight}) {
+    const FootGait& gait = test.feet[foot];
+    ordered_json& entry = json["feet"][kSideNames[foot]];
+    entry = {{"cycles", gait.cycles}, {"period_s", gait.period_s}, {"duty_factor", gait.duty_factor}};
+    for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+      entry["joints"].push_back({{"joint", kGaitJointNames[joint]},
+                                 {"measured", agreement_json(gait.measured[joint])},
+                                 {"reference", agreement_json(gait.reference[joint])},
+                                 {"measured_deg", gait.measured_deg[joint]},
+                                 {"reference_deg", gait.reference_deg[joint]}});
+    }
+  }
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint)
+    json["published_deg"][kGaitJointNames[joint]] = test.norms.deg[joint];
+  return json;
+}
+
+std::vector<std::string> text_of(const GaitTest& test) {
+  std::vector<std::string> lines = {
+      fmt::format("walks at {:.3f} m/s (asked {:.1f}), {}", test.walked_m_s, test.speed_m_s,
+                  test.trial.fell ? "FELL" : "did not fall"),
+      fmt::format("against {}:          measured                      reference", test.norms.source),
+      "joint                       correlation  RMS deg  shape RMS   correlation  RMS deg"};
+  for (const Foot foot : {kLeft, kRight}) {
+    for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+      const CurveAgreement &m = test.feet[foot].measured[joint], &r = test.feet[foot].reference[joint];
+      lines.push_back(fmt::format("{:<6}{:<22}{:>11.3f}{:>9.1f}{:>11.1f}{:>14.3f}{:>9.1f}{}", kSideNames[foot],
+                                  kGaitJointNames[joint], m.correlation, m.rms_deg, m.shape_rms_deg, r.correlation,
+                                  r.rms_deg, m.correlation >= kAskedCorrelation ? "" : "  MISSED"));
+    }
+  }
+  for (const Foot foot : {kLeft, kRight}) {
+    lines.push_back(
+        fmt::format("{} duty factor {:.3f}, period {:.3f} s over {} cycles (reference {:.3f}, published {:.2f}){}",
+                    kSideNames[foot], test.feet[foot].duty_factor, test.feet[foot].period_s, test.feet[foot].cycles,
+                    test.reference_duty_factor, kPublishedDutyFactor, test.duty_reached(foot) ? "" : "  MISSED"));
+  }
+  return lines;
+}
+
+pages::Page page_of(const GaitTest& test) {
+  pages::Page page(fmt::format("Gait: {} on {} at {} m/s", test.evaluated.name, test.robot, test.speed_m_s));
+  page.verdict(test.reached() ? pages::Tone::kGood : pages::Tone::kBad,
+               test.reached() ? "Every joint correlates with the published mean as asked, and duty factors agree"
+                              : "A joint or a duty factor is off the published mean: see below");
+  std::vector<double> percent(kCyclePoints);
+  for (std::size_t k = 0; k < kCyclePoints; ++k) percent[k] = static_cast<double>(k);
+  page.heading("Joints over the gait cycle");
+  page.columns([&] {
+    for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+      for (const Foot foot : {kLeft, kRight}) {
+        const FootGait& gait = test.feet[foot];
+        page.chart(
+            {.title =
+                 fmt::format("{} {} [deg]: correlation {:.3f}, RMS {:.1f}", kSideNames[foot], kGaitJointNames[joint],
+                             gait.measured[joint].correlation, gait.measured[joint].rms_deg),
+             .x_name = "cycle",
+             .x_unit = "%",
+             .lines = {{.name = "measured", .x = percent, .y = gait.measured_deg[joint], .width_px = 2.2},
+                       {.name = "reference",
+                        .x = percent,
+                        .y = gait.reference_deg[joint],
+                        .colour = pages::colour::kVermillion,
+                        .dashed = true},
+                       {.name = "published", .x = percent, .y = test.norms.deg[joint], .colour = pages::colour::kGrey}},
+             .marks = {{100.0 * gait.duty_factor, "foot off"}}});
+      }
+    }
+  });
+  page.heading("Feet");
+  pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published"}, .rows = {}};
+  for (const Foot foot : {kLeft, kRight}) {
+    const FootGait& gait = test.feet[foot];
+    feet.rows.push_back({kSideNames[foot], std::to_string(gait.cycles), fmt::format("{:.3f}", gait.period_s),
+                         fmt::format("{:.3f}", gait.duty_factor), fmt::format("{:.3f}", test.reference_duty_factor),
+                         fmt::format("{:.2f}", kPublishedDutyFactor)});
+  }
+  page.table(feet);
+  page.heading("How it was measured");
+  page.paragraph(
+      fmt::format("{:.0f} s of steady walking at {:.3f} m/s, one robot as the model says. Cycles run from a foot's "
+                  "initial contact to "
+                  "its next; hip flexion is that of the thigh, pelvic tilt taken off the published curve. Published "
+                  "joints: {}; foot off: "
+                  "Schwartz et al. 2008, slow walking.",
+                  test.steady_s, test.walked_m_s, test.norms.source));
+  return page;
+}
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,66 @@
+// How human steady walking is: measured joint angles and foot contacts over the cycle beside published means.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "evaluation/campaign.hpp"
+#include "evaluation/gait_norms.hpp"
+#include "pages/page.hpp"
+
+namespace pmg::evaluation {
+
+inline constexpr double kAskedCorrelation = 0.9, kAskedDutyDifference = 0.05;
+/// Foot off at 62 % of the cycle (sd 2 %) at a dimensionless speed of 0.29, which is 0.8 m/s for legs of 0.8 m: M.
+/// Schwartz, A. Rozumalski, J. Trost, J. Biomech. 41:1639-1650, 2008.
+inline constexpr double kPublishedDutyFactor = 0.62;
+
+/// One foot's cycle as recorded, a value a control tick.
+struct FootRecording {
+  std::vector<bool> loaded;
+  std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;
+};
+
+/// Ticks at which the foot comes down after at least 0.1 s in the air.
+std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s);
+
+/// Mean over whole cycles at kCyclePoints, each cycle stretched from one contact to the next. At least two contacts.
+std::vector<double> mean_cycle(const std::vector<double>& values, const std::vector<std::size_t>& contacts);
+
+struct CurveAgreement {
+  double correlation = 0.0;
+  double rms_deg = 0.0;
+  double shape_rms_deg = 0.0;  ///< with both means taken off
+};
+CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published);
+
+struct FootGait {
+  int cycles = 0;
+  double period_s = 0.0, duty_factor = 0.0;
+  std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;  ///< means over cycles
+  std::array<CurveAgreement, kGaitJoints> measured, reference;               ///< with the published
+};
+
+struct GaitTest {
+  std::string robot;
+  Case evaluated;
+  double speed_m_s = 0.8, steady_s = 20.0;
+  GaitNorms norms;
+  TrialResult trial;
+  double walked_m_s = 0.0;  ///< measured mean speed
+  double reference_duty_factor = 0.0;
+  PerFoot<FootGait> feet;
+
+  bool duty_reached(Foot foot) const;
+  bool reached() const;
+};
+
+/// Robot seed 1. Throws std::runtime_error when the robot makes no two steps with a foot.
+void run_gait(GaitTest& test, const Supervision& supervision);
+
+nlohmann::ordered_json to_json(const GaitTest& test);
+pages::Page page_of(const GaitTest& test);
+std::vector<std::string> text_of(const GaitTest& test);
+
+}  // namespace pmg::evaluation

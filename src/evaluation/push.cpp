@@ -1,0 +1,156 @@
+#include "evaluation/push.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "runtime/control_cycle.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kStand_s = 1.5, kEarliestPush_s = 4.0;
+constexpr double kPushWindow_s = 1.0;  // about a gait period, so that every phase is met
+constexpr double kAfterPush_s = 4.0, kWalking_m_s = 0.5;
+constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+
+double heading_rad(const sim::Truth& truth) {
+  const Eigen::Vector3d forward_W = truth.q_WB * Eigen::Vector3d::UnitX();
+  return std::atan2(forward_W.y(), forward_W.x());
+}
+
+ordered_json share_json(const Estimate& share) {
+  ordered_json json = to_json(share);
+  json["share"] = json["mean"];
+  json.erase("mean");
+  return json;
+}
+
+}  // namespace
+
+PushPlan PushPlan::of(int trial) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(trial) + 1);
+  const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+  return {.direction = trial % kPushDirections,
+          .walking = trial / kPushDirections % 2 == 1,
+          .at_s = kEarliestPush_s + share * kPushWindow_s};
+}
+
+double PushPlan::direction_rad() const { return direction * 2.0 * std::numbers::pi / kPushDirections; }
+
+runtime::Scenario push_scenario(const PushPlan& plan) {
+  runtime::Scenario scenario{.name = "push", .steps = {}};
+  runtime::ScenarioStep step{.start_s = 0.0,
+                             .duration_s = kStand_s,
+                             .text = "stand",
+                             .mode = runtime::Mode::kStand,
+                             .command = {},
+                             .hoist_without_policy = false};
+  scenario.steps.push_back(step);
+  step.start_s = kStand_s;
+  step.duration_s = plan.at_s + kAfterPush_s - kStand_s;
+  if (plan.walking) {
+    step.text = "walk";
+    step.mode = runtime::Mode::kWalk;
+    step.command[kVx] = kWalking_m_s;
+  }
+  scenario.steps.push_back(step);
+  return scenario;
+}
+
+// Between two ticks the world makes whole steps, so so many ticks are the push's time exactly.
+bool Pusher::operator()(const runtime::RunProgress& now, sim::World& world) {
+  const bool pushing = now.time_s >= plan_.at_s && ticks_pushed_ < std::lround(kPush_s / kTickPeriod_s);
+  if (pushing) {
+    if (ticks_pushed_++ == 0) {
+      const double towards_rad = heading_rad(world.truth()) + plan_.direction_rad();
+      world.set_push(force_N_ * Eigen::Vector3d(std::cos(towards_rad), std::sin(towards_rad), 0.0));
+    }
+  } else if (ticks_pushed_ > 0) {
+    world.set_push(Eigen::Vector3d::Zero());
+  }
+  return now.result.mode != runtime::Mode::kFault;
+}
+
+std::optional<bool> PushTest::reached() const {
+  for (const PushTrials& at : strengths) {
+    if (at.impulse_N_s == kJudgedPush_N_s) return survival(at).mean >= kPushSurvival;
+  }
+  return std::nullopt;
+}
+
+void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const Supervision& supervision) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
+  const auto trials = static_cast<std::size_t>(test.trials);
+  test.strengths.clear();
+  for (const double impulse_N_s : impulses_N_s) {
+    test.strengths.push_back({impulse_N_s, std::vector<TrialResult>(trials)});
+  }
+  // Trial by trial, so that an interruption leaves every strength equally many.
+  for_each_piece(test.strengths.size() * trials, supervision, [&](std::size_t piece) {
+    PushTrials& at = test.strengths[piece % test.strengths.size()];
+    const std::size_t trial = piece / test.strengths.size();
+    const PushPlan plan = PushPlan::of(static_cast<int>(trial));
+    at.runs[trial] =
+        run_trial(test.evaluated.candidate, push_scenario(plan), test.evaluated.plants.of(robot, trial + 1),
+                  {.gantry = false, .interrupted = supervision.interrupted, .observer = Pusher(plan, at.impulse_N_s)});
+  });
+  test.complete = true;
+  for (const PushTrials& at : test.strengths) {
+    for (const TrialResult& run : at.runs) test.complete = test.complete && run.complete;
+  }
+}
+
+ordered_json to_json(const PushTest& test) {
+  ordered_json json = {{"kind", "push"},
+                       {"complete", test.complete},
+                       {"robot", test.robot},
+                       {"policy", test.evaluated.name},
+                       {"variation", test.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(test.ranges_file)},
+                       {"trials_a_strength", test.trials},
+                       {"push_s", kPush_s},
+                       {"limit", {{"impulse_N_s", kJudgedPush_N_s}, {"share", kPushSurvival}, {"reached", nullptr}}},
+                       {"strengths", ordered_json::array()}};
+  if (const auto reached = test.reached()) json["limit"]["reached"] = *reached;
+  for (const PushTrials& at : test.strengths) {
+    ordered_json entry = {{"impulse_N_s", at.impulse_N_s}, {"survived", share_json(test.survival(at))}};
+    int trials = 0;
+    for (const TrialResult& run : at.runs) trials += run.complete ? 1 : 0;
+    entry["trials"] = trials;
+    entry["standing"] = share_json(test.survival(at, [](const PushPlan& plan) { return !plan.walking; }));
+    entry["walking"] = share_json(test.survival(at, [](const PushPlan& plan) { return plan.walking; }));
+    for (int d = 0; d < kPushDirections; ++d) {
+      ordered_json direction = {{"direction", kPushDirectionNames[static_cast<std::size_t>(d)]},
+                                {"direction_deg", 360 / kPushDirections * d}};
+      direction.update(share_json(test.survival(at, [d](const PushPlan& plan) { return plan.direction == d; })));
+      entry["directions"].push_back(direction);
+    }
+    json["strengths"].push_back(entry);
+  }
+  return json;
+}
+
+std::vector<std::string> text_of(const PushTest& test) {
+  std::vector<std::string> lines = {"impulse N s   survived   95 % interval     standing   walking"};
+  for (const PushTrials& at : test.strengths) {
+    const Estimate all = test.survival(at);
+    lines.push_back(fmt::format("{:>11.0f} {:>9.1f} % [{:>5.1f}, {:>5.1f}] % {:>10.1f} % {:>7.1f} %", at.impulse_N_s,
+                                100.0 * all.mean, 100.0 * all.lower, 100.0 * all.upper,
+                                100.0 * test.survival(at, [](const PushPlan& plan) { return !plan.walking; }).mean,
+                                100.0 * test.survival(at, [](const PushPlan& plan) { return plan.walking; }).mean));
+  }
+  if (const auto reached = test.reached()) {
+    lines.push_back(fmt::format("limit: {:.0f} % at {:.0f} N s: {}", 100.0 * kPushSurvival, kJudgedPush_N_s,
+                                *reached ? "ok" : "MISSED"));
+  }
+  return lines;
+}
+
+}  // namespace pmg::evaluation

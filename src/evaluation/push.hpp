@@ -1,0 +1,84 @@
+// Pushes at the torso: how strong an impulse is survived, in which direction, standing and walking.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/campaign.hpp"
+#include "pages/page.hpp"
+
+namespace pmg::evaluation {
+
+inline constexpr int kPushDirections = 8;
+inline constexpr std::array<const char*, kPushDirections> kPushDirectionNames = {
+    "forward", "forward left", "left", "backward left", "backward", "backward right", "right", "forward right"};
+inline constexpr double kPush_s = 0.1;                                 ///< an impulse lasts so long
+inline constexpr double kJudgedPush_N_s = 35.0, kPushSurvival = 0.95;  ///< asked of a policy
+
+/// One push, whatever its strength: trial i is the same robot, moment and direction for every strength.
+struct PushPlan {
+  int direction = 0;  ///< times 45 degrees, counter-clockwise from the pelvis' heading
+  bool walking = false;
+  double at_s = 0.0;  ///< in the scenario: somewhere in the gait cycle
+
+  static PushPlan of(int trial);
+  double direction_rad() const;
+};
+
+/// Stands, walks at 0.5 m/s if the plan says so, and goes on for 4 s after the push.
+runtime::Scenario push_scenario(const PushPlan& plan);
+
+/// Applies the impulse at the torso's centre of mass and ends a trial that is lost.
+class Pusher {
+ public:
+  Pusher(const PushPlan& plan, double impulse_N_s) : plan_(plan), force_N_(impulse_N_s / kPush_s) {}
+  bool operator()(const runtime::RunProgress& now, sim::World& world);
+
+ private:
+  PushPlan plan_;
+  double force_N_;
+  int ticks_pushed_ = 0;
+};
+
+struct PushTrials {
+  double impulse_N_s = 0.0;
+  std::vector<TrialResult> runs;  ///< by trial
+};
+
+struct PushTest {
+  std::string robot, ranges_file;
+  Case evaluated;
+  int trials = 0;  ///< a strength
+  std::vector<PushTrials> strengths;
+  bool complete = true;
+
+  /// Share that survived among the complete trials that keep() picks.
+  template <typename Keep>
+  Estimate survival(const PushTrials& at, Keep&& keep) const {
+    std::int64_t survived = 0, count = 0;
+    for (std::size_t trial = 0; trial < at.runs.size(); ++trial) {
+      if (!at.runs[trial].complete || !keep(PushPlan::of(static_cast<int>(trial)))) continue;
+      ++count;
+      survived += at.runs[trial].survived() ? 1 : 0;
+    }
+    return share_interval(survived, count);
+  }
+  Estimate survival(const PushTrials& at) const {
+    return survival(at, [](const PushPlan&) { return true; });
+  }
+  /// Whether the judged push is survived as often as asked; nothing when it was not tried.
+  std::optional<bool> reached() const;
+};
+
+/// Runs trials of every strength. The result doesn't depend on how many jobs there are.
+void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const Supervision& supervision);
+
+nlohmann::ordered_json to_json(const PushTest& test);
+pages::Page page_of(const PushTest& test);
+std::vector<std::string> text_of(const PushTest& test);
+
+}  // namespace pmg::evaluation
