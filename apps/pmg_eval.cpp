@@ -10,6 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "evaluation/gait.hpp"
+#include "evaluation/push.hpp"
+#include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
 #include "progress_line.hpp"
 #include "runtime/summary.hpp"
@@ -22,12 +25,15 @@ using namespace pmg;
 enum ExitCode { kOk = 0, kMissed = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
-Every subcommand runs the real controller in lockstep with MuJoCo, writes DIR/report.html (self-contained) and DIR/NAME.json
+Each runs the real controller in lockstep with MuJoCo, writes DIR/report.html (self-contained) and DIR/COMMAND.json
 (docs/evaluation.md), and gives the same figures for the same seeds however many jobs run at once.
 
-Example:
+Examples:
   pmg_eval table1 --robot z1 --seeds 20 --out out/table1
   pmg_eval table1 --policy pmg=trained/new.onnx --policy without_gco --seeds 4 --out out/new
+  pmg_eval push --trials 200 --out out/push
+  pmg_eval robust --seeds 20 --out out/robust
+  pmg_eval gait --out out/gait
 
 Exit codes: 0 done and every limit reached, 1 done and a limit missed, 2 bad input or output, 130 interrupted (what was
 done until then is written and marked incomplete).)";
@@ -35,9 +41,13 @@ done until then is written and marked incomplete).)";
 struct Arguments {
   std::string robot = "z1";
   std::vector<std::string> policies;
-  fs::path clips, out, scenario = "config/scenarios/table1.yaml", variation = "config/evaluation/variation.yaml";
-  int seeds = 20, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  bool gantry = false, nominal = false, json = false;
+  fs::path clips, out, scenario, variation = "config/evaluation/variation.yaml", norms;
+  std::vector<double> strengths_N_s = {0.0, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0};
+  int seeds = 20, trials = 200, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  double speed_m_s = 0.8;
+  bool gantry = false, nominal = false, video = false, json = false;
+
+  std::string ranges_file() const { return nominal ? "" : variation.string(); }
 };
 
 volatile std::sig_atomic_t interrupt_requested = 0;
@@ -47,27 +57,44 @@ void declare_common(CLI::App& command, Arguments& arguments) {
   command.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
       ->capture_default_str();
   command.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
-  command.add_option("--variation", arguments.variation, "ranges that simulated robots are drawn from (YAML)")
-      ->capture_default_str();
-  command
-      .add_flag("--nominal", arguments.nominal, "robots as the model says instead; seeds differ in sensor noise alone")
-      ->excludes("--variation");
-  command.add_option("--jobs", arguments.jobs, "runs at once")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::Option* variation =
+      command.add_option("--variation", arguments.variation, "ranges that simulated robots are drawn from (YAML)")
+          ->capture_default_str();
+  command.add_flag("--nominal", arguments.nominal, "robots as the model says; seeds differ in sensor noise alone")
+      ->excludes(variation);
+  command.add_option("--jobs", arguments.jobs, "runs at once")->check(CLI::Range(1, 1024))->capture_default_str();
   command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
   command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
 }
 
-/// NAME, FILE.onnx, or NAME=either: then shown as NAME.
+constexpr const char* kPolicyHelp =
+    "policy's name below the robot's policies/, a file, or NAME=either; none: no policy";
+
+void declare_policy(CLI::App& command, Arguments& arguments) {
+  command.add_option("--policy", arguments.policies, kPolicyHelp)->expected(1)->default_str("pmg");
+}
+
+void declare_seeds(CLI::App& command, Arguments& arguments, const char* scenario) {
+  command.add_option("--scenario", arguments.scenario, "commands (YAML)")->default_str(scenario);
+  command.add_option("--seeds", arguments.seeds, "simulated robots")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+}
+
 evaluation::Candidate candidate(const std::string& text, const Arguments& arguments) {
   const std::size_t sign = text.find('=');
   const std::string policy = sign == std::string::npos ? text : text.substr(sign + 1);
   const std::string name = sign == std::string::npos ? fs::path(text).stem().string() : text.substr(0, sign);
   if (name.empty() || policy.empty())
     throw std::invalid_argument(fmt::format("--policy {}: expected NAME, FILE.onnx or NAME=FILE.onnx", text));
-  return {name, {.robot = arguments.robot, .clips = arguments.clips, .policy = policy}};
+  evaluation::Candidate candidate{name, {}};
+  candidate.control.robot = arguments.robot;
+  candidate.control.clips = arguments.clips;
+  candidate.control.policy = policy;
+  runtime::load_control(candidate.control);  // what doesn't fit is told before hours of work
+  return candidate;
 }
 
-/// Loads each once, so that what doesn't fit is told before hours of work.
 std::vector<evaluation::Candidate> candidates(const Arguments& arguments) {
   std::vector<evaluation::Candidate> all;
   for (const std::string& text : arguments.policies) {
@@ -75,9 +102,8 @@ std::vector<evaluation::Candidate> candidates(const Arguments& arguments) {
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
       if (all[i].name == all.back().name)
         throw std::invalid_argument(
-            fmt::format("--policy {}: the name {} is taken; use NAME=FILE.onnx", text, all[i].name));
+            fmt::format("--policy {}: there is a {} already; expected another NAME=FILE.onnx", text, all[i].name));
     }
-    runtime::load_control(all.back().control);
   }
   return all;
 }
@@ -88,6 +114,7 @@ evaluation::Plants plants(const Arguments& arguments) {
   return plants;
 }
 
+/// Shows how far the work is, while it lives.
 class Watch {
  public:
   explicit Watch(const Arguments& arguments) {
@@ -95,6 +122,8 @@ class Watch {
     supervision_.interrupted = [] { return interrupt_requested != 0; };
     supervision_.progress = [this](std::size_t done, std::size_t count) { show(done, count); };
   }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
   const evaluation::Supervision& supervision() const { return supervision_; }
 
  private:
@@ -102,49 +131,88 @@ class Watch {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
     const double left_s = elapsed.count() / static_cast<double>(done) * static_cast<double>(count - done);
     line_.show(static_cast<double>(done) / static_cast<double>(count),
-               fmt::format("{} of {} runs, {:.0f} s left", done, count, left_s));
+               fmt::format("{} of {}, {:.0f} s left", done, count, left_s));
   }
   evaluation::Supervision supervision_;
   apps::ProgressLine line_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Page and JSON to the folder, text or JSON to stdout.
-void hand_over(const Arguments& arguments, const std::string& name, const nlohmann::ordered_json& json,
-               const pages::Page& page, const std::vector<std::string>& text) {
+/// Page and JSON to the folder, text or JSON to stdout; the exit code.
+template <typename Result>
+int hand_over(const Arguments& arguments, const Result& result, bool complete, bool reached) {
+  const nlohmann::ordered_json json = to_json(result);
   fs::create_directories(arguments.out);
-  runtime::write_json(arguments.out / (name + ".json"), json);
-  page.write(arguments.out / "report.html");
+  runtime::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
+  page_of(result).write(arguments.out / "report.html");
   if (arguments.json) {
     std::cout << json.dump(2) << '\n';
-    return;
+  } else {
+    for (const std::string& line : text_of(result)) std::cout << line << '\n';
+    std::cout << "report in " << (arguments.out / "report.html").string() << '\n';
   }
-  for (const std::string& line : text) std::cout << line << '\n';
-  std::cout << "report in " << (arguments.out / "report.html").string() << '\n';
+  if (!complete) return kInterrupted;
+  return reached ? kOk : kMissed;
 }
 
 int table1(const Arguments& arguments) {
   evaluation::Table1 table;
   table.robot = arguments.robot;
   table.scenario_file = arguments.scenario.string();
-  if (!arguments.nominal) table.ranges_file = arguments.variation.string();
+  table.ranges_file = arguments.ranges_file();
   table.scenario = runtime::load_scenario(arguments.scenario);
   table.seeds = arguments.seeds;
   for (const evaluation::Candidate& c : candidates(arguments))
     table.cases.push_back({.name = c.name, .candidate = c, .plants = plants(arguments)});
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
-  for (int seed = 1; seed <= table.seeds; ++seed)
-    table.plants.push_back(evaluation::plant_json(table.cases.front().plants.of(robot, static_cast<unsigned>(seed))));
-  fs::create_directories(arguments.out);
-  {
-    const Watch watch(arguments);
-    table.campaign =
-        evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry, watch.supervision());
+  for (int seed = 1; seed <= table.seeds; ++seed) {
+    table.plants.push_back(
+        evaluation::plant_json(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed))));
   }
-  evaluation::evaluate(table);
-  hand_over(arguments, "table1", to_json(table), page_of(table), text_of(table));
-  if (!table.campaign.complete) return kInterrupted;
-  return table.all_reached() ? kOk : kMissed;
+  fs::create_directories(arguments.out);
+  table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
+                                            Watch(arguments).supervision());
+  evaluate(table);
+  return hand_over(arguments, table, table.campaign.complete, table.all_reached());
+}
+
+int push(const Arguments& arguments) {
+  evaluation::PushTest test;
+  test.robot = arguments.robot;
+  test.ranges_file = arguments.ranges_file();
+  test.trials = arguments.trials;
+  const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
+  test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
+  fs::create_directories(arguments.out);
+  run_pushes(test, arguments.strengths_N_s, Watch(arguments).supervision());
+  return hand_over(arguments, test, test.complete, test.reached().value_or(true));
+}
+
+int robust(const Arguments& arguments) {
+  evaluation::RobustnessTest test;
+  test.robot = arguments.robot;
+  test.scenario_file = arguments.scenario.string();
+  test.ranges_file = arguments.ranges_file();
+  test.scenario = runtime::load_scenario(arguments.scenario);
+  test.seeds = arguments.seeds;
+  test.cases = evaluation::robustness_cases(candidate(arguments.policies.front(), arguments), plants(arguments));
+  fs::create_directories(arguments.out);
+  test.campaign =
+      evaluation::run_campaign(test.cases, test.scenario, test.seeds, false, Watch(arguments).supervision());
+  evaluate(test);
+  return hand_over(arguments, test, test.campaign.complete, test.all_survived());
+}
+
+int gait(const Arguments& arguments) {
+  evaluation::GaitTest test;
+  test.robot = arguments.robot;
+  test.speed_m_s = arguments.speed_m_s;
+  test.norms = arguments.norms.empty() ? evaluation::built_in_norms() : evaluation::load_norms(arguments.norms);
+  const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
+  test.evaluated = {.name = c.name, .candidate = c, .plants = {}};
+  fs::create_directories(arguments.out);
+  run_gait(test, Watch(arguments).supervision());
+  return hand_over(arguments, test, test.trial.complete, test.reached());
 }
 
 }  // namespace
@@ -155,26 +223,52 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Arguments arguments;
   CLI::App* table1_command =
-      app.add_subcommand("table1", "Errors of policies over the same commands: the paper's Table I");
+      app.add_subcommand("table1", "Errors of policies over the same commands: Table I of the paper");
   declare_common(*table1_command, arguments);
-  table1_command
-      ->add_option("--policy", arguments.policies,
-                   "policy's name below the robot's policies/, a file, or NAME=FILE; may be given several times")
+  declare_seeds(*table1_command, arguments, "config/scenarios/table1.yaml");
+  table1_command->add_option("--policy", arguments.policies, std::string(kPolicyHelp) + "; may be given several times")
       ->default_str("pmg without_gco single_gait");
-  table1_command->add_option("--scenario", arguments.scenario, "commands (YAML)")->capture_default_str();
-  table1_command->add_option("--seeds", arguments.seeds, "simulated robots")
+  table1_command->add_flag("--gantry", arguments.gantry, "hang the robot in a gantry: nothing is judged");
+  CLI::App* push_command = app.add_subcommand("push", "Impulses at the torso: how many are survived");
+  declare_common(*push_command, arguments);
+  declare_policy(*push_command, arguments);
+  push_command->add_option("--strengths", arguments.strengths_N_s, "impulses [N s], separated by commas")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 1000.0))
+      ->default_str("0,10,20,30,35,40,50");
+  push_command
+      ->add_option("--trials", arguments.trials,
+                   "pushes of each strength; 16 are every direction, standing and walking")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  table1_command->add_flag("--gantry", arguments.gantry, "hang the robot in a gantry: nothing is judged");
+  CLI::App* robust_command = app.add_subcommand("robust", "The tour with payload, little and much friction, and delay");
+  declare_common(*robust_command, arguments);
+  declare_policy(*robust_command, arguments);
+  declare_seeds(*robust_command, arguments, "config/scenarios/tour.yaml");
+  CLI::App* gait_command = app.add_subcommand("gait", "Steady walking beside published means of human gait");
+  declare_common(*gait_command, arguments);
+  declare_policy(*gait_command, arguments);
+  gait_command->add_option("--norms", arguments.norms,
+                           "CSV of published means (docs/evaluation.md); a built-in set if not given");
+  gait_command->add_option("--speed", arguments.speed_m_s, "forward [m/s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kBadInput;
   }
   std::signal(SIGINT, on_interrupt);
+  const bool compares = table1_command->parsed();
+  if (arguments.policies.empty()) arguments.policies = {"pmg"};
+  if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};
+  if (arguments.scenario.empty())
+    arguments.scenario = compares ? "config/scenarios/table1.yaml" : "config/scenarios/tour.yaml";
   try {
-    if (arguments.policies.empty()) arguments.policies = {"pmg", "without_gco", "single_gait"};
-    return table1(arguments);
+    if (compares) return table1(arguments);
+    if (push_command->parsed()) return push(arguments);
+    if (robust_command->parsed()) return robust(arguments);
+    return gait(arguments);
   } catch (const std::exception& error) {
     std::cerr << "pmg_eval: " << error.what() << '\n';
     return kBadInput;
