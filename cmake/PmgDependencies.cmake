@@ -14,6 +14,9 @@ find_package(spdlog REQUIRED)
 find_package(glfw3 REQUIRED)
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)
+find_path(PAGMO_INCLUDE_DIR pagmo/pagmo.hpp REQUIRED)
+find_library(PAGMO_LIBRARY pagmo REQUIRED)
 if(PMG_BUILD_TESTS)
   find_package(GTest REQUIRED)
   find_package(benchmark REQUIRED)
@@ -31,6 +34,11 @@ find_program(LCM_GEN lcm-gen REQUIRED)
 add_library(pmg_lcm INTERFACE)
 target_include_directories(pmg_lcm SYSTEM INTERFACE ${LCM_INCLUDE_DIR})
 target_link_libraries(pmg_lcm INTERFACE ${LCM_LIBRARY})
+
+# pagmo's package file asks for libraries that CMA-ES doesn't need; one source file of the calibration includes it.
+add_library(pmg_pagmo INTERFACE)
+target_include_directories(pmg_pagmo SYSTEM INTERFACE ${PAGMO_INCLUDE_DIR})
+target_link_libraries(pmg_pagmo INTERFACE ${PAGMO_LIBRARY} boost_serialization Threads::Threads)
 
 # KDL's package file names no target of its own.
 add_library(pmg_kdl INTERFACE)

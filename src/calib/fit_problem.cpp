@@ -1,0 +1,197 @@
+#include "calib/fit_problem.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "calib/parallel.hpp"
+
+namespace pmg::calib {
+
+namespace {
+
+constexpr double kSenseless_rad2 = 1e6;  // a loss beyond all real ones
+constexpr const char* kInertia = "load.inertia_scale";
+constexpr const char* kGravity = "load.gravity_scale";
+
+struct Effect {
+  const char* word;
+  std::vector<std::string> parameters;
+};
+
+const std::vector<Effect>& effects() {
+  static const std::vector<Effect> kEffects = {
+      {"damping", {"friction.viscous_Nm_s_per_rad"}},
+      {"friction", {"friction.coulomb_Nm"}},
+      {"stribeck", {"friction.stribeck_Nm", "friction.stribeck_rad_s"}},
+      {"load_friction", {"friction.load_driving", "friction.load_backdriving"}},
+      {"asymmetry", {"friction.asymmetry"}},
+      {"presliding", {"friction.presliding_rad"}},
+      {"delay", {"command.delay_s"}},
+      {"rate_limit", {"command.rate_limit_rad_s"}},
+      {"hold", {"command.hold_s"}},
+      {"dead_band", {"drive.dead_band_rad"}},
+      {"gain", {"drive.kp_scale"}},
+      {"supply_sag", {"drive.supply_sag_per_Nm"}},
+      {"torque_speed", {"drive.stall_torque_Nm", "drive.no_load_rad_s"}},
+      {"brake", {"drive.brake_when_disabled"}},
+      {"zero_offset", {"sensor.zero_offset_rad"}},
+      {"sensor_lag", {"sensor.lag_s"}},
+      {"backlash",
+       {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad", "transmission.backlash_rad"}},
+      {"compliance", {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad"}},
+      {"cogging", {"ripple.amplitude_Nm", "ripple.order", "ripple.phase_rad"}},
+      {"offset", {"ripple.offset_Nm"}},
+      {"inertia", {kInertia}},
+      {"gravity", {kGravity}},
+  };
+  return kEffects;
+}
+
+double to_range(const FitParameter& p, double unit) {
+  const double u = std::clamp(unit, 0.0, 1.0);
+  if (p.lower > 0.0 && p.upper / p.lower >= 10.0) return p.lower * std::pow(p.upper / p.lower, u);
+  if (p.lower == 0.0) return p.upper * u * u * u;
+  return p.lower + u * (p.upper - p.lower);
+}
+
+double to_unit(const FitParameter& p, double value) {
+  const double x = std::clamp(value, p.lower, p.upper);
+  if (p.lower > 0.0 && p.upper / p.lower >= 10.0) return std::log(x / p.lower) / std::log(p.upper / p.lower);
+  if (p.lower == 0.0) return std::cbrt(x / p.upper);
+  return (x - p.lower) / (p.upper - p.lower);
+}
+
+}  // namespace
+
+FitParameter fit_parameter(const std::string& name, const Bench& bench) {
+  if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
+  const sim::ActuatorParameter& p = sim::actuator_parameter(name);
+  // A linear axis carries kilograms where a joint has grams at a metre's lever.
+  const bool heavy = bench.rig == Rig::kLinear && (p.unit.starts_with("Nm") || p.unit.starts_with("kg"));
+  const double scale = heavy ? 1000.0 : 1.0;
+  return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
+}
+
+std::vector<std::string> effect_words() {
+  std::vector<std::string> words;
+  for (const Effect& effect : effects()) words.emplace_back(effect.word);
+  return words;
+}
+
+std::vector<std::string> effect_parameters(const std::string& word) {
+  for (const Effect& effect : effects()) {
+    if (word == effect.word) return effect.parameters;
+  }
+  for (const sim::ActuatorParameter& p : sim::actuator_parameters()) {
+    if (word == p.name) return {word};
+  }
+  throw std::invalid_argument(fmt::format("'{}' isn't an effect; expected one of {}, or a parameter of motor.yaml",
+                                          word, fmt::join(effect_words(), ", ")));
+}
+
+std::vector<std::string> basic_parameters(const Bench& bench) {
+  std::vector<std::string> names;
+  switch (bench.law) {
+    case DriveLaw::kPositionPd:
+      names = {"drive.kp_scale", "drive.kd_scale"};
+      break;
+    case DriveLaw::kServoVoltage:  // its damping is the motor's own
+      names = {"drive.torque_per_unit_Nm", "drive.back_emf_s_per_rad"};
+      break;
+    case DriveLaw::kCascadePd:
+    case DriveLaw::kTorque:
+      break;
+  }
+  names.emplace_back("transmission.armature_kg_m2");
+  for (const std::string& name : bench.unknown) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+double value(const JointModel& model, const std::string& name) {
+  if (name == kInertia) return model.inertia_scale;
+  if (name == kGravity) return model.gravity_scale;
+  return sim::actuator_parameter(name).value(model.actuator);
+}
+
+void set(JointModel& model, const std::string& name, double value) {
+  if (name == kInertia)
+    model.inertia_scale = value;
+  else if (name == kGravity)
+    model.gravity_scale = value;
+  else
+    sim::actuator_parameter(name).in(model.actuator) = value;
+}
+
+FitProblem::FitProblem(std::vector<FitParameter> parameters, JointModel start, std::vector<SingleJoint> runs)
+    : parameters_(std::move(parameters)), start_(start), runs_(std::move(runs)) {
+  if (parameters_.empty()) throw std::invalid_argument("nothing to fit; expected at least one parameter");
+  if (runs_.empty()) throw std::invalid_argument("nothing to fit to; expected at least one run");
+  for (const FitParameter& p : parameters_) {
+    if (!(p.lower < p.upper)) {
+      throw std::invalid_argument(
+          fmt::format("{}: range from {} to {}; expected one that grows", p.name, p.lower, p.upper));
+    }
+  }
+}
+
+JointModel FitProblem::model_at(std::span<const double> point) const {
+  JointModel model = start_;
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    set(model, parameters_[i].name, to_range(parameters_[i], point[i]));
+  return model;
+}
+
+std::vector<double> FitProblem::point_of(const JointModel& model) const {
+  std::vector<double> point;
+  for (const FitParameter& p : parameters_) point.push_back(to_unit(p, value(model, p.name)));
+  return point;
+}
+
+double FitProblem::loss(std::span<const double> point, unsigned threads) const {
+  try {
+    return std::min(total(errors(model_at(point), runs_, threads)).mean_square_rad2(), kSenseless_rad2);
+  } catch (const std::invalid_argument&) {  // the actuator model refuses the combination
+    return kSenseless_rad2;
+  }
+}
+
+FitProblem FitProblem::thinned(std::size_t most_runs) const {
+  if (runs_.size() <= most_runs) return *this;
+  std::vector<SingleJoint> kept;
+  // Steps of the golden ratio: however the rows are ordered, no period of theirs is met.
+  std::vector<bool> taken(runs_.size(), false);
+  double position = 0.5;
+  while (kept.size() < most_runs) {
+    const auto index = static_cast<std::size_t>(position * static_cast<double>(runs_.size()));
+    if (!taken[index]) kept.push_back(runs_[index]);
+    taken[index] = true;
+    position = std::fmod(position + 0.6180339887498949, 1.0);
+  }
+  return {parameters_, start_, std::move(kept)};
+}
+
+std::vector<RolloutError> errors(const JointModel& model, const std::vector<SingleJoint>& runs, unsigned threads) {
+  std::vector<RolloutError> found(runs.size());
+  for_each_in_parallel(runs.size(), threads, [&](std::size_t i) { found[i] = runs[i].error(model); });
+  return found;
+}
+
+RolloutError total(const std::vector<RolloutError>& errors) {
+  RolloutError sum;
+  for (const RolloutError& error : errors) {
+    sum.sum_of_squares_rad2 += error.sum_of_squares_rad2;
+    sum.sum_of_absolutes_rad += error.sum_of_absolutes_rad;
+    sum.samples += error.samples;
+  }
+  return sum;
+}
+
+}  // namespace pmg::calib

@@ -1,0 +1,160 @@
+#include "calib/motor_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <random>
+
+#include "calib/parallel.hpp"
+
+namespace pmg::calib {
+
+namespace {
+
+double seconds(const std::vector<SingleJoint>& runs) {
+  double sum_s = 0.0;
+  for (const SingleJoint& run : runs) sum_s += static_cast<double>(run.steps()) * run.step_s();
+  return sum_s;
+}
+
+/// Latin hypercube: each row of each dimension holds one point.
+std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t dimensions, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<std::vector<double>> points(count, std::vector<double>(dimensions));
+  std::vector<std::size_t> rows(count);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) std::swap(rows[i - 1], rows[random() % i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      points[i][d] = (static_cast<double>(rows[i]) + 0.5) / static_cast<double>(count);
+    }
+  }
+  return points;
+}
+
+class Fitting {
+ public:
+  Fitting(const FitProblem& problem, const FitOptions& options, const FitProgress& progress)
+      : all_(problem), few_(problem.thinned(options.runs_while_searching)), options_(options), progress_(progress) {}
+
+  Fit run() {
+    std::vector<Found> starts = screen();
+    for_each_in_parallel(starts.size(), options_.threads, [&](std::size_t i) {
+      starts[i] =
+          search(options_.method, loss_of(few_, 1), starts[i].point, limits(0.1, static_cast<unsigned>(i)), stopping());
+      tell(0.1 + 0.5 * static_cast<double>(++done_) / static_cast<double>(starts.size()),
+           fmt::format("start {} of {}", done_.load(), starts.size()));
+    });
+    sort(starts);
+    Fit fit;
+    fit.starts = starts;
+    polish(fit);
+    fit.model = all_.model_at(fit.point);
+    fit.evaluations = evaluations_;
+    fit.simulated_s = simulated_s_;
+    fit.interrupted = stopped_;
+    return fit;
+  }
+
+ private:
+  /// The neutral start and spread points, the best of them.
+  std::vector<Found> screen() {
+    std::vector<std::vector<double>> points =
+        spread_points(options_.screened_per_dimension * all_.dimensions(), all_.dimensions(), options_.seed);
+    points.push_back(all_.point_of(all_.start()));
+    std::vector<Found> found(points.size());
+    const Loss loss = loss_of(few_, 1);
+    for_each_in_parallel(points.size(), options_.threads, [&](std::size_t i) {
+      found[i] = {points[i], stopped_ ? 1e9 : loss(points[i]), 1};
+      if (i % 16 == 0) tell(0.1 * static_cast<double>(i) / static_cast<double>(points.size()), "looking for starts");
+    });
+    sort(found);
+    found.resize(std::min<std::size_t>(found.size(), std::max(1U, options_.starts)));
+    return found;
+  }
+
+  /// The two best starts on all runs, each by BOBYQA's parabolas and then SBPLX, which kinks don't mislead.
+  void polish(Fit& fit) {
+    fit.point = fit.starts.front().point;
+    const std::size_t candidates = std::min<std::size_t>(2, fit.starts.size());
+    Found best{fit.point, all_.loss(fit.point, options_.threads), 1};
+    std::vector<double> history;
+    const Loss loss = loss_of(all_, options_.threads);
+    const Loss remembered = [&](const std::vector<double>& point) {
+      const double value = loss(point);
+      history.push_back(history.empty() ? value : std::min(history.back(), value));
+      return value;
+    };
+    for (std::size_t c = 0; c < candidates && !stopped_; ++c) {
+      Found at{fit.starts[c].point, 0.0, 0};
+      for (const Method method : {Method::kBobyqa, Method::kSbplx}) {
+        at = search(method, remembered, at.point, limits(0.03, 0), stopping());
+        tell(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
+                       static_cast<double>(candidates),
+             fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));
+      }
+      if (at.loss < best.loss) best = at;
+    }
+    fit.point = best.point;
+    fit.loss_rad2 = best.loss;
+    fit.history = history;
+  }
+
+  SearchOptions limits(double step, unsigned turn) const {
+    return {.most_evaluations = options_.evaluations_per_dimension * static_cast<int>(all_.dimensions()),
+            .first_step = step,
+            .seed = options_.seed + turn};
+  }
+
+  Loss loss_of(const FitProblem& problem, unsigned threads) {
+    const double each_s = seconds(problem.runs());
+    return [this, &problem, threads, each_s](const std::vector<double>& point) {
+      ++evaluations_;
+      simulated_s_ += each_s;
+      return problem.loss(point, threads);
+    };
+  }
+
+  Interrupted stopping() {
+    return [this] {
+      tell(-1.0, "");
+      return stopped_.load();
+    };
+  }
+
+  /// Progress is told by one thread at a time; a negative share only asks whether to go on.
+  void tell(double share, const std::string& text) {
+    if (!progress_) return;
+    const std::lock_guard lock(telling_);
+    if (share >= 0.0) share_ = std::max(share_, share), text_ = text;
+    if (!progress_(share_, text_)) stopped_ = true;
+  }
+
+  static void sort(std::vector<Found>& found) {
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.loss < b.loss; });
+  }
+
+  const FitProblem& all_;
+  const FitProblem few_;
+  const FitOptions& options_;
+  const FitProgress& progress_;
+  std::mutex telling_;
+  double share_ = 0.0;
+  std::string text_;
+  std::atomic<bool> stopped_{false};
+  std::atomic<int> evaluations_{0};
+  std::atomic<int> done_{0};
+  std::atomic<double> simulated_s_{0.0};
+};
+
+}  // namespace
+
+Fit fit(const FitProblem& problem, const FitOptions& options, const FitProgress& progress) {
+  return Fitting(problem, options, progress).run();
+}
+
+}  // namespace pmg::calib

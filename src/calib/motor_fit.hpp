@@ -1,0 +1,41 @@
+// The fit of a joint model to a bench: many starts on few runs, then the best of them on all runs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "calib/fit_problem.hpp"
+#include "calib/optimizer.hpp"
+
+namespace pmg::calib {
+
+struct FitOptions {
+  Method method = Method::kSbplx;  ///< of the starts; the last polish is always BOBYQA and SBPLX
+  unsigned starts = 8;
+  unsigned screened_per_dimension = 24;  ///< points at which the loss is looked at to find the starts
+  std::size_t runs_while_searching = 16;
+  int evaluations_per_dimension = 60;  ///< at most, a start and a polish
+  unsigned threads = 1;
+  unsigned seed = 1;
+};
+
+/// What a fit found. Points are FitProblem's.
+struct Fit {
+  JointModel model;
+  std::vector<double> point;
+  double loss_rad2 = 0.0;       ///< mean square over the valid samples of all runs
+  std::vector<Found> starts;    ///< where each start got to, on the thinned runs, best first
+  std::vector<double> history;  ///< lowest loss so far at each evaluation of the polish
+  int evaluations = 0;          ///< of everything, thinned runs or all
+  double simulated_s = 0.0;     ///< of joint time, in all evaluations
+  bool interrupted = false;     ///< the best until then
+};
+
+/// Called now and then with how far it is and what is done; false ends the fit.
+using FitProgress = std::function<bool(double share, const std::string& text)>;
+
+/// Same problem, options and seed: same result, whatever the number of threads.
+Fit fit(const FitProblem& problem, const FitOptions& options, const FitProgress& progress = {});
+
+}  // namespace pmg::calib

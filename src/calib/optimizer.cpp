@@ -1,0 +1,70 @@
+#include "calib/optimizer.hpp"
+
+#include <fmt/format.h>
+
+#include <nlopt.hpp>
+#include <stdexcept>
+
+namespace pmg::calib {
+
+namespace {
+
+struct Interruption {};
+
+nlopt::algorithm nlopt_algorithm(Method method) {
+  if (method == Method::kBobyqa) return nlopt::LN_BOBYQA;
+  return method == Method::kSbplx ? nlopt::LN_SBPLX : nlopt::GN_CRS2_LM;
+}
+
+void search_nlopt(Method method, const Loss& loss, std::vector<double> point, const SearchOptions& options) {
+  nlopt::srand(options.seed);
+  nlopt::opt optimizer(nlopt_algorithm(method), static_cast<unsigned>(point.size()));
+  optimizer.set_lower_bounds(0.0);
+  optimizer.set_upper_bounds(1.0);
+  optimizer.set_initial_step(options.first_step);
+  optimizer.set_maxeval(options.most_evaluations);
+  optimizer.set_ftol_rel(options.relative_tolerance);
+  optimizer.set_xtol_abs(1e-6);
+  optimizer.set_min_objective([](const std::vector<double>& x, std::vector<double>&,
+                                 void* data) { return (*static_cast<const Loss*>(data))(x); },
+                              const_cast<Loss*>(&loss));
+  double lowest = 0.0;
+  try {
+    optimizer.optimize(point, lowest);
+  } catch (const nlopt::roundoff_limited&) {
+  } catch (const nlopt::forced_stop&) {
+  }
+}
+
+}  // namespace
+
+Method method_of(const std::string& name) {
+  if (name == "bobyqa") return Method::kBobyqa;
+  if (name == "sbplx") return Method::kSbplx;
+  if (name == "crs2") return Method::kCrs2;
+  if (name == "cmaes") return Method::kCmaes;
+  throw std::invalid_argument(fmt::format("no optimizer '{}'; expected bobyqa, sbplx, crs2 or cmaes", name));
+}
+
+Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
+             const Interrupted& interrupted) {
+  Found best{start, loss(start), 1};
+  const Loss watched = [&](const std::vector<double>& point) {
+    // NLopt's C core lets no exception of ours through but its own.
+    if (interrupted && interrupted()) throw nlopt::forced_stop();
+    const double value = loss(point);
+    ++best.evaluations;
+    if (value < best.loss) best.loss = value, best.point = point;
+    return value;
+  };
+  try {
+    if (method == Method::kCmaes)
+      search_cmaes(watched, start, options);
+    else
+      search_nlopt(method, watched, start, options);
+  } catch (const nlopt::forced_stop&) {
+  }
+  return best;
+}
+
+}  // namespace pmg::calib

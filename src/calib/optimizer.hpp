@@ -1,0 +1,39 @@
+// Searches of the unit cube for the lowest loss, without derivatives.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pmg::calib {
+
+enum class Method { kBobyqa, kSbplx, kCrs2, kCmaes };
+
+/// bobyqa, sbplx, crs2, cmaes. Throws std::invalid_argument.
+Method method_of(const std::string& name);
+
+struct SearchOptions {
+  int most_evaluations = 1000;
+  double first_step = 0.1;           ///< of the cube's edge
+  double relative_tolerance = 1e-4;  ///< of the loss
+  unsigned seed = 1;
+};
+
+struct Found {
+  std::vector<double> point;
+  double loss = 0.0;
+  int evaluations = 0;
+};
+
+using Loss = std::function<double(const std::vector<double>& point)>;
+using Interrupted = std::function<bool()>;
+
+/// From start; the best point seen, also when interrupted. NLopt's BOBYQA and SBPLX are local, CRS2 and pagmo's CMA-ES
+/// (the paper's) look everywhere. Same input, same result.
+Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
+             const Interrupted& interrupted = {});
+
+/// CMA-ES alone, in a translation unit of its own: pagmo's templates take long to compile.
+Found search_cmaes(const Loss& loss, const std::vector<double>& start, const SearchOptions& options);
+
+}  // namespace pmg::calib
