@@ -1,0 +1,241 @@
+// pmg_calibrate_motor: from recordings of one joint to a motor model that moves as the joint did.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "calib/fit_results.hpp"
+#include "progress_line.hpp"
+#include "sim/motor_file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kNotBetter = 1, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/motor.yaml (what pmg_sil --motor
+reads), DIR/fit.json and DIR/report.html. Fitted are the drive's gain and damping, the rotor's inertia, whatever
+bench.yaml calls unknown, and what --also names: damping, friction, stribeck, load_friction, asymmetry, presliding,
+delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, backlash, compliance,
+cogging, offset, inertia, gravity, or a parameter of motor.yaml by its own name.
+
+Example:
+  pmg_calibrate_motor data/bench/servo --also damping friction delay --fit "repeat == 0" --score "repeat == 1" --out out/servo
+
+Exit codes: 0 fitted, 1 fitted but no better than where it started, 2 bad input or output, 130 interrupted (what was
+found until then is kept).)";
+
+struct Arguments {
+  fs::path bench, out;
+  std::vector<std::string> also, ranges, fixed;
+  std::string fit, score, joint, method = "sbplx";
+  unsigned starts = 8, threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
+  bool only = false, json = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.add_option("BENCH", arguments.bench, "folder of the bench")->required();
+  app.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
+  app.add_option("--also", arguments.also, "effects to fit besides the gains and the rotor");
+  app.add_flag("--only", arguments.only, "fit what --also names and nothing else");
+  app.add_option("--fit", arguments.fit,
+                 "rows of runs.csv to fit, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
+  app.add_option("--score", arguments.score, "rows to judge the fit by; none of them may be fitted");
+  app.add_option("--set", arguments.fixed, "NAME=VALUE: what is known of the model, or where the search begins");
+  app.add_option("--range", arguments.ranges, "NAME=LOWER:UPPER: where a parameter is looked for");
+  app.add_option("--optimizer", arguments.method, "of the starts; the result is polished by BOBYQA and SBPLX")
+      ->check(CLI::IsMember({"bobyqa", "sbplx", "crs2", "cmaes"}))
+      ->capture_default_str();
+  app.add_option("--starts", arguments.starts, "how many")->check(CLI::Range(1U, 1000U))->capture_default_str();
+  app.add_option("--seed", arguments.seed, "of starts and random searches")->capture_default_str();
+  app.add_option("--threads", arguments.threads, "at most")->check(CLI::Range(1U, 256U));
+  app.add_option("--joint", arguments.joint, "its name in motor.yaml; the bench folder's if not given");
+  app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
+}
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
+
+std::vector<std::string> names_to_fit(const Arguments& arguments, const calib::Bench& bench) {
+  std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
+  for (const std::string& word : arguments.also) {
+    for (const std::string& name : calib::effect_parameters(word)) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+/// "NAME=REST" in two.
+std::pair<std::string, std::string> split(const std::string& text, const char* expected) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw std::invalid_argument(fmt::format("'{}'; expected {}", text, expected));
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+double number(const std::string& text, const std::string& what) {
+  const auto value = calib::to_number(text);
+  if (!value) throw std::invalid_argument(fmt::format("{}: '{}' isn't a number", what, text));
+  return *value;
+}
+
+std::vector<calib::FitParameter> parameters(const Arguments& arguments, const calib::Bench& bench) {
+  std::vector<calib::FitParameter> found;
+  for (const std::string& name : names_to_fit(arguments, bench)) found.push_back(calib::fit_parameter(name, bench));
+  for (const std::string& text : arguments.ranges) {
+    const auto [name, range] = split(text, "NAME=LOWER:UPPER");
+    const std::size_t colon = range.find(':');
+    const auto parameter = std::find_if(found.begin(), found.end(), [&](const auto& p) { return p.name == name; });
+    if (colon == std::string::npos || parameter == found.end()) {
+      throw std::invalid_argument(
+          fmt::format("--range {}: expected NAME=LOWER:UPPER of a parameter that is fitted", text));
+    }
+    parameter->lower = number(range.substr(0, colon), text);
+    parameter->upper = number(range.substr(colon + 1), text);
+  }
+  return found;
+}
+
+calib::JointModel start_model(const Arguments& arguments, const calib::Bench& bench) {
+  calib::JointModel model;
+  model.actuator = bench.known;
+  for (const std::string& text : arguments.fixed) {
+    const auto [name, value] = split(text, "NAME=VALUE");
+    calib::set(model, name, number(value, text));
+  }
+  return model;
+}
+
+std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::string& filter,
+                                     apps::ProgressLine& progress) {
+  std::vector<calib::SingleJoint> joints;
+  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter), [&](double share) {
+         progress.show(share, "reading " + bench.folder.string());
+         return interrupt_requested == 0;
+       })) {
+    joints.emplace_back(bench, std::move(run), calib::simulation_step_s(bench));
+  }
+  return joints;
+}
+
+/// Scoring what was fitted would say nothing.
+void expect_apart(const std::vector<calib::SingleJoint>& fitted, const std::vector<calib::SingleJoint>& scored) {
+  for (const calib::SingleJoint& score : scored) {
+    for (const calib::SingleJoint& fit : fitted) {
+      if (fit.run().file == score.run().file) {
+        throw std::invalid_argument(
+            fmt::format("{} is both in --fit and in --score; expected different runs", fit.run().file));
+      }
+    }
+  }
+}
+
+/// Whole or not at all.
+void write(const fs::path& file, const std::string& text) {
+  const fs::path unfinished = file.string() + ".part";
+  std::ofstream stream(unfinished);
+  stream << text;
+  stream.close();
+  if (!stream) throw std::runtime_error(fmt::format("{} cannot be written", file.string()));
+  fs::rename(unfinished, file);
+}
+
+void write_results(const calib::FitResults& results, const fs::path& out) {
+  fs::create_directories(out);
+  calib::fit_report(results).write(out / "report.html");
+  write(out / "motor.yaml",
+        sim::motor_yaml({{results.joint, results.fit.model.actuator}}, calib::motor_remarks(results)));
+  write(out / "fit.json", calib::fit_json(results).dump(2) + "\n");
+}
+
+void tell(const calib::FitResults& results, const fs::path& out) {
+  const std::string unit = calib::position_unit(*results.bench, true);
+  for (const calib::FitParameter& p : results.problem->parameters()) {
+    const double value = calib::value(results.fit.model, p.name);
+    std::cout << fmt::format("{:36} {:>12.5g} {}{}\n", p.name, value, p.unit,
+                             calib::at_bound(p, value) ? "   (at its range's edge)" : "");
+  }
+  const auto line = [&](const char* what, const calib::Assessment& a) {
+    std::cout << fmt::format("{} {} runs: mean absolute error {:.2f} {} (before {:.2f})\n", what, a.runs->size(),
+                             1e3 * total(a.after).mean_absolute_rad(), unit, 1e3 * total(a.before).mean_absolute_rad());
+  };
+  line("fitted", results.fitted);
+  if (results.scored) line("scored", *results.scored);
+  std::cout << fmt::format("{} evaluations in {:.1f} s on {} threads; results in {}\n", results.fit.evaluations,
+                           results.wall_s, results.threads, out.string());
+}
+
+int calibrate(const Arguments& arguments) {
+  apps::ProgressLine progress;
+  const calib::Bench bench = calib::read_bench(arguments.bench);
+  const std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
+  const calib::JointModel start = start_model(arguments, bench);
+  std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, progress), scored;
+  if (!arguments.score.empty()) scored = read(bench, arguments.score, progress);
+  expect_apart(fitted, scored);
+  const calib::FitProblem problem(unknowns, start, std::move(fitted));
+  calib::FitOptions options;
+  options.method = calib::method_of(arguments.method);
+  options.starts = arguments.starts;
+  options.threads = arguments.threads;
+  options.seed = arguments.seed;
+
+  const auto begin = std::chrono::steady_clock::now();
+  calib::FitResults results;
+  results.fit = calib::fit(problem, options, [&](double share, const std::string& text) {
+    progress.show(share, text);
+    return interrupt_requested == 0;
+  });
+  results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  progress.clear();
+  results.bench = &bench;
+  results.problem = &problem;
+  results.method = arguments.method;
+  results.threads = arguments.threads;
+  results.joint = arguments.joint.empty() ? fs::weakly_canonical(arguments.bench).filename().string() : arguments.joint;
+  const calib::JointModel neutral = problem.model_at(problem.point_of(start));
+  results.fitted = calib::assess(arguments.fit, problem.runs(), neutral, results.fit.model, arguments.threads);
+  if (!scored.empty()) {
+    results.scored = calib::assess(arguments.score, scored, neutral, results.fit.model, arguments.threads);
+  }
+  write_results(results, arguments.out);
+  if (arguments.json)
+    std::cout << calib::fit_json(results).dump(2) << '\n';
+  else
+    tell(results, arguments.out);
+  if (results.fit.interrupted) return kInterrupted;
+  return total(results.fitted.after).sum_of_squares_rad2 < total(results.fitted.before).sum_of_squares_rad2
+             ? kOk
+             : kNotBetter;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Fits a motor model to recordings of one joint.", "pmg_calibrate_motor");
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  std::signal(SIGINT, on_interrupt);
+  try {
+    return calibrate(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "pmg_calibrate_motor: " << error.what() << '\n';
+    return kBadInput;
+  }
+}

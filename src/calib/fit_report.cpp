@@ -1,0 +1,126 @@
+// The page of a fit.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "calib/fit_results.hpp"
+
+namespace pmg::calib {
+
+namespace {
+
+/// Samples of one run as the page's chart needs them; a dropout is a gap.
+void show_run(pages::Page& page, const FitResults& results, const SingleJoint& joint, double error_rad,
+              const char* which) {
+  const Recording& r = joint.run().recording;
+  const std::vector<double> simulated = joint.rollout(results.fit.model);
+  std::vector<double> measured = r.q_rad;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (!r.valid[k]) measured[k] = std::nan("");
+  }
+  const std::string unit = position_unit(*results.bench, false);
+  page.chart(
+      {.title = fmt::format("{}: {}, {:.1f} {} mean absolute error, position [{}]", which, joint.run().file,
+                            1e3 * error_rad, position_unit(*results.bench, true), unit),
+       .lines = {{.name = "command", .x = r.t_s, .y = r.q_cmd_rad, .colour = pages::colour::kGrey, .stepped = true},
+                 {.name = "measured", .x = r.t_s, .y = measured, .colour = pages::colour::kInk},
+                 {.name = "simulated", .x = r.t_s, .y = simulated, .colour = pages::colour::kVermillion}}});
+  std::vector<double> miss(measured.size());
+  for (std::size_t k = 0; k < miss.size(); ++k) miss[k] = 1e3 * (simulated[k] - measured[k]);
+  page.chart({.title = fmt::format("simulated minus measured [{}]", position_unit(*results.bench, true)),
+              .lines = {{.name = "error", .x = r.t_s, .y = miss, .colour = pages::colour::kBlue}},
+              .height_px = 130});
+}
+
+void show_runs(pages::Page& page, const FitResults& results, const Assessment& assessment) {
+  std::vector<std::size_t> order(assessment.runs->size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return assessment.after[a].mean_absolute_rad() < assessment.after[b].mean_absolute_rad();
+  });
+  const auto show = [&](std::size_t rank, const char* which) {
+    const std::size_t i = order[rank];
+    show_run(page, results, (*assessment.runs)[i], assessment.after[i].mean_absolute_rad(), which);
+  };
+  show(order.size() / 2, "the usual run");
+  if (order.size() > 1) show(order.size() - 1, "the worst run");
+  if (order.size() > 2) show(0, "the best run");
+}
+
+/// Mean absolute error by what a row of runs.csv says.
+void show_groups(pages::Page& page, const FitResults& results, const Assessment& assessment, const std::string& title) {
+  const auto name = [](const BenchRun& run) { return run.trajectory.empty() ? run.file : run.trajectory; };
+  std::map<std::string, std::pair<RolloutError, RolloutError>> groups;
+  const auto add = [](RolloutError& sum, const RolloutError& error) { sum = total({sum, error}); };
+  for (std::size_t i = 0; i < assessment.runs->size(); ++i) {
+    const BenchRun& run = (*assessment.runs)[i].run();
+    for (const std::string& group : {name(run), fmt::format("kp {:g}", run.kp)}) {
+      add(groups[group].first, assessment.before[i]);
+      add(groups[group].second, assessment.after[i]);
+    }
+  }
+  pages::Bars bars{.title = title,
+                   .unit = position_unit(*results.bench, true),
+                   .names = {},
+                   .sets = {{.name = "before", .values = {}, .colour = pages::colour::kGrey},
+                            {.name = "after", .values = {}, .colour = pages::colour::kBlue}}};
+  for (const auto& [group, sums] : groups) {
+    bars.names.push_back(group);
+    bars.sets[0].values.push_back(1e3 * sums.first.mean_absolute_rad());
+    bars.sets[1].values.push_back(1e3 * sums.second.mean_absolute_rad());
+  }
+  page.bars(bars);
+}
+
+void show_parameters(pages::Page& page, const FitResults& results) {
+  pages::Table table{.header = {"parameter", "value", "unit", "range of the search", ""}, .rows = {}};
+  for (const FitParameter& p : results.problem->parameters()) {
+    const double x = value(results.fit.model, p.name);
+    table.rows.push_back({p.name, fmt::format("{:.5g}", x), p.unit, fmt::format("{:g} to {:g}", p.lower, p.upper),
+                          at_bound(p, x) ? "at its range's edge" : ""});
+  }
+  page.table(table);
+}
+
+}  // namespace
+
+pages::Page fit_report(const FitResults& results) {
+  const Assessment& shown = results.scored ? *results.scored : results.fitted;
+  const std::string unit = position_unit(*results.bench, true);
+  pages::Page page(fmt::format("{}: motor calibration", results.joint));
+  const double before = total(shown.before).mean_absolute_rad(), after = total(shown.after).mean_absolute_rad();
+  page.verdict(after < before ? pages::Tone::kGood : pages::Tone::kBad,
+               fmt::format("{}: mean absolute error {:.2f} {} before, {:.2f} {} after, on {} runs {}",
+                           results.fit.interrupted ? "interrupted" : "fitted", 1e3 * before, unit, 1e3 * after, unit,
+                           shown.runs->size(), results.scored ? "that were not fitted" : "that were fitted"));
+  page.heading("What the model makes of the runs");
+  show_runs(page, results, shown);
+  page.heading("Parameters");
+  show_parameters(page, results);
+  page.heading("Where the error is");
+  page.columns([&] {
+    show_groups(page, results, results.fitted, "fitted runs");
+    if (results.scored) show_groups(page, results, *results.scored, "runs that were not fitted");
+  });
+  page.heading("The search");
+  std::vector<double> at(results.fit.history.size()), rms(results.fit.history.size());
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    at[k] = static_cast<double>(k + 1);
+    rms[k] = 1e3 * std::sqrt(results.fit.history[k]);
+  }
+  if (at.size() > 1) {
+    page.chart({.title = fmt::format("lowest rms error so far, polish on all runs [{}]", unit),
+                .x_name = "evaluation",
+                .x_unit = "",
+                .lines = {{.name = "rms", .x = at, .y = rms}},
+                .height_px = 160});
+  }
+  page.paragraph(fmt::format("{}: {} evaluations, {:.0f} s of joint time, in {:.1f} s on {} threads.", results.method,
+                             results.fit.evaluations, results.fit.simulated_s, results.wall_s, results.threads));
+  return page;
+}
+
+}  // namespace pmg::calib

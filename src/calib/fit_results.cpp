@@ -1,0 +1,98 @@
+#include "calib/fit_results.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace pmg::calib {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json error_json(const RolloutError& error) {
+  return {{"mean_absolute", error.mean_absolute_rad()}, {"rms", std::sqrt(error.mean_square_rad2())}};
+}
+
+Json assessment_json(const Assessment& assessment) {
+  std::size_t dropouts = 0;
+  for (const SingleJoint& joint : *assessment.runs) dropouts += joint.run().recording.dropouts();
+  const RolloutError after = total(assessment.after);
+  Json json = {{"filter", assessment.filter},
+               {"runs", assessment.runs->size()},
+               {"samples", after.samples},
+               {"sensor_dropouts_left_out", dropouts},
+               {"error_before", error_json(total(assessment.before))},
+               {"error_after", error_json(after)},
+               {"by_run", Json::array()}};
+  for (std::size_t i = 0; i < assessment.runs->size(); ++i) {
+    json["by_run"].push_back(
+        {{"file", (*assessment.runs)[i].run().file}, {"mean_absolute", assessment.after[i].mean_absolute_rad()}});
+  }
+  return json;
+}
+
+Json parameter_json(const FitParameter& parameter, double value) {
+  return {{"value", value},
+          {"unit", parameter.unit},
+          {"lower", parameter.lower},
+          {"upper", parameter.upper},
+          {"at_bound", at_bound(parameter, value)}};
+}
+
+}  // namespace
+
+std::string position_unit(const Bench& bench, bool thousandths) {
+  return std::string(thousandths ? "m" : "") + (bench.rig == Rig::kLinear ? "m" : "rad");
+}
+
+bool at_bound(const FitParameter& parameter, double value) {
+  const double edge = 1e-3 * (parameter.upper - parameter.lower);
+  if (parameter.lower > 0.0) return value <= 1.01 * parameter.lower || value >= 0.99 * parameter.upper;
+  return value >= parameter.upper - edge || (parameter.lower < 0.0 && value <= parameter.lower + edge);
+}
+
+Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
+                  const JointModel& after, unsigned threads) {
+  return {filter, &runs, errors(before, runs, threads), errors(after, runs, threads)};
+}
+
+Json fit_json(const FitResults& results) {
+  Json json = {{"bench", results.bench->folder.string()},      {"joint", results.joint},
+               {"unit", position_unit(*results.bench, false)}, {"optimizer", results.method},
+               {"interrupted", results.fit.interrupted},       {"parameters", Json::object()}};
+  for (const FitParameter& parameter : results.problem->parameters()) {
+    json["parameters"][parameter.name] = parameter_json(parameter, value(results.fit.model, parameter.name));
+  }
+  if (results.bench->law == DriveLaw::kPositionPd) {  // where all runs were told the same gains
+    const BenchRun& run = results.problem->runs().front().run();
+    json["gains"] = {{"kp_Nm_per_rad", results.fit.model.actuator.drive.kp_scale * run.kp},
+                     {"kd_Nm_s_per_rad", results.fit.model.actuator.drive.kd_scale * run.kd}};
+  }
+  json["fit"] = assessment_json(results.fitted);
+  if (results.scored) json["score"] = assessment_json(*results.scored);
+  json["evaluations"] = results.fit.evaluations;
+  json["simulated_s"] = results.fit.simulated_s;
+  json["wall_s"] = results.wall_s;
+  json["threads"] = results.threads;
+  json["start_losses"] = Json::array();
+  for (const Found& start : results.fit.starts) json["start_losses"].push_back(start.loss);
+  return json;
+}
+
+std::vector<std::string> motor_remarks(const FitResults& results) {
+  const std::string unit = position_unit(*results.bench, true);
+  const auto line = [&](const char* what, const Assessment& assessment) {
+    return fmt::format("{} {} runs ({}): mean absolute error {:.2f} {}", what, assessment.runs->size(),
+                       assessment.filter.empty() ? "all" : assessment.filter,
+                       1e3 * total(assessment.after).mean_absolute_rad(), unit);
+  };
+  std::vector<std::string> remarks = {
+      fmt::format("Written by pmg_calibrate_motor from {}", results.bench->folder.filename().string()),
+      line("fitted to", results.fitted)};
+  if (results.scored) remarks.push_back(line("scored on", *results.scored));
+  return remarks;
+}
+
+}  // namespace pmg::calib

@@ -1,0 +1,45 @@
+// A finished fit for people and machines: fit.json, report.html, and the remarks of motor.yaml.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/motor_fit.hpp"
+#include "pages/page.hpp"
+
+namespace pmg::calib {
+
+/// Runs and what a model makes of them.
+struct Assessment {
+  std::string filter;  ///< of runs.csv
+  const std::vector<SingleJoint>* runs = nullptr;
+  std::vector<RolloutError> before, after;  ///< a run each: the start of the fit, its result
+};
+
+struct FitResults {
+  const Bench* bench = nullptr;
+  const FitProblem* problem = nullptr;
+  Fit fit;
+  std::string method, joint;
+  unsigned threads = 1;
+  double wall_s = 0.0;
+  Assessment fitted;
+  std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
+};
+
+Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
+                  const JointModel& after, unsigned threads);
+
+nlohmann::ordered_json fit_json(const FitResults& results);
+pages::Page fit_report(const FitResults& results);
+std::vector<std::string> motor_remarks(const FitResults& results);
+
+/// "rad" and "mrad" of a turning joint, "m" and "mm" of a linear axis.
+std::string position_unit(const Bench& bench, bool thousandths);
+
+/// At the edge of its range: what the fit would like to be is beyond.
+bool at_bound(const FitParameter& parameter, double value);
+
+}  // namespace pmg::calib
