@@ -73,13 +73,13 @@ std::pair<double, double> beyond(double excess, double width) {
   return {width * (z > 30.0 ? z : std::log1p(std::exp(z))), 1.0 / (1.0 + std::exp(-z))};
 }
 
-/// Correlation of one joint's curve with the reference, and RMS distance from it: two residuals of all the left leg's
-/// knots.
+/// Correlation of one joint's curve with the reference, RMS distance from it, and its share of the reference's
+/// amplitude: three residuals of all the left leg's knots.
 class ShapeCost : public ceres::CostFunction {
  public:
   ShapeCost(const RobotLegs& legs, const GaitTask& task, const ShapeGoal& goal)
       : goal_(goal), weights_(task.weights), stand_(legs.stand[kLeft][static_cast<Eigen::Index>(goal.role)]) {
-    set_num_residuals(2);
+    set_num_residuals(kResiduals);
     mutable_parameter_block_sizes()->assign(kKnots, kLegJoints);
     for (std::size_t k = 0; k < kClipSamples; ++k) {
       reference_[static_cast<Eigen::Index>(k)] = task.reference[k][kLeft][static_cast<Eigen::Index>(goal.role)];
@@ -102,23 +102,30 @@ class ShapeCost : public ceres::CostFunction {
     const Curve b = reference_.array() - reference_.mean();
     const double norms = a.norm() * b.norm();
     const double correlation = a.dot(b) / norms;
+    const double amplitude = a.dot(b) / b.squaredNorm();
     constexpr double kCorrelationWidth = 0.0015;
     constexpr double kRmsWidth_rad = 0.003;
+    constexpr double kAmplitudeWidth = 0.01;
     const auto [short_of, short_slope] = beyond(goal_.correlation - correlation, kCorrelationWidth);
     const auto [over, over_slope] = beyond(rms - goal_.rms_rad, kRmsWidth_rad);
+    const auto [small, small_slope] = beyond(goal_.amplitude - amplitude, kAmplitudeWidth);
     residual[0] = weights_.correlation * short_of;
     residual[1] = weights_.rms * over;
+    residual[2] = weights_.amplitude * small;
     if (jacobian != nullptr) {
       const Curve slope = b / norms - correlation / a.squaredNorm() * a;  // has mean zero
       const Eigen::Matrix<double, kKnots, 1> d0 = -weights_.correlation * short_slope * (basis_.transpose() * slope);
       const Eigen::Matrix<double, kKnots, 1> d1 =
           weights_.rms * over_slope / (rms * static_cast<double>(kClipSamples)) * (basis_.transpose() * e);
+      const Eigen::Matrix<double, kKnots, 1> d2 =
+          -weights_.amplitude * small_slope / b.squaredNorm() * (basis_.transpose() * b);
       for (std::size_t i = 0; i < kKnots; ++i) {
         if (jacobian[i] != nullptr) {
-          Eigen::Map<Eigen::Matrix<double, 2, kLegJoints, Eigen::RowMajor>> J(jacobian[i]);
+          Eigen::Map<Eigen::Matrix<double, kResiduals, kLegJoints, Eigen::RowMajor>> J(jacobian[i]);
           J.setZero();
           J(0, static_cast<Eigen::Index>(goal_.role)) = d0[static_cast<Eigen::Index>(i)];
           J(1, static_cast<Eigen::Index>(goal_.role)) = d1[static_cast<Eigen::Index>(i)];
+          J(2, static_cast<Eigen::Index>(goal_.role)) = d2[static_cast<Eigen::Index>(i)];
         }
       }
     }
@@ -126,6 +133,7 @@ class ShapeCost : public ceres::CostFunction {
   }
 
  private:
+  static constexpr int kResiduals = 3;
   using Curve = Eigen::Matrix<double, kClipSamples, 1>;
   ShapeGoal goal_;
   GaitWeights weights_;
@@ -300,8 +308,8 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
     add_residuals(legs, task, targets, table, problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = round == 0 ? 80 : 16;
-    options.function_tolerance = 1e-4;
+    options.max_num_iterations = round == 0 ? 160 : 40;
+    options.function_tolerance = 1e-5;
     options.num_threads = 1;  // the same bytes every time
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

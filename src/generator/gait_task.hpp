@@ -37,7 +37,8 @@ struct Addition {
 struct ShapeGoal {
   LegRole role = kKnee;
   double correlation = 0.95;  ///< at least
-  double rms_rad = 0.1;       ///< at most
+  double rms_rad = 0.1;       ///< at most, means included
+  double amplitude = 0.0;     ///< at least this share of the reference's: slope of the regression on it
 };
 
 /// The clip at one gain, with or without something added: one set of ground residuals.
@@ -65,6 +66,7 @@ struct GaitWeights {
   LegVector<double> bias = LegVector<double>::Constant(1.0);       ///< per rad, of their means
   double correlation = 20.0;                                       ///< per 1 short of a ShapeGoal
   double rms = 6.0;                                                ///< per rad beyond a ShapeGoal
+  double amplitude = 10.0;                                         ///< per 1 short of a ShapeGoal
   double limit = 50.0;                                             ///< per rad beyond
   double smooth = 2e-4;                                            ///< per rad/cycle^2
 };

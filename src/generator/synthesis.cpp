@@ -75,30 +75,34 @@ GaitTask forward_task(const Making& making) {
   task.duty_factor = 0.62;
   task.velocity = {0.8, 0.0, 0.0};
   task.sway_m = 0.015;
-  task.clearance_m = 0.024;
-  task.flat_from = 0.25;
-  task.flat_to = 0.55;
-  // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid one that at half
-  // amplitude shall neither leave the other foot in the air nor scrape the ground can't: joints follow the published
-  // curves as far as that allows, and the pelvis lifts the swinging side.
-  task.hike_rad = 0.11;
+  task.clearance_m = 0.026;
+  task.foot_gap_m = 0.045;
+  task.flat_from = 0.2;
+  task.flat_to = 0.62;
+  // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid one pivots over its
+  // toe edge; that at half amplitude it shall neither leave the other foot in the air nor scrape the ground limits by
+  // how much. The pelvis lifts the swinging side, and the ankle moves about a mean a few degrees above the published
+  // one: its movement counts, not its offset.
+  task.hike_rad = 0.14;
   task.reference = published_reference(making.legs);
   task.shape = {
-      {kHipPitch, 0.956, 5.75 * kDegree}, {kKnee, 0.953, 5.75 * kDegree}, {kAnklePitch, 0.953, 5.75 * kDegree}};
+      {kHipPitch, 0.956, 5.5 * kDegree}, {kKnee, 0.953, 5.4 * kDegree}, {kAnklePitch, 0.98, 4.8 * kDegree, 0.89}};
   task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
-  task.weights.bias << 1.0, 6.0, 6.0, 1.0, 1.0, 6.0;
-  task.weights.slip = 16.0;
-  task.weights.step_height = 900.0;
+  task.weights.bias << 1.0, 6.0, 6.0, 1.0, 0.1, 6.0;
+  task.weights.slip = 12.0;
+  task.weights.step_height = 1200.0;
   task.weights.step_height_free_m = 0.007;
   task.weights.velocity = 12.0;
-  task.weights.foot_flat = 3.0;
+  task.weights.foot_flat = 8.0;
   task.weights.clearance = 200.0;
-  task.weights.above_ground = 1000.0;
+  task.weights.above_ground = 1500.0;
   task.weights.correlation = 300.0;
   task.weights.rms = 200.0;
+  task.weights.amplitude = 60.0;
+  task.weights.height = 90.0;
   task.weights.velocity_yaw = 4.0;
   task.weights.limit = 300.0;
-  task.weights.smooth = 4e-3;
+  task.weights.smooth = 1.2e-3;
   task.scenarios = scenarios(making, 0.36);
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
   return task;
@@ -111,12 +115,14 @@ GaitTask backward_task(const Making& making, const LegTrajectory& forward, const
   task.velocity = {-0.5, 0.0, 0.0};
   task.sway_m = 0.015;
   task.clearance_m = 0.045;
+  task.foot_gap_m = 0.045;
   task.flat_from = 0.3;
   task.flat_to = 0.85;
   const double scale = (0.5 * task.period_s) / (0.8 * forward_task.period_s);
   task.reference = reversed_reference(making.legs, forward, forward_task.duty_factor, scale);
   task.weights.reference << 2.0, 1.5, 1.5, 2.0, 2.0, 0.5;
   task.weights.velocity = 12.0;
+  task.weights.height = 30.0;
   task.weights.velocity_yaw = 6.0;
   task.scenarios = scenarios(making, 0.5);
   return task;
@@ -129,11 +135,11 @@ GaitTask lateral_task(const Making& making) {
   task.duty_factor = 0.61;  // with walking's windows: mixtures of the two then agree about the ground
   task.velocity = {0.0, 0.35, 0.0};
   task.symmetric = false;
-  task.height_m = -0.02;
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.035;
   task.weights.reference = LegVector<double>::Constant(1.5);
   task.weights.velocity = 12.0;
+  task.weights.height = 60.0;
   task.weights.velocity_yaw = 6.0;
   task.scenarios = scenarios(making, 0.6);
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
@@ -155,6 +161,7 @@ GaitTask turn_task(const Making& making) {
   task.foot_gap_m = 0.03;
   task.weights.reference = LegVector<double>::Constant(1.5);
   task.weights.velocity = 12.0;
+  task.weights.height = 30.0;
   task.weights.velocity_yaw = 6.0;
   task.scenarios = scenarios(making, 0.6);
   task.scenarios.push_back({0.6, 8.0, posture_addition(making, kHeight, -0.05)});
