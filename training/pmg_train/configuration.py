@@ -66,7 +66,7 @@ _EXPONENTIAL = {"weight": Number, "s": Number}
 
 CONFIG = {
     "tick_s": Number,
-    "physics": {"timestep_s": Number, "iterations": Number, "ls_iterations": Number, "contacts_per_world": Number,
+    "physics": {"timestep_s": Number, "deployed_timestep_s": Number, "iterations": Number, "ls_iterations": Number, "contacts_per_world": Number,
                 "constraints_per_world": Number, "jacobian": Jacobian},
     "action_scale": Number,
     "gains": Pairs,

@@ -9,6 +9,7 @@ import math
 import torch
 
 from pmg_train import randomization, rewards
+from pmg_train.actuation import target_shares
 from pmg_train.observation import Observation
 from pmg_train.physics import Worlds
 from pmg_train.reference_pool import ReferencePool
@@ -24,11 +25,12 @@ class Environment:
         model = training_model(mjcf, description, config["gains"], config["physics"])
         substeps = round(self.tick_s / model.opt.timestep)
         torso, feet = description["torso_link"], description["foot_links"]
-        self.robots = randomization.draw(ranges, model, torso, worlds, model.opt.timestep, device)
+        self.robots = randomization.draw(ranges, model, torso, worlds, device)
         self.worlds = Worlds(model, worlds, substeps, feet, config["physics"], device)
+        self.shares = target_shares(self.robots.delay_s, self.tick_s, model.opt.timestep, config["physics"]["deployed_timestep_s"])
         self.worlds.apply(self.robots, torso)
         self.device = self.worlds.torch_device
-        self._constants(model, description, torso, feet, substeps)
+        self._constants(model, description, torso, feet)
         self.fields = fields
         self._state()
 
@@ -37,7 +39,7 @@ class Environment:
     def _tensor(self, values) -> torch.Tensor:
         return torch.tensor(values, dtype=torch.float32, device=self.device)
 
-    def _constants(self, model, description, torso, feet, substeps) -> None:
+    def _constants(self, model, description, torso, feet) -> None:
         joints = description["joints"]
         self.stand = self._tensor([j["stand_rad"] for j in joints])
         self.lower = self._tensor([j["lower_rad"] for j in joints])
@@ -56,7 +58,6 @@ class Environment:
         self.standing_height = description["standing_height_m"]
         self.command_lower = self._tensor([c["lower"] for c in description["command"]])
         self.command_upper = self._tensor([c["upper"] for c in description["command"]])
-        self.substeps = substeps
         self.up = self._tensor([[0, 0, 1.0]])
         amplitude = self.ranges["upper_body"]["amplitude_rad"]
         for key in amplitude:
@@ -84,7 +85,7 @@ class Environment:
         self.time_s, self.kick_in_s, self.kick_share = zeros(n), zeros(n), torch.ones((), device=self.device)
         self.episode_length_s = zeros(n)
         self.action, self.action_1, self.action_2 = zeros(n, actions), zeros(n, actions), zeros(n, actions)
-        self.targets = zeros(3, n, joints)
+        self.targets = zeros(self.shares.shape[1], n, joints)  # newest first
         self.q_ref = zeros(n, joints)
         self.sway = zeros(n, 4, joints)  # offset, amplitude, frequency, phase
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
@@ -203,12 +204,9 @@ class Environment:
         target[:, :self.actions] += self.action_scale * self.action
         # The drive holds what its encoder says, as in the controller's simulation.
         target = torch.maximum(torch.minimum(target, self.upper), self.lower) - self.robots.encoder_offset
-        self.targets.copy_(torch.cat([target[None], self.targets[:2]], 0))
-        for k in range(self.substeps):
-            ago = ((self.robots.delay_steps - k).clamp(min=0) + self.substeps - 1) // self.substeps
-            chosen = torch.where((ago == 0)[:, None], self.targets[0],
-                                 torch.where((ago == 1)[:, None], self.targets[1], self.targets[2]))
-            self.worlds.target[k].copy_(chosen)
+        self.targets.copy_(torch.cat([target[None], self.targets[:-1]], 0))
+        for now, share in zip(self.worlds.target, self.shares, strict=True):
+            now.copy_((share * self.targets).sum(0))
         self.kick_in_s -= self.tick_s
         due = self.kick_in_s < 0
         push = (2 * torch.rand(self.n, 6, device=self.device) - 1) * self.kick * self.kick_share

@@ -5,6 +5,7 @@ import mujoco_warp as mjw
 import torch
 import warp as wp
 
+from pmg_train.actuation import step_inertia
 from pmg_train.randomization import Robots
 
 BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature",
@@ -39,7 +40,8 @@ class Worlds:
 
     def __init__(self, model: mujoco.MjModel, worlds: int, substeps: int, foot_links: list[str], limits: dict,
                  device: str):
-        self.model, self.device, self.substeps = model, device, substeps
+        self.model, self.device = model, device
+        self.deployed_step_s = limits["deployed_timestep_s"]
         with wp.ScopedDevice(device):
             self.m = mjw.put_model(model, batch_sizes={name: worlds for name in BATCHED})
             self.d = mjw.make_data(model, nworld=worlds, nconmax=limits["contacts_per_world"],
@@ -67,8 +69,15 @@ class Worlds:
         bias = view(self.m.actuator_biasprm)
         bias[:, :, 1] *= robots.kp
         bias[:, :, 2] *= robots.kd
-        view(self.m.dof_armature)[:, 6:] *= robots.armature
+        self._set_armature(robots.armature)
         view(self.m.dof_frictionloss)[:, 6:] *= robots.joint_friction
+
+    def _set_armature(self, factor: torch.Tensor) -> None:
+        """The drawn one, less what the damping in these longer steps adds."""
+        model, armature = self.model, wp.to_torch(self.m.dof_armature)[:, 6:]
+        kd = torch.tensor(model.dof_damping[6:] - model.actuator_biasprm[:, 2], dtype=torch.float32, device=self.torch_device)
+        added = step_inertia(kd, model.opt.timestep, self.deployed_step_s)
+        armature.copy_(torch.maximum(armature * factor - added, 0.1 * armature))
 
     def capture(self) -> None:
         """Compiles; on a GPU also records one call as a CUDA graph."""

@@ -16,12 +16,12 @@ class Robots:
     joint_friction: torch.Tensor  # factor a joint
     kp: torch.Tensor              # factor a joint
     kd: torch.Tensor              # factor a joint
-    delay_steps: torch.Tensor     # int64, physics steps
+    delay_s: torch.Tensor         # from the command to the torque
     encoder_offset: torch.Tensor  # [rad]
     privileged: torch.Tensor      # what the critic may know, about unit size
 
 
-def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, timestep_s: float, device: str) -> Robots:
+def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, device: str) -> Robots:
     def uniform(bounds, *shape):
         low, high = (-bounds, bounds) if isinstance(bounds, (int, float)) else bounds
         return low + (high - low) * torch.rand(worlds, *shape, device=device)
@@ -36,10 +36,17 @@ def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, timestep_
     for side, name in enumerate(("left", "right")):
         mass[:, model.body(f"{name}_wrist_pitch_link").id] += payload[:, side]
     friction, com = uniform(ranges["friction"]), uniform(ranges["torso_center_of_mass_m"], 3)
-    low, high = (d / timestep_s for d in ranges["delay_s"])
-    delay = torch.randint(round(low), round(high) + 1, (worlds,), device=device)
+    delay = uniform(ranges["delay_s"])
     armature = uniform(ranges["armature_factor"], joints)
-    privileged = torch.cat([friction[:, None], torso_mass[:, None] / 3, com * 30, delay[:, None] / 4.0, payload], 1)
+    privileged = torch.cat([friction[:, None], torso_mass[:, None] / 3, com * 30, delay[:, None] * 50, payload], 1)
     return Robots(friction, mass, link_mass, com, armature, uniform(ranges["joint_friction_factor"], joints),
                   uniform(ranges["kp_factor"], joints), uniform(ranges["kd_factor"], joints), delay,
                   uniform(ranges["encoder_offset_rad"], joints), privileged)
+
+
+def nominal(model: mujoco.MjModel, worlds: int, device: str) -> Robots:
+    """As the model says."""
+    one = torch.ones(worlds, model.nu, device=device)
+    mass = torch.tensor(model.body_mass, dtype=torch.float32, device=device).repeat(worlds, 1)
+    return Robots(torch.full((worlds,), 0.8, device=device), mass, torch.ones_like(mass), torch.zeros(worlds, 3, device=device),
+                  one, one, one, one, torch.zeros(worlds, device=device), 0 * one, torch.zeros(worlds, 0, device=device))

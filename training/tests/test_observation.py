@@ -72,19 +72,3 @@ def test_a_robot_enters_the_stream_where_the_reference_is(setting):
     assert legs.abs().max() < 0.2  # the disturbance of a start is 0.03 rad, one sigma
     expected = env.pool.rows[env.tick * env.pool.streams + env.stream]
     assert torch.equal(env.row, expected)
-
-
-def test_delay_is_counted_in_physics_steps(setting):
-    """The target of a tick acts after exactly this robot's delay."""
-    env, _ = setting
-    env.reset_all()
-    env.worlds.qvel.zero_()
-    env.kick_in_s.fill_(100.0)
-    env.robots.delay_steps[:] = torch.tensor([1, 4])
-    seen = []
-    for value in (0.0, 1.0, 1.0, 1.0, 1.0):
-        env.act(torch.full((WORLDS, 12), value))
-        seen += [(target[:, 0] - env.q_ref[:, 0]).clone() for target in env.worlds.target]
-    moved = torch.stack(seen) > 0.1
-    first = [int(moved[:, w].float().argmax()) for w in range(WORLDS)]
-    assert first == [2 + 1, 2 + 4]

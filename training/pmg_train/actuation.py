@@ -1,0 +1,35 @@
+"""What lies between a tick's target and the drives, as src/sim has it: delay, and the length of a physics step."""
+
+import math
+
+import torch
+
+
+def step_lead_s(step_s: float, deployed_step_s: float) -> float:
+    """How much earlier a command acts in training's longer steps.
+
+    A semi-implicit Euler step uses the force of its beginning for a velocity that belongs to half a step later: whatever
+    changes from step to step comes half a step early, here and in the controller's simulation.
+    """
+    return (step_s - deployed_step_s) / 2
+
+
+def target_shares(delay_s: torch.Tensor, tick_s: float, step_s: float, deployed_step_s: float) -> torch.Tensor:
+    """(steps a tick, ages, worlds, 1): the part of each physics step in which the target of so many ticks ago is at the drive.
+
+    delay_s (worlds,) may be of any length: the step that it ends in gets the mean of both targets.
+    """
+    late = delay_s + step_lead_s(step_s, deployed_step_s)
+    steps, ages = round(tick_s / step_s), 1 + math.ceil(float(late.max()) / tick_s - 1e-9)
+    shares = torch.zeros(steps, ages, len(delay_s), 1, device=delay_s.device)
+    for step in range(steps):
+        for age in range(ages):
+            begins, ends = late - age * tick_s, late - (age - 1) * tick_s
+            overlap = ends.clamp(max=(step + 1) * step_s) - begins.clamp(min=step * step_s)
+            shares[step, age, :, 0] = overlap.clamp(min=0) / step_s
+    return shares
+
+
+def step_inertia(kd: torch.Tensor, step_s: float, deployed_step_s: float) -> torch.Tensor:
+    """Inertia [kg m^2] that a damping kd [Nm s/rad], taken at the end of a step, adds beyond what the deployed step adds."""
+    return kd * step_lead_s(step_s, deployed_step_s)
