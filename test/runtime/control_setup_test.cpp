@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "generator_core/allocation_count.hpp"
 #include "policy/linear_policy.hpp"
 #include "runtime/fixtures.hpp"
 
@@ -85,6 +86,25 @@ TEST(ControlSetup, EveryVariantRunsAsItsFileSays) {
       EXPECT_GT(hip_swing_rad, 0.1) << to_string(variant);
     }
   }
+}
+
+TEST(ControlSetup, EveryTickOfAWalkWithAPolicyAllocatesAsOften) {
+  if (test::allocation_count() < 0) GTEST_SKIP() << "allocations can't be counted in this build";
+  const test::LinearPolicyFile file(clips_of_z1(), Variant::kPmg);
+  TurningRobot robot(setup_with(file.file()));
+  while (robot.step().mode != Mode::kStand) ASSERT_LT(robot.now_ns, 1'000'000'000);
+  long each = -1;
+  for (int k = 0; k < 1000; ++k) {
+    if (k == 400) robot.request.mode = Mode::kStand;
+    if (k == 600) robot.request.mode = Mode::kWalk;
+    const long before = test::allocation_count();
+    const TickResult& result = robot.step();
+    const long spent = test::allocation_count() - before;
+    ASSERT_TRUE(result.mode == Mode::kStand || result.mode == Mode::kWalk) << "tick " << k;
+    if (each < 0) each = spent;
+    ASSERT_EQ(spent, each) << "tick " << k;
+  }
+  EXPECT_GT(each, 0) << "the count must see ONNX Runtime's";
 }
 
 TEST(ControlSetup, WithoutAPolicyNoVariantIsNamed) {
