@@ -26,7 +26,7 @@ constexpr const char* kFooter = R"(
 BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/motor.yaml (what pmg_sil --motor
 reads), DIR/fit.json and DIR/report.html. Fitted are the drive's gain and damping, the rotor's inertia, whatever
 bench.yaml calls unknown, and what --also names: damping, friction, stribeck, load_friction, asymmetry, presliding,
-delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, backlash, compliance,
+delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, velocity_lag, backlash, compliance,
 cogging, offset, inertia, gravity, or a parameter of motor.yaml by its own name.
 
 Example:
@@ -39,6 +39,7 @@ struct Arguments {
   fs::path bench, out;
   std::vector<std::string> also, ranges, fixed;
   std::string fit, score, joint, method = "sbplx";
+  double step_s = 0.0;
   unsigned starts = 8, threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
   bool only = false, json = false;
 };
@@ -60,6 +61,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--starts", arguments.starts, "how many")->check(CLI::Range(1U, 1000U))->capture_default_str();
   app.add_option("--seed", arguments.seed, "of starts and random searches")->capture_default_str();
   app.add_option("--threads", arguments.threads, "at most")->check(CLI::Range(1U, 256U));
+  app.add_option("--step", arguments.step_s,
+                 "of the simulation [s]; the SIL's, or a quarter of the recording's, if not given")
+      ->check(CLI::Range(1e-5, 0.01));
   app.add_option("--joint", arguments.joint, "its name in motor.yaml; the bench folder's if not given");
   app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
 }
@@ -117,14 +121,14 @@ calib::JointModel start_model(const Arguments& arguments, const calib::Bench& be
   return model;
 }
 
-std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::string& filter,
+std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::string& filter, double step_s,
                                      apps::ProgressLine& progress) {
   std::vector<calib::SingleJoint> joints;
   for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter), [&](double share) {
          progress.show(share, "reading " + bench.folder.string());
          return interrupt_requested == 0;
        })) {
-    joints.emplace_back(bench, std::move(run), calib::simulation_step_s(bench));
+    joints.emplace_back(bench, std::move(run), step_s);
   }
   return joints;
 }
@@ -181,8 +185,9 @@ int calibrate(const Arguments& arguments) {
   const calib::Bench bench = calib::read_bench(arguments.bench);
   const std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
   const calib::JointModel start = start_model(arguments, bench);
-  std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, progress), scored;
-  if (!arguments.score.empty()) scored = read(bench, arguments.score, progress);
+  const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
+  std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, step_s, progress), scored;
+  if (!arguments.score.empty()) scored = read(bench, arguments.score, step_s, progress);
   expect_apart(fitted, scored);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));
   calib::FitOptions options;

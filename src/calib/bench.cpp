@@ -52,6 +52,7 @@ void read_cascade(Bench& bench, ConfigReader& drive, const std::string& length) 
   bench.kd_of_law = drive.required<double>("kv_V_s_per_" + length, model::positive());
   bench.kp_of_law = kp_per_s * bench.kd_of_law;
   bench.known.drive.limit = drive.optional<double>("limit_V", 10.0, model::positive());
+  bench.known.command.hold_s = 1.0 / bench.sample_rate_hz;  // a digital loop: command and position of the same instant
   take(bench, drive, length == "m" ? "gtau_N_per_V" : "gtau_Nm_per_V", "drive.torque_per_unit_Nm");
 }
 

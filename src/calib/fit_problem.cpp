@@ -16,6 +16,7 @@ namespace pmg::calib {
 namespace {
 
 constexpr double kSenseless_rad2 = 1e6;  // a loss beyond all real ones
+constexpr double kBend = 5.0;            // of a range from 0: its first tenth of the cube is 1/230 of it
 constexpr const char* kInertia = "load.inertia_scale";
 constexpr const char* kGravity = "load.gravity_scale";
 
@@ -42,6 +43,7 @@ const std::vector<Effect>& effects() {
       {"brake", {"drive.brake_when_disabled"}},
       {"zero_offset", {"sensor.zero_offset_rad"}},
       {"sensor_lag", {"sensor.lag_s"}},
+      {"velocity_lag", {"sensor.velocity_lag_s"}},
       {"backlash",
        {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad", "transmission.backlash_rad"}},
       {"compliance", {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad"}},
@@ -56,14 +58,14 @@ const std::vector<Effect>& effects() {
 double to_range(const FitParameter& p, double unit) {
   const double u = std::clamp(unit, 0.0, 1.0);
   if (p.lower > 0.0 && p.upper / p.lower >= 10.0) return p.lower * std::pow(p.upper / p.lower, u);
-  if (p.lower == 0.0) return p.upper * u * u * u;
+  if (p.lower == 0.0) return p.upper * std::expm1(kBend * u) / std::expm1(kBend);
   return p.lower + u * (p.upper - p.lower);
 }
 
 double to_unit(const FitParameter& p, double value) {
   const double x = std::clamp(value, p.lower, p.upper);
   if (p.lower > 0.0 && p.upper / p.lower >= 10.0) return std::log(x / p.lower) / std::log(p.upper / p.lower);
-  if (p.lower == 0.0) return std::cbrt(x / p.upper);
+  if (p.lower == 0.0) return std::log1p(x / p.upper * std::expm1(kBend)) / kBend;
   return (x - p.lower) / (p.upper - p.lower);
 }
 
@@ -72,9 +74,9 @@ double to_unit(const FitParameter& p, double value) {
 FitParameter fit_parameter(const std::string& name, const Bench& bench) {
   if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
   const sim::ActuatorParameter& p = sim::actuator_parameter(name);
-  // A linear axis carries kilograms where a joint has grams at a metre's lever.
-  const bool heavy = bench.rig == Rig::kLinear && (p.unit.starts_with("Nm") || p.unit.starts_with("kg"));
-  const double scale = heavy ? 1000.0 : 1.0;
+  // A linear axis moves kilograms by hundreds of newtons.
+  const bool linear = bench.rig == Rig::kLinear;
+  const double scale = linear && p.unit.starts_with("kg") ? 1000.0 : linear && p.unit.starts_with("Nm") ? 100.0 : 1.0;
   return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
 }
 

@@ -32,8 +32,8 @@ std::vector<std::string> basic_parameters(const Bench& bench);
 double value(const JointModel& model, const std::string& name);
 void set(JointModel& model, const std::string& name, double value);
 
-/// Points of a search are in the unit cube: logarithmic where a range spans decades above 0, cubic from 0, else linear,
-/// so that a step of an optimiser means as much at a servo's end of the range as at a knee's.
+/// Points of a search are in the unit cube: logarithmic where a range spans decades above 0, exponential from 0, else
+/// linear, so that a step of an optimiser means as much at a servo's end of the range as at a knee's.
 class FitProblem {
  public:
   /// start: the known rest of the model. Throws std::invalid_argument without parameters or runs.

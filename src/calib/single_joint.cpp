@@ -26,7 +26,7 @@ sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t
 
 }  // namespace
 
-double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 1.0 / bench.sample_rate_hz); }
+double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
 
 SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s) : run_(std::move(run)), step_s_(step_s) {
   const Recording& r = run_.recording;

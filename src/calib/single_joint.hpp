@@ -60,7 +60,8 @@ class SingleJoint {
   std::vector<Place> place_of_sample_;
 };
 
-/// The simulation's step for a bench: the SIL's 2 ms, or the recording's own period where that is shorter.
+/// The simulation's step for a bench: the SIL's 2 ms, or less where the recording is faster: damping that is
+/// taken implicitly acts like an inertia of step times damping, which a fit would take off the rotor's.
 double simulation_step_s(const Bench& bench);
 
 }  // namespace pmg::calib

@@ -20,6 +20,7 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
       step_s_(step_s),
       elastic_(std::isfinite(parameters.transmission.stiffness_Nm_per_rad)),
       lagging_(parameters.sensor.lag_s > 0.0),
+      velocity_lagging_(parameters.sensor.velocity_lag_s > 0.0),
       delaying_(parameters.command.delay_s > 0.0),
       rate_limited_(std::isfinite(parameters.command.rate_limit_rad_s)),
       torque_speed_(std::isfinite(parameters.drive.stall_torque_Nm)),
@@ -45,10 +46,10 @@ void ActuatorModel::reset(double q_rad) {
   past_commands_rad_.fill(reading);
   newest_ = 0;
   command_rad_ = lagged_rad_ = sensed_before_rad_ = reading;
-  held_for_s_ = parameters_.command.hold_s;
+  held_for_s_ = parameters_.command.hold_s - step_s_;
   held_output_ = bristle_rad_ = load_Nm_ = 0.0;
   rotor_rad_ = q_rad;
-  rotor_rad_s_ = 0.0;
+  rotor_rad_s_ = lagged_rad_s_ = 0.0;
   given_ = {};
   given_at_rad_s_ = 0.0;
 }
@@ -88,12 +89,18 @@ double ActuatorModel::sensed(double q_rad) noexcept {
   return lagged_rad_;
 }
 
+double ActuatorModel::sensed_velocity(double dq_rad_s) noexcept {
+  if (!velocity_lagging_) return dq_rad_s;
+  lagged_rad_s_ += step_s_ / (parameters_.sensor.velocity_lag_s + step_s_) * (dq_rad_s - lagged_rad_s_);
+  return lagged_rad_s_;
+}
+
 ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
   const ActuatorParameters::Drive& p = parameters_.drive;
   const double in_time_rad = delaying_ ? delayed(input.q_rad) : input.q_rad;
   command_rad_ = rate_limited_ ? limited(in_time_rad) : in_time_rad;
   const double q_sensed_rad = sensed(q_rad);
-  const double dq_sensed_rad_s = lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s;
+  const double dq_sensed_rad_s = sensed_velocity(lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s);
   sensed_before_rad_ = q_sensed_rad;
   if (!input.enabled) {
     const double slope = -p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
@@ -103,9 +110,9 @@ ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_ra
   const double sag = std::max(0.0, 1.0 - p.supply_sag_per_Nm * std::abs(given_.torque_Nm));
   const double scale = p.torque_per_unit_Nm * input.supply * sag;
   const double kd = p.kd_scale * input.kd;
-  bool follows_speed = !lagging_;
+  bool follows_speed = !lagging_ && !velocity_lagging_;
   held_for_s_ += step_s_;
-  if (held_for_s_ >= parameters_.command.hold_s) {
+  if (held_for_s_ >= parameters_.command.hold_s - 1e-9) {
     held_for_s_ = std::min(held_for_s_ - parameters_.command.hold_s, step_s_);
     double error_rad = command_rad_ - q_sensed_rad;
     if (std::abs(error_rad) < p.dead_band_rad) error_rad = 0.0;

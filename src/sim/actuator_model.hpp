@@ -51,6 +51,7 @@ class ActuatorModel {
   double delayed(double q_command_rad) noexcept;
   double limited(double q_command_rad) noexcept;
   double sensed(double q_rad) noexcept;
+  double sensed_velocity(double dq_rad_s) noexcept;
   Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
   Line dry_friction(double dq_rad_s) noexcept;
   ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
@@ -58,13 +59,13 @@ class ActuatorModel {
 
   ActuatorParameters parameters_;
   double step_s_;
-  bool elastic_, lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_;
+  bool elastic_, lagging_, velocity_lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_;
 
   std::array<double, kDelaySteps + 2> past_commands_rad_{};
   int newest_ = 0;
   double command_rad_ = 0.0;  // after delay and rate limit
   double held_for_s_ = 0.0, held_output_ = 0.0;
-  double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0;
+  double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0, lagged_rad_s_ = 0.0;
   double bristle_rad_ = 0.0;
   double load_Nm_ = 0.0;  // through the gear, as of the step before
   double rotor_rad_ = 0.0, rotor_rad_s_ = 0.0;

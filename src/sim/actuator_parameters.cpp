@@ -31,6 +31,7 @@ constexpr std::array kParameters = {
     PMG_ACTUATOR_PARAMETER(sensor, zero_offset_rad, "rad", -0.15, 0.15, true),
     PMG_ACTUATOR_PARAMETER(sensor, quantum_rad, "rad", 0.0, 0.02, false),
     PMG_ACTUATOR_PARAMETER(sensor, lag_s, "s", 0.0, 0.03, false),
+    PMG_ACTUATOR_PARAMETER(sensor, velocity_lag_s, "s", 0.0, 0.03, false),
     PMG_ACTUATOR_PARAMETER(transmission, armature_kg_m2, "kg m^2", 1e-4, 0.5, false),
     PMG_ACTUATOR_PARAMETER(transmission, stiffness_Nm_per_rad, "Nm/rad", 5.0, 5000.0, false),
     PMG_ACTUATOR_PARAMETER(transmission, damping_Nm_s_per_rad, "Nm s/rad", 0.0, 10.0, false),

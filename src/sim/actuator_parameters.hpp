@@ -36,7 +36,8 @@ struct ActuatorParameters {
   struct Sensor {
     double zero_offset_rad = 0.0;  ///< reading minus truth
     double quantum_rad = 0.0;
-    double lag_s = 0.0;  ///< first order
+    double lag_s = 0.0;           ///< of the position, first order
+    double velocity_lag_s = 0.0;  ///< of the velocity beyond that of the position, first order
     bool operator==(const Sensor&) const = default;
   } sensor;
 
