@@ -24,7 +24,10 @@ class Witness final : public policy::Policy {
     return static_cast<Eigen::Index>(observation.layout().action_joints().size());
   }
   Variant variant() const override { return own_variant; }
-  void reset() noexcept override { observation.reset(); }
+  void reset() noexcept override {
+    observation.reset();
+    ++resets;
+  }
   policy::Status act(const model::RobotState& state, const Reference& given, const Command& command,
                      JointVector& q_des) noexcept override {
     ++calls;
@@ -38,7 +41,7 @@ class Witness final : public policy::Policy {
   Variant own_variant;
   policy::Observation observation;
   Eigen::VectorXf action;
-  int calls = 0;
+  int calls = 0, resets = 0;
   Reference reference;
   Command observed;
   Eigen::VectorXf seen;
@@ -53,6 +56,7 @@ class Trained {
         row_(description_["row_size"].get<std::size_t>()),
         seen_(description_["observation"]["size"].get<std::size_t>()) {}
 
+  void reset() { pmg_batch_reset(batch_.get()); }
   void step(const Command& user) {
     const std::vector<float> asked(user.u.begin(), user.u.end());
     ASSERT_EQ(pmg_batch_run(batch_.get(), 1, asked.data(), row_.data()), 0);
@@ -127,11 +131,12 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
   runtime::ModeRequest request;
   drive.source = request.source = runtime::Source::make("test", 1);
   drive.lease_s = 0.5;
-  request.mode = runtime::Mode::kWalk;
   model::RobotState state = standing_state(robot);
   std::int64_t now_ns = 0;
   int walked = 0;
   for (int k = 0; k < 1500; ++k) {
+    // In the middle it is laid down and picked up again.
+    request.mode = k >= 800 && k < 820 ? runtime::Mode::kDamping : runtime::Mode::kWalk;
     if (k % 150 == 0) drive.command = random_command(robot);
     state = random_state(robot, state);
     now_ns += 10'000'000;
@@ -139,10 +144,11 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
     state.bus_sample += 5;
     ++drive.sequence;
     ++request.sequence;
-    const int calls = witness.calls;
+    const int calls = witness.calls, resets = witness.resets;
     const runtime::TickResult& result =
         tick.step({.state = state, .now_ns = now_ns, .drives = {&drive, 1}, .requests = {&request, 1}});
     ASSERT_EQ(result.fault.code, runtime::FaultCode::kNone) << describe(result.fault, robot);
+    if (witness.resets > resets) training.reset();
     if (witness.calls == calls) continue;
     walked += result.mode == runtime::Mode::kWalk;
 
@@ -154,11 +160,12 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
     training.expect_field("dq_ref", witness.reference.dq);
     training.expect_field("contact", witness.reference.contact);
     training.expect_field("contact_weight", witness.reference.contact_weight);
-    const std::vector<float>& seen = training.observe(calls == 0, state, witness.action);
+    const std::vector<float>& seen = training.observe(witness.resets > resets, state, witness.action);
     ASSERT_EQ(seen, std::vector<float>(witness.seen.begin(), witness.seen.end()));
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(walked, 1000) << "the comparison must see a walk";
+  EXPECT_EQ(witness.resets, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(TableI, TickAgreement,
