@@ -1,0 +1,178 @@
+"""Drives and transmissions, batched: src/sim/actuator_model.cpp in torch, step by step, effect by effect.
+
+What each number means is said in src/sim/actuator_parameters.hpp; test/data/training/actuators.json holds what the C++ gives.
+"""
+
+import math
+
+import torch
+
+# By group and key of motor.yaml.
+NEUTRAL = {
+    "command.delay_s": 0.0, "command.rate_limit_rad_s": math.inf, "command.hold_s": 0.0,
+    "drive.kp_scale": 1.0, "drive.kd_scale": 1.0, "drive.limit": math.inf, "drive.dead_band_rad": 0.0,
+    "drive.torque_per_unit_Nm": 1.0, "drive.back_emf_s_per_rad": 0.0, "drive.supply_sag_per_Nm": 0.0,
+    "drive.brake_when_disabled": 0.0, "drive.stall_torque_Nm": math.inf, "drive.no_load_rad_s": math.inf,
+    "sensor.zero_offset_rad": 0.0, "sensor.quantum_rad": 0.0, "sensor.lag_s": 0.0, "sensor.velocity_lag_s": 0.0,
+    "transmission.armature_kg_m2": 0.0, "transmission.stiffness_Nm_per_rad": math.inf,
+    "transmission.damping_Nm_s_per_rad": 0.0, "transmission.backlash_rad": 0.0,
+    "friction.viscous_Nm_s_per_rad": 0.0, "friction.coulomb_Nm": 0.0, "friction.stribeck_Nm": 0.0,
+    "friction.stribeck_rad_s": 0.1, "friction.load_driving": 0.0, "friction.load_backdriving": 0.0,
+    "friction.asymmetry": 0.0, "friction.presliding_rad": 1e-3,
+    "ripple.amplitude_Nm": 0.0, "ripple.order": 1.0, "ripple.phase_rad": 0.0, "ripple.offset_Nm": 0.0,
+}
+
+
+class ActuatorModel:
+    """(worlds, joints) of them. No branch depends on values and every state tensor stays where it is: a CUDA graph can hold step()."""
+
+    def __init__(self, parameters: list[dict[str, float]], step_s: float, worlds: int, device="cpu", dtype=torch.float32):
+        """parameters: a map of what isn't neutral for each joint. ValueError on an unknown name."""
+        unknown = sorted({name for joint in parameters for name in joint} - set(NEUTRAL))
+        if unknown:
+            raise ValueError(f"actuator parameters {unknown}; expected some of {', '.join(NEUTRAL)}")
+        column = lambda name: torch.tensor([joint.get(name, NEUTRAL[name]) for joint in parameters], device=device, dtype=dtype)
+        self.p = p = {name: column(name) for name in NEUTRAL}
+        self.step_s = step_s
+        self.elastic = torch.isfinite(p["transmission.stiffness_Nm_per_rad"])
+        self.lagging, self.velocity_lagging = p["sensor.lag_s"] > 0, p["sensor.velocity_lag_s"] > 0
+        self.torque_speed = torch.isfinite(p["drive.stall_torque_Nm"])
+        # Where there is no such effect its number isn't used; a finite one keeps NaN out of what is computed all the same.
+        self.stall = torch.where(self.torque_speed, p["drive.stall_torque_Nm"], 1.0)
+        self.stiffness = torch.where(self.elastic, p["transmission.stiffness_Nm_per_rad"], 0.0)
+        steps = p["command.delay_s"] / step_s
+        ages = torch.arange(int(float(steps.max())) + 2, device=device, dtype=dtype)[:, None]
+        whole = torch.trunc(steps)
+        share = steps - whole
+        self.ages = torch.where(ages == whole, 1 - share, torch.where(ages == whole + 1, share, 0.0))[:, None]
+        state = lambda: torch.zeros(worlds, len(parameters), device=device, dtype=dtype)
+        self.past_commands = torch.stack([state() for _ in range(len(ages))])  # newest first
+        self.command, self.held_for, self.held_output = (state() for _ in range(3))
+        self.lagged, self.sensed_before, self.lagged_speed = (state() for _ in range(3))
+        self.bristle, self.load, self.rotor, self.rotor_speed = (state() for _ in range(4))
+        self.given_torque, self.given_slope, self.given_at = (state() for _ in range(3))
+
+    def reset(self, q: torch.Tensor, where: torch.Tensor | None = None) -> None:
+        """At rest at q [rad] (worlds, joints) and commanded there; where (worlds,) bool, or everywhere."""
+        mask = torch.ones_like(q[:, :1], dtype=torch.bool) if where is None else where[:, None]
+        put = lambda state, value: state.copy_(torch.where(mask, value, state))
+        reading = self.reading(q)
+        put(self.past_commands, reading)
+        for state in (self.command, self.lagged, self.sensed_before):
+            put(state, reading)
+        put(self.held_for, (self.p["command.hold_s"] - self.step_s).expand_as(q))
+        put(self.rotor, q)
+        for state in (self.held_output, self.lagged_speed, self.bristle, self.load, self.rotor_speed, self.given_torque,
+                      self.given_slope, self.given_at):
+            put(state, torch.zeros_like(q))
+
+    def reading(self, q: torch.Tensor) -> torch.Tensor:
+        """What the drive reports for joints at q [rad]."""
+        reading, quantum = q + self.p["sensor.zero_offset_rad"], self.p["sensor.quantum_rad"]
+        some = torch.where(quantum > 0, quantum, 1.0)
+        return torch.where(quantum > 0, some * torch.sign(reading) * torch.floor((reading / some).abs() + 0.5), reading)
+
+    def step(self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True) -> tuple[torch.Tensor, torch.Tensor]:
+        """Torque [Nm] and its slope in the joint's speed [Nm s/rad] during the step that begins at (q, dq)."""
+        p, h = self.p, self.step_s
+        motor_speed, motor_angle = torch.where(self.elastic, self.rotor_speed, dq), torch.where(self.elastic, self.rotor, q)
+        most = p["friction.presliding_rad"]
+        self.bristle.copy_(torch.minimum(torch.maximum(self.bristle + h * motor_speed, -most), most))
+        carried = self.given_torque + (self.given_slope - p["transmission.armature_kg_m2"] / h) * (dq - self.given_at)
+        self.load.copy_(torch.where(self.elastic, self.load, carried))
+        torque, slope = self._drive(q_des, kp, kd, q, motor_speed, dq_des, feed_forward, supply, enabled)
+        dry, dry_slope = self._dry_friction(motor_speed)
+        viscous = p["friction.viscous_Nm_s_per_rad"]
+        torque = torque + dry - viscous * motor_speed + p["ripple.offset_Nm"]
+        torque = torque + p["ripple.amplitude_Nm"] * torch.sin(p["ripple.order"] * motor_angle + p["ripple.phase_rad"])
+        slope = slope + dry_slope - viscous
+        elastic_torque, elastic_slope = self._elastic(torque, slope, q, dq)
+        self.given_torque.copy_(torch.where(self.elastic, elastic_torque, torque))
+        self.given_slope.copy_(torch.where(self.elastic, elastic_slope, slope))
+        self.given_at.copy_(dq)
+        return self.given_torque, self.given_slope
+
+    def _commanded(self, q_des: torch.Tensor) -> torch.Tensor:
+        """After delay (straight between two steps) and rate limit."""
+        self.past_commands.copy_(torch.cat([q_des.expand_as(self.command)[None], self.past_commands[:-1]]))
+        in_time = (self.ages * self.past_commands).sum(0)
+        most = self.p["command.rate_limit_rad_s"] * self.step_s
+        return self.command + torch.minimum(torch.maximum(in_time - self.command, -most), most)
+
+    def _sensed(self, q: torch.Tensor) -> torch.Tensor:
+        reading, lag = self.reading(q), self.p["sensor.lag_s"]
+        self.lagged.add_(self.step_s / (lag + self.step_s) * (reading - self.lagged))
+        return torch.where(self.lagging, self.lagged, reading)
+
+    def _sensed_speed(self, dq: torch.Tensor) -> torch.Tensor:
+        self.lagged_speed.add_(self.step_s / (self.p["sensor.velocity_lag_s"] + self.step_s) * (dq - self.lagged_speed))
+        return torch.where(self.velocity_lagging, self.lagged_speed, dq)
+
+    def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled) -> tuple[torch.Tensor, torch.Tensor]:
+        p, h = self.p, self.step_s
+        self.command.copy_(self._commanded(q_des))
+        sensed = self._sensed(q)
+        dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / h, dq))
+        self.sensed_before.copy_(sensed)
+        unit, back_emf, hold = p["drive.torque_per_unit_Nm"], p["drive.back_emf_s_per_rad"], p["command.hold_s"]
+        if not enabled:
+            slope = -p["drive.brake_when_disabled"] * unit * back_emf
+            return slope * dq, slope.expand_as(dq)
+
+        scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
+        kd = p["drive.kd_scale"] * kd
+        held_for = self.held_for + h
+        due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
+        self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), held_for))
+        error = self.command - sensed
+        error = torch.where(error.abs() < p["drive.dead_band_rad"], 0.0, error)
+        wish = p["drive.kp_scale"] * kp * error + kd * (dq_des - dq_sensed) + feed_forward
+        within = torch.minimum(torch.maximum(wish, -p["drive.limit"]), p["drive.limit"])
+        self.held_output.copy_(torch.where(due, within, self.held_output))
+        follows_speed = due & ~self.lagging & ~self.velocity_lagging & (within == wish) & (hold <= h)
+        torque = scale * self.held_output - unit * back_emf * dq
+        slope = -unit * back_emf - torch.where(follows_speed, scale * kd, 0.0)
+        return self._within_torque_speed_line(torque, slope, dq)
+
+    def _within_torque_speed_line(self, torque, slope, dq) -> tuple[torch.Tensor, torch.Tensor]:
+        no_load = self.p["drive.no_load_rad_s"]
+        along = torch.where(torque >= 0, 1.0, -1.0).to(torque.dtype)
+        line = self.stall * (1 - along * dq / no_load)
+        available = torch.minimum(line.clamp(min=0), self.stall)
+        too_much = self.torque_speed & (along * torque > available)
+        on_slope = (available > 0) & (available < self.stall)
+        return (torch.where(too_much, along * available, torque),
+                torch.where(too_much, torch.where(on_slope, -self.stall / no_load, 0.0), slope))
+
+    def _dry_friction(self, dq: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        p = self.p
+        bend = self.bristle + self.step_s * dq
+        direction = torch.where(bend >= 0, 1.0, -1.0).to(bend.dtype)
+        most = p["friction.coulomb_Nm"] + p["friction.stribeck_Nm"] * torch.exp(-(dq / p["friction.stribeck_rad_s"]) ** 2)
+        share = torch.where(self.load * direction > 0, p["friction.load_driving"], p["friction.load_backdriving"])
+        most = (most + share * self.load.abs()) * (1 + p["friction.asymmetry"] * direction)
+        slides = bend.abs() >= p["friction.presliding_rad"]
+        stiffness = most / p["friction.presliding_rad"]
+        return torch.where(slides, -direction * most, -stiffness * bend), torch.where(slides, 0.0, -stiffness * self.step_s)
+
+    def _elastic(self, torque, slope, q, dq) -> tuple[torch.Tensor, torch.Tensor]:
+        """What the joint feels of a rotor behind a spring with play; moves the rotor. Means nothing where it is rigid."""
+        p, h = self.p, self.step_s
+        before, before_slope = self._shaft(self.rotor, self.rotor_speed, q, dq)
+        inertia = p["transmission.armature_kg_m2"] / h - slope + before_slope
+        speed = self.rotor_speed + (torque - before) / torch.where(self.elastic, inertia, 1.0)
+        after, after_slope = self._shaft(self.rotor, speed, q, dq)
+        self.rotor_speed.copy_(torch.where(self.elastic, speed, dq))
+        self.rotor.copy_(torch.where(self.elastic, self.rotor + h * speed, q))
+        self.load.copy_(torch.where(self.elastic, after, self.load))
+        return after, -after_slope
+
+    def _shaft(self, rotor, rotor_speed, q, dq) -> tuple[torch.Tensor, torch.Tensor]:
+        """Torque on the joint and its slope in the relative speed."""
+        half_play, damping = 0.5 * self.p["transmission.backlash_rad"], self.p["transmission.damping_Nm_s_per_rad"]
+        relative = rotor_speed - dq
+        twist = rotor - q + self.step_s * relative
+        wound = twist - torch.minimum(torch.maximum(twist, -half_play), half_play)
+        grips = wound != 0
+        return (torch.where(grips, self.stiffness * wound + damping * relative, 0.0),
+                torch.where(grips, self.stiffness * self.step_s + damping, 0.0))
