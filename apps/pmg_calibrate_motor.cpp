@@ -174,6 +174,12 @@ void tell(const calib::FitResults& results, const fs::path& out) {
     std::cout << fmt::format("{} {} runs: mean absolute error {:.2f} {} (before {:.2f})\n", what, a.runs->size(),
                              1e3 * total(a.after).mean_absolute_rad(), unit, 1e3 * total(a.before).mean_absolute_rad());
   };
+  if (results.inverse) {
+    const calib::InverseDynamics& found = *results.inverse;
+    std::cout << fmt::format("inverse dynamics: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g}, offset {:.4g}\n",
+                             found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value, found.coulomb_Nm.value,
+                             found.offset_Nm.value);
+  }
   line("fitted", results.fitted);
   if (results.scored) line("scored", *results.scored);
   std::cout << fmt::format("{} evaluations in {:.1f} s on {} threads; results in {}\n", results.fit.evaluations,
@@ -206,6 +212,9 @@ int calibrate(const Arguments& arguments) {
   progress.clear();
   results.bench = &bench;
   results.problem = &problem;
+  std::vector<calib::BenchRun> runs;
+  for (const calib::SingleJoint& joint : problem.runs()) runs.push_back(joint.run());
+  results.inverse = calib::inverse_dynamics(bench, runs);
   results.method = arguments.method;
   results.threads = arguments.threads;
   results.joint = arguments.joint.empty() ? fs::weakly_canonical(arguments.bench).filename().string() : arguments.joint;

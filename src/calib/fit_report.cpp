@@ -85,6 +85,22 @@ void show_parameters(pages::Page& page, const FitResults& results) {
   page.table(table);
 }
 
+void show_inverse(pages::Page& page, const InverseDynamics& found) {
+  const auto row = [](const char* name, const InverseDynamics::Estimate& e) {
+    return std::vector<std::string>{name, fmt::format("{:.5g}", e.value), fmt::format("{:.2g}", e.deviation)};
+  };
+  page.heading("Inverse dynamics");
+  page.paragraph(fmt::format(
+      "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
+      "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
+      "timing isn't as modelled.",
+      found.samples, found.residual_Nm));
+  page.table({.header = {"parameter", "value", "one standard deviation"},
+              .rows = {row("transmission.armature_kg_m2", found.armature_kg_m2),
+                       row("friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad),
+                       row("friction.coulomb_Nm", found.coulomb_Nm), row("ripple.offset_Nm", found.offset_Nm)}});
+}
+
 }  // namespace
 
 pages::Page fit_report(const FitResults& results) {
@@ -100,6 +116,7 @@ pages::Page fit_report(const FitResults& results) {
   show_runs(page, results, shown);
   page.heading("Parameters");
   show_parameters(page, results);
+  if (results.inverse) show_inverse(page, *results.inverse);
   page.heading("Where the error is");
   page.columns([&] {
     show_groups(page, results, results.fitted, "fitted runs");

@@ -33,6 +33,18 @@ Json assessment_json(const Assessment& assessment) {
   return json;
 }
 
+Json inverse_json(const InverseDynamics& found) {
+  const auto estimate = [](const InverseDynamics::Estimate& e) -> Json {
+    return {{"value", e.value}, {"deviation", e.deviation}};
+  };
+  return {{"transmission.armature_kg_m2", estimate(found.armature_kg_m2)},
+          {"friction.viscous_Nm_s_per_rad", estimate(found.viscous_Nm_s_per_rad)},
+          {"friction.coulomb_Nm", estimate(found.coulomb_Nm)},
+          {"ripple.offset_Nm", estimate(found.offset_Nm)},
+          {"residual_Nm", found.residual_Nm},
+          {"windows", found.samples}};
+}
+
 Json parameter_json(const FitParameter& parameter, double value) {
   return {{"value", value},
           {"unit", parameter.unit},
@@ -70,6 +82,7 @@ Json fit_json(const FitResults& results) {
     json["gains"] = {{"kp_Nm_per_rad", results.fit.model.actuator.drive.kp_scale * run.kp},
                      {"kd_Nm_s_per_rad", results.fit.model.actuator.drive.kd_scale * run.kd}};
   }
+  if (results.inverse) json["inverse_dynamics"] = inverse_json(*results.inverse);
   json["fit"] = assessment_json(results.fitted);
   if (results.scored) json["score"] = assessment_json(*results.scored);
   json["evaluations"] = results.fit.evaluations;

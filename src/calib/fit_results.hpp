@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
 #include "pages/page.hpp"
 
@@ -25,6 +26,7 @@ struct FitResults {
   std::string method, joint;
   unsigned threads = 1;
   double wall_s = 0.0;
+  std::optional<InverseDynamics> inverse;  ///< where the drive was recorded
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };
