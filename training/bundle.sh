@@ -21,7 +21,7 @@ chmod u+w "$tmp"/host/lib/*
 for library in "$tmp"/host/lib/*.so*; do strip "$library"; "$PATCHELF" --set-rpath '$ORIGIN' "$library"; done
 "$build/bin/pmg_sil" --robot "$robot" --export-mjcf "$tmp/host/robot.xml" > /dev/null
 robot_dir=$robot; [[ -d $robot_dir ]] || robot_dir=$here/../config/robots/$robot
-cp -r "$robot_dir"/. "$tmp/host/robot/"
+cp -r "$robot_dir"/. "$tmp/host/robot/"; rm -rf "$tmp/host/robot/policies"
 cp -r "$here/pmg_train" "$here/config.yaml" "$here/randomization.yaml" "$tmp/host/"
 rm -rf "$tmp/host/pmg_train/__pycache__"
 printf 'export PYTHONPATH=$PWD:$PWD/site MUJOCO_GL=disable PYTHONUNBUFFERED=1\n' > "$tmp/host/env.sh"
