@@ -165,10 +165,8 @@ int table1(const Arguments& arguments) {
   for (const evaluation::Candidate& c : candidates(arguments))
     table.cases.push_back({.name = c.name, .candidate = c, .plants = plants(arguments)});
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
-  for (int seed = 1; seed <= table.seeds; ++seed) {
-    table.plants.push_back(
-        evaluation::plant_json(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed))));
-  }
+  for (int seed = 1; seed <= table.seeds; ++seed)
+    table.plants.push_back(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed)));
   fs::create_directories(arguments.out);
   table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
@@ -31,6 +31,17 @@ ordered_json share_json(const Estimate& share) {
   json["share"] = json["mean"];
   json.erase("mean");
   return json;
+}
+
+/// How trials ended, by the first fault's code; a fall without one is "fell".
+std::map<std::string, int> ends(const PushTrials& at) {
+  std::map<std::string, int> count;
+  for (const TrialResult& run : at.runs) {
+    if (!run.complete) continue;
+    const std::string fault = run.faults.empty() ? "" : run.faults.front();
+    ++count[!fault.empty() ? fault.substr(0, fault.find(':')) : run.fell ? "fell" : "survived"];
+  }
+  return count;
 }
 
 }  // namespace
@@ -132,19 +143,26 @@ ordered_json to_json(const PushTest& test) {
       direction.update(share_json(test.survival(at, [d](const PushPlan& plan) { return plan.direction == d; })));
       entry["directions"].push_back(direction);
     }
+    entry["ends"] = ends(at);
     json["strengths"].push_back(entry);
   }
   return json;
 }
 
+namespace {
+std::string percent(const Estimate& share) {
+  return std::isnan(share.mean) ? "-" : fmt::format("{:.1f} %", 100.0 * share.mean);
+}
+}  // namespace
+
 std::vector<std::string> text_of(const PushTest& test) {
   std::vector<std::string> lines = {"impulse N s   survived   95 % interval     standing   walking"};
   for (const PushTrials& at : test.strengths) {
     const Estimate all = test.survival(at);
-    lines.push_back(fmt::format("{:>11.0f} {:>9.1f} % [{:>5.1f}, {:>5.1f}] % {:>10.1f} % {:>7.1f} %", at.impulse_N_s,
-                                100.0 * all.mean, 100.0 * all.lower, 100.0 * all.upper,
-                                100.0 * test.survival(at, [](const PushPlan& plan) { return !plan.walking; }).mean,
-                                100.0 * test.survival(at, [](const PushPlan& plan) { return plan.walking; }).mean));
+    lines.push_back(fmt::format("{:>11.0f} {:>10}   [{:>5.1f}, {:>5.1f}] % {:>10} {:>9}", at.impulse_N_s, percent(all),
+                                100.0 * all.lower, 100.0 * all.upper,
+                                percent(test.survival(at, [](const PushPlan& plan) { return !plan.walking; })),
+                                percent(test.survival(at, [](const PushPlan& plan) { return plan.walking; }))));
   }
   if (const auto reached = test.reached()) {
     lines.push_back(fmt::format("limit: {:.0f} % at {:.0f} N s: {}", 100.0 * kPushSurvival, kJudgedPush_N_s,

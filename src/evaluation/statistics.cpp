@@ -42,7 +42,8 @@ Estimate share_interval(std::int64_t successes, std::int64_t trials) {
   const double center = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
   const double half_width =
       kNormalQuantile * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
-  return {share, std::max(0.0, center - half_width), std::min(1.0, center + half_width)};
+  // At its ends the interval ends there exactly; rounding would miss it.
+  return {share, successes == 0 ? 0.0 : center - half_width, successes == trials ? 1.0 : center + half_width};
 }
 
 }  // namespace pmg::evaluation

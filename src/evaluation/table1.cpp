@@ -106,7 +106,7 @@ ordered_json to_json(const Table1& table) {
   json["plants"] = ordered_json::array();
   for (std::size_t seed = 0; seed < table.plants.size(); ++seed) {
     ordered_json entry = {{"seed", seed + 1}};
-    entry.update(table.plants[seed]);
+    entry.update(plant_json(table.plants[seed]));
     json["plants"].push_back(entry);
   }
   return json;

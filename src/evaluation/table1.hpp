@@ -34,8 +34,8 @@ struct Table1 {
   CampaignRuns campaign;
   std::vector<CaseSummary> summaries;  ///< by case
   std::vector<Comparison> comparisons;
-  std::size_t judged = 0;                      ///< case that is held against limits and others: "pmg", or the first
-  std::vector<nlohmann::ordered_json> plants;  ///< by seed
+  std::size_t judged = 0;                 ///< case that is held against limits and others: "pmg", or the first
+  std::vector<sim::WorldOptions> plants;  ///< by seed
 
   bool reached(std::size_t error) const;  ///< the judged policy's mean is within its limit
   bool all_reached() const;               ///< and it never fell

@@ -1,0 +1,113 @@
+#include "evaluation/gait.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "model/config_error.hpp"
+
+namespace pmg::evaluation {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Gait, AContactIsAFootThatComesDownAfterASwing) {
+  std::vector<bool> loaded(100, true);
+  const auto lift = [&](std::size_t from, std::size_t to) {
+    std::fill(loaded.begin() + static_cast<std::ptrdiff_t>(from), loaded.begin() + static_cast<std::ptrdiff_t>(to),
+              false);
+  };
+  lift(20, 40);
+  lift(45, 48);  // bounces
+  lift(70, 80);
+  EXPECT_THAT(initial_contacts(loaded, 0.01), ElementsAre(40U, 80U));
+}
+
+TEST(Gait, CyclesOfDifferentLengthAreStretchedOntoEachOther) {
+  std::vector<double> values;
+  std::vector<std::size_t> contacts = {0};
+  for (const int ticks : {90, 110, 100}) {
+    for (int k = 0; k < ticks; ++k) values.push_back(std::sin(2.0 * std::numbers::pi * k / ticks));
+    contacts.push_back(values.size());
+  }
+  values.push_back(0.0);
+  const std::vector<double> mean = mean_cycle(values, contacts);
+  ASSERT_EQ(mean.size(), kCyclePoints);
+  for (std::size_t k = 0; k < kCyclePoints; ++k) {
+    // Linear interpolation between ticks is off by at most (2 pi / 90)^2 / 8 = 6e-4.
+    EXPECT_NEAR(mean[k], std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / kCyclePoints), 7e-4);
+  }
+}
+
+TEST(Gait, AnOffsetSpoilsTheRmsButNeitherCorrelationNorShape) {
+  std::vector<double> published, ours;
+  for (std::size_t k = 0; k < kCyclePoints; ++k) {
+    published.push_back(20.0 * std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / kCyclePoints));
+    ours.push_back(published.back() + 5.0);
+  }
+  const CurveAgreement a = agreement(ours, published);
+  EXPECT_NEAR(a.correlation, 1.0, 1e-12);
+  EXPECT_NEAR(a.rms_deg, 5.0, 1e-9);
+  EXPECT_NEAR(a.shape_rms_deg, 0.0, 1e-9);
+  for (double& value : ours) value = -value;
+  EXPECT_NEAR(agreement(ours, published).correlation, -1.0, 1e-12);
+}
+
+class NormsFile : public testing::Test {
+ protected:
+  ~NormsFile() override { std::filesystem::remove(file_); }
+  void write(const std::string& text) { std::ofstream(file_) << text; }
+  std::string refusal() {
+    try {
+      load_norms(file_);
+    } catch (const model::ConfigError& error) {
+      return error.what();
+    }
+    return "taken";
+  }
+  std::filesystem::path file_ =
+      std::filesystem::temp_directory_path() / ("gait_test_" + std::to_string(getpid()) + ".csv");
+};
+
+constexpr const char* kHeader =
+    "# source\npct_cycle,pelvis_tilt_ant+_mean,hip_flexion+_mean,hip_flexion+_sd,knee_flexion+_mean,"
+    "ankle_dorsiflexion+_mean\n";
+
+TEST_F(NormsFile, AnyEqualStepsAreTakenAndPelvicTiltIsOffTheHip) {
+  std::string text = kHeader;
+  for (int row = 0; row <= 10; ++row) text += std::to_string(10 * row) + ",12," + std::to_string(12 + row) + ",1,7,3\n";
+  write(text);
+  const GaitNorms norms = load_norms(file_);
+  EXPECT_NEAR(norms.deg[kHip][0], 0.0, 1e-12);
+  EXPECT_NEAR(norms.deg[kHip][50], 5.0, 1e-12);
+  EXPECT_NEAR(norms.deg[kHip][55], 5.5, 1e-12);
+  EXPECT_EQ(norms.deg[kKneeFlexion][99], 7.0);
+}
+
+TEST_F(NormsFile, WhatIsWrongIsNamed) {
+  EXPECT_THAT(refusal(), HasSubstr("can't be read"));
+  write("pct_cycle,hip_flexion_mean\n0,1\n");
+  EXPECT_THAT(refusal(), HasSubstr("no column knee_flexion"));
+  write(std::string(kHeader) + "0,1,2,3,4,5\n");
+  EXPECT_THAT(refusal(), HasSubstr("1 rows"));
+  write(std::string(kHeader) + "0,1,2,3,four,5\n");
+  EXPECT_THAT(refusal(), HasSubstr(":3: \"four\""));
+}
+
+TEST(Gait, BuiltInNormsAreThoseOfWalking) {
+  const GaitNorms norms = built_in_norms();
+  const auto& knee = norms.deg[kKneeFlexion];
+  const auto peak = std::max_element(knee.begin(), knee.end()) - knee.begin();
+  EXPECT_GT(peak, 65) << "the knee bends most in swing";
+  EXPECT_LT(peak, 80);
+  EXPECT_GT(norms.deg[kHip].front(), norms.deg[kHip][50]) << "flexed at contact, extended when the other foot lands";
+}
+
+}  // namespace
+}  // namespace pmg::evaluation
