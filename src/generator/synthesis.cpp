@@ -86,7 +86,7 @@ GaitTask forward_task(const Making& making) {
   task.hike_rad = 0.14;
   task.reference = published_reference(making.legs);
   task.shape = {
-      {kHipPitch, 0.956, 5.5 * kDegree}, {kKnee, 0.953, 5.4 * kDegree}, {kAnklePitch, 0.98, 4.8 * kDegree, 0.89}};
+      {kHipPitch, 0.956, 5.5 * kDegree}, {kKnee, 0.953, 5.4 * kDegree}, {kAnklePitch, 0.98, 4.8 * kDegree, 0.85}};
   task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
   task.weights.bias << 1.0, 6.0, 6.0, 1.0, 0.1, 6.0;
   task.weights.slip = 12.0;
@@ -95,16 +95,18 @@ GaitTask forward_task(const Making& making) {
   task.weights.velocity = 12.0;
   task.weights.foot_flat = 8.0;
   task.weights.clearance = 200.0;
-  task.weights.above_ground = 1500.0;
+  task.weights.above_ground = 1800.0;
   task.weights.correlation = 300.0;
   task.weights.rms = 200.0;
   task.weights.amplitude = 60.0;
-  task.weights.height = 90.0;
+  task.weights.height = 60.0;
   task.weights.velocity_yaw = 4.0;
   task.weights.limit = 300.0;
   task.weights.smooth = 1.2e-3;
   task.scenarios = scenarios(making, 0.36);
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
+  // Walking people stand higher on straighter legs than the robot does; asked for its standing height it walks so.
+  task.scenarios.push_back({1.0, 0.6, posture_addition(making, kHeight, -0.012)});
   return task;
 }
 
@@ -138,6 +140,8 @@ GaitTask lateral_task(const Making& making) {
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.035;
   task.weights.reference = LegVector<double>::Constant(1.5);
+  task.weights.step_height = 1200.0;
+  task.weights.step_height_free_m = 0.004;
   task.weights.velocity = 12.0;
   task.weights.height = 60.0;
   task.weights.velocity_yaw = 6.0;
@@ -160,6 +164,8 @@ GaitTask turn_task(const Making& making) {
   task.clearance_m = 0.045;
   task.foot_gap_m = 0.03;
   task.weights.reference = LegVector<double>::Constant(1.5);
+  task.weights.step_height = 1200.0;
+  task.weights.step_height_free_m = 0.003;
   task.weights.velocity = 12.0;
   task.weights.height = 30.0;
   task.weights.velocity_yaw = 6.0;
