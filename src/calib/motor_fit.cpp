@@ -44,8 +44,8 @@ class Fitting {
   Fit run() {
     std::vector<Found> starts = screen();
     for_each_in_parallel(starts.size(), options_.threads, [&](std::size_t i) {
-      starts[i] =
-          search(options_.method, loss_of(few_, 1), starts[i].point, limits(0.1, static_cast<unsigned>(i)), stopping());
+      starts[i] = search(options_.method, loss_of(few_, 1), starts[i].point,
+                         limits(options_.method, 0.1, static_cast<unsigned>(i)), stopping());
       tell(0.1 + 0.5 * static_cast<double>(++done_) / static_cast<double>(starts.size()),
            fmt::format("start {} of {}", done_.load(), starts.size()));
     });
@@ -92,7 +92,7 @@ class Fitting {
     for (std::size_t c = 0; c < candidates && !stopped_; ++c) {
       Found at{fit.starts[c].point, 0.0, 0};
       for (const Method method : {Method::kBobyqa, Method::kSbplx}) {
-        at = search(method, remembered, at.point, limits(0.03, 0), stopping());
+        at = search(method, remembered, at.point, limits(method, 0.03, 0), stopping());
         tell(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
                        static_cast<double>(candidates),
              fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));
@@ -104,8 +104,10 @@ class Fitting {
     fit.history = history;
   }
 
-  SearchOptions limits(double step, unsigned turn) const {
-    return {.most_evaluations = options_.evaluations_per_dimension * static_cast<int>(all_.dimensions()),
+  /// Searches of the whole cube need more looks than those of a neighbourhood.
+  SearchOptions limits(Method method, double step, unsigned turn) const {
+    const int looks = method == Method::kCrs2 || method == Method::kCmaes ? 5 : 1;
+    return {.most_evaluations = looks * options_.evaluations_per_dimension * static_cast<int>(all_.dimensions()),
             .first_step = step,
             .seed = options_.seed + turn};
   }

@@ -15,7 +15,7 @@ struct FitOptions {
   unsigned starts = 8;
   unsigned screened_per_dimension = 24;  ///< points at which the loss is looked at to find the starts
   std::size_t runs_while_searching = 16;
-  int evaluations_per_dimension = 60;  ///< at most, a start and a polish
+  int evaluations_per_dimension = 60;  ///< at most, a start and a polish; CRS2 and CMA-ES take five times that
   unsigned threads = 1;
   unsigned seed = 1;
 };

@@ -1,0 +1,166 @@
+// A bench is read whole or refused with one line that says what is wrong and where.
+#include "calib/bench.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "calib/synthetic_bench.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class BenchFiles : public testing::Test {
+ protected:
+  BenchFiles() {
+    calib::JointModel model;
+    model.actuator.transmission.armature_kg_m2 = 0.02;
+    test::write_bench(folder_, test::record(test::pd_bench(true), model, 3));
+  }
+  ~BenchFiles() override { fs::remove_all(folder_); }
+
+  std::string refusal(const std::string& filter = "") const {
+    try {
+      calib::read_bench(folder_).read_runs(calib::RowFilter(filter));
+    } catch (const std::exception& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
+      return error.what();
+    }
+    return "accepted";
+  }
+  /// Every line of a recording but the header, changed.
+  void change(const std::function<std::string(int row, std::vector<std::string> cells)>& edit,
+              const char* header = nullptr) const {
+    const fs::path file = folder_ / "runs" / "run1.csv";
+    const calib::CsvTable table = calib::read_csv(file);
+    std::ofstream out(file);
+    out << (header != nullptr ? header : "t_s,q_cmd_rad,q_rad") << '\n';
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+      const std::string line = edit(static_cast<int>(r), table.rows[r]);
+      if (!line.empty()) out << line << '\n';
+    }
+  }
+  void replace(const char* file, const std::string& from, const std::string& to) const {
+    std::ifstream in(folder_ / file);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, from.size(), to);
+    std::ofstream(folder_ / file) << text;
+  }
+  static std::string join(const std::vector<std::string>& c) { return c[0] + "," + c[1] + "," + c[2]; }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) /
+                           ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(BenchFiles, AreReadAsTheyWereWritten) {
+  const calib::Bench bench = calib::read_bench(folder_);
+  const std::vector<calib::BenchRun> runs = bench.read_runs(calib::RowFilter("kp_Nm_per_rad in 20 and repeat == 0"));
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[1].file, "run2.csv");
+  EXPECT_EQ(runs[1].kp, 20.0);
+  EXPECT_EQ(runs[1].load.gravity_Nm, 2.0);
+  EXPECT_EQ(runs[1].recording.t_s.size(), 300U);
+  EXPECT_EQ(runs[1].recording.dropouts(), 0U);
+}
+
+TEST_F(BenchFiles, WithoutRunsToReadAreRefused) {
+  EXPECT_THAT(refusal("repeat == 7"), AllOf(HasSubstr("no run matches"), HasSubstr("repeat == 7")));
+}
+
+TEST_F(BenchFiles, WithNanAreRefused) {
+  change([](int row, auto c) { return c[0] + "," + c[1] + "," + (row == 40 ? "nan" : c[2]); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("run1.csv:42"), HasSubstr("q_rad"), HasSubstr("finite")));
+}
+
+TEST_F(BenchFiles, WithAGapAreRefused) {
+  change([](int row, auto c) { return row > 50 && row < 60 ? "" : join(c); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("run1.csv:53"), HasSubstr("gap of 0.1 s")));
+}
+
+TEST_F(BenchFiles, WithTimesThatRunBackwardsAreRefused) {
+  change([](int row, auto c) { return row == 70 ? "0.2," + c[1] + "," + c[2] : join(c); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("run1.csv:72"), HasSubstr("increase")));
+}
+
+TEST_F(BenchFiles, WithATimeTwiceAreRefused) {
+  change([](int row, auto c) { return join(c) + (row == 70 ? "\n" + join(c) : ""); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("run1.csv:73"), HasSubstr("twice")));
+}
+
+TEST_F(BenchFiles, InMillisecondsAreRefused) {
+  change([](int row, auto c) { return fmt::format("{},{},{}", 10 * row, c[1], c[2]); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("t_s"), HasSubstr("seconds")));
+}
+
+TEST_F(BenchFiles, InDegreesAreRefusedByName) {
+  change([](int, auto c) { return join(c); }, "t_s,q_cmd_deg,q_deg");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("q_cmd_deg"), HasSubstr("another unit"), HasSubstr("q_cmd_rad")));
+}
+
+TEST_F(BenchFiles, InDegreesAreRefusedBySize) {
+  change([](int row, auto c) { return fmt::format("{},{},{}", c[0], row, c[2]); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("q_cmd_rad"), HasSubstr("degrees?")));
+}
+
+TEST_F(BenchFiles, InAnotherDeclaredUnitAreRefused) {
+  replace("bench.yaml", "q: rad", "q: deg");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("bench.yaml:2"), HasSubstr("units.q"), HasSubstr("deg")));
+}
+
+TEST_F(BenchFiles, WithAConstantCommandAreRefused) {
+  change([](int, auto c) { return c[0] + ",0.1," + c[2]; });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("run1.csv"), HasSubstr("never changes")));
+}
+
+TEST_F(BenchFiles, ThatAreTooShortAreRefused) {
+  change([](int row, auto c) { return row < 30 ? join(c) : ""; });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("30 samples"), HasSubstr("at least 50")));
+}
+
+TEST_F(BenchFiles, WithAnUnknownKeyAreRefused) {
+  replace("bench.yaml", "law: position_pd", "law: position_pd\n  kpp_Nm_per_rad: 3");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("bench.yaml:6"), HasSubstr("kpp_Nm_per_rad"), HasSubstr("unknown")));
+}
+
+TEST_F(BenchFiles, WithALoadThatBenchYamlDoesntHaveAreRefused) {
+  replace("runs.csv", "0.8,2\n", "0.8,2.5\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("runs.csv:3"), HasSubstr("no such load")));
+}
+
+TEST_F(BenchFiles, MayMissASampleOfTheSensor) {
+  change([](int row, auto c) { return c[0] + "," + c[1] + "," + (row == 40 ? "-3.14" : c[2]); });
+  const auto runs = calib::read_bench(folder_).read_runs(calib::RowFilter(""));
+  EXPECT_EQ(runs[1].recording.dropouts(), 1U);
+  EXPECT_FALSE(runs[1].recording.valid[40]);
+}
+
+TEST(RowFilter, SaysWhatItCannotRead) {
+  for (const char* text : {"kp", "kp in", "kp ~ 3", "kp == 3 or kp == 4", "kp == 3 and", "not"}) {
+    EXPECT_THROW(calib::RowFilter{text}, std::invalid_argument) << text;
+  }
+}
+
+TEST(RowFilter, ComparesNumbersAsNumbersAndNamesAsNames) {
+  calib::CsvTable table;
+  table.file = "runs.csv";
+  table.header = {"trajectory", "kp"};
+  table.rows = {{"swing", "4"}, {"swing", "8.0"}, {"step", "16"}, {"step", "32"}};
+  const auto kept = [&](const char* text) { return calib::RowFilter(text).keeps(table); };
+  EXPECT_EQ(kept(""), (std::vector{true, true, true, true}));
+  EXPECT_EQ(kept("kp in 8, 32"), (std::vector{false, true, false, true}));
+  EXPECT_EQ(kept("kp not in 8,32 and trajectory==step"), (std::vector{false, false, true, false}));
+  EXPECT_EQ(kept("kp>=8 and kp < 32"), (std::vector{false, true, true, false}));
+  EXPECT_EQ(kept("trajectory != swing"), (std::vector{false, false, true, true}));
+  EXPECT_THROW(kept("gain == 4"), std::invalid_argument);
+  EXPECT_THROW(kept("trajectory < 4"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pmg

@@ -1,0 +1,126 @@
+// A fit finds what a made-up joint was made of.
+#include "calib/motor_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "calib/inverse_dynamics.hpp"
+#include "calib/synthetic_bench.hpp"
+
+namespace pmg {
+namespace {
+
+calib::JointModel truth() {
+  calib::JointModel model;
+  model.actuator.drive.kp_scale = 0.8;
+  model.actuator.drive.kd_scale = 1.4;
+  model.actuator.transmission.armature_kg_m2 = 0.03;
+  model.actuator.friction.coulomb_Nm = 0.35;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.12;
+  model.actuator.command.delay_s = 0.012;
+  return model;
+}
+
+calib::FitProblem problem(const std::vector<std::string>& words, double noise_rad, int runs = 4) {
+  const calib::Bench bench = test::pd_bench(true);
+  std::vector<calib::FitParameter> parameters;
+  for (const std::string& name : calib::basic_parameters(bench))
+    parameters.push_back(calib::fit_parameter(name, bench));
+  for (const std::string& word : words) {
+    for (const std::string& name : calib::effect_parameters(word))
+      parameters.push_back(calib::fit_parameter(name, bench));
+  }
+  return {parameters, {}, test::record(bench, truth(), runs, noise_rad)};
+}
+
+// 1 mrad of noise on 1200 samples moves these parameters by less than a percent.
+TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
+  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
+  for (const calib::FitParameter& p : joint.parameters()) {
+    const double expected = calib::value(truth(), p.name);
+    EXPECT_NEAR(calib::value(fit.model, p.name), expected, 0.04 * expected) << p.name;
+  }
+  EXPECT_NEAR(std::sqrt(fit.loss_rad2), 1e-3, 1e-4) << "what is left is the noise";
+}
+
+TEST(MotorFit, IsTheSameOnAnyNumberOfThreads) {
+  const calib::FitProblem joint = problem({}, 1e-3, 2);
+  calib::FitOptions options{.starts = 3, .screened_per_dimension = 8, .evaluations_per_dimension = 15};
+  const calib::Fit alone = calib::fit(joint, options);
+  options.threads = 3;
+  const calib::Fit together = calib::fit(joint, options);
+  EXPECT_EQ(alone.point, together.point);
+  EXPECT_EQ(alone.loss_rad2, together.loss_rad2);
+}
+
+class EveryMethod : public testing::TestWithParam<const char*> {};
+
+// The paper's eta = (Kp, Kd, I), friction known.
+TEST_P(EveryMethod, FindsTheDrivesGains) {
+  calib::FitProblem with_friction = problem({}, 0.0, 2);
+  calib::JointModel start = truth();
+  start.actuator.drive.kp_scale = start.actuator.drive.kd_scale = 1.0;
+  start.actuator.transmission.armature_kg_m2 = 0.01;
+  const calib::FitProblem joint(with_friction.parameters(), start, with_friction.runs());
+  const calib::Fit fit = calib::fit(joint, {.method = calib::method_of(GetParam()), .starts = 2, .threads = 2});
+  EXPECT_NEAR(fit.model.actuator.drive.kp_scale, 0.8, 0.01);
+  EXPECT_NEAR(fit.model.actuator.drive.kd_scale, 1.4, 0.03);
+  EXPECT_NEAR(fit.model.actuator.transmission.armature_kg_m2, 0.03, 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, EveryMethod, testing::Values("bobyqa", "sbplx", "crs2", "cmaes"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST(MotorFit, KeepsTheBestWhenInterrupted) {
+  const calib::FitProblem joint = problem({}, 0.0, 2);
+  int calls = 0;
+  const calib::Fit fit = calib::fit(joint, {.starts = 2}, [&](double, const std::string&) { return ++calls < 30; });
+  EXPECT_TRUE(fit.interrupted);
+  EXPECT_EQ(fit.point.size(), joint.dimensions());
+  EXPECT_LT(fit.loss_rad2, joint.loss(joint.point_of(joint.start())));
+}
+
+TEST(FitProblem, PointsAreWhatModelsAre) {
+  const calib::FitProblem joint = problem({"friction", "zero_offset", "rate_limit"}, 0.0, 1);
+  calib::JointModel model = truth();
+  model.actuator.sensor.zero_offset_rad = -0.02;
+  model.actuator.command.rate_limit_rad_s = 5.0;
+  const calib::JointModel back = joint.model_at(joint.point_of(model));
+  for (const calib::FitParameter& p : joint.parameters()) {
+    EXPECT_NEAR(calib::value(back, p.name), calib::value(model, p.name), 1e-12) << p.name;
+  }
+}
+
+// Noise of 20 mV against volts: least squares finds the plant to a percent.
+TEST(InverseDynamics, FindsALinearDrivesParameters) {
+  calib::Bench bench;
+  bench.rig = calib::Rig::kLinear;
+  bench.law = calib::DriveLaw::kCascadePd;
+  bench.sample_rate_hz = 1000.0;
+  bench.known.drive.torque_per_unit_Nm = 35.0;
+  constexpr double kMass_kg = 95.0, kViscous_N_s_per_m = 200.0, kForwards_N = 17.0, kBackwards_N = 23.0;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise_V(0.0, 0.02);
+  calib::BenchRun run;
+  for (int k = 0; k < 10000; ++k) {
+    const double t = 0.001 * k;
+    const double v = 0.1 * std::sin(3.0 * t) + 0.05 * std::sin(11.0 * t),
+                 a = 0.3 * std::cos(3.0 * t) + 0.55 * std::cos(11.0 * t);
+    run.recording.t_s.push_back(t);
+    run.recording.q_rad.push_back(-0.1 / 3.0 * std::cos(3.0 * t) - 0.05 / 11.0 * std::cos(11.0 * t));
+    const double force_N = kMass_kg * a + kViscous_N_s_per_m * v + (v > 0.0 ? kForwards_N : -kBackwards_N);
+    run.recording.drive_V.push_back(force_N / 35.0 + noise_V(random));
+  }
+  const auto found = calib::inverse_dynamics(bench, {run});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->armature_kg_m2.value, kMass_kg, 0.01 * kMass_kg);
+  EXPECT_NEAR(found->viscous_Nm_s_per_rad.value, kViscous_N_s_per_m, 0.02 * kViscous_N_s_per_m);
+  EXPECT_NEAR(found->coulomb_Nm.value, 20.0, 0.3);
+  EXPECT_NEAR(found->offset_Nm.value, 3.0, 0.1);
+  EXPECT_LT(found->armature_kg_m2.deviation, 1.0);
+  run.recording.drive_V.clear();
+  EXPECT_FALSE(calib::inverse_dynamics(bench, {run}).has_value());
+}
+
+}  // namespace
+}  // namespace pmg

@@ -1,0 +1,98 @@
+// The simulation that fits are made with is the one that the SIL runs.
+#include "calib/single_joint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "calib/mujoco_joint.hpp"
+#include "calib/synthetic_bench.hpp"
+
+namespace pmg {
+namespace {
+
+struct Kind {
+  const char* name;
+  std::function<void(sim::ActuatorParameters&)> set;
+};
+std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
+
+class BothSimulators : public testing::TestWithParam<Kind> {};
+
+// 1e-6 rad is what the two may differ by after 3 s of 2 ms steps; the same arithmetic in another order leaves 1e-10.
+TEST_P(BothSimulators, MoveAJointAlike) {
+  const calib::Bench bench = test::pd_bench(true);
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.02;
+  GetParam().set(model.actuator);
+  const std::vector<calib::SingleJoint> joints = test::record(bench, model, 2);
+  for (const calib::SingleJoint& joint : joints) {
+    test::MujocoJoint mujoco(joint.run().load, model.actuator, joint.step_s());
+    mujoco.reset(joint.start_rad(model));
+    const std::vector<double> compiled = joint.rollout(model);
+    double largest_rad = 0.0, farthest_rad = 0.0;
+    for (std::size_t k = 0; k < joint.steps(); ++k) {
+      mujoco.step(joint.input(k));
+      farthest_rad = std::max(farthest_rad, std::abs(mujoco.q_rad()));
+      if ((k + 1) % 5 != 0) continue;  // five steps a sample
+      largest_rad = std::max(
+          largest_rad,
+          std::abs(sim::ActuatorModel(model.actuator, 0.002).reading_rad(mujoco.q_rad()) - compiled[(k + 1) / 5]));
+    }
+    EXPECT_LT(largest_rad, 1e-6);
+    EXPECT_GT(farthest_rad, 0.3) << "nothing moved, so nothing was compared";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EveryEffect, BothSimulators,
+    testing::Values(
+        Kind{"Pd", [](auto&) {}}, Kind{"Limit", [](auto& p) { p.drive.limit = 5.0; }},
+        Kind{"Friction", [](auto& p) { p.friction.coulomb_Nm = 0.4, p.friction.viscous_Nm_s_per_rad = 0.1; }},
+        Kind{"Stribeck", [](auto& p) { p.friction.coulomb_Nm = 0.2, p.friction.stribeck_Nm = 0.3; }},
+        Kind{"LoadFriction", [](auto& p) { p.friction.load_driving = 0.4, p.friction.load_backdriving = 0.1; }},
+        Kind{"Delay", [](auto& p) { p.command.delay_s = 0.0237, p.command.rate_limit_rad_s = 3.0; }},
+        Kind{"Sensor", [](auto& p) { p.sensor = {.zero_offset_rad = 0.03, .lag_s = 0.004, .velocity_lag_s = 0.002}; }},
+        Kind{"Hold", [](auto& p) { p.command.hold_s = 0.006, p.drive.dead_band_rad = 0.01; }},
+        Kind{"TorqueSpeed", [](auto& p) { p.drive.stall_torque_Nm = 4.0, p.drive.no_load_rad_s = 6.0; }},
+        Kind{"Backlash",
+             [](auto& p) {
+               p.transmission.stiffness_Nm_per_rad = 200.0;
+               p.transmission.damping_Nm_s_per_rad = 0.5;
+               p.transmission.backlash_rad = 0.02;
+             }},
+        Kind{"Ripple",
+             [](auto& p) { p.ripple = {.amplitude_Nm = 0.3, .order = 7.0, .phase_rad = 0.4, .offset_Nm = 0.1}; }}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(SingleJoint, SwingsWithThePeriodOfAPendulum) {
+  const calib::Bench bench = test::pd_bench(true);
+  calib::BenchRun run;
+  run.kp = run.kd = 0.0;
+  run.load = {0.05, 2.0};
+  run.recording = test::excitation(0);
+  run.recording.q_rad.assign(300, 0.05);
+  const std::vector<double> q_rad = calib::SingleJoint(bench, run, 0.0005).rollout({});
+  int crossings = 0;
+  double last_s = 0.0, first_s = 0.0;
+  for (std::size_t k = 1; k < q_rad.size(); ++k) {
+    if (q_rad[k - 1] * q_rad[k] > 0.0) continue;
+    last_s = run.recording.t_s[k];
+    if (crossings++ == 0) first_s = last_s;
+  }
+  const double period_s = 2.0 * (last_s - first_s) / (crossings - 1);
+  EXPECT_NEAR(period_s, 2.0 * M_PI * std::sqrt(0.05 / 2.0), 0.01) << "of small swings; samples are 10 ms apart";
+}
+
+TEST(SingleJoint, LeavesASensorsDropoutsOut) {
+  const calib::Bench bench = test::pd_bench(false);
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.02;
+  calib::BenchRun run = test::record(bench, model, 1).front().run();
+  run.recording.q_rad[100] = -3.14;
+  run.recording.valid[100] = false;
+  const calib::RolloutError error = calib::SingleJoint(bench, run, 0.002).error(model);
+  EXPECT_EQ(error.samples, 299U);
+  EXPECT_LT(error.mean_absolute_rad(), 1e-12);
+}
+
+}  // namespace
+}  // namespace pmg
