@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
+#include <vector>
 
 #include "generator/center_of_mass.hpp"
 #include "generator/clip_report.hpp"
@@ -91,6 +93,22 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeans) {
     EXPECT_GE(norm.correlation, 0.95) << norm.curve;
     EXPECT_LE(norm.rms_deg, 6.0) << norm.curve;
   }
+}
+
+TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const JointRoles roles = find_joint_roles(*robot_);
+  const DynamicClip& forward = *library_->positive[kVx];
+  const auto ankle_pitch = static_cast<Eigen::Index>(roles.leg[kLeft][kAnklePitch]);
+  std::vector<double> dorsiflexion_rad;
+  for (const JointVector& q : forward.q) {
+    dorsiflexion_rad.push_back(-q[ankle_pitch]);
+  }
+  const auto [low, high] = std::minmax_element(dorsiflexion_rad.begin(), dorsiflexion_rad.end());
+  EXPECT_GE(*high - *low, 20.0 * kDegree);  // three quarters of the published 26
+  // Published: most bent at 44 % of the cycle, most stretched at 63 %; a sampling knot of the clip's spline is 4 %.
+  EXPECT_NEAR(static_cast<double>(high - dorsiflexion_rad.begin()) / kClipSamples, 0.44, 0.04);
+  EXPECT_NEAR(static_cast<double>(low - dorsiflexion_rad.begin()) / kClipSamples, 0.63, 0.04);
 }
 
 /// Sole corners of both feet in the world of a standing robot whose base has this attitude and place.
