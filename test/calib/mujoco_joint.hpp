@@ -40,6 +40,8 @@ class MujocoJoint {
   }
 
   double q_rad() const { return data_->qpos[0]; }
+  mjModel* mj_model() { return model_.get(); }
+  mjData* mj_data() { return data_.get(); }
 
  private:
   static std::string text(const calib::JointLoad& load, double step_s) {
