@@ -16,7 +16,8 @@ namespace pmg::policy {
 namespace {
 
 constexpr int kFormat = 1;
-constexpr double kPostureTolerance_rad = 1e-6;  // the same number, written and read as text
+constexpr double kLargestGoldenTolerance = 0.01;  // of actions of order one: beyond, the pairs would prove nothing
+constexpr double kPostureTolerance_rad = 1e-6;    // the same number, written and read as text
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -123,6 +124,10 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   }
   metadata.gains = {joint_values(json, "kp_Nm_per_rad", robot), joint_values(json, "kd_Nm_s_per_rad", robot)};
   metadata.golden_tolerance = json.at("golden_tolerance").get<double>();
+  if (!(metadata.golden_tolerance > 0.0) || metadata.golden_tolerance > kLargestGoldenTolerance) {
+    refuse(fmt::format("golden_tolerance is {}; expected above 0 and at most {}", metadata.golden_tolerance,
+                       kLargestGoldenTolerance));
+  }
   metadata.golden =
       golden_pairs(json.at("golden"), static_cast<std::size_t>(layout.size()), layout.action_joints().size());
   return metadata;

@@ -118,6 +118,20 @@ TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
   EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [120.0, ", "\"kp_Nm_per_rad\": [10, 2, "), HasSubstr("kp_Nm_per_rad"));
 }
 
+TEST(OnnxPolicyFile, APostureOtherThanTrainingsIsNamed) {
+  EXPECT_THAT(refusal_after("\"stand_rad\": [-0.15", "\"stand_rad\": [-0.16"),
+              HasSubstr("trained to stand with left_hip_pitch at -0.16 rad"));
+}
+
+TEST(OnnxPolicyFile, GoldenPairsMustBeThereAndProveSomething) {
+  EXPECT_THAT(refusal_after("\"golden\": [{\"observation\": [", "\"golden\": [], \"g\": [{\"g\": [ "),
+              HasSubstr("no golden pair"));
+  EXPECT_THAT(refusal_after("\"golden_tolerance\": 0.0001", "\"golden_tolerance\": 1.0000"),
+              HasSubstr("golden_tolerance is 1"));
+  EXPECT_THAT(refusal_after("\"golden_tolerance\": 0.0001", "\"golden_tolerance\": 0.0000"),
+              HasSubstr("golden_tolerance is 0"));
+}
+
 /// Every variant, and what each is trained to observe, comes from the file alone.
 TEST(OnnxPolicyFile, SaysWhichVariantItIs) {
   for (const Variant variant : {Variant::kPmg, Variant::kWithoutGco, Variant::kSingleGait}) {
