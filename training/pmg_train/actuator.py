@@ -66,6 +66,12 @@ class ActuatorModel:
                       self.given_slope, self.given_at):
             put(state, torch.zeros_like(q))
 
+    def momentary(self) -> dict[str, torch.Tensor]:
+        """All that changes from step to step."""
+        names = ("past_commands", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "bristle", "load",
+                 "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
+        return {name: getattr(self, name) for name in names}
+
     def reading(self, q: torch.Tensor) -> torch.Tensor:
         """What the drive reports for joints at q [rad]."""
         reading, quantum = q + self.p["sensor.zero_offset_rad"], self.p["sensor.quantum_rad"]

@@ -19,14 +19,14 @@ from pmg_train.rotations import roll_pitch_yaw, rotate, rotate_back
 
 class Environment:
     def __init__(self, mjcf: str, pool: ReferencePool, description: dict, fields: dict[str, slice], config: dict,
-                 ranges: dict, worlds: int, device: str):
+                 ranges: dict, worlds: int, device: str, motors: dict[str, dict[str, float]] | None = None):
         self.config, self.ranges, self.pool, self.n = config, ranges, pool, worlds
         self.tick_s = config["tick_s"]
         model = training_model(mjcf, description, config["gains"], config["physics"])
         substeps = round(self.tick_s / model.opt.timestep)
         torso, feet = description["torso_link"], description["foot_links"]
         self.robots = randomization.draw(ranges, model, torso, worlds, device)
-        self.worlds = Worlds(model, worlds, substeps, feet, config["physics"], device)
+        self.worlds = Worlds(model, worlds, substeps, feet, config["physics"], device, motors)
         self.shares = target_shares(self.robots.delay_s, self.tick_s, model.opt.timestep, config["physics"]["deployed_timestep_s"])
         self.worlds.apply(self.robots, torso)
         self.device = self.worlds.torch_device
@@ -154,6 +154,8 @@ class Environment:
         put(self.sway, start["sway"], one[:, None])
         put(self.q_ref, start["q_ref"], one)
         self.targets.copy_(torch.where(one[None], start["q_ref"][None], self.targets))
+        if w.motors:
+            w.motors.reset(w.qpos, where)
         asked = self.get("optimised")[:, :3]
         put(self.velocity, asked, one)
         put(self.asked, asked, one)
@@ -178,7 +180,8 @@ class Environment:
 
     def _momentary(self) -> dict[str, torch.Tensor]:
         return {name: getattr(self, name) for name in self.MOMENTARY} | {
-            name: getattr(self.worlds, name) for name in self.MOMENTARY_PHYSICS}
+            name: getattr(self.worlds, name) for name in self.MOMENTARY_PHYSICS} | (
+            self.worlds.motors.momentary() if self.worlds.motors else {})
 
     def state(self) -> dict[str, torch.Tensor]:
         """All that changes from tick to tick; references and robots follow from the seed."""
@@ -302,9 +305,10 @@ class Environment:
         w, noise = self.worlds, self.ranges["noise"]
         true = (w.qvel[:, 3:6], self.layout.gravity_direction(w.qpos[:, 3:7]), w.qpos[:, 7:], w.qvel[:, 6:])
         gyro, gravity, q, dq = true
+        shown = w.motors.reading(q) if w.motors else q
         noisy = lambda x, size: x + size * (2 * torch.rand_like(x) - 1)
         sensed = (noisy(gyro, noise["gyro_rad_s"]), noisy(gravity, noise["gravity_direction"]),
-                  noisy(q + self.robots.encoder_offset, noise["q_rad"]), noisy(dq, noise["dq_rad_s"]))
+                  noisy(shown + self.robots.encoder_offset, noise["q_rad"]), noisy(dq, noise["dq_rad_s"]))
         given = (self.get("optimised"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
         seen = self.layout.with_history(self.layout.now(*sensed, *given), *sensed, self.action, self.fresh)
         critic = torch.cat([self.layout.now(*true, *given), self._privileged()], 1)

@@ -24,6 +24,7 @@ import yaml
 
 from pmg_train.configuration import load_config, load_randomization
 from pmg_train.environment import Environment
+from pmg_train.motors import read_motor_file
 from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
 from pmg_train.reference_pool import ReferencePool
@@ -41,6 +42,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--variant", default="pmg", choices=["pmg", "without_gco", "single_gait"])
     parser.add_argument("--config", default=HERE / "config.yaml", type=Path)
     parser.add_argument("--randomization", default=HERE / "randomization.yaml", type=Path)
+    parser.add_argument("--motors", type=Path, help="motor.yaml of the calibration tools: what actuators do beyond a plain servo")
     parser.add_argument("--out", required=True, type=Path)
     parser.add_argument("--minutes", type=float, default=20.0, help="wall time of learning, earlier parts of a resumed run counted")
     parser.add_argument("--iterations", type=int, default=10**9)
@@ -78,7 +80,8 @@ class Training:
         self.description = batch.description
         pool = ReferencePool(batch, c["references"]["ticks"], self.device)
         self.log(f"references ready: {pool.streams} streams of {pool.ticks} ticks")
-        self.env = Environment(a.mjcf, pool, batch.description, batch.fields, c, self.ranges, ppo["worlds"], self.device)
+        self.motors = read_motor_file(a.motors, [j["name"] for j in batch.description["joints"]]) if a.motors else {}
+        self.env = Environment(a.mjcf, pool, batch.description, batch.fields, c, self.ranges, ppo["worlds"], self.device, self.motors)
         seen = self.env.observation.shape[1]
         if seen != batch.description["observation"]["size"]:
             raise ValueError(f"observation has {seen} numbers; the controller's has {batch.description['observation']['size']}")
@@ -109,7 +112,7 @@ class Training:
             self._start_from(a.initial)
         if self.rank == 0:
             (a.out / "training.yaml").write_text(yaml.safe_dump(dict(
-                variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges), sort_keys=False))
+                variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges, motors=self.motors), sort_keys=False))
             self.board = _tensorboard(a.out)
 
     def log(self, text: str) -> None:

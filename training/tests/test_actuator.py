@@ -57,7 +57,6 @@ def test_a_reset_forgets_in_the_worlds_that_are_reset():
     before = model.rotor.clone()
     model.reset(torch.full((2, 1), 0.1, dtype=torch.float64), torch.tensor([True, False]))
     fresh.reset(torch.full((2, 1), 0.1, dtype=torch.float64))
-    for name, value in vars(fresh).items():
-        if isinstance(value, torch.Tensor) and value.shape[-2:] == (2, 1):
-            assert torch.equal(getattr(model, name)[..., 0, :], value[..., 0, :]), name
+    for name, value in fresh.momentary().items():
+        assert torch.equal(model.momentary()[name][..., 0, :], value[..., 0, :]), name
     assert torch.equal(model.rotor[1], before[1])

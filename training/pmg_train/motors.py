@@ -1,0 +1,87 @@
+"""motor.yaml, which calibration writes and the controller's simulation reads: the actuators of some joints, in training's physics."""
+
+from pathlib import Path
+
+import mujoco
+import torch
+import yaml
+
+from pmg_train.actuator import NEUTRAL, ActuatorModel
+from pmg_train.randomization import Robots
+
+FRICTION = [name for name in NEUTRAL if name.startswith("friction.") and not name.endswith(("stribeck_rad_s", "asymmetry", "presliding_rad"))]
+
+
+def read_motor_file(path: str | Path, joints: list[str]) -> dict[str, dict[str, float]]:
+    """What isn't neutral, as "group.key", of each joint there. ValueError names file, joint and key."""
+    try:
+        content = yaml.safe_load(Path(path).read_text())
+    except yaml.YAMLError as error:
+        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
+    if not isinstance(content, dict) or set(content) != {"joints"} or not isinstance(content["joints"], dict):
+        raise ValueError(f"{path}: expected one map, joints")
+    motors = {}
+    for joint, groups in content["joints"].items():
+        if joint not in joints:
+            raise ValueError(f"{path}: {joint} isn't a joint of this robot")
+        motors[joint] = {f"{group}.{key}": value for group, keys in (groups or {}).items() for key, value in keys.items()}
+        for name, value in motors[joint].items():
+            if name not in NEUTRAL:
+                raise ValueError(f"{path}: {joint}: unknown {name}; expected some of {', '.join(NEUTRAL)}")
+            if not isinstance(value, (int, float)) or isinstance(value, bool):
+                raise ValueError(f"{path}: {joint}: {name}: {value}; expected a number")
+    return motors
+
+
+class Motors:
+    """The batched actuators of a model's joints that a motor file names; hands their joints over as src/sim/actuator_joint.cpp does."""
+
+    def __init__(self, model: mujoco.MjModel, motors: dict[str, dict[str, float]], worlds: int, device):
+        """Changes the model: what the actuators do from now on is no longer MuJoCo's."""
+        self.actuator = [model.actuator(name).id for name in motors]
+        self.index = torch.tensor(self.actuator, device=device)
+        column = lambda values: torch.tensor(values, dtype=torch.float32, device=device)
+        self.kp = column(model.actuator_gainprm[self.actuator, 0]).repeat(worlds, 1)
+        self.kd = column(-model.actuator_biasprm[self.actuator, 2]).repeat(worlds, 1)
+        limited = [{"drive.limit": float(model.actuator_forcerange[a, 1])} | values for a, values in zip(self.actuator, motors.values())]
+        self.model = ActuatorModel(limited, model.opt.timestep, worlds, device)
+        for a, values in zip(self.actuator, motors.values()):
+            self._hand_over(model, a, NEUTRAL | values)
+
+    @staticmethod
+    def _hand_over(model: mujoco.MjModel, actuator: int, values: dict[str, float]) -> None:
+        dof = model.jnt_dofadr[model.actuator_trnid[actuator, 0]]
+        if values["transmission.armature_kg_m2"] > 0:
+            elastic = values["transmission.stiffness_Nm_per_rad"] != NEUTRAL["transmission.stiffness_Nm_per_rad"]
+            model.dof_armature[dof] = 0.0 if elastic else values["transmission.armature_kg_m2"]
+        if any(values[name] != NEUTRAL[name] for name in NEUTRAL if name.startswith("friction.")):
+            model.dof_damping[dof] = model.dof_frictionloss[dof] = 0.0
+        model.actuator_forcelimited[actuator] = 0
+        model.actuator_gainprm[actuator, 0] = 1.0
+        model.actuator_biasprm[actuator, :3] = 0.0
+
+    def vary(self, robots: Robots) -> None:
+        """The drawn factors of gains, rotor inertias and friction, as MuJoCo's own joints have them. Once, before the first step."""
+        self.kp *= robots.kp[:, self.actuator]
+        self.kd *= robots.kd[:, self.actuator]
+        for name in FRICTION:
+            self.model.p[name] = self.model.p[name] * robots.joint_friction[:, self.actuator]
+        name = "transmission.armature_kg_m2"
+        self.model.p[name] = self.model.p[name] * robots.armature[:, self.actuator]
+
+    def drive(self, target: torch.Tensor, qpos: torch.Tensor, qvel: torch.Tensor, ctrl: torch.Tensor, bias: torch.Tensor) -> None:
+        """Torques of the step to come into MuJoCo's ctrl, their slopes into its velocity bias. target: q_des of all joints [rad]."""
+        q, dq = qpos[:, 7:].index_select(1, self.index), qvel[:, 6:].index_select(1, self.index)
+        torque, slope = self.model.step(target.index_select(1, self.index), self.kp, self.kd, q, dq)
+        ctrl.copy_(target.index_copy(1, self.index, torque - slope * dq))
+        bias[:, :, 2].index_copy_(1, self.index, slope)
+
+    def reset(self, qpos: torch.Tensor, where: torch.Tensor | None = None) -> None:
+        self.model.reset(qpos[:, 7:].index_select(1, self.index), where)
+
+    def reading(self, q: torch.Tensor) -> torch.Tensor:
+        """What encoders of all joints show."""
+        return q.index_copy(1, self.index, self.model.reading(q.index_select(1, self.index)))
+
+    def momentary(self) -> dict[str, torch.Tensor]:
+        return {f"motors.{name}": value for name, value in self.model.momentary().items()}
