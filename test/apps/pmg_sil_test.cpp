@@ -14,6 +14,7 @@
 #include <string>
 
 #include "io/log_reader.hpp"
+#include "policy/linear_policy.hpp"
 
 namespace pmg {
 namespace {
@@ -125,6 +126,25 @@ TEST_F(PmgSil, ThePolicyOfZ1WalksOnTheGround) {
   EXPECT_EQ(summary["hoisted_s"], 0.0);
   // A robot that stood still all the time would have 0.3 m/s.
   EXPECT_LT(summary["tracking"]["lin_vel_mae_m_s"], 0.1);
+}
+
+TEST_F(PmgSil, ABaselineRunsLikeAnyPolicyAndIsAnnounced) {
+  const test::LinearPolicyFile policy(PMG_SOURCE_DIR "/config/robots/z1/clips", Variant::kSingleGait);
+  const fs::path file =
+      scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: turn, mode: walk, command: {omega_rad_s: 0.5}}\n");
+  const std::string arguments = "--gantry --policy " + policy.file().string() + " --scenario " + file.string();
+  const Finished walk = run(arguments + " --json --out " + out_folder());
+  ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
+  EXPECT_THAT(walk.err, HasSubstr("baseline single_gait"));
+  const auto summary = nlohmann::json::parse(walk.out);
+  EXPECT_EQ(summary["variant"], "single_gait");
+  EXPECT_GT(summary["timing_us"]["tick"]["p99"], summary["timing_us"]["policy"]["p50"]);
+  const Finished shown = run(arguments + " --print-config");
+  EXPECT_EQ(nlohmann::json::parse(shown.out)["variant"], "single_gait");
+}
+
+TEST_F(PmgSil, APolicyOfOtherClipsIsRefused) {
+  expect_refused("--policy " + test::kLinearPolicy.string() + " --scenario " + kStand, "clip library is 0000");
 }
 
 TEST_F(PmgSil, AFallExitsWithOne) {
