@@ -155,6 +155,14 @@ int hand_over(const Arguments& arguments, const Result& result, bool complete, b
   return reached ? kOk : kMissed;
 }
 
+void make_films(const Arguments& arguments, evaluation::Table1& table) {
+  const Watch watch(arguments);
+  evaluation::for_each_piece(table.cases.size(), watch.supervision(), [&](std::size_t c) {
+    film_case(table.cases[c], table.scenario, arguments.out / (table.cases[c].name + ".mp4"), watch.supervision());
+  });
+  for (const evaluation::Case& c : table.cases) table.films.push_back(c.name + ".mp4");
+}
+
 int table1(const Arguments& arguments) {
   evaluation::Table1 table;
   table.robot = arguments.robot;
@@ -170,6 +178,7 @@ int table1(const Arguments& arguments) {
   fs::create_directories(arguments.out);
   table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());
+  if (arguments.video && table.campaign.complete) make_films(arguments, table);
   evaluate(table);
   return hand_over(arguments, table, table.campaign.complete, table.all_reached());
 }
@@ -226,6 +235,7 @@ int main(int argc, char** argv) {
   declare_seeds(*table1_command, arguments, "config/scenarios/table1.yaml");
   table1_command->add_option("--policy", arguments.policies, std::string(kPolicyHelp) + "; may be given several times")
       ->default_str("pmg without_gco single_gait");
+  table1_command->add_flag("--video", arguments.video, "film each policy with seed 1 (needs ffmpeg; minutes each)");
   table1_command->add_flag("--gantry", arguments.gantry, "hang the robot in a gantry: nothing is judged");
   CLI::App* push_command = app.add_subcommand("push", "Impulses at the torso: how many are survived");
   declare_common(*push_command, arguments);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "runtime/film.hpp"
 #include "runtime/simulated_robot.hpp"
 
 namespace pmg::evaluation {
@@ -41,18 +42,40 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenari
                           const Supervision& supervision) {
   CampaignRuns campaign;
   campaign.runs.assign(cases.size(), std::vector<TrialResult>(static_cast<std::size_t>(seeds)));
+  campaign.courses.resize(cases.size());
   std::vector<model::RobotModel> robots;
   for (const Case& c : cases) robots.push_back(model::load_robot(model::find_robot(c.candidate.control.robot)));
   // Seed by seed, so that what an interruption leaves is paired.
   for_each_piece(cases.size() * static_cast<std::size_t>(seeds), supervision, [&](std::size_t piece) {
     const std::size_t c = piece % cases.size(), seed = piece / cases.size();
-    campaign.runs[c][seed] = run_trial(cases[c].candidate, scenario, cases[c].plants.of(robots[c], seed + 1),
-                                       {.gantry = gantry, .interrupted = supervision.interrupted, .observer = {}});
+    TrialOptions options{.gantry = gantry, .interrupted = supervision.interrupted, .observer = {}};
+    if (seed == 0) {
+      options.observer = [recorder = CourseRecorder(campaign.courses[c], robots[c].standing_height_m)](
+                             const runtime::RunProgress& now, sim::World& world) mutable {
+        recorder.add(now, world.truth());
+        return true;
+      };
+    }
+    campaign.runs[c][seed] = run_trial(cases[c].candidate, scenario, cases[c].plants.of(robots[c], seed + 1), options);
   });
   for (const auto& runs : campaign.runs) {
     for (const TrialResult& run : runs) campaign.complete = campaign.complete && run.complete;
   }
   return campaign;
+}
+
+void film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+               const Supervision& supervision) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(filmed.candidate.control.robot));
+  std::optional<runtime::Film> film;
+  const auto shoot = [&](const runtime::RunProgress& now, sim::World& world) {
+    if (!film) film.emplace(world, file);
+    film->after_tick(now);
+    return true;
+  };
+  run_trial(filmed.candidate, scenario, filmed.plants.of(robot, 1),
+            {.gantry = false, .interrupted = supervision.interrupted, .observer = shoot});
+  if (film) film->close();
 }
 
 CaseSummary summarise(const std::vector<TrialResult>& runs) {

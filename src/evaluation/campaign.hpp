@@ -1,11 +1,14 @@
 // Many trials: every case under the same seeds, in parallel.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "evaluation/course.hpp"
 #include "evaluation/parallel.hpp"
 #include "evaluation/statistics.hpp"
 #include "evaluation/trial.hpp"
@@ -35,12 +38,17 @@ struct Case {
 /// runs[case][seed]; a trial that was not begun or not ended is not complete.
 struct CampaignRuns {
   std::vector<std::vector<TrialResult>> runs;
+  std::vector<Course> courses;  ///< by case, of its first seed
   bool complete = true;
 };
 
 /// Seeds 1 .. seeds. The result doesn't depend on how many jobs there are.
 CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenario& scenario, int seeds, bool gantry,
                           const Supervision& supervision);
+
+/// Films a case's first seed. Throws std::runtime_error without ffmpeg or OSMesa.
+void film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+               const Supervision& supervision);
 
 /// Of the complete trials of one case.
 struct CaseSummary {

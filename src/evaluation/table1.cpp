@@ -103,6 +103,7 @@ ordered_json to_json(const Table1& table) {
     }
     json["differences"].push_back(entry);
   }
+  json["films"] = table.films;
   json["plants"] = ordered_json::array();
   for (std::size_t seed = 0; seed < table.plants.size(); ++seed) {
     ordered_json entry = {{"seed", seed + 1}};

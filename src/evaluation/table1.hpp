@@ -37,6 +37,8 @@ struct Table1 {
   std::size_t judged = 0;                 ///< case that is held against limits and others: "pmg", or the first
   std::vector<sim::WorldOptions> plants;  ///< by seed
 
+  std::vector<std::string> films;  ///< files beside the page
+
   bool reached(std::size_t error) const;  ///< the judged policy's mean is within its limit
   bool all_reached() const;               ///< and it never fell
 };

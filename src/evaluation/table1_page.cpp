@@ -103,6 +103,31 @@ pages::Table errors_table(const Table1& table) {
   return out;
 }
 
+/// Lines refer to the courses.
+pages::Chart course_chart(const Table1& table, Channel channel) {
+  constexpr std::array<const char*, kChannels> kTitles = {"forward [m/s]",        "to the left [m/s]",
+                                                          "turning left [rad/s]", "pitch, forward [rad]",
+                                                          "roll, right [rad]",    "height [m]"};
+  pages::Chart chart{.title = kTitles[channel], .lines = {}, .height_px = 190};
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    const Course& course = table.campaign.courses[c];
+    if (course.time_s.empty()) continue;
+    if (chart.lines.empty()) {
+      chart.lines.push_back({.name = "asked",
+                             .x = course.time_s,
+                             .y = course.asked[channel],
+                             .colour = pages::colour::kInk,
+                             .dashed = true,
+                             .stepped = true});
+    }
+    chart.lines.push_back({.name = table.cases[c].name,
+                           .x = course.time_s,
+                           .y = course.did[channel],
+                           .colour = kColours[c % kColours.size()]});
+  }
+  return chart;
+}
+
 pages::Table differences_table(const Table1& table) {
   pages::Table out{.header = {"difference, by seed"}, .rows = {}};
   for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
@@ -146,6 +171,10 @@ pages::Page page_of(const Table1& table) {
   });
   page.table(errors_table(table));
   if (!table.comparisons.empty()) page.table(differences_table(table));
+  page.heading("Over time, seed 1");
+  page.columns([&] {
+    for (const Channel channel : {kVx, kVy, kOmega, kPitch, kRoll, kHeight}) page.chart(course_chart(table, channel));
+  });
   page.heading("By command");
   page.columns([&] {
     for (std::size_t e = 0; e < kErrors; ++e) page.bars(step_bars(table, e));
@@ -159,6 +188,11 @@ pages::Page page_of(const Table1& table) {
       "are Student's, over seeds. The paper's figures are from its own robot in Isaac Gym.",
       table.seeds, table.scenario.duration_s(), table.scenario_file,
       table.ranges_file.empty() ? "as the model says" : table.ranges_file));
+  if (!table.films.empty()) {
+    std::string names;
+    for (const std::string& film : table.films) names += (names.empty() ? "" : ", ") + film;
+    page.paragraph("Films of seed 1 lie beside this page: " + names + ".");
+  }
   page.folded("Every run", [&] { page.table(runs_table(table)); });
   return page;
 }
