@@ -39,7 +39,7 @@ or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
-  fs::path scenario, out, export_mjcf;
+  fs::path scenario, out, export_mjcf, motor;
   std::uint64_t seed = 0;
   bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
 };
@@ -58,6 +58,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"gain", "paper"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--motor", arguments.motor, "motor.yaml of pmg_calibrate_motor: how the drives really are");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
   CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
@@ -84,6 +85,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
+  if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
   json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
                           {"encoder_rad", runtime::kEncoderNoise_rad},
                           {"orientation_rad", runtime::kOrientationNoise_rad}};
@@ -215,7 +217,9 @@ int simulate(const Arguments& arguments) {
     return kOk;
   }
   require(arguments.out, "--out");
-  sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
+  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  if (!arguments.motor.empty()) world_options.motors = sim::read_motor_file(arguments.motor, loaded.robot.joint_index);
+  sim::World world(loaded.robot, world_options);
   std::optional<runtime::LiveView> view;
   if (arguments.viewer) view.emplace(world, loaded.robot);
   fs::create_directories(arguments.out);
