@@ -17,7 +17,7 @@ Observation::Observation(const model::RobotModel& robot) : layout_(robot), q_sta
 }
 
 const Eigen::VectorXf& Observation::assemble(const model::RobotState& state, const Reference& reference,
-                                             const Command& optimised, const Eigen::VectorXf& last_action) noexcept {
+                                             const Command& observed, const Eigen::VectorXf& last_action) noexcept {
   newest_ = (newest_ + 1) % ring_.size();
   Frame& now = ring_[newest_];
   now.gyro = state.gyro_rad_s;
@@ -26,7 +26,7 @@ const Eigen::VectorXf& Observation::assemble(const model::RobotState& state, con
   now.dq = state.dq;
   now.action = last_action;
   frames_ = std::min(frames_ + 1, static_cast<int>(ring_.size()));
-  for (const ObservationTerm& term : layout_.terms()) fill(term, reference, optimised);
+  for (const ObservationTerm& term : layout_.terms()) fill(term, reference, observed);
   return vector_;
 }
 
@@ -35,7 +35,7 @@ const Observation::Frame& Observation::frame(int age_ticks) const noexcept {
   return ring_[(newest_ + ring_.size() - age) % ring_.size()];
 }
 
-void Observation::fill(const ObservationTerm& term, const Reference& reference, const Command& optimised) noexcept {
+void Observation::fill(const ObservationTerm& term, const Reference& reference, const Command& observed) noexcept {
   const Frame& seen = frame(term.age_ticks);
   const auto put = [&](int element, double value) {
     vector_[term.offset + element] = static_cast<float>(term.scale * value);
@@ -55,7 +55,7 @@ void Observation::fill(const ObservationTerm& term, const Reference& reference, 
       for (int i = 0; i < term.size; ++i) put(i, seen.gravity[i]);
       break;
     case Quantity::kCommand:
-      for (int i = 0; i < term.size; ++i) put(i, optimised.u[static_cast<std::size_t>(i)]);
+      for (int i = 0; i < term.size; ++i) put(i, observed.u[static_cast<std::size_t>(i)]);
       break;
     case Quantity::kPhase:
       put(0, reference.gain * std::sin(angle));

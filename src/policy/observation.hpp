@@ -21,8 +21,9 @@ class Observation {
   /// Forgets the history: the next frame is the first.
   void reset() noexcept { frames_ = 0; }
 
-  /// state: what the robot reports; optimised: u'; last_action: the network's previous output, one a policy joint.
-  const Eigen::VectorXf& assemble(const model::RobotState& state, const Reference& reference, const Command& optimised,
+  /// state: what the robot reports; observed: u', or u for a baseline; last_action: the network's previous output, one
+  /// a policy joint.
+  const Eigen::VectorXf& assemble(const model::RobotState& state, const Reference& reference, const Command& observed,
                                   const Eigen::VectorXf& last_action) noexcept;
 
   const ObservationLayout& layout() const { return layout_; }
@@ -34,7 +35,7 @@ class Observation {
     Eigen::VectorXf action;
   };
   const Frame& frame(int age_ticks) const noexcept;
-  void fill(const ObservationTerm& term, const Reference& reference, const Command& optimised) noexcept;
+  void fill(const ObservationTerm& term, const Reference& reference, const Command& observed) noexcept;
 
   ObservationLayout layout_;
   JointVector q_stand_;

@@ -14,7 +14,7 @@ namespace pmg::policy {
 enum class Quantity {
   kGyro,               ///< angular velocity in the IMU frame [rad/s]
   kGravityDirection,   ///< unit vector down, in the IMU frame
-  kCommand,            ///< u' of the ground-aware optimisation, in the order of pmg::Channel
+  kCommand,            ///< what the policy observes (gco::MotionComposition), in the order of pmg::Channel
   kPhase,              ///< gain * sin(2 pi phi), gain * cos(2 pi phi), gain
   kReferencePosition,  ///< q_ref - q_stand [rad]
   kReferenceVelocity,  ///< dq_ref [rad/s]

@@ -1,12 +1,11 @@
 // A trained policy's whole act(), observation included, against the same network written by hand in Eigen.
 #include <benchmark/benchmark.h>
-#include <onnxruntime_cxx_api.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "bench/onnx_network.hpp"
 #include "bench/trained_policy.hpp"
