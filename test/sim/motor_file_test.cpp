@@ -1,0 +1,118 @@
+// motor.yaml: what is written is read back, what is wrong is refused, and a world's drives follow it.
+#include "sim/motor_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "generator_core/allocation_count.hpp"
+#include "model/config_error.hpp"
+#include "sim/robots.hpp"
+#include "sim/world.hpp"
+
+namespace pmg::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class MotorFile : public testing::Test {
+ protected:
+  ~MotorFile() override { fs::remove(file_); }
+  void write(const std::string& text) const { std::ofstream(file_) << text; }
+  std::string refusal() const {
+    try {
+      read_motor_file(file_, robot_.joint_index);
+    } catch (const model::ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  const model::RobotModel& robot_ = z1();
+  const std::string joint_ = robot_.joint_index.name(0);
+  const fs::path file_ = fs::path(testing::TempDir()) /
+                         (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_motor.yaml");
+};
+
+TEST_F(MotorFile, HoldsEveryParameterExactly) {
+  ActuatorParameters all;
+  double number = 0.013;
+  for (const ActuatorParameter& p : actuator_parameters()) p.in(all) = number *= 1.07;
+  all.transmission.backlash_rad = 0.01;
+  write(motor_yaml({{joint_, all}, {robot_.joint_index.name(1), {}}}, {"made by a test"}));
+  const ActuatorsByJoint read = read_motor_file(file_, robot_.joint_index);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read.at(joint_), all);
+  EXPECT_EQ(read.at(robot_.joint_index.name(1)), ActuatorParameters{});
+}
+
+TEST_F(MotorFile, IsRefusedWithPlaceAndReason) {
+  write("joints:\n  " + joint_ + ":\n    friction: {coulomb: 1}\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("motor.yaml:3"), HasSubstr("friction.coulomb"), HasSubstr("unknown")));
+  write("joints:\n  " + joint_ + ":\n    frictions: {coulomb_Nm: 1}\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("motor.yaml:3"), HasSubstr("frictions"), HasSubstr("unknown")));
+  write("joints:\n  " + joint_ + ":\n    friction: {coulomb_Nm: -1}\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("motor.yaml:3"), HasSubstr("coulomb_Nm"), HasSubstr("at least 0")));
+  write("joints:\n  " + joint_ + ":\n    command: {delay_s: 3}\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr(joint_), HasSubstr("delay")));
+  write("joints:\n  tail: {}\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("motor.yaml:2"), HasSubstr("tail"), HasSubstr("joint")));
+}
+
+WorldOptions on_gantry() {
+  WorldOptions options;
+  options.gantry = true;
+  return options;
+}
+
+model::JointCommand hold(const model::RobotModel& robot) {
+  model::JointCommand command = standing_command(robot);
+  command.q[0] += 0.05;  // no drive comes to its limit, where MuJoCo's own is stiffer in speed than ours
+  return command;
+}
+
+model::RobotState after(World& world, const model::JointCommand& command, int steps) {
+  model::RobotState state;
+  for (int k = 0; k < steps; ++k) world.step(command);
+  world.read(state);
+  return state;
+}
+
+// Neutral drives do the same sums in another order; in half a second on the gantry no contact amplifies that.
+TEST_F(MotorFile, WithNeutralDrivesChangesNothing) {
+  World plain(robot_, on_gantry());
+  WorldOptions options = on_gantry();
+  for (const std::string& name : robot_.joint_index.names()) options.motors[name] = {};
+  World neutral(robot_, options);
+  const model::JointCommand command = hold(robot_);
+  const model::RobotState expected = after(plain, command, 250), got = after(neutral, command, 250);
+  EXPECT_GT((expected.q - robot_.q_stand()).cwiseAbs().maxCoeff(), 0.03);
+  EXPECT_LT((expected.q - got.q).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(MotorFile, MakesTheSimulatedDriveLate) {
+  WorldOptions options = on_gantry();
+  options.motors[joint_].command.delay_s = 0.1;
+  World world(robot_, options), prompt(robot_, on_gantry());
+  const model::JointCommand command = hold(robot_);
+  const double late_rad = after(world, command, 40).q[0], prompt_rad = after(prompt, command, 40).q[0];
+  EXPECT_LT(std::abs(late_rad - robot_.q_stand()[0]), 0.3 * std::abs(prompt_rad - robot_.q_stand()[0]));
+}
+
+TEST_F(MotorFile, CostsAWorldNoHeap) {
+  if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted";
+  WorldOptions options = on_gantry();
+  options.motors[joint_].friction = {.coulomb_Nm = 0.5, .load_driving = 0.2};
+  World world(robot_, options);
+  const model::JointCommand command = hold(robot_);
+  world.step(command);
+  const long before = test::allocation_count();
+  for (int k = 0; k < 20; ++k) world.step(command);
+  EXPECT_EQ(test::allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace pmg::sim
