@@ -42,7 +42,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--variant", default="pmg", choices=["pmg", "without_gco", "single_gait"])
     parser.add_argument("--config", default=HERE / "config.yaml", type=Path)
     parser.add_argument("--randomization", default=HERE / "randomization.yaml", type=Path)
-    parser.add_argument("--motors", type=Path, help="motor.yaml of the calibration tools: what actuators do beyond a plain servo")
+    parser.add_argument("--motor", type=Path, help="motor.yaml of the calibration tools: what actuators do beyond a plain servo")
     parser.add_argument("--out", required=True, type=Path)
     parser.add_argument("--minutes", type=float, default=20.0, help="wall time of learning, earlier parts of a resumed run counted")
     parser.add_argument("--iterations", type=int, default=10**9)
@@ -80,7 +80,7 @@ class Training:
         self.description = batch.description
         pool = ReferencePool(batch, c["references"]["ticks"], self.device)
         self.log(f"references ready: {pool.streams} streams of {pool.ticks} ticks")
-        self.motors = read_motor_file(a.motors, [j["name"] for j in batch.description["joints"]]) if a.motors else {}
+        self.motors = read_motor_file(a.motor, [j["name"] for j in batch.description["joints"]]) if a.motor else {}
         self.env = Environment(a.mjcf, pool, batch.description, batch.fields, c, self.ranges, ppo["worlds"], self.device, self.motors)
         seen = self.env.observation.shape[1]
         if seen != batch.description["observation"]["size"]:

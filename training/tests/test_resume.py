@@ -1,5 +1,7 @@
 """A run that is interrupted and resumed learns exactly what an uninterrupted one learns, in one process and in several."""
 
+import csv
+import importlib.util
 import os
 import subprocess
 import sys
@@ -17,7 +19,9 @@ def train(out: Path, processes: int, iterations: int, *more: str) -> dict:
     start = [sys.executable, "-m"]
     if processes > 1:
         start += ["torch.distributed.run", "--standalone", "--nproc-per-node", str(processes), "-m"]
-    subprocess.run([*start, "pmg_train.train", "--robot", ROBOT, "--mjcf", MJCF, "--library", LIBRARY,
+    given = [word for option, path in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY))
+             for word in (option, str(Path(path).resolve()))]
+    subprocess.run([*start, "pmg_train.train", *given,
                     "--out", str(out), "--worlds", "8", "--streams", "4", "--ticks", "400", "--threads", "1", "--seed", "3",
                     "--device", "cpu", "--iterations", str(iterations), *more],
                    # Tiny tensors: more threads a process only wait for each other.
@@ -34,3 +38,15 @@ def test_resumed_run_equals_the_uninterrupted_one(tmp_path, processes):
     assert parts["steps"] == whole["steps"] == 2 * 24 * 8 * processes
     for name, value in whole["network"].items():
         assert torch.equal(value, parts["network"][name]), name
+    with open(tmp_path / "parts" / "curve.csv") as file:
+        assert [int(row["iteration"]) for row in csv.DictReader(file)] == [1, 2]
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("tensorboard"), reason="TensorBoard is not installed")
+def test_curves_are_in_tensorboard_too(tmp_path):
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    train(tmp_path, 1, 2)
+    events = EventAccumulator(str(tmp_path / "tensorboard"))
+    events.Reload()
+    assert [e.step for e in events.Scalars("error/ankle_pitch")] == [1, 2]
