@@ -194,6 +194,7 @@ int calibrate(const Arguments& arguments) {
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
   std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, step_s, progress), scored;
   if (!arguments.score.empty()) scored = read(bench, arguments.score, step_s, progress);
+  if (interrupt_requested != 0) return kInterrupted;  // nothing is found yet
   expect_apart(fitted, scored);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));
   calib::FitOptions options;

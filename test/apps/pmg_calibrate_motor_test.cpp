@@ -1,0 +1,121 @@
+// pmg_calibrate_motor as its users see it: results, exit codes, messages, and nothing half-written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/running_program.hpp"
+#include "calib/fit_problem.hpp"
+#include "calib/synthetic_bench.hpp"
+#include "sim/motor_file.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class PmgCalibrateMotor : public testing::Test {
+ protected:
+  PmgCalibrateMotor() {
+    truth_.actuator.drive.kp_scale = 0.8;
+    truth_.actuator.drive.kd_scale = 1.3;
+    truth_.actuator.transmission.armature_kg_m2 = 0.03;
+    truth_.actuator.friction.coulomb_Nm = 0.3;
+    test::write_bench(folder_ / "servo", test::record(test::pd_bench(true), truth_, 4, 1e-3));
+  }
+  ~PmgCalibrateMotor() override { fs::remove_all(folder_); }
+
+  struct Finished {
+    int exit_code;
+    std::string out, err;
+  };
+  Finished run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), (folder_ / "servo").string());
+    arguments.insert(arguments.end(), {"--out", out_.string(), "--threads", "2"});
+    test::RunningProgram program("pmg_calibrate_motor", arguments, folder_);
+    const int exit_code = program.wait();
+    return {exit_code, program.out(), program.err()};
+  }
+  calib::JointModel truth_;
+  const fs::path folder_ = fs::path(testing::TempDir()) /
+                           ("calibrate " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const fs::path out_ = folder_ / "out";
+};
+
+TEST_F(PmgCalibrateMotor, WritesAMotorThatTheSimulationReads) {
+  const Finished done = run({"--also", "friction", "--fit", "kp_Nm_per_rad > 0 and file != run3.csv", "--score",
+                             "file == run3.csv", "--json"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out);
+  EXPECT_EQ(json, nlohmann::json::parse(test::text_of(out_ / "fit.json")));
+  EXPECT_EQ(json["fit"]["runs"], 3);
+  EXPECT_EQ(json["score"]["runs"], 1);
+  EXPECT_LT(json["score"]["error_after"]["mean_absolute"], 0.002) << "the noise alone makes 0.8 mrad";
+  const sim::ActuatorsByJoint motors = sim::read_motor_file(out_ / "motor.yaml");
+  const sim::ActuatorParameters& found = motors.at("servo");
+  EXPECT_NEAR(found.drive.kp_scale, 0.8, 0.03);
+  EXPECT_NEAR(found.friction.coulomb_Nm, 0.3, 0.02);
+  EXPECT_EQ(found.friction.coulomb_Nm, json["parameters"]["friction.coulomb_Nm"]["value"]);
+  EXPECT_THAT(test::text_of(out_ / "report.html"),
+              AllOf(testing::StartsWith("<!doctype html>"), HasSubstr("the usual run")));
+}
+
+TEST_F(PmgCalibrateMotor, RefusesBadInputInOneLineAndWritesNothing) {
+  const std::vector<std::pair<std::vector<std::string>, const char*>> bad = {
+      {{"--fit", "repeat == 9"}, "no run matches"},
+      {{"--fit", "kp ~ 3"}, "isn't a relation"},
+      {{"--score", "repeat == 0"}, "both in --fit and in --score"},
+      {{"--also", "magic"}, "isn't an effect"},
+      {{"--set", "friction.coulomb_Nm=some"}, "isn't a number"},
+      {{"--set", "friction.colour=1"}, "no actuator parameter"},
+      {{"--range", "friction.coulomb_Nm=0:1"}, "that is fitted"},
+      {{"--only"}, "nothing to fit"},
+  };
+  for (const auto& [arguments, message] : bad) {
+    const Finished done = run(arguments);
+    EXPECT_EQ(done.exit_code, 2) << message;
+    EXPECT_THAT(done.err, HasSubstr(message));
+    EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
+    EXPECT_FALSE(fs::exists(out_));
+  }
+  fs::remove(folder_ / "servo" / "runs" / "run2.csv");
+  const Finished done = run({});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, AllOf(HasSubstr("run2.csv"), HasSubstr("cannot be read")));
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(PmgCalibrateMotor, KeepsWhatItHasWhenInterrupted) {
+  test::RunningProgram program("pmg_calibrate_motor",
+                               {(folder_ / "servo").string(), "--also", "friction", "delay", "--starts", "1000",
+                                "--out", out_.string(), "--threads", "1"},
+                               folder_);
+  // Its handler is in place before it reads; before that SIGINT would end it as any program.
+  const fs::path signals = fs::path("/proc") / std::to_string(program.id()) / "status";
+  ASSERT_TRUE(program.until([&] {
+    const std::string status = test::text_of(signals);
+    const std::size_t at = status.find("SigCgt:");
+    return at != std::string::npos && (std::stoull(status.substr(at + 8), nullptr, 16) & (1ULL << (SIGINT - 1))) != 0;
+  }));
+  program.send(SIGINT);
+  const int exit_code = program.wait();
+  if (!fs::exists(out_)) {  // it was still reading
+    EXPECT_EQ(exit_code, 130);
+    return;
+  }
+  EXPECT_EQ(exit_code, 130);
+  EXPECT_EQ(nlohmann::json::parse(test::text_of(out_ / "fit.json"))["interrupted"], true);
+  EXPECT_NO_THROW(sim::read_motor_file(out_ / "motor.yaml"));
+}
+
+TEST_F(PmgCalibrateMotor, ExplainsItself) {
+  test::RunningProgram program("pmg_calibrate_motor", {"--help"}, folder_);
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.out(), AllOf(HasSubstr("Example:"), HasSubstr("Exit codes:")));
+  for (const std::string& word : calib::effect_words()) EXPECT_THAT(program.out(), HasSubstr(word));
+}
+
+}  // namespace
+}  // namespace pmg
