@@ -39,7 +39,7 @@ or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
-  fs::path scenario, out, export_mjcf, motor;
+  fs::path scenario, out, export_mjcf, motor, vary;
   std::uint64_t seed = 0;
   bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
 };
@@ -60,6 +60,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--motor", arguments.motor, "motor.yaml of pmg_calibrate_motor: how the drives really are");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
+  app.add_option("--vary", arguments.vary,
+                 "draw the simulated robot, its ground and its noise from these ranges (YAML) by the seed");
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
   CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
                                        "the robot's threads and the wall clock instead of lockstep; not reproducible");
@@ -85,6 +87,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
+  if (!arguments.vary.empty()) json["vary"] = arguments.vary.string();
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
   json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
                           {"encoder_rad", runtime::kEncoderNoise_rad},
@@ -218,6 +221,9 @@ int simulate(const Arguments& arguments) {
   }
   require(arguments.out, "--out");
   sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  if (!arguments.vary.empty()) {
+    sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
+  }
   if (!arguments.motor.empty()) world_options.motors = sim::read_motor_file(arguments.motor, loaded.robot.joint_index);
   sim::World world(loaded.robot, world_options);
   std::optional<runtime::LiveView> view;
