@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pmg::evaluation {
@@ -128,6 +129,7 @@ std::vector<std::string> text_of(const Table1& table) {
         table.cases[c].name,
         [&](std::size_t e) {
           const Estimate& error = summary.errors[e];
+          if (!std::isfinite(error.upper)) return fmt::format("{:.4f}        ", error.mean);
           return fmt::format("{:.4f} +-{:.4f}", error.mean, error.upper - error.mean);
         },
         fmt::format("{}/{}", summary.falls, summary.trials));

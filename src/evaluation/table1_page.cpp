@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "evaluation/table1.hpp"
 #include "pages/text.hpp"
@@ -51,6 +53,7 @@ pages::Bars step_bars(const Table1& table, std::size_t error) {
 }
 
 std::string interval_text(const Estimate& estimate) {
+  if (!std::isfinite(estimate.upper)) return fmt::format("{:.4f}", estimate.mean);
   return fmt::format("{:.4f} [{:.4f}, {:.4f}]", estimate.mean, estimate.lower, estimate.upper);
 }
 
