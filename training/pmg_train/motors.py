@@ -6,6 +6,7 @@ import mujoco
 import torch
 import yaml
 
+from pmg_train.actuation import step_inertia
 from pmg_train.actuator import NEUTRAL, ActuatorModel
 from pmg_train.randomization import Robots
 
@@ -60,14 +61,16 @@ class Motors:
         model.actuator_gainprm[actuator, 0] = 1.0
         model.actuator_biasprm[actuator, :3] = 0.0
 
-    def vary(self, robots: Robots) -> None:
+    def vary(self, robots: Robots, deployed_step_s: float) -> None:
         """The drawn factors of gains, rotor inertias and friction, as MuJoCo's own joints have them. Once, before the first step."""
         self.kp *= robots.kp[:, self.actuator]
         self.kd *= robots.kd[:, self.actuator]
         for name in FRICTION:
             self.model.p[name] = self.model.p[name] * robots.joint_friction[:, self.actuator]
         name = "transmission.armature_kg_m2"
-        self.model.p[name] = self.model.p[name] * robots.armature[:, self.actuator]
+        armature = self.model.p[name] * robots.armature[:, self.actuator]
+        added = step_inertia(self.kd, self.model.step_s, deployed_step_s)
+        self.model.p[name] = torch.where(self.model.elastic, torch.maximum(armature - added, 0.1 * armature), armature)
 
     def drive(self, target: torch.Tensor, qpos: torch.Tensor, qvel: torch.Tensor, ctrl: torch.Tensor, bias: torch.Tensor) -> None:
         """Torques of the step to come into MuJoCo's ctrl, their slopes into its velocity bias. target: q_des of all joints [rad]."""

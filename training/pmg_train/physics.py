@@ -77,7 +77,7 @@ class Worlds:
         self._set_armature(robots.armature)
         if self.motors:
             gain[:, self.motors.index] = 1.0
-            self.motors.vary(robots)
+            self.motors.vary(robots, self.deployed_step_s)
         view(self.m.dof_frictionloss)[:, 6:] *= robots.joint_friction
 
     def _set_armature(self, factor: torch.Tensor) -> None:
@@ -85,7 +85,7 @@ class Worlds:
         model, armature = self.model, wp.to_torch(self.m.dof_armature)[:, 6:]
         kd = torch.tensor(model.dof_damping[6:] - model.actuator_biasprm[:, 2], dtype=torch.float32, device=self.torch_device)
         if self.motors:
-            kd[self.motors.index] += self.motors.kd[0]
+            kd[self.motors.index] += torch.where(self.motors.model.elastic, 0.0, self.motors.kd[0])
         added = step_inertia(kd, model.opt.timestep, self.deployed_step_s)
         armature.copy_(torch.maximum(armature * factor - added, 0.1 * armature))
 
