@@ -74,6 +74,8 @@ double to_unit(const FitParameter& p, double value) {
 FitParameter fit_parameter(const std::string& name, const Bench& bench) {
   if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
   const sim::ActuatorParameter& p = sim::actuator_parameter(name);
+  // A firmware's number per radian of error, to a duty of 1.
+  if (bench.law == DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
   // A linear axis moves kilograms by hundreds of newtons.
   const bool linear = bench.rig == Rig::kLinear;
   const double scale = linear && p.unit.starts_with("kg") ? 1000.0 : linear && p.unit.starts_with("Nm") ? 100.0 : 1.0;

@@ -43,7 +43,7 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
 
 void ActuatorModel::reset(double q_rad) {
   const double reading = reading_rad(q_rad);
-  past_commands_rad_.fill(reading);
+  told_before_ = false;
   newest_ = 0;
   command_rad_ = lagged_rad_ = sensed_before_rad_ = reading;
   held_for_s_ = parameters_.command.hold_s - step_s_;
@@ -63,18 +63,26 @@ double ActuatorModel::reading_rad(double q_rad) const {
 }
 
 /// Between two stored commands by a straight line: the mean of a held command over the step, smooth in the delay.
-double ActuatorModel::delayed(double q_command_rad) noexcept {
+ActuatorModel::Told ActuatorModel::delayed(const Told& now) noexcept {
   constexpr int kSize = kDelaySteps + 2;
+  if (!told_before_) {
+    Told before = now;
+    before.q_rad = command_rad_;
+    past_.fill(before);
+    told_before_ = true;
+  }
   newest_ = newest_ + 1 == kSize ? 0 : newest_ + 1;
-  past_commands_rad_[static_cast<std::size_t>(newest_)] = q_command_rad;
+  past_[static_cast<std::size_t>(newest_)] = now;
   const double steps = parameters_.command.delay_s / step_s_;
   const int whole = static_cast<int>(steps);
   const double share = steps - whole;
   int later = newest_ - whole;
   if (later < 0) later += kSize;
-  const int earlier = later == 0 ? kSize - 1 : later - 1;
-  return past_commands_rad_[static_cast<std::size_t>(later)] * (1.0 - share) +
-         past_commands_rad_[static_cast<std::size_t>(earlier)] * share;
+  const Told& a = past_[static_cast<std::size_t>(later)];
+  const Told& b = past_[static_cast<std::size_t>(later == 0 ? kSize - 1 : later - 1)];
+  const auto between = [share](double x, double y) { return x + share * (y - x); };
+  return {between(a.q_rad, b.q_rad), between(a.dq_rad_s, b.dq_rad_s),         between(a.kp, b.kp),
+          between(a.kd, b.kd),       between(a.feed_forward, b.feed_forward), between(a.on, b.on)};
 }
 
 double ActuatorModel::limited(double q_command_rad) noexcept {
@@ -97,27 +105,32 @@ double ActuatorModel::sensed_velocity(double dq_rad_s) noexcept {
 
 ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
   const ActuatorParameters::Drive& p = parameters_.drive;
-  const double in_time_rad = delaying_ ? delayed(input.q_rad) : input.q_rad;
-  command_rad_ = rate_limited_ ? limited(in_time_rad) : in_time_rad;
+  Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward, input.enabled ? 1.0 : 0.0};
+  if (delaying_) told = delayed(told);
+  command_rad_ = rate_limited_ ? limited(told.q_rad) : told.q_rad;
   const double q_sensed_rad = sensed(q_rad);
   const double dq_sensed_rad_s = sensed_velocity(lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s);
   sensed_before_rad_ = q_sensed_rad;
-  if (!input.enabled) {
-    const double slope = -p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
-    return {slope * dq_rad_s, slope};
-  }
+  Line motor{0.0, 0.0};
+  if (told.on > 0.0) motor = powered(told, input.supply, q_sensed_rad, dq_sensed_rad_s, dq_rad_s);
+  const double brake = p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
+  return {told.on * motor.torque_Nm - (1.0 - told.on) * brake * dq_rad_s,
+          told.on * motor.slope - (1.0 - told.on) * brake};
+}
 
+ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s,
+                                           double dq_rad_s) noexcept {
+  const ActuatorParameters::Drive& p = parameters_.drive;
   const double sag = std::max(0.0, 1.0 - p.supply_sag_per_Nm * std::abs(given_.torque_Nm));
-  const double scale = p.torque_per_unit_Nm * input.supply * sag;
-  const double kd = p.kd_scale * input.kd;
+  const double scale = p.torque_per_unit_Nm * supply * sag;
+  const double kd = p.kd_scale * told.kd;
   bool follows_speed = !lagging_ && !velocity_lagging_;
   held_for_s_ += step_s_;
   if (held_for_s_ >= parameters_.command.hold_s - 1e-9) {
     held_for_s_ = std::min(held_for_s_ - parameters_.command.hold_s, step_s_);
     double error_rad = command_rad_ - q_sensed_rad;
     if (std::abs(error_rad) < p.dead_band_rad) error_rad = 0.0;
-    const double wish =
-        p.kp_scale * input.kp * error_rad + kd * (input.dq_rad_s - dq_sensed_rad_s) + input.feed_forward;
+    const double wish = p.kp_scale * told.kp * error_rad + kd * (told.dq_rad_s - dq_sensed_rad_s) + told.feed_forward;
     held_output_ = std::clamp(wish, -p.limit, p.limit);
     follows_speed = follows_speed && held_output_ == wish && parameters_.command.hold_s <= step_s_;
   } else {

@@ -31,7 +31,8 @@ class ActuatorModel {
   /// Throws std::invalid_argument when the delay doesn't fit or a value makes no sense.
   ActuatorModel(const ActuatorParameters& parameters, double step_s);
 
-  void reset(double q_rad);  ///< at rest there, commanded there
+  /// At rest there. What was told before the first step is taken to be as its input, but commanded where the joint is.
+  void reset(double q_rad);
 
   /// The torque during the step that begins with the joint at (q, dq).
   ActuatorTorque step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
@@ -48,11 +49,16 @@ class ActuatorModel {
   struct Line {  // torque in the motor's speed, as ActuatorTorque
     double torque_Nm, slope;
   };
-  double delayed(double q_command_rad) noexcept;
+  /// What the drive has been told, as it arrives; on is the share of a step for which it is switched on.
+  struct Told {
+    double q_rad, dq_rad_s, kp, kd, feed_forward, on;
+  };
+  Told delayed(const Told& now) noexcept;
   double limited(double q_command_rad) noexcept;
   double sensed(double q_rad) noexcept;
   double sensed_velocity(double dq_rad_s) noexcept;
   Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
+  Line powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s, double dq_rad_s) noexcept;
   Line dry_friction(double dq_rad_s) noexcept;
   ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
   ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;
@@ -61,8 +67,9 @@ class ActuatorModel {
   double step_s_;
   bool elastic_, lagging_, velocity_lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_;
 
-  std::array<double, kDelaySteps + 2> past_commands_rad_{};
+  std::array<Told, kDelaySteps + 2> past_{};
   int newest_ = 0;
+  bool told_before_ = false;
   double command_rad_ = 0.0;  // after delay and rate limit
   double held_for_s_ = 0.0, held_output_ = 0.0;
   double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0, lagged_rad_s_ = 0.0;
