@@ -44,20 +44,23 @@ class ActuatorModel:
         ages = torch.arange(int(float(steps.max())) + 2, device=device, dtype=dtype)[:, None]
         whole = torch.trunc(steps)
         share = steps - whole
-        self.ages = torch.where(ages == whole, 1 - share, torch.where(ages == whole + 1, share, 0.0))[:, None]
+        self.ages = torch.where(ages == whole, 1 - share, torch.where(ages == whole + 1, share, 0.0))[:, None, None]
         state = lambda: torch.zeros(worlds, len(parameters), device=device, dtype=dtype)
-        self.past_commands = torch.stack([state() for _ in range(len(ages))])  # newest first
+        # What the drive was told, newest first: q_des, dq_des, kp, kd, feed forward, on (0 or 1).
+        self.past = torch.stack([torch.stack([state() for _ in range(6)]) for _ in range(len(ages))])
+        self.told_before = torch.zeros(worlds, 1, device=device, dtype=torch.bool)
         self.command, self.held_for, self.held_output = (state() for _ in range(3))
         self.lagged, self.sensed_before, self.lagged_speed = (state() for _ in range(3))
         self.bristle, self.load, self.rotor, self.rotor_speed = (state() for _ in range(4))
         self.given_torque, self.given_slope, self.given_at = (state() for _ in range(3))
 
     def reset(self, q: torch.Tensor, where: torch.Tensor | None = None) -> None:
-        """At rest at q [rad] (worlds, joints) and commanded there; where (worlds,) bool, or everywhere."""
+        """At rest at q [rad] (worlds, joints); where (worlds,) bool, or everywhere. What was told before the first step is taken
+        to be as its input, but commanded at q."""
         mask = torch.ones_like(q[:, :1], dtype=torch.bool) if where is None else where[:, None]
         put = lambda state, value: state.copy_(torch.where(mask, value, state))
         reading = self.reading(q)
-        put(self.past_commands, reading)
+        self.told_before.logical_and_(~mask)
         for state in (self.command, self.lagged, self.sensed_before):
             put(state, reading)
         put(self.held_for, (self.p["command.hold_s"] - self.step_s).expand_as(q))
@@ -68,7 +71,7 @@ class ActuatorModel:
 
     def momentary(self) -> dict[str, torch.Tensor]:
         """All that changes from step to step."""
-        names = ("past_commands", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "bristle", "load",
+        names = ("past", "told_before", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "bristle", "load",
                  "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
         return {name: getattr(self, name) for name in names}
 
@@ -98,12 +101,18 @@ class ActuatorModel:
         self.given_at.copy_(dq)
         return self.given_torque, self.given_slope
 
-    def _commanded(self, q_des: torch.Tensor) -> torch.Tensor:
-        """After delay (straight between two steps) and rate limit."""
-        self.past_commands.copy_(torch.cat([q_des.expand_as(self.command)[None], self.past_commands[:-1]]))
-        in_time = (self.ages * self.past_commands).sum(0)
+    def _told(self, *now) -> torch.Tensor:
+        """What has arrived of it, after the delay: straight between two steps."""
+        told = torch.stack([x.expand_as(self.command) if isinstance(x, torch.Tensor) else torch.full_like(self.command, x) for x in now])
+        before = torch.cat([self.command[None], told[1:]])
+        self.past.copy_(torch.where(self.told_before, self.past, before))
+        self.told_before.fill_(True)
+        self.past.copy_(torch.cat([told[None], self.past[:-1]]))
+        return (self.ages * self.past).sum(0)
+
+    def _limited(self, q_des: torch.Tensor) -> torch.Tensor:
         most = self.p["command.rate_limit_rad_s"] * self.step_s
-        return self.command + torch.minimum(torch.maximum(in_time - self.command, -most), most)
+        return self.command + torch.minimum(torch.maximum(q_des - self.command, -most), most)
 
     def _sensed(self, q: torch.Tensor) -> torch.Tensor:
         reading, lag = self.reading(q), self.p["sensor.lag_s"]
@@ -115,29 +124,34 @@ class ActuatorModel:
         return torch.where(self.velocity_lagging, self.lagged_speed, dq)
 
     def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled) -> tuple[torch.Tensor, torch.Tensor]:
-        p, h = self.p, self.step_s
-        self.command.copy_(self._commanded(q_des))
+        p = self.p
+        q_des, dq_des, kp, kd, feed_forward, on = self._told(q_des, dq_des, kp, kd, feed_forward, float(enabled))
+        self.command.copy_(self._limited(q_des))
         sensed = self._sensed(q)
-        dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / h, dq))
+        dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / self.step_s, dq))
         self.sensed_before.copy_(sensed)
-        unit, back_emf, hold = p["drive.torque_per_unit_Nm"], p["drive.back_emf_s_per_rad"], p["command.hold_s"]
-        if not enabled:
-            slope = -p["drive.brake_when_disabled"] * unit * back_emf
-            return slope * dq, slope.expand_as(dq)
+        wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + feed_forward
+        torque, slope = self._powered(wish, kd, supply, dq, on > 0)
+        brake = p["drive.brake_when_disabled"] * p["drive.torque_per_unit_Nm"] * p["drive.back_emf_s_per_rad"]
+        return on * torque - (1 - on) * brake * dq, on * slope - (1 - on) * brake
 
-        scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
-        kd = p["drive.kd_scale"] * kd
-        held_for = self.held_for + h
-        due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
-        self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), held_for))
+    def _error(self, sensed: torch.Tensor) -> torch.Tensor:
         error = self.command - sensed
-        error = torch.where(error.abs() < p["drive.dead_band_rad"], 0.0, error)
-        wish = p["drive.kp_scale"] * kp * error + kd * (dq_des - dq_sensed) + feed_forward
+        return torch.where(error.abs() < self.p["drive.dead_band_rad"], 0.0, error)
+
+    def _powered(self, wish, kd, supply, dq, on) -> tuple[torch.Tensor, torch.Tensor]:
+        """The drive's loop, which runs while it is on, and what the motor makes of its output."""
+        p, h = self.p, self.step_s
+        unit, back_emf, hold = p["drive.torque_per_unit_Nm"], p["drive.back_emf_s_per_rad"], p["command.hold_s"]
+        scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
+        held_for = self.held_for + h
+        due = on & (held_for >= hold - 1e-4 * h)  # single precision must not miss its turn
+        self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), torch.where(on, held_for, self.held_for)))
         within = torch.minimum(torch.maximum(wish, -p["drive.limit"]), p["drive.limit"])
         self.held_output.copy_(torch.where(due, within, self.held_output))
         follows_speed = due & ~self.lagging & ~self.velocity_lagging & (within == wish) & (hold <= h)
         torque = scale * self.held_output - unit * back_emf * dq
-        slope = -unit * back_emf - torch.where(follows_speed, scale * kd, 0.0)
+        slope = -unit * back_emf - torch.where(follows_speed, scale * p["drive.kd_scale"] * kd, 0.0)
         return self._within_torque_speed_line(torque, slope, dq)
 
     def _within_torque_speed_line(self, torque, slope, dq) -> tuple[torch.Tensor, torch.Tensor]:
