@@ -81,8 +81,8 @@ ActuatorModel::Told ActuatorModel::delayed(const Told& now) noexcept {
   const Told& a = past_[static_cast<std::size_t>(later)];
   const Told& b = past_[static_cast<std::size_t>(later == 0 ? kSize - 1 : later - 1)];
   const auto between = [share](double x, double y) { return x + share * (y - x); };
-  return {between(a.q_rad, b.q_rad), between(a.dq_rad_s, b.dq_rad_s),         between(a.kp, b.kp),
-          between(a.kd, b.kd),       between(a.feed_forward, b.feed_forward), between(a.on, b.on)};
+  return {between(a.q_rad, b.q_rad), between(a.dq_rad_s, b.dq_rad_s), between(a.kp, b.kp), between(a.kd, b.kd),
+          between(a.feed_forward, b.feed_forward)};
 }
 
 double ActuatorModel::limited(double q_command_rad) noexcept {
@@ -105,17 +105,15 @@ double ActuatorModel::sensed_velocity(double dq_rad_s) noexcept {
 
 ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
   const ActuatorParameters::Drive& p = parameters_.drive;
-  Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward, input.enabled ? 1.0 : 0.0};
+  Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward};
   if (delaying_) told = delayed(told);
   command_rad_ = rate_limited_ ? limited(told.q_rad) : told.q_rad;
   const double q_sensed_rad = sensed(q_rad);
   const double dq_sensed_rad_s = sensed_velocity(lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s);
   sensed_before_rad_ = q_sensed_rad;
-  Line motor{0.0, 0.0};
-  if (told.on > 0.0) motor = powered(told, input.supply, q_sensed_rad, dq_sensed_rad_s, dq_rad_s);
+  if (input.enabled) return powered(told, input.supply, q_sensed_rad, dq_sensed_rad_s, dq_rad_s);
   const double brake = p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
-  return {told.on * motor.torque_Nm - (1.0 - told.on) * brake * dq_rad_s,
-          told.on * motor.slope - (1.0 - told.on) * brake};
+  return {-brake * dq_rad_s, -brake};
 }
 
 ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s,

@@ -49,9 +49,9 @@ class ActuatorModel {
   struct Line {  // torque in the motor's speed, as ActuatorTorque
     double torque_Nm, slope;
   };
-  /// What the drive has been told, as it arrives; on is the share of a step for which it is switched on.
+  /// What the drive has been told, as it takes effect.
   struct Told {
-    double q_rad, dq_rad_s, kp, kd, feed_forward, on;
+    double q_rad, dq_rad_s, kp, kd, feed_forward;
   };
   Told delayed(const Told& now) noexcept;
   double limited(double q_command_rad) noexcept;

@@ -12,7 +12,7 @@ namespace pmg::sim {
 struct ActuatorParameters {
   /// What happens to a command before the drive compares it with its sensor.
   struct Command {
-    double delay_s = 0.0;
+    double delay_s = 0.0;  ///< of positions, speeds, gains and feed-forward; switching off is immediate
     double rate_limit_rad_s = std::numeric_limits<double>::infinity();  ///< of the position command
     double hold_s = 0.0;                                                ///< period of the drive's own loop
     bool operator==(const Command&) const = default;

@@ -46,8 +46,8 @@ class ActuatorModel:
         share = steps - whole
         self.ages = torch.where(ages == whole, 1 - share, torch.where(ages == whole + 1, share, 0.0))[:, None, None]
         state = lambda: torch.zeros(worlds, len(parameters), device=device, dtype=dtype)
-        # What the drive was told, newest first: q_des, dq_des, kp, kd, feed forward, on (0 or 1).
-        self.past = torch.stack([torch.stack([state() for _ in range(6)]) for _ in range(len(ages))])
+        # What the drive was told, newest first: q_des, dq_des, kp, kd, feed forward.
+        self.past = torch.stack([torch.stack([state() for _ in range(5)]) for _ in range(len(ages))])
         self.told_before = torch.zeros(worlds, 1, device=device, dtype=torch.bool)
         self.command, self.held_for, self.held_output = (state() for _ in range(3))
         self.lagged, self.sensed_before, self.lagged_speed = (state() for _ in range(3))
@@ -125,7 +125,8 @@ class ActuatorModel:
 
     def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
-        q_des, dq_des, kp, kd, feed_forward, on = self._told(q_des, dq_des, kp, kd, feed_forward, float(enabled))
+        q_des, dq_des, kp, kd, feed_forward = self._told(q_des, dq_des, kp, kd, feed_forward)
+        on = torch.full_like(self.command, float(enabled))
         self.command.copy_(self._limited(q_des))
         sensed = self._sensed(q)
         dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / self.step_s, dq))
