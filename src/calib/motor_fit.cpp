@@ -77,24 +77,45 @@ class Fitting {
     return found;
   }
 
-  /// The two best starts on all runs, each by BOBYQA's parabolas and then SBPLX, which kinks don't mislead.
+  /// The best start, and the next best that is nearly as good elsewhere.
+  std::vector<Found> candidates(const std::vector<Found>& starts) const {
+    constexpr double kNearlyAsGood = 1.05, kElsewhere = 0.02;  // of the loss, of the cube's edge
+    std::vector<Found> chosen{starts.front()};
+    for (const Found& other : starts) {
+      double apart = 0.0;
+      for (std::size_t d = 0; d < other.point.size(); ++d) {
+        apart = std::max(apart, std::abs(other.point[d] - starts.front().point[d]));
+      }
+      if (apart < kElsewhere || other.loss > kNearlyAsGood * starts.front().loss) continue;
+      chosen.push_back(other);
+      break;
+    }
+    return chosen;
+  }
+
+  /// The candidates on all runs, each by BOBYQA's parabolas and then SBPLX, which kinks don't mislead. Never worse than
+  /// the model that the fit started with: nested models only gain.
   void polish(Fit& fit) {
-    fit.point = fit.starts.front().point;
-    const std::size_t candidates = std::min<std::size_t>(2, fit.starts.size());
-    Found best{fit.point, all_.loss(fit.point, options_.threads), 1};
+    const std::vector<Found> chosen = candidates(fit.starts);
     std::vector<double> history;
     const Loss loss = loss_of(all_, options_.threads);
+    Found best{all_.point_of(all_.start()), 0.0, 1};
+    best.loss = loss(best.point);
     const Loss remembered = [&](const std::vector<double>& point) {
       const double value = loss(point);
       history.push_back(history.empty() ? value : std::min(history.back(), value));
       return value;
     };
-    for (std::size_t c = 0; c < candidates && !stopped_; ++c) {
-      Found at{fit.starts[c].point, 0.0, 0};
+    if (stopped_) {  // no polish, but what was found
+      const double found = remembered(chosen.front().point);
+      if (found < best.loss) best = {chosen.front().point, found, 1};
+    }
+    for (std::size_t c = 0; c < chosen.size() && !stopped_; ++c) {
+      Found at = chosen[c];
       for (const Method method : {Method::kBobyqa, Method::kSbplx}) {
         at = search(method, remembered, at.point, limits(method, 0.03, 0), stopping());
         tell(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
-                       static_cast<double>(candidates),
+                       static_cast<double>(chosen.size()),
              fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));
       }
       if (at.loss < best.loss) best = at;
