@@ -148,6 +148,15 @@ TEST(ActuatorModel, GivesNothingWhenSwitchedOff) {
   EXPECT_EQ(actuator.step({.q_rad = 1.0, .kp = 10.0, .enabled = false}, 0.0, 1.0).torque_Nm, 0.0);
 }
 
+TEST(ActuatorModel, IsSwitchedOffAtOnceHoweverLateItsCommandsAre) {
+  ActuatorModel actuator(with([](auto& p) { p.command.delay_s = 0.02; }), kStep_s);
+  ActuatorInput input{.q_rad = 1.0, .kp = 10.0};
+  for (int k = 0; k < 20; ++k) actuator.step(input, 0.0, 0.0);
+  EXPECT_EQ(actuator.step(input, 0.0, 0.0).torque_Nm, 10.0);
+  input.enabled = false;
+  EXPECT_EQ(actuator.step(input, 0.0, 0.0).torque_Nm, 0.0);
+}
+
 TEST(ActuatorModel, NeverAllocatesInAStep) {
   if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted";
   ActuatorModel actuator(with([](auto& p) {
