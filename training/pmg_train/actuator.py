@@ -131,23 +131,24 @@ class ActuatorModel:
         sensed = self._sensed(q)
         dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / self.step_s, dq))
         self.sensed_before.copy_(sensed)
-        wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + feed_forward
-        torque, slope = self._powered(wish, kd, supply, dq, on > 0)
-        brake = p["drive.brake_when_disabled"] * p["drive.torque_per_unit_Nm"] * p["drive.back_emf_s_per_rad"]
-        return on * torque - (1 - on) * brake * dq, on * slope - (1 - on) * brake
+        if enabled:
+            wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + feed_forward
+            return self._powered(wish, kd, supply, dq)
+        brake = (p["drive.brake_when_disabled"] * p["drive.torque_per_unit_Nm"] * p["drive.back_emf_s_per_rad"]).expand_as(dq)
+        return -brake * dq, -brake
 
     def _error(self, sensed: torch.Tensor) -> torch.Tensor:
         error = self.command - sensed
         return torch.where(error.abs() < self.p["drive.dead_band_rad"], 0.0, error)
 
-    def _powered(self, wish, kd, supply, dq, on) -> tuple[torch.Tensor, torch.Tensor]:
-        """The drive's loop, which runs while it is on, and what the motor makes of its output."""
+    def _powered(self, wish, kd, supply, dq) -> tuple[torch.Tensor, torch.Tensor]:
+        """The drive's loop, and what the motor makes of its output."""
         p, h = self.p, self.step_s
         unit, back_emf, hold = p["drive.torque_per_unit_Nm"], p["drive.back_emf_s_per_rad"], p["command.hold_s"]
         scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
         held_for = self.held_for + h
-        due = on & (held_for >= hold - 1e-4 * h)  # single precision must not miss its turn
-        self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), torch.where(on, held_for, self.held_for)))
+        due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
+        self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), held_for))
         within = torch.minimum(torch.maximum(wish, -p["drive.limit"]), p["drive.limit"])
         self.held_output.copy_(torch.where(due, within, self.held_output))
         follows_speed = due & ~self.lagging & ~self.velocity_lagging & (within == wish) & (hold <= h)
