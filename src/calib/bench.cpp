@@ -14,6 +14,7 @@ namespace {
 using model::ConfigReader;
 
 constexpr double kGravity_m_s2 = 9.81;
+constexpr double kPresliding_m = 1e-5;  // of guides and screws; a joint's milliradian would be a millimetre
 
 /// A positive number, or nothing where the file says "unknown" or nothing at all.
 std::optional<double> known_number(ConfigReader& reader, const std::string& key) {
@@ -154,6 +155,7 @@ Bench read_bench(const std::filesystem::path& folder) {
               : rig == "linear" ? Rig::kLinear
               : rig == "robot"  ? Rig::kRobot
                                 : Rig::kHorizontal;
+  if (bench.rig == Rig::kLinear) bench.known.friction.presliding_rad = kPresliding_m;
   bench.sample_rate_hz = reader.required<double>("sample_rate_hz", model::positive());
   if (reader.has("units")) check_units(reader.map("units"), bench.rig == Rig::kLinear);
   if (reader.has("command_hold")) bench.linear_hold = reader.one_of("command_hold", {"hold", "linear"}) == "linear";

@@ -79,6 +79,7 @@ FitParameter fit_parameter(const std::string& name, const Bench& bench) {
   // A linear axis moves kilograms by hundreds of newtons.
   const bool linear = bench.rig == Rig::kLinear;
   const double scale = linear && p.unit.starts_with("kg") ? 1000.0 : linear && p.unit.starts_with("Nm") ? 100.0 : 1.0;
+  if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
   return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
 }
 
