@@ -165,10 +165,12 @@ void write_results(const calib::FitResults& results, const fs::path& out) {
 
 void tell(const calib::FitResults& results, const fs::path& out) {
   const std::string unit = calib::position_unit(*results.bench, true);
-  for (const calib::FitParameter& p : results.problem->parameters()) {
+  for (std::size_t i = 0; i < results.confidence.size(); ++i) {
+    const calib::FitParameter& p = results.problem->parameters()[i];
     const double value = calib::value(results.fit.model, p.name);
-    std::cout << fmt::format("{:36} {:>12.5g} {}{}\n", p.name, value, p.unit,
-                             calib::at_bound(p, value) ? "   (at its range's edge)" : "");
+    const std::string reservation = calib::reservation(p, value, results.confidence[i]);
+    std::cout << fmt::format("{:34} {:>11.5g} +- {:<8.2g} {}{}\n", p.name, value, results.confidence[i].deviation,
+                             p.unit, reservation.empty() ? "" : "   (" + reservation + ")");
   }
   const auto line = [&](const char* what, const calib::Assessment& a) {
     std::cout << fmt::format("{} {} runs: mean absolute error {:.2f} {} (before {:.2f})\n", what, a.runs->size(),
@@ -211,6 +213,7 @@ int calibrate(const Arguments& arguments) {
   });
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.clear();
+  results.confidence = calib::confidence(problem, results.fit.point, arguments.threads);
   results.bench = &bench;
   results.problem = &problem;
   std::vector<calib::BenchRun> runs;

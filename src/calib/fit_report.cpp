@@ -76,11 +76,14 @@ void show_groups(pages::Page& page, const FitResults& results, const Assessment&
 }
 
 void show_parameters(pages::Page& page, const FitResults& results) {
-  pages::Table table{.header = {"parameter", "value", "unit", "range of the search", ""}, .rows = {}};
-  for (const FitParameter& p : results.problem->parameters()) {
+  pages::Table table{.header = {"parameter", "value", "one standard deviation", "unit", "range of the search", ""},
+                     .rows = {}};
+  for (std::size_t i = 0; i < results.confidence.size(); ++i) {
+    const FitParameter& p = results.problem->parameters()[i];
     const double x = value(results.fit.model, p.name);
-    table.rows.push_back({p.name, fmt::format("{:.5g}", x), p.unit, fmt::format("{:g} to {:g}", p.lower, p.upper),
-                          at_bound(p, x) ? "at its range's edge" : ""});
+    table.rows.push_back({p.name, fmt::format("{:.5g}", x), fmt::format("{:.2g}", results.confidence[i].deviation),
+                          p.unit, fmt::format("{:g} to {:g}", p.lower, p.upper),
+                          reservation(p, x, results.confidence[i])});
   }
   page.table(table);
 }

@@ -45,12 +45,16 @@ Json inverse_json(const InverseDynamics& found) {
           {"windows", found.samples}};
 }
 
-Json parameter_json(const FitParameter& parameter, double value) {
-  return {{"value", value},
-          {"unit", parameter.unit},
-          {"lower", parameter.lower},
-          {"upper", parameter.upper},
-          {"at_bound", at_bound(parameter, value)}};
+/// JSON has no infinity: null.
+Json parameter_json(const FitParameter& parameter, double value, const Confidence& confidence) {
+  Json json = {{"value", value},
+               {"deviation", std::isfinite(confidence.deviation) ? Json(confidence.deviation) : Json(nullptr)},
+               {"unit", parameter.unit},
+               {"lower", parameter.lower},
+               {"upper", parameter.upper},
+               {"at_bound", at_bound(parameter, value)}};
+  if (!confidence.told_apart_badly.empty()) json["told_apart_badly_from"] = confidence.told_apart_badly;
+  return json;
 }
 
 }  // namespace
@@ -65,6 +69,13 @@ bool at_bound(const FitParameter& parameter, double value) {
   return value >= parameter.upper - edge || (parameter.lower < 0.0 && value <= parameter.lower + edge);
 }
 
+std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence) {
+  if (at_bound(parameter, value)) return "at its range's edge";
+  if (!std::isfinite(confidence.deviation)) return "these runs don't show it";
+  if (!confidence.told_apart_badly.empty()) return "hard to tell from " + confidence.told_apart_badly;
+  return "";
+}
+
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads) {
   return {filter, &runs, errors(before, runs, threads), errors(after, runs, threads)};
@@ -74,8 +85,10 @@ Json fit_json(const FitResults& results) {
   Json json = {{"bench", results.bench->folder.string()},      {"joint", results.joint},
                {"unit", position_unit(*results.bench, false)}, {"optimizer", results.method},
                {"interrupted", results.fit.interrupted},       {"parameters", Json::object()}};
-  for (const FitParameter& parameter : results.problem->parameters()) {
-    json["parameters"][parameter.name] = parameter_json(parameter, value(results.fit.model, parameter.name));
+  for (std::size_t i = 0; i < results.confidence.size(); ++i) {
+    const FitParameter& parameter = results.problem->parameters()[i];
+    json["parameters"][parameter.name] =
+        parameter_json(parameter, value(results.fit.model, parameter.name), results.confidence[i]);
   }
   if (results.bench->law == DriveLaw::kPositionPd) {  // where all runs were told the same gains
     const BenchRun& run = results.problem->runs().front().run();

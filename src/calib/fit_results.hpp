@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/fit_confidence.hpp"
 #include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
 #include "pages/page.hpp"
@@ -23,6 +24,7 @@ struct FitResults {
   const Bench* bench = nullptr;
   const FitProblem* problem = nullptr;
   Fit fit;
+  std::vector<Confidence> confidence;  ///< in the order of the problem's parameters
   std::string method, joint;
   unsigned threads = 1;
   double wall_s = 0.0;
@@ -40,6 +42,9 @@ std::vector<std::string> motor_remarks(const FitResults& results);
 
 /// "rad" and "mrad" of a turning joint, "m" and "mm" of a linear axis.
 std::string position_unit(const Bench& bench, bool thousandths);
+
+/// What speaks against taking a parameter at its word, or "".
+std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);
 
 /// At the edge of its range: what the fit would like to be is beyond.
 bool at_bound(const FitParameter& parameter, double value);

@@ -113,7 +113,9 @@ class Fitting {
     for (std::size_t c = 0; c < chosen.size() && !stopped_; ++c) {
       Found at = chosen[c];
       for (const Method method : {Method::kBobyqa, Method::kSbplx}) {
-        at = search(method, remembered, at.point, limits(method, 0.03, 0), stopping());
+        SearchOptions finely = limits(method, 0.03, 0);
+        finely.relative_tolerance = 1e-6;
+        at = search(method, remembered, at.point, finely, stopping());
         tell(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
                        static_cast<double>(chosen.size()),
              fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/fit_confidence.hpp"
 #include "calib/inverse_dynamics.hpp"
 #include "calib/synthetic_bench.hpp"
 
@@ -78,6 +79,34 @@ TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   EXPECT_TRUE(fit.interrupted);
   EXPECT_EQ(fit.point.size(), joint.dimensions());
   EXPECT_LT(fit.loss_rad2, joint.loss(joint.point_of(joint.start())));
+}
+
+// Of 6 parameters with honest deviations, one in a thousand misses by more than 4.
+TEST(Confidence, CoversTheTruth) {
+  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
+  const std::vector<calib::Confidence> confidence = calib::confidence(joint, fit.point, 2);
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    const std::string& name = joint.parameters()[i].name;
+    const double expected = calib::value(truth(), name);
+    EXPECT_LT(std::abs(calib::value(fit.model, name) - expected), 4.0 * confidence[i].deviation) << name;
+    EXPECT_LT(confidence[i].deviation, 0.03 * expected) << name << ": a deviation that says nothing covers everything";
+    EXPECT_EQ(confidence[i].told_apart_badly, "") << name;
+  }
+}
+
+TEST(Confidence, SaysWhatTheRunsCantTell) {
+  // Both runs have the same kd, and none a commanded speed.
+  const calib::FitProblem joint = problem({"damping", "torque_speed"}, 1e-3, 2);
+  calib::JointModel model = truth();
+  model.actuator.drive.stall_torque_Nm = 400.0;  // far from all that the joint does
+  model.actuator.drive.no_load_rad_s = 60.0;
+  const std::vector<calib::Confidence> confidence = calib::confidence(joint, joint.point_of(model), 1);
+  ASSERT_EQ(joint.parameters()[1].name, "drive.kd_scale");
+  EXPECT_EQ(confidence[1].told_apart_badly, "friction.viscous_Nm_s_per_rad");
+  EXPECT_EQ(confidence[3].told_apart_badly, "drive.kd_scale");
+  ASSERT_EQ(joint.parameters()[5].name, "drive.no_load_rad_s");
+  EXPECT_TRUE(std::isinf(confidence[5].deviation));
 }
 
 TEST(FitProblem, PointsAreWhatModelsAre) {
