@@ -173,7 +173,7 @@ void tell(const calib::FitResults& results, const fs::path& out) {
                              p.unit, reservation.empty() ? "" : "   (" + reservation + ")");
   }
   const auto line = [&](const char* what, const calib::Assessment& a) {
-    std::cout << fmt::format("{} {} runs: mean absolute error {:.2f} {} (before {:.2f})\n", what, a.runs->size(),
+    std::cout << fmt::format("{} {} runs: mean absolute error {:.4g} {} (before {:.4g})\n", what, a.runs->size(),
                              1e3 * total(a.after).mean_absolute_rad(), unit, 1e3 * total(a.before).mean_absolute_rad());
   };
   if (results.inverse) {

@@ -23,7 +23,7 @@ void show_run(pages::Page& page, const FitResults& results, const SingleJoint& j
   }
   const std::string unit = position_unit(*results.bench, false);
   page.chart(
-      {.title = fmt::format("{}: {}, {:.1f} {} mean absolute error, position [{}]", which, joint.run().file,
+      {.title = fmt::format("{}: {}, {:.4g} {} mean absolute error, position [{}]", which, joint.run().file,
                             1e3 * error_rad, position_unit(*results.bench, true), unit),
        .lines = {{.name = "command", .x = r.t_s, .y = r.q_cmd_rad, .colour = pages::colour::kGrey, .stepped = true},
                  {.name = "measured", .x = r.t_s, .y = measured, .colour = pages::colour::kInk},
@@ -112,7 +112,7 @@ pages::Page fit_report(const FitResults& results) {
   pages::Page page(fmt::format("{}: motor calibration", results.joint));
   const double before = total(shown.before).mean_absolute_rad(), after = total(shown.after).mean_absolute_rad();
   page.verdict(after < before ? pages::Tone::kGood : pages::Tone::kBad,
-               fmt::format("{}: mean absolute error {:.2f} {} before, {:.2f} {} after, on {} runs {}",
+               fmt::format("{}: mean absolute error {:.4g} {} before, {:.4g} {} after, on {} runs {}",
                            results.fit.interrupted ? "interrupted" : "fitted", 1e3 * before, unit, 1e3 * after, unit,
                            shown.runs->size(), results.scored ? "that were not fitted" : "that were fitted"));
   page.heading("What the model makes of the runs");

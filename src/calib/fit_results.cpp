@@ -110,7 +110,7 @@ Json fit_json(const FitResults& results) {
 std::vector<std::string> motor_remarks(const FitResults& results) {
   const std::string unit = position_unit(*results.bench, true);
   const auto line = [&](const char* what, const Assessment& assessment) {
-    return fmt::format("{} {} runs ({}): mean absolute error {:.2f} {}", what, assessment.runs->size(),
+    return fmt::format("{} {} runs ({}): mean absolute error {:.4g} {}", what, assessment.runs->size(),
                        assessment.filter.empty() ? "all" : assessment.filter,
                        1e3 * total(assessment.after).mean_absolute_rad(), unit);
   };
