@@ -52,10 +52,10 @@ struct GeneratorOptions {
 
 /// q_ref(phi) = q_d + q_s with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand, and everything that goes with it.
 ///
-/// A tick: the user's command is clamped to its range and rate-limited; posture, then velocity, are scaled into the
-/// admissible set; the phase advances by dt / T; the clips are sampled and blended; contacts follow from mu and r. A
-/// velocity direction without a clip (vx < 0 without a backward one) and a posture channel without rows have the range
-/// 0.
+/// A tick: the user's command is clamped to its range and rate-limited; the library's inverse says what to ask of the
+/// clips for it; posture, then velocity, are scaled into the admissible set; the phase advances by dt / T; the clips
+/// are sampled and blended; contacts follow from mu and r. A velocity direction without a clip (vx < 0 without a
+/// backward one) and a posture channel without rows have the range 0.
 class Generator {
  public:
   /// Allocates. Throws std::invalid_argument, saying what was expected, for: joint counts that differ, fewer than 8
@@ -65,6 +65,7 @@ class Generator {
   Generator(const ClipLibrary& library, const GeneratorOptions& options) : options_(options) {
     check_options();
     check::stand_and_limits(library, options_.limit_margin_rad);
+    inverse_ = library.inverse;
     q_stand_ = library.q_stand;
     q_lower_ = library.q_lower;
     q_upper_ = library.q_upper;
@@ -81,7 +82,8 @@ class Generator {
       check::static_clip(library.posture[i], q_stand_, std::string("clip ") + kChannelNames[kVelocityChannels + i]);
     }
     posture_ = Posture(library.posture, q_stand_);
-    limiter_ = CommandLimiter(realisable_limits(clips), options_.double_support_rate, options_.stop_within_s);
+    limits_ = realisable_limits(clips);
+    limiter_ = CommandLimiter(limits_, options_.double_support_rate, options_.stop_within_s);
     reset();
   }
 
@@ -106,16 +108,18 @@ class Generator {
     if (!(dt_s > 0.0 && std::isfinite(dt_s))) return reference_;
     const Command& wanted =
         limiter_.step(user, reference_.contact_weight[kLeft] * reference_.contact_weight[kRight], dt_s);
+    const Command asked = ask_for(wanted);
     const double posture_share = posture_scale(
-        admissible_, [&](double scale, JointVector& q_s) { posture_.offset(wanted, scale, q_s); }, q_s_);
-    Mixture mixture = mix(options_.blend, wanted, scale_);
+        admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
+    Mixture mixture = mix(options_.blend, asked, scale_);
     const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_);
     for (double& g : mixture.gain) g *= velocity_share;
     mixture.gain_sum *= velocity_share;
 
-    report_command(wanted, mixture, posture_share, dt_s);
-    reference_.command_limited =
-        limiter_.limited() || mixture.normalised || posture_share < 1.0 || velocity_share < 1.0;
+    report_command(wanted, asked, mixture, posture_share, dt_s);
+    // What the inverse adds to a full command is no limit that the user has met.
+    const bool too_much = mixture.normalised && mix(options_.blend, wanted, scale_).normalised;
+    reference_.command_limited = limiter_.limited() || too_much || posture_share < 1.0 || velocity_share < 1.0;
     advance_gait(mixture, dt_s);
     blend(mixture, dt_s);
     reference_.joint_clamped = clamp_joints(q_lower_, q_upper_, reference_.q, reference_.dq);
@@ -196,14 +200,27 @@ class Generator {
     return best_phase;
   }
 
-  void report_command(const Command& wanted, const Mixture& mixture, double posture_share, double dt_s) noexcept {
+  /// What the clips shall be asked for, within what they can show.
+  Command ask_for(const Command& wanted) const noexcept {
+    Command asked = inverse_.apply(wanted);
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      if (asked.u[channel] == wanted.u[channel]) continue;
+      asked.u[channel] = std::clamp(asked.u[channel], limits_.lower[channel], limits_.upper[channel]);
+    }
+    return asked;
+  }
+
+  /// What was wanted, less what the clips weren't given of what they were asked for.
+  void report_command(const Command& wanted, const Command& asked, const Mixture& mixture, double posture_share,
+                      double dt_s) noexcept {
     const Command previous = reference_.command;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
       const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
-      reference_.command.u[channel] = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
+      const double given = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
+      reference_.command.u[channel] = given - (asked.u[channel] - wanted.u[channel]);
     }
     for (std::size_t channel = kVelocityChannels; channel < kChannels; ++channel) {
-      reference_.command.u[channel] = posture_share * wanted.u[channel];
+      reference_.command.u[channel] = posture_share * asked.u[channel] - (asked.u[channel] - wanted.u[channel]);
     }
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       reference_.command_rate.u[channel] = (reference_.command.u[channel] - previous.u[channel]) / dt_s;
@@ -255,6 +272,8 @@ class Generator {
   }
 
   GeneratorOptions options_;
+  CommandLimits limits_;  ///< of the options, less what no clip can show
+  CommandInverse inverse_;
   JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]
   PerDirection<ClipCurve> curve_;            ///< empty where there is no clip
   PerDirection<double> scale_{};             ///< u_max of each direction

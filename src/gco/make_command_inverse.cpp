@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gco/ground_aware_command.hpp"
+#include "gco/motion_composition.hpp"
 #include "pmg/generator.hpp"
 
 namespace pmg::gco {
@@ -19,20 +20,22 @@ constexpr int kRounds = 6;          ///< of the fixed point; it has settled afte
 constexpr double kLargestShare = 0.4;
 
 GeneratorOptions immediate(const model::RobotModel& robot) {
-  GeneratorOptions options;
-  options.limits = robot.command_limits;
+  GeneratorOptions options = generator_options(robot);
   options.limits.rate_per_s.fill(1e3);
   options.double_support_rate = 1.0;
-  options.scale_positive = robot.velocity_scale_positive;
-  options.scale_negative = robot.velocity_scale_negative;
   return options;
+}
+
+ClipLibrary without_inverse(ClipLibrary library) {
+  library.inverse = {};
+  return library;
 }
 
 /// The generator and the optimisation, made once for many commands.
 class Measurement {
  public:
   Measurement(const model::RobotModel& robot, const ClipLibrary& library)
-      : generator_(library, immediate(robot)), gco_(robot) {}
+      : generator_(without_inverse(library), immediate(robot)), gco_(robot) {}
 
   Command mean(const Command& command) {
     generator_.reset();

@@ -9,8 +9,8 @@
 
 namespace pmg::gco {
 
-/// u' averaged over one gait period at a steady command, straight from the generator (no inverse before it); the
-/// command itself at rest.
+/// u' averaged over one gait period at a steady command, the library's own inverse left out; the command itself
+/// at rest.
 Command mean_optimised_command(const model::RobotModel& robot, const ClipLibrary& library, const Command& command);
 
 /// The inverse on a grid over the robot's command range, pitch and roll 0. What the clips can't reach is left: where

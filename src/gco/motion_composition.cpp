@@ -13,6 +13,12 @@ ClipLibrary forward_clip_only(ClipLibrary library) {
   return library;
 }
 
+/// Baselines know no u': nothing tells them what to ask their clips for but the command itself.
+ClipLibrary known_to(Variant variant, ClipLibrary library) {
+  if (variant != Variant::kPmg) library.inverse = {};
+  return library;
+}
+
 }  // namespace
 
 GeneratorOptions generator_options(const model::RobotModel& robot) {
@@ -26,11 +32,10 @@ GeneratorOptions generator_options(const model::RobotModel& robot) {
 MotionComposition::MotionComposition(const model::RobotModel& robot, const ClipLibrary& library, Variant variant,
                                      const GeneratorOptions& generator, const Options& gco)
     : variant_(variant),
-      inverse_(variant == Variant::kPmg ? library.inverse : CommandInverse()),
       forward_scale_m_s_(generator.scale_positive[kVx]),
-      generator_(library, generator),
+      generator_(known_to(variant, library), generator),
       gco_(robot, gco) {
-  if (variant_ == Variant::kSingleGait) forward_only_.emplace(forward_clip_only(library), generator);
+  if (variant_ == Variant::kSingleGait) forward_only_.emplace(forward_clip_only(known_to(variant, library)), generator);
   unasked_.status = Status::kNotAsked;
   reset();
 }
@@ -43,7 +48,7 @@ void MotionComposition::reset() noexcept {
 }
 
 const Reference& MotionComposition::advance(const Command& user, double dt_s) noexcept {
-  reference_ = generator_.step(inverse_.apply(user), dt_s);
+  reference_ = generator_.step(user, dt_s);
   if (forward_only_) play_forward_clip(dt_s);
   return reference_;
 }

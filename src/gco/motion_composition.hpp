@@ -26,8 +26,8 @@ class MotionComposition {
   /// At rest in the standing posture, nothing remembered.
   void reset() noexcept;
 
-  /// The reference of the next tick. For PMG the library's inverse says what to ask of the generator so that u'
-  /// averages to the user's command; the baselines, which know no u', ask for the user's.
+  /// The reference of the next tick. PMG's generator has the library's inverse, so that u' averages to the user's
+  /// command; the baselines, which know no u', ask their clips for the user's command as it is.
   const Reference& advance(const Command& user, double dt_s) noexcept;
 
   /// Which command the policy observes with that reference, and what the ground makes of it. Baselines observe u: their
@@ -41,7 +41,6 @@ class MotionComposition {
   void play_forward_clip(double dt_s) noexcept;
 
   Variant variant_;
-  CommandInverse inverse_;    ///< empty for baselines
   double forward_scale_m_s_;  ///< vx at which the forward clip plays with full amplitude
   Generator generator_;
   std::optional<Generator> forward_only_;  ///< single gait alone

@@ -57,6 +57,9 @@ void Observation::fill(const ObservationTerm& term, const Reference& reference, 
     case Quantity::kCommand:
       for (int i = 0; i < term.size; ++i) put(i, observed.u[static_cast<std::size_t>(i)]);
       break;
+    case Quantity::kUserCommand:
+      for (int i = 0; i < term.size; ++i) put(i, reference.command.u[static_cast<std::size_t>(i)]);
+      break;
     case Quantity::kPhase:
       put(0, reference.gain * std::sin(angle));
       put(1, reference.gain * std::cos(angle));

@@ -19,6 +19,8 @@ const char* name_of(Quantity quantity) {
       return "gravity_direction";
     case Quantity::kCommand:
       return "command";
+    case Quantity::kUserCommand:
+      return "user_command";
     case Quantity::kPhase:
       return "phase";
     case Quantity::kReferencePosition:
@@ -51,6 +53,7 @@ ObservationLayout::ObservationLayout(const model::RobotModel& robot) {
   add(Quantity::kGyro, 1.0, 0, axes, {});
   add(Quantity::kGravityDirection, 1.0, 0, axes, {});
   add(Quantity::kCommand, 1.0, 0, channels, {});
+  add(Quantity::kUserCommand, 1.0, 0, channels, {});
   add(Quantity::kPhase, 1.0, 0, {"gain_sin", "gain_cos", "gain"}, {});
   add(Quantity::kReferencePosition, 1.0, 0, all, all_joints);
   add(Quantity::kReferenceVelocity, kVelocityScale, 0, action_joints_, legs);

@@ -15,6 +15,7 @@ enum class Quantity {
   kGyro,               ///< angular velocity in the IMU frame [rad/s]
   kGravityDirection,   ///< unit vector down, in the IMU frame
   kCommand,            ///< what the policy observes (gco::MotionComposition), in the order of pmg::Channel
+  kUserCommand,        ///< the user's, admissible and rate-limited: Reference::command
   kPhase,              ///< gain * sin(2 pi phi), gain * cos(2 pi phi), gain
   kReferencePosition,  ///< q_ref - q_stand [rad]
   kReferenceVelocity,  ///< dq_ref [rad/s]

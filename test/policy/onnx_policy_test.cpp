@@ -92,11 +92,11 @@ TEST(OnnxPolicyFile, ANetworkWhoseWeightsAreNoNumbersIsRefused) {
 }
 
 TEST(OnnxPolicyFile, ANetworkOfAnotherSizeIsRefused) {
-  // Protocol buffers: the output's dimensions 1 and 12, the input's 1 and 258.
+  // Protocol buffers: the output's dimensions 1 and 12, the input's 1 and 264.
   EXPECT_NE(refusal_after("action\x12\x0e\n\x0c\x08\x01\x12\x08\n\x02\x08\x01\n\x02\x08\x0c",
                           "action\x12\x0e\n\x0c\x08\x01\x12\x08\n\x02\x08\x01\n\x02\x08\x0b"),
             "was accepted");
-  EXPECT_NE(refusal_after("\n\x02\x08\x01\n\x03\x08\x82\x02", "\n\x02\x08\x01\n\x03\x08\x83\x02"), "was accepted");
+  EXPECT_NE(refusal_after("\n\x02\x08\x01\n\x03\x08\x88\x02", "\n\x02\x08\x01\n\x03\x08\x89\x02"), "was accepted");
 }
 
 TEST(OnnxPolicyFile, BytesThatAreNoNetworkAreRefused) {

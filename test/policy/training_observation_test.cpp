@@ -33,8 +33,15 @@ model::RobotState state_of(const json& tick) {
   return state;
 }
 
+Command command_of(const json& channels) {
+  Command command;
+  for (std::size_t c = 0; c < kChannels; ++c) command.u[c] = channels[c].get<double>();
+  return command;
+}
+
 Reference reference_of(const json& tick) {
   Reference reference;
+  reference.command = command_of(tick["user_command"]);
   reference.q = vector(tick["q_ref_rad"]);
   reference.dq = vector(tick["dq_ref_rad_s"]);
   reference.phase = tick["phase"].get<double>();
@@ -64,10 +71,9 @@ TEST(TrainingObservation, EqualsTheControllersElementByElement) {
       << "too few for the oldest frame";
   for (std::size_t t = 0; t < training["ticks"].size(); ++t) {
     const json& tick = training["ticks"][t];
-    Command command;
-    for (std::size_t c = 0; c < kChannels; ++c) command.u[c] = tick["command"][c].get<double>();
     const Eigen::VectorXf action = vector(tick["last_action"]).cast<float>();
-    const Eigen::VectorXf& seen = observation.assemble(state_of(tick), reference_of(tick), command, action);
+    const Eigen::VectorXf& seen =
+        observation.assemble(state_of(tick), reference_of(tick), command_of(tick["command"]), action);
     const auto expected = tick["observation"].get<std::vector<float>>();
     ASSERT_EQ(expected.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -58,7 +58,7 @@ TEST(PmgBatch, RowsAreWhatTheControllersGeneratorAndOptimisationGive) {
     ASSERT_EQ(pmg_batch_run(one.get(), 1, asked.data(), row.data()), 0);
     Command in_float;  // the interface takes floats
     for (std::size_t c = 0; c < kChannels; ++c) in_float.u[c] = static_cast<double>(asked[c]);
-    const Reference& reference = generator.step(library.inverse.apply(in_float), 0.01);
+    const Reference& reference = generator.step(in_float, 0.01);
     const Command optimised = gco.solve(reference).command;
     for (Eigen::Index i = 0; i < reference.q.size(); ++i) {
       const auto joint = static_cast<std::size_t>(i);

@@ -91,7 +91,7 @@ class Environment:
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
         self.layout = Observation(self.stand, actions, n)
         self.history = self.layout.history
-        # Slow averages: what the base does, what u' asks, what the user wants.
+        # Slow averages: what the base does, what the admissible command asks, what the user wants.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
         self.reward, self.done, self.timeout = zeros(n), zeros(n), zeros(n)
@@ -156,7 +156,7 @@ class Environment:
         self.targets.copy_(torch.where(one[None], start["q_ref"][None], self.targets))
         if w.motors:
             w.motors.reset(w.qpos, where)
-        asked = self.get("optimised")[:, :3]
+        asked = self.get("command")[:, :3]
         put(self.velocity, asked, one)
         put(self.asked, asked, one)
         put(self.wanted, self._user()[:, :3], one)
@@ -255,9 +255,9 @@ class Environment:
         yaw_rate = rotate(quat, qvel[:, 3:6])[:, 2]
         now = torch.stack([vx, vy, yaw_rate], 1)
         share = self.tick_s / self.config["velocity_average_s"]
-        user, optimised = self._user(), self.get("optimised")
+        user, command, optimised = self._user(), self.get("command"), self.get("optimised")
         self.velocity += share * (now - self.velocity)
-        self.asked += share * (optimised[:, :3] - self.asked)
+        self.asked += share * (command[:, :3] - self.asked)
         self.wanted += share * (user[:, :3] - self.wanted)
         torso_roll, torso_pitch, _ = roll_pitch_yaw(torch.nan_to_num(w.xquat[:, self.torso]))
         attitude, height = torch.stack([torso_pitch, torso_roll], 1), qpos[:, 2] - self.standing_height
@@ -270,7 +270,7 @@ class Environment:
         leg_q, leg_dq = q[:, :legs], dq[:, :legs]
         m = dict(
             slow_error=self.velocity - self.asked, fast_error=now - optimised[:, :3],
-            attitude_error=attitude - optimised[:, 3:5], height_error=height - optimised[:, 5],
+            attitude_error=attitude - command[:, 3:5], height_error=height - command[:, 5],
             q_error=leg_q - self.q_ref[:, :legs], dq_error=leg_dq - self.get("dq_ref")[:, :legs],
             leg_weight=self.leg_weight, leg_linear_weight=self.leg_linear_weight, gain=self.row[:, self.fields["phase"]][:, 2],
             touching=(torch.nan_to_num(w.sole_force) > 5.0).float(), contact=self.get("contact"),
@@ -288,12 +288,12 @@ class Environment:
         return m, fallen
 
     def _errors(self, m: dict, user: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
-        """For the curves. Velocities to height: against the user's command, not against u' as rewards are."""
+        """For the curves. Velocities to height: against the user's command, not against the admissible one as rewards are."""
         slow, q_error = self.velocity - self.wanted, m["q_error"].abs()
         errors = dict(velocity=slow[:, :2].norm(dim=1), yaw_rate=slow[:, 2].abs(),
                       pitch=(attitude[:, 0] - user[:, 3]).abs(), roll=(attitude[:, 1] - user[:, 4]).abs(),
-                      height=(height - user[:, 5]).abs(), velocity_optimised=m["slow_error"][:, :2].norm(dim=1),
-                      yaw_rate_optimised=m["slow_error"][:, 2].abs(), joint=q_error.mean(1))
+                      height=(height - user[:, 5]).abs(), velocity_admissible=m["slow_error"][:, :2].norm(dim=1),
+                      yaw_rate_admissible=m["slow_error"][:, 2].abs(), joint=q_error.mean(1))
         for kind in dict.fromkeys(self.leg_kinds):
             errors[kind] = torch.stack([q_error[:, i] for i, k in enumerate(self.leg_kinds) if k == kind]).mean(0)
         return errors | dict(contact=(m["touching"] != m["contact"]).float().mean(1), torque=m["leg_torque"].abs().mean(1),
@@ -309,7 +309,7 @@ class Environment:
         noisy = lambda x, size: x + size * (2 * torch.rand_like(x) - 1)
         sensed = (noisy(gyro, noise["gyro_rad_s"]), noisy(gravity, noise["gravity_direction"]),
                   noisy(shown + self.robots.encoder_offset, noise["q_rad"]), noisy(dq, noise["dq_rad_s"]))
-        given = (self.get("optimised"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
+        given = (self.get("optimised"), self.get("command"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
         seen = self.layout.with_history(self.layout.now(*sensed, *given), *sensed, self.action, self.fresh)
         critic = torch.cat([self.layout.now(*true, *given), self._privileged()], 1)
         return torch.nan_to_num(seen).clamp(-50, 50), torch.nan_to_num(critic).clamp(-50, 50)

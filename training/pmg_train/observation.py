@@ -23,9 +23,10 @@ class Observation:
         """Unit vector down in the base's frame; quat (worlds, 4) w, x, y, z, of any length."""
         return rotate_back(quat / quat.norm(dim=1, keepdim=True), self.down.expand(len(quat), 3))
 
-    def now(self, gyro, gravity, q, dq, command, phase, q_ref, dq_ref, last_action) -> torch.Tensor:
-        """The terms of this tick. phase: gain sin, gain cos, gain; q_ref, dq_ref, q, dq of all joints [rad], [rad/s]."""
-        return torch.cat([gyro, gravity, command, phase, q_ref - self.stand, VELOCITY_SCALE * dq_ref[:, :self.actions],
+    def now(self, gyro, gravity, q, dq, command, user_command, phase, q_ref, dq_ref, last_action) -> torch.Tensor:
+        """The terms of this tick. command: u', or what a baseline observes; user_command: the admissible one; phase: gain sin,
+        gain cos, gain; q_ref, dq_ref, q, dq of all joints [rad], [rad/s]."""
+        return torch.cat([gyro, gravity, command, user_command, phase, q_ref - self.stand, VELOCITY_SCALE * dq_ref[:, :self.actions],
                           q - self.stand, VELOCITY_SCALE * dq, last_action], 1)
 
     def with_history(self, now: torch.Tensor, gyro, gravity, q, dq, last_action, fresh: torch.Tensor) -> torch.Tensor:

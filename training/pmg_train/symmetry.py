@@ -14,6 +14,7 @@ SIGNS = {
     "gyro": {"x": -1, "y": 1, "z": -1},
     "gravity_direction": {"x": 1, "y": -1, "z": 1},
     "command": {"vx_m_s": 1, "vy_m_s": -1, "omega_rad_s": -1, "pitch_rad": 1, "roll_rad": -1, "height_m": 1},
+    "user_command": {"vx_m_s": 1, "vy_m_s": -1, "omega_rad_s": -1, "pitch_rad": 1, "roll_rad": -1, "height_m": 1},
     "phase": {"gain_sin": -1, "gain_cos": -1, "gain": 1},
 }
 JOINT_TERMS = ("q_ref", "dq_ref", "q", "dq", "last_action")

@@ -35,6 +35,7 @@ def draw_tick(random: np.random.Generator, stand: list[float], actions: int) -> 
                 q_ref_rad=rounded(np.array(stand) + 0.2 * random.normal(size=joints)),
                 dq_ref_rad_s=rounded(2 * random.normal(size=joints)), phase=round(float(random.uniform()), 4),
                 gain=round(float(random.uniform()), 4), command=rounded(0.3 * random.normal(size=CHANNELS)),
+                user_command=rounded(0.3 * random.normal(size=CHANNELS)),
                 last_action=rounded(random.normal(size=actions)))
 
 
@@ -47,7 +48,7 @@ def observations(ticks: list[dict], stand: list[float], actions: int) -> list[li
         quat = np.array(tick["quat_wxyz"]) / np.linalg.norm(tick["quat_wxyz"])
         sensed = (row(tick["gyro_rad_s"]), observation.gravity_direction(row(quat.tolist())), row(tick["q_rad"]), row(tick["dq_rad_s"]))
         angle, gain, action = 2 * math.pi * tick["phase"], tick["gain"], row(tick["last_action"])
-        now = observation.now(*sensed, row(tick["command"]), row([gain * math.sin(angle), gain * math.cos(angle), gain]),
+        now = observation.now(*sensed, row(tick["command"]), row(tick["user_command"]), row([gain * math.sin(angle), gain * math.cos(angle), gain]),
                               row(tick["q_ref_rad"]), row(tick["dq_ref_rad_s"]), action)
         out.append(observation.with_history(now, *sensed, action, torch.tensor([i == 0]))[0].tolist())
     return out
