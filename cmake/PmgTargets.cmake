@@ -13,6 +13,8 @@ endif()
 if(PMG_SANITIZE)
   add_compile_options(-fsanitize=${PMG_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${PMG_SANITIZE})
+  # Under AddressSanitizer Eigen aligns by hand, which libraries that free our Eigen memory (pagmo, KDL) don't know.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 add_library(pmg_warnings INTERFACE)
