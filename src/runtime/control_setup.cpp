@@ -67,6 +67,8 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/late_policy_ticks", tick.late_policy_ticks);
   visit("/action_monitor/bound_rad", tick.action_monitor.bound_rad);
   visit("/action_monitor/persist_ticks", tick.action_monitor.persist_ticks);
+  visit("/action_monitor/reversals", tick.action_monitor.reversals);
+  visit("/action_monitor/reversal_ticks", tick.action_monitor.reversal_ticks);
   visit("/action_monitor/window_ticks", tick.action_monitor.window_ticks);
   auto& faults = tick.supervisor.fault_limits;
   visit("/faults/stale_state_s", faults.stale_state_s);
