@@ -7,7 +7,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -47,14 +46,6 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   posture("squat", kHeight);
 }
 
-/// From the clips as they are read back, so that it belongs to the files.
-void write_inverse(const std::filesystem::path& directory, const model::RobotModel& robot,
-                   const std::function<void(double)>& progress) {
-  std::filesystem::remove(model::command_inverse_file(directory));
-  const ClipLibrary library = model::load_clip_library(directory, robot);
-  model::write_command_inverse(directory, gco::make_command_inverse(robot, library, progress));
-}
-
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Interrupted {};
@@ -72,17 +63,24 @@ void require_writable(const std::filesystem::path& directory) {
   }
 }
 
+/// From the clips as they are read back, so that it belongs to the files. Interrupted, the old one stays.
+int write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips) {
+  apps::ProgressLine progress;
+  const CommandInverse inverse =
+      gco::make_command_inverse(robot, model::load_clip_library(clips, robot), [&progress](double share) {
+        if (interrupted != 0) throw Interrupted{};
+        progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
+      });
+  progress.clear();
+  model::write_command_inverse(clips, inverse);
+  return 0;
+}
+
 int invert(const std::string& robot_name, const std::filesystem::path& clips) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
   require_writable(directory);
-  apps::ProgressLine progress;
-  write_inverse(directory, robot, [&progress](double share) {
-    if (interrupted != 0) throw Interrupted{};
-    progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
-  });
-  progress.clear();
-  return 0;
+  return write_inverse(robot, directory);
 }
 
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
@@ -98,7 +96,7 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
   progress.clear();
   std::filesystem::create_directories(out);
   write_library(out, library, robot);
-  return invert(robot_name, out);
+  return write_inverse(robot, out);
 }
 
 struct ShowOptions {

@@ -22,7 +22,6 @@ class CommandInverse {
   /// The channels that the correction depends on and that it corrects; pitch and roll hardly matter to it and come out
   /// right without it.
   static constexpr std::array<Channel, 4> kAxes = {kVx, kVy, kOmega, kHeight};
-  static constexpr std::size_t kNodesAtMost = 100'000;
   using Node = std::array<double, kAxes.size()>;  ///< one value an axis: m/s, m/s, rad/s, m
 
   CommandInverse() = default;

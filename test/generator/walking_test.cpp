@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gco/ground_aware_command.hpp"
+#include "gco/motion_composition.hpp"
 #include "gco/slip_statistics.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
@@ -41,11 +42,7 @@ class WalkingZ1 : public ::testing::Test {
   }
 
   static Walk walk(const Command& command) {
-    GeneratorOptions options;
-    options.limits = robot_->command_limits;
-    options.scale_positive = robot_->velocity_scale_positive;
-    options.scale_negative = robot_->velocity_scale_negative;
-    Generator generator(*library_, options);
+    Generator generator(*library_, gco::generator_options(*robot_));
     gco::GroundAwareCommand ground(*robot_);
     for (double t = 0.0; t < kSettle_s; t += kTick_s) {
       ground.solve(generator.step(command, kTick_s));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gco/ground_aware_command.hpp"
+#include "gco/motion_composition.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/generator.hpp"
@@ -40,12 +41,8 @@ struct Columns {
 
 TEST(PmgBatch, RowsAreWhatTheControllersGeneratorAndOptimisationGive) {
   const model::RobotModel robot = model::load_robot(kRobot);
-  GeneratorOptions options;
-  options.limits = robot.command_limits;
-  options.scale_positive = robot.velocity_scale_positive;
-  options.scale_negative = robot.velocity_scale_negative;
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
-  Generator generator(library, options);
+  Generator generator(library, gco::generator_options(robot));
   gco::GroundAwareCommand gco(robot);
 
   const Batch one = batch("pmg", 1, 1, 1);
