@@ -39,6 +39,11 @@ const std::map<std::string, Values> kCases = {
       {"drive.brake_when_disabled", 0.5}}},
     {"torque and speed", {{"drive.stall_torque_Nm", 9.0}, {"drive.no_load_rad_s", 4.0}}},
     {"sensor", {{"sensor.zero_offset_rad", 0.03}, {"sensor.quantum_rad", 0.0015}}},
+    {"hysteresis, eccentricity",
+     {{"sensor.hysteresis_rad", 0.02},
+      {"sensor.eccentricity_rad", 0.015},
+      {"sensor.eccentricity_phase_rad", 0.7},
+      {"sensor.zero_offset_rad", 0.01}}},
     {"lag", {{"sensor.lag_s", 0.006}}},
     {"velocity lag", {{"sensor.velocity_lag_s", 0.008}}},
     {"friction",
@@ -58,6 +63,14 @@ const std::map<std::string, Values> kCases = {
       {"transmission.stiffness_Nm_per_rad", 900.0},
       {"transmission.damping_Nm_s_per_rad", 0.5},
       {"transmission.backlash_rad", 0.01}}},
+    {"warm",
+     {{"thermal.friction_per_K", -0.02},
+      {"thermal.torque_per_K", -0.004},
+      {"drive.back_emf_s_per_rad", 0.2},
+      {"drive.brake_when_disabled", 0.5},
+      {"friction.viscous_Nm_s_per_rad", 0.3},
+      {"friction.coulomb_Nm", 0.8}}},
+    {"heats up", {{"thermal.friction_per_Nm2_s", -0.05}, {"thermal.cooling_s", 0.2}, {"friction.coulomb_Nm", 0.8}}},
     {"ripple",
      {{"ripple.amplitude_Nm", 0.5}, {"ripple.order", 12.0}, {"ripple.phase_rad", 0.4}, {"ripple.offset_Nm", -0.2}}},
     {"much, rigid",
@@ -99,7 +112,8 @@ Step step_at(int k) {
                 .kd = 2.0,
                 .feed_forward = 0.7 * std::cos(5.0 * t),
                 .supply = 1.0 - 0.1 * std::sin(7.0 * t),
-                .enabled = k < 70 || k >= 80};
+                .enabled = k < 70 || k >= 80,
+                .temperature_C = 25.0 + 15.0 * std::sin(4.0 * t)};
   return step;
 }
 
@@ -114,6 +128,7 @@ ordered_json inputs() {
                      {"feed_forward", input.feed_forward},
                      {"supply", input.supply},
                      {"enabled", input.enabled},
+                     {"temperature_C", input.temperature_C},
                      {"q_rad", q_rad},
                      {"dq_rad_s", dq_rad_s}});
   }

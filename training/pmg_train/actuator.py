@@ -13,14 +13,17 @@ NEUTRAL = {
     "drive.kp_scale": 1.0, "drive.kd_scale": 1.0, "drive.limit": math.inf, "drive.dead_band_rad": 0.0,
     "drive.torque_per_unit_Nm": 1.0, "drive.back_emf_s_per_rad": 0.0, "drive.supply_sag_per_Nm": 0.0,
     "drive.brake_when_disabled": 0.0, "drive.stall_torque_Nm": math.inf, "drive.no_load_rad_s": math.inf,
-    "sensor.zero_offset_rad": 0.0, "sensor.quantum_rad": 0.0, "sensor.lag_s": 0.0, "sensor.velocity_lag_s": 0.0,
+    "sensor.zero_offset_rad": 0.0, "sensor.hysteresis_rad": 0.0, "sensor.eccentricity_rad": 0.0, "sensor.eccentricity_phase_rad": 0.0,
+    "sensor.quantum_rad": 0.0, "sensor.lag_s": 0.0, "sensor.velocity_lag_s": 0.0,
     "transmission.armature_kg_m2": 0.0, "transmission.stiffness_Nm_per_rad": math.inf,
     "transmission.damping_Nm_s_per_rad": 0.0, "transmission.backlash_rad": 0.0,
     "friction.viscous_Nm_s_per_rad": 0.0, "friction.coulomb_Nm": 0.0, "friction.stribeck_Nm": 0.0,
     "friction.stribeck_rad_s": 0.1, "friction.load_driving": 0.0, "friction.load_backdriving": 0.0,
     "friction.asymmetry": 0.0, "friction.presliding_rad": 1e-3,
+    "thermal.friction_per_K": 0.0, "thermal.torque_per_K": 0.0, "thermal.friction_per_Nm2_s": 0.0, "thermal.cooling_s": math.inf,
     "ripple.amplitude_Nm": 0.0, "ripple.order": 1.0, "ripple.phase_rad": 0.0, "ripple.offset_Nm": 0.0,
 }
+REFERENCE_TEMPERATURE_C = 25.0  # at which friction and torque are as their parameters say
 
 
 class ActuatorModel:
@@ -51,6 +54,7 @@ class ActuatorModel:
         self.told_before = torch.zeros(worlds, 1, device=device, dtype=torch.bool)
         self.command, self.held_for, self.held_output = (state() for _ in range(3))
         self.lagged, self.sensed_before, self.lagged_speed = (state() for _ in range(3))
+        self.sensor_at, self.heat, self.driven = (state() for _ in range(3))
         self.bristle, self.load, self.rotor, self.rotor_speed = (state() for _ in range(4))
         self.given_torque, self.given_slope, self.given_at = (state() for _ in range(3))
 
@@ -59,6 +63,7 @@ class ActuatorModel:
         to be as its input, but commanded at q."""
         mask = torch.ones_like(q[:, :1], dtype=torch.bool) if where is None else where[:, None]
         put = lambda state, value: state.copy_(torch.where(mask, value, state))
+        put(self.sensor_at, q)
         reading = self.reading(q)
         self.told_before.logical_and_(~mask)
         for state in (self.command, self.lagged, self.sensed_before):
@@ -66,22 +71,29 @@ class ActuatorModel:
         put(self.held_for, (self.p["command.hold_s"] - self.step_s).expand_as(q))
         put(self.rotor, q)
         for state in (self.held_output, self.lagged_speed, self.bristle, self.load, self.rotor_speed, self.given_torque,
-                      self.given_slope, self.given_at):
+                      self.given_slope, self.given_at, self.heat, self.driven):
             put(state, torch.zeros_like(q))
 
     def momentary(self) -> dict[str, torch.Tensor]:
         """All that changes from step to step."""
-        names = ("past", "told_before", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "bristle", "load",
-                 "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
+        names = ("past", "told_before", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "sensor_at",
+                 "heat", "driven", "bristle", "load", "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
         return {name: getattr(self, name) for name in names}
 
     def reading(self, q: torch.Tensor) -> torch.Tensor:
-        """What the drive reports for joints at q [rad]."""
-        reading, quantum = q + self.p["sensor.zero_offset_rad"], self.p["sensor.quantum_rad"]
+        """What the drive reports for joints that have come to q [rad] since the last step."""
+        p, seen, quantum = self.p, self._followed(q), self.p["sensor.quantum_rad"]
+        reading = seen + p["sensor.zero_offset_rad"] + p["sensor.eccentricity_rad"] * torch.sin(seen + p["sensor.eccentricity_phase_rad"])
         some = torch.where(quantum > 0, quantum, 1.0)
         return torch.where(quantum > 0, some * torch.sign(reading) * torch.floor((reading / some).abs() + 0.5), reading)
 
-    def step(self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True) -> tuple[torch.Tensor, torch.Tensor]:
+    def _followed(self, q: torch.Tensor) -> torch.Tensor:
+        """Where the sensor's end of its play is: it stays until the joint takes it along."""
+        half = 0.5 * self.p["sensor.hysteresis_rad"]
+        return torch.maximum(torch.minimum(self.sensor_at, q + half), q - half)
+
+    def step(self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True,
+             temperature_C=REFERENCE_TEMPERATURE_C) -> tuple[torch.Tensor, torch.Tensor]:
         """Torque [Nm] and its slope in the joint's speed [Nm s/rad] during the step that begins at (q, dq)."""
         p, h = self.p, self.step_s
         motor_speed, motor_angle = torch.where(self.elastic, self.rotor_speed, dq), torch.where(self.elastic, self.rotor, q)
@@ -89,9 +101,12 @@ class ActuatorModel:
         self.bristle.copy_(torch.minimum(torch.maximum(self.bristle + h * motor_speed, -most), most))
         carried = self.given_torque + (self.given_slope - p["transmission.armature_kg_m2"] / h) * (dq - self.given_at)
         self.load.copy_(torch.where(self.elastic, self.load, carried))
-        torque, slope = self._drive(q_des, kp, kd, q, motor_speed, dq_des, feed_forward, supply, enabled)
-        dry, dry_slope = self._dry_friction(motor_speed)
-        viscous = p["friction.viscous_Nm_s_per_rad"]
+        friction_factor, torque_factor = self._warm(temperature_C)
+        unit = p["drive.torque_per_unit_Nm"] * torque_factor
+        torque, slope = self._drive(q_des, kp, kd, q, motor_speed, dq_des, feed_forward, supply, enabled, unit)
+        self.driven.copy_(torque)
+        dry, dry_slope = self._dry_friction(motor_speed, friction_factor)
+        viscous = p["friction.viscous_Nm_s_per_rad"] * friction_factor
         torque = torque + dry - viscous * motor_speed + p["ripple.offset_Nm"]
         torque = torque + p["ripple.amplitude_Nm"] * torch.sin(p["ripple.order"] * motor_angle + p["ripple.phase_rad"])
         slope = slope + dry_slope - viscous
@@ -100,6 +115,13 @@ class ActuatorModel:
         self.given_slope.copy_(torch.where(self.elastic, elastic_slope, slope))
         self.given_at.copy_(dq)
         return self.given_torque, self.given_slope
+
+    def _warm(self, temperature_C) -> tuple[torch.Tensor, torch.Tensor]:
+        """By what friction and torque per unit are multiplied at this temperature and heat."""
+        p, above = self.p, temperature_C - REFERENCE_TEMPERATURE_C
+        self.heat.add_(self.step_s * (self.driven ** 2 - self.heat / p["thermal.cooling_s"]))
+        return (torch.exp(p["thermal.friction_per_K"] * above + p["thermal.friction_per_Nm2_s"] * self.heat),
+                torch.exp(p["thermal.torque_per_K"] * above))
 
     def _told(self, *now) -> torch.Tensor:
         """What has arrived of it, after the delay: straight between two steps."""
@@ -115,6 +137,7 @@ class ActuatorModel:
         return self.command + torch.minimum(torch.maximum(q_des - self.command, -most), most)
 
     def _sensed(self, q: torch.Tensor) -> torch.Tensor:
+        self.sensor_at.copy_(self._followed(q))
         reading, lag = self.reading(q), self.p["sensor.lag_s"]
         self.lagged.add_(self.step_s / (lag + self.step_s) * (reading - self.lagged))
         return torch.where(self.lagging, self.lagged, reading)
@@ -123,7 +146,7 @@ class ActuatorModel:
         self.lagged_speed.add_(self.step_s / (self.p["sensor.velocity_lag_s"] + self.step_s) * (dq - self.lagged_speed))
         return torch.where(self.velocity_lagging, self.lagged_speed, dq)
 
-    def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled) -> tuple[torch.Tensor, torch.Tensor]:
+    def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled, unit) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
         q_des, dq_des, kp, kd, feed_forward = self._told(q_des, dq_des, kp, kd, feed_forward)
         on = torch.full_like(self.command, float(enabled))
@@ -133,18 +156,18 @@ class ActuatorModel:
         self.sensed_before.copy_(sensed)
         if enabled:
             wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + feed_forward
-            return self._powered(wish, kd, supply, dq)
-        brake = (p["drive.brake_when_disabled"] * p["drive.torque_per_unit_Nm"] * p["drive.back_emf_s_per_rad"]).expand_as(dq)
+            return self._powered(wish, kd, supply, dq, unit)
+        brake = (p["drive.brake_when_disabled"] * unit * p["drive.back_emf_s_per_rad"]).expand_as(dq)
         return -brake * dq, -brake
 
     def _error(self, sensed: torch.Tensor) -> torch.Tensor:
         error = self.command - sensed
         return torch.where(error.abs() < self.p["drive.dead_band_rad"], 0.0, error)
 
-    def _powered(self, wish, kd, supply, dq) -> tuple[torch.Tensor, torch.Tensor]:
+    def _powered(self, wish, kd, supply, dq, unit) -> tuple[torch.Tensor, torch.Tensor]:
         """The drive's loop, and what the motor makes of its output."""
         p, h = self.p, self.step_s
-        unit, back_emf, hold = p["drive.torque_per_unit_Nm"], p["drive.back_emf_s_per_rad"], p["command.hold_s"]
+        back_emf, hold = p["drive.back_emf_s_per_rad"], p["command.hold_s"]
         scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
         held_for = self.held_for + h
         due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
@@ -166,13 +189,13 @@ class ActuatorModel:
         return (torch.where(too_much, along * available, torque),
                 torch.where(too_much, torch.where(on_slope, -self.stall / no_load, 0.0), slope))
 
-    def _dry_friction(self, dq: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    def _dry_friction(self, dq: torch.Tensor, factor: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
         bend = self.bristle + self.step_s * dq
         direction = torch.where(bend >= 0, 1.0, -1.0).to(bend.dtype)
         most = p["friction.coulomb_Nm"] + p["friction.stribeck_Nm"] * torch.exp(-(dq / p["friction.stribeck_rad_s"]) ** 2)
         share = torch.where(self.load * direction > 0, p["friction.load_driving"], p["friction.load_backdriving"])
-        most = (most + share * self.load.abs()) * (1 + p["friction.asymmetry"] * direction)
+        most = (most + share * self.load.abs()) * factor * (1 + p["friction.asymmetry"] * direction)
         slides = bend.abs() >= p["friction.presliding_rad"]
         stiffness = most / p["friction.presliding_rad"]
         return torch.where(slides, -direction * most, -stiffness * bend), torch.where(slides, 0.0, -stiffness * self.step_s)
