@@ -24,14 +24,18 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
       delaying_(parameters.command.delay_s > 0.0),
       rate_limited_(std::isfinite(parameters.command.rate_limit_rad_s)),
       torque_speed_(std::isfinite(parameters.drive.stall_torque_Nm)),
-      load_dependent_(parameters.friction.load_driving != 0.0 || parameters.friction.load_backdriving != 0.0) {
+      load_dependent_(parameters.friction.load_driving != 0.0 || parameters.friction.load_backdriving != 0.0),
+      thermal_(parameters.thermal != ActuatorParameters::Thermal{}) {
   expect(step_s > 0.0, "an actuator's step isn't above 0");
-  const auto& [command, drive, sensor, transmission, friction, ripple] = parameters_;
+  const auto& [command, drive, sensor, transmission, friction, thermal, ripple] = parameters_;
   if (command.delay_s < 0.0 || command.delay_s > kDelaySteps * step_s) {
     throw std::invalid_argument("a delay of " + std::to_string(command.delay_s) + " s; expected at most " +
                                 std::to_string(kDelaySteps) + " steps");
   }
   expect(command.rate_limit_rad_s > 0.0, "a rate limit isn't above 0");
+  expect(std::abs(sensor.eccentricity_rad) < 1.0,
+         "an eccentricity of a radian or more; expected a reading that grows with q");
+  expect(thermal.cooling_s > 0.0, "thermal.cooling_s isn't above 0");
   expect(friction.presliding_rad > 0.0, "friction.presliding_rad isn't above 0");
   expect(friction.stribeck_rad_s > 0.0, "friction.stribeck_rad_s isn't above 0");
   expect(drive.no_load_rad_s > 0.0, "drive.no_load_rad_s isn't above 0");
@@ -42,6 +46,7 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
 }
 
 void ActuatorModel::reset(double q_rad) {
+  sensor_rad_ = q_rad;
   const double reading = reading_rad(q_rad);
   told_before_ = false;
   newest_ = 0;
@@ -52,14 +57,39 @@ void ActuatorModel::reset(double q_rad) {
   rotor_rad_s_ = lagged_rad_s_ = 0.0;
   given_ = {};
   given_at_rad_s_ = 0.0;
+  heat_Nm2_s_ = drive_Nm_ = 0.0;
+  temperature_C_ = kReferenceTemperature_C;
+  friction_factor_ = torque_factor_ = 1.0;
 }
 
 double ActuatorModel::joint_armature_kg_m2() const { return elastic_ ? 0.0 : parameters_.transmission.armature_kg_m2; }
 
+/// The play operator: the sensor stays until the joint takes it along.
+double ActuatorModel::followed(double q_rad) const noexcept {
+  const double half_rad = 0.5 * parameters_.sensor.hysteresis_rad;
+  return half_rad > 0.0 ? std::clamp(sensor_rad_, q_rad - half_rad, q_rad + half_rad) : q_rad;
+}
+
 double ActuatorModel::reading_rad(double q_rad) const {
-  const double reading = q_rad + parameters_.sensor.zero_offset_rad;
-  const double quantum = parameters_.sensor.quantum_rad;
+  const ActuatorParameters::Sensor& p = parameters_.sensor;
+  const double seen_rad = followed(q_rad);
+  double reading = seen_rad + p.zero_offset_rad;
+  if (p.eccentricity_rad != 0.0) reading += p.eccentricity_rad * std::sin(seen_rad + p.eccentricity_phase_rad);
+  const double quantum = p.quantum_rad;
   return quantum > 0.0 ? quantum * std::round(reading / quantum) : reading;
+}
+
+/// q + e sin(q + phase) = reading - offset by Newton's method; its slope is above 0.
+double ActuatorModel::joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad) {
+  const double shown_rad = reading_rad - sensor.zero_offset_rad;
+  if (sensor.eccentricity_rad == 0.0) return shown_rad;
+  double q_rad = shown_rad;
+  for (int i = 0; i < 20; ++i) {
+    const double miss_rad =
+        q_rad + sensor.eccentricity_rad * std::sin(q_rad + sensor.eccentricity_phase_rad) - shown_rad;
+    q_rad -= miss_rad / (1.0 + sensor.eccentricity_rad * std::cos(q_rad + sensor.eccentricity_phase_rad));
+  }
+  return q_rad;
 }
 
 /// Between two stored commands by a straight line: the mean of a held command over the step, smooth in the delay.
@@ -91,6 +121,7 @@ double ActuatorModel::limited(double q_command_rad) noexcept {
 }
 
 double ActuatorModel::sensed(double q_rad) noexcept {
+  sensor_rad_ = followed(q_rad);
   const double reading = reading_rad(q_rad);
   if (!lagging_) return reading;
   lagged_rad_ += step_s_ / (parameters_.sensor.lag_s + step_s_) * (reading - lagged_rad_);
@@ -112,7 +143,7 @@ ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_ra
   const double dq_sensed_rad_s = sensed_velocity(lagging_ ? (q_sensed_rad - sensed_before_rad_) / step_s_ : dq_rad_s);
   sensed_before_rad_ = q_sensed_rad;
   if (input.enabled) return powered(told, input.supply, q_sensed_rad, dq_sensed_rad_s, dq_rad_s);
-  const double brake = p.brake_when_disabled * p.torque_per_unit_Nm * p.back_emf_s_per_rad;
+  const double brake = p.brake_when_disabled * p.torque_per_unit_Nm * torque_factor_ * p.back_emf_s_per_rad;
   return {-brake * dq_rad_s, -brake};
 }
 
@@ -120,7 +151,8 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
                                            double dq_rad_s) noexcept {
   const ActuatorParameters::Drive& p = parameters_.drive;
   const double sag = std::max(0.0, 1.0 - p.supply_sag_per_Nm * std::abs(given_.torque_Nm));
-  const double scale = p.torque_per_unit_Nm * supply * sag;
+  const double per_unit_Nm = p.torque_per_unit_Nm * torque_factor_;
+  const double scale = per_unit_Nm * supply * sag;
   const double kd = p.kd_scale * told.kd;
   bool follows_speed = !lagging_ && !velocity_lagging_;
   held_for_s_ += step_s_;
@@ -134,8 +166,8 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   } else {
     follows_speed = false;
   }
-  Line motor{scale * held_output_ - p.torque_per_unit_Nm * p.back_emf_s_per_rad * dq_rad_s,
-             -p.torque_per_unit_Nm * p.back_emf_s_per_rad - (follows_speed ? scale * kd : 0.0)};
+  Line motor{scale * held_output_ - per_unit_Nm * p.back_emf_s_per_rad * dq_rad_s,
+             -per_unit_Nm * p.back_emf_s_per_rad - (follows_speed ? scale * kd : 0.0)};
   if (!torque_speed_) return motor;
   const double along = motor.torque_Nm >= 0.0 ? 1.0 : -1.0;
   const double available_Nm =
@@ -157,10 +189,21 @@ ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) noexcept {
   if (load_dependent_) {
     most_Nm += (load_Nm_ * direction > 0.0 ? p.load_driving : p.load_backdriving) * std::abs(load_Nm_);
   }
-  most_Nm *= 1.0 + p.asymmetry * direction;
+  most_Nm *= friction_factor_ * (1.0 + p.asymmetry * direction);
   if (std::abs(bend_rad) >= p.presliding_rad) return {-direction * most_Nm, 0.0};
   const double stiffness = most_Nm / p.presliding_rad;
   return {-stiffness * bend_rad, -stiffness * step_s_};
+}
+
+void ActuatorModel::warm(double temperature_C) noexcept {
+  const ActuatorParameters::Thermal& p = parameters_.thermal;
+  const bool heats = p.friction_per_Nm2_s != 0.0;
+  if (!heats && temperature_C == temperature_C_) return;  // an exponential function a reading, not a step
+  if (heats) heat_Nm2_s_ += step_s_ * (drive_Nm_ * drive_Nm_ - heat_Nm2_s_ / p.cooling_s);
+  temperature_C_ = temperature_C;
+  const double above_K = temperature_C - kReferenceTemperature_C;
+  friction_factor_ = std::exp(p.friction_per_K * above_K + p.friction_per_Nm2_s * heat_Nm2_s_);
+  torque_factor_ = std::exp(p.torque_per_K * above_K);
 }
 
 ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
@@ -173,10 +216,13 @@ ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, dou
     load_Nm_ = given_.torque_Nm +
                (given_.slope_Nm_s_per_rad - parameters_.transmission.armature_kg_m2 / step_s_) * change_rad_s;
   }
+  if (thermal_) warm(input.temperature_C);
   Line motor = drive(input, q_rad, motor_rad_s);
+  drive_Nm_ = motor.torque_Nm;
   const Line dry = dry_friction(motor_rad_s);
-  motor.torque_Nm += dry.torque_Nm - parameters_.friction.viscous_Nm_s_per_rad * motor_rad_s;
-  motor.slope += dry.slope - parameters_.friction.viscous_Nm_s_per_rad;
+  const double viscous = friction_factor_ * parameters_.friction.viscous_Nm_s_per_rad;
+  motor.torque_Nm += dry.torque_Nm - viscous * motor_rad_s;
+  motor.slope += dry.slope - viscous;
   const ActuatorParameters::Ripple& ripple = parameters_.ripple;
   motor.torque_Nm += ripple.offset_Nm;
   if (ripple.amplitude_Nm != 0.0) {

@@ -14,6 +14,7 @@ struct ActuatorInput {
   double feed_forward = 0.0;  ///< [unit of output]
   double supply = 1.0;        ///< bus voltage of a voltage servo
   bool enabled = true;
+  double temperature_C = kReferenceTemperature_C;  ///< of gear and winding
 };
 
 /// Torque at the joint as a line in the joint's speed: whoever integrates takes the slope implicitly,
@@ -40,8 +41,14 @@ class ActuatorModel {
   /// What the joint's own inertia grows by; a rotor behind a spring turns on its own.
   double joint_armature_kg_m2() const;
 
-  /// What the drive reports for a joint at q.
+  /// What the drive reports for a joint that has come to q since the last step.
   double reading_rad(double q_rad) const;
+
+  /// Where a joint is that rests in the middle of its sensor's hysteresis and is read so.
+  static double joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad);
+
+  /// What the drive itself gave at the beginning of the step, before friction and gear: what a drive's current tells.
+  double drive_torque_Nm() const { return drive_Nm_; }
 
   const ActuatorParameters& parameters() const { return parameters_; }
 
@@ -55,17 +62,19 @@ class ActuatorModel {
   };
   Told delayed(const Told& now) noexcept;
   double limited(double q_command_rad) noexcept;
+  double followed(double q_rad) const noexcept;
   double sensed(double q_rad) noexcept;
   double sensed_velocity(double dq_rad_s) noexcept;
   Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
   Line powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s, double dq_rad_s) noexcept;
   Line dry_friction(double dq_rad_s) noexcept;
+  void warm(double temperature_C) noexcept;
   ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
   ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;
 
   ActuatorParameters parameters_;
   double step_s_;
-  bool elastic_, lagging_, velocity_lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_;
+  bool elastic_, lagging_, velocity_lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_, thermal_;
 
   std::array<Told, kDelaySteps + 2> past_{};
   int newest_ = 0;
@@ -73,6 +82,10 @@ class ActuatorModel {
   double command_rad_ = 0.0;  // after delay and rate limit
   double held_for_s_ = 0.0, held_output_ = 0.0;
   double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0, lagged_rad_s_ = 0.0;
+  double sensor_rad_ = 0.0;  // where the sensor's end of its play is
+  double heat_Nm2_s_ = 0.0, drive_Nm_ = 0.0;
+  double temperature_C_ = kReferenceTemperature_C;
+  double friction_factor_ = 1.0, torque_factor_ = 1.0;
   double bristle_rad_ = 0.0;
   double load_Nm_ = 0.0;  // through the gear, as of the step before
   double rotor_rad_ = 0.0, rotor_rad_s_ = 0.0;

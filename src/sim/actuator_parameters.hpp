@@ -7,6 +7,8 @@
 
 namespace pmg::sim {
 
+constexpr double kReferenceTemperature_C = 25.0;  ///< at which friction and torque are as their parameters say
+
 /// Names are those of a turning joint; on a linear axis read m for rad, N for Nm, kg for kg m^2. The drive's output has
 /// the drive's own unit: torque [Nm] of a position PD, duty [-1, 1] of a voltage servo, volts of a cascade.
 struct ActuatorParameters {
@@ -34,7 +36,10 @@ struct ActuatorParameters {
 
   /// What the drive believes of its joint.
   struct Sensor {
-    double zero_offset_rad = 0.0;  ///< reading minus truth
+    double zero_offset_rad = 0.0;   ///< reading minus truth
+    double hysteresis_rad = 0.0;    ///< play between joint and sensor, from end to end: the reading waits at a reversal
+    double eccentricity_rad = 0.0;  ///< of the sensor's disc or magnet: reads eccentricity sin(q + phase) too much
+    double eccentricity_phase_rad = 0.0;
     double quantum_rad = 0.0;
     double lag_s = 0.0;           ///< of the position, first order
     double velocity_lag_s = 0.0;  ///< of the velocity beyond that of the position, first order
@@ -65,6 +70,17 @@ struct ActuatorParameters {
     double presliding_rad = 1e-3;
     bool operator==(const Friction&) const = default;
   } friction;
+
+  /// What warming up does, as a factor exp(share of it): friction, as at 25 degC, follows the temperature (lubricant)
+  /// and, where none is known, the heat that the drive has put into its winding since the start, the integral of
+  /// torque^2 less what has cooled away; the torque per unit of output follows the temperature (magnets, copper).
+  struct Thermal {
+    double friction_per_K = 0.0;  ///< negative: a warm gear turns easily
+    double torque_per_K = 0.0;
+    double friction_per_Nm2_s = 0.0;
+    double cooling_s = std::numeric_limits<double>::infinity();  ///< time constant of that heat
+    bool operator==(const Thermal&) const = default;
+  } thermal;
 
   /// Torque that depends on the joint's angle: amplitude sin(order q + phase), and a constant one.
   struct Ripple {

@@ -14,6 +14,7 @@ namespace pmg::sim {
 namespace {
 
 constexpr double kGantryLift_m = 0.2;            // of a world that starts hanging
+constexpr double kStandInertia = 1e9;            // [kg, kg m^2] of a base in a stand
 constexpr double kRopeLength_m = 4.0;            // as drawn
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
@@ -86,6 +87,8 @@ struct World::Impl {
       dof_address.push_back(model->jnt_dofadr[id]);
     }
     base_body = find(model.get(), mjOBJ_BODY, robot.base_link);
+    if (options.stand)
+      std::fill_n(model->dof_armature + model->jnt_dofadr[model->body_jntadr[base_body]], 6, kStandInertia);
     torso_body = find(model.get(), mjOBJ_BODY, robot.torso_link);
     for (const Foot foot : {kLeft, kRight}) {
       foot_body[foot] = find(model.get(), mjOBJ_BODY, robot.feet[foot].link);
@@ -199,7 +202,8 @@ void World::set_drives(const model::JointCommand& command) noexcept {
                                 .dq_rad_s = command.dq[j],
                                 .kp = kp,
                                 .kd = kd,
-                                .feed_forward = command.tau_ff[j]};
+                                .feed_forward = command.tau_ff[j],
+                                .temperature_C = kDriveTemperature_degC};
       apply(model_, data_, j, w.motors[index]->step(input, q_rad, dq_rad_s), dq_rad_s);
       continue;
     }
@@ -254,6 +258,7 @@ void World::read(model::RobotState& state) noexcept {
   for (int j = 0; j < joints; ++j) {
     const auto index = static_cast<std::size_t>(j);
     const double q_rad = data_->qpos[w.qpos_address[index]];
+    if (w.motors[index]) state.tau[j] = w.motors[index]->drive_torque_Nm();
     const double reading_rad = w.motors[index] ? w.motors[index]->reading_rad(q_rad) : q_rad;
     state.q[j] = reading_rad + w.encoder_offset_rad[j] + w.noise.encoder_rad()[j];
     state.dq[j] = data_->qvel[w.dof_address[index]] + w.noise.velocity_rad_s()[j];

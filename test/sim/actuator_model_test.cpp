@@ -157,6 +157,61 @@ TEST(ActuatorModel, IsSwitchedOffAtOnceHoweverLateItsCommandsAre) {
   EXPECT_EQ(actuator.step(input, 0.0, 0.0).torque_Nm, 0.0);
 }
 
+TEST(ActuatorModel, ReadsTheSameWhileAReversalCrossesItsSensorsHysteresis) {
+  ActuatorModel actuator(with([](auto& p) { p.sensor.hysteresis_rad = 0.04; }), kStep_s);
+  const auto read_at = [&](double q_rad) {
+    actuator.step(kLimp, q_rad, 0.0);
+    return actuator.reading_rad(q_rad);
+  };
+  EXPECT_DOUBLE_EQ(read_at(0.015), 0.0) << "starts in the middle";
+  EXPECT_DOUBLE_EQ(read_at(0.5), 0.48);
+  EXPECT_DOUBLE_EQ(read_at(0.47), 0.48) << "waits";
+  EXPECT_DOUBLE_EQ(read_at(0.3), 0.32) << "and comes along";
+}
+
+TEST(ActuatorModel, ReadsAnEccentricSensorsAngleAndFindsTheJointBehindIt) {
+  const auto parameters = with(
+      [](auto& p) { p.sensor = {.zero_offset_rad = 0.02, .eccentricity_rad = 0.3, .eccentricity_phase_rad = 0.5}; });
+  const ActuatorModel actuator(parameters, kStep_s);
+  for (const double q_rad : {-3.0, -0.7, 0.0, 0.4, 2.5}) {
+    ActuatorModel there = actuator;
+    there.reset(q_rad);
+    const double reading_rad = there.reading_rad(q_rad);
+    EXPECT_NEAR(reading_rad, q_rad + 0.02 + 0.3 * std::sin(q_rad + 0.5), 1e-12);
+    EXPECT_NEAR(ActuatorModel::joint_rad(parameters.sensor, reading_rad), q_rad, 1e-12);
+  }
+}
+
+TEST(ActuatorModel, RubsLessAndPullsLessWhenWarm) {
+  const auto parameters = with([](auto& p) {
+    p.friction.viscous_Nm_s_per_rad = 2.0;
+    p.thermal = {.friction_per_K = -0.02, .torque_per_K = -0.004};
+  });
+  const auto torque_Nm = [&](double temperature_C, double wish_Nm, double dq_rad_s) {
+    ActuatorModel actuator(parameters, kStep_s);
+    return actuator.step({.feed_forward = wish_Nm, .temperature_C = temperature_C}, 0.0, dq_rad_s).torque_Nm;
+  };
+  EXPECT_DOUBLE_EQ(torque_Nm(25.0, 0.0, 1.0), -2.0);
+  EXPECT_NEAR(torque_Nm(45.0, 0.0, 1.0), -2.0 * std::exp(-0.4), 1e-12);
+  EXPECT_NEAR(torque_Nm(45.0, 10.0, 0.0), 10.0 * std::exp(-0.08), 1e-12);
+}
+
+TEST(ActuatorModel, WarmsByTheSquareOfItsTorqueAndCools) {
+  ActuatorModel actuator(with([](auto& p) {
+                           p.friction.viscous_Nm_s_per_rad = 1.0;
+                           p.thermal = {.friction_per_Nm2_s = -0.01, .cooling_s = 5.0};
+                         }),
+                         kStep_s);
+  const auto friction_Nm = [&](double wish_Nm, double for_s) {
+    ActuatorTorque torque;
+    for (int k = 0; k < std::lround(for_s / kStep_s); ++k) torque = actuator.step({.feed_forward = wish_Nm}, 0.0, 1.0);
+    return wish_Nm - torque.torque_Nm;
+  };
+  // 3 Nm for long against 5 s of cooling settle at 3^2 5 = 45 Nm^2 s; a percent is a step's share and e^-8 of the way.
+  EXPECT_NEAR(friction_Nm(3.0, 40.0), std::exp(-0.45), 0.005);
+  EXPECT_NEAR(friction_Nm(0.0, 5.0), std::exp(-0.45 / std::exp(1.0)), 0.005);
+}
+
 TEST(ActuatorModel, NeverAllocatesInAStep) {
   if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted";
   ActuatorModel actuator(with([](auto& p) {
@@ -171,9 +226,13 @@ TEST(ActuatorModel, NeverAllocatesInAStep) {
 
 TEST(ActuatorModel, RefusesWhatMakesNoSense) {
   const std::vector<std::function<void(ActuatorParameters&)>> senseless = {
-      [](auto& p) { p.command.delay_s = 1.0; }, [](auto& p) { p.command.rate_limit_rad_s = 0.0; },
-      [](auto& p) { p.friction.presliding_rad = 0.0; }, [](auto& p) { p.transmission.backlash_rad = 0.01; },
-      [](auto& p) { p.transmission.stiffness_Nm_per_rad = 100.0; }};
+      [](auto& p) { p.command.delay_s = 1.0; },
+      [](auto& p) { p.command.rate_limit_rad_s = 0.0; },
+      [](auto& p) { p.friction.presliding_rad = 0.0; },
+      [](auto& p) { p.transmission.backlash_rad = 0.01; },
+      [](auto& p) { p.transmission.stiffness_Nm_per_rad = 100.0; },
+      [](auto& p) { p.sensor.eccentricity_rad = 1.0; },
+      [](auto& p) { p.thermal.cooling_s = 0.0; }};
   for (const auto& set : senseless) EXPECT_THROW(ActuatorModel(with(set), kStep_s), std::invalid_argument);
 }
 

@@ -9,6 +9,7 @@
 
 #include "generator_core/allocation_count.hpp"
 #include "model/config_error.hpp"
+#include "sim/motors_in_force.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
 
@@ -82,6 +83,21 @@ model::RobotState after(World& world, const model::JointCommand& command, int st
 }
 
 // Neutral drives do the same sums in another order; in half a second on the gantry no contact amplifies that.
+TEST_F(MotorFile, IsTheOneThatIsNamedOrElseTheRobots) {
+  write("joints: {" + joint_ + ": {friction: {coulomb_Nm: 0.7}}}\n");
+  EXPECT_TRUE(motors_in_force(robot_, "none").empty());
+  EXPECT_EQ(motors_in_force(robot_, file_).at(joint_).friction.coulomb_Nm, 0.7);
+  const fs::path copy = fs::path(testing::TempDir()) / "robot that names its motors";
+  fs::remove_all(copy);
+  fs::copy(robot_.directory, copy, fs::copy_options::recursive);
+  std::ofstream(copy / "robot.yaml", std::ios::app) << "\nmotor: motor.yaml\n";
+  fs::copy_file(file_, copy / "motor.yaml");
+  const model::RobotModel named = model::load_robot(copy);
+  EXPECT_EQ(motors_in_force(named, "").at(joint_).friction.coulomb_Nm, 0.7);
+  EXPECT_TRUE(motors_in_force(named, "none").empty());
+  fs::remove_all(copy);
+}
+
 TEST_F(MotorFile, WithNeutralDrivesChangesNothing) {
   World plain(robot_, on_gantry());
   WorldOptions options = on_gantry();
