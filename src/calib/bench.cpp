@@ -90,6 +90,7 @@ BenchLoad read_load(ConfigReader reader, bool hangs) {
   load.gravity_known = gravity.has_value();
   const double point = load.length_m > 0.0 ? load.mass_kg * load.length_m * load.length_m : load.mass_kg;
   load.load.inertia_kg_m2 = inertia.value_or(point);
+  load.load.hangs_at_rad = reader.optional<double>("hangs_at_rad", 0.0, model::any_number());
   load.load.gravity_Nm = hangs ? gravity.value_or(load.mass_kg * kGravity_m_s2 * load.length_m) : 0.0;
   reader.finish();
   return load;
@@ -140,6 +141,7 @@ BenchRun describe(const Bench& bench, std::size_t row) {
   const bool firmware = bench.law == DriveLaw::kServoVoltage;
   run.kp = number(bench.runs, row, firmware ? "kp_firmware" : "kp_Nm_per_rad").value_or(bench.kp_of_law);
   run.kd = number(bench.runs, row, "kd_Nm_s_per_rad").value_or(bench.kd_of_law);
+  run.temp_C = number(bench.runs, row, "temp_C");
   run.load = load_of(bench, row);
   return run;
 }
@@ -161,7 +163,8 @@ Bench read_bench(const std::filesystem::path& folder) {
   if (reader.has("command_hold")) bench.linear_hold = reader.one_of("command_hold", {"hold", "linear"}) == "linear";
   read_drive(bench, reader.map("drive"));
   if (reader.has("loads")) {
-    for (ConfigReader& load : reader.maps("loads")) bench.loads.push_back(read_load(load, bench.rig == Rig::kPendulum));
+    for (ConfigReader& load : reader.maps("loads"))
+      bench.loads.push_back(read_load(load, bench.rig == Rig::kPendulum || bench.rig == Rig::kRobot));
   }
   if (reader.has("rotor")) {
     ConfigReader rotor = reader.map("rotor");
@@ -169,6 +172,8 @@ Bench read_bench(const std::filesystem::path& folder) {
     known_number(rotor, "gear_ratio");
     rotor.finish();
   }
+  bench.robot = reader.optional<std::string>("robot", "");
+  bench.joint = reader.optional<std::string>("joint", "");
   if (reader.has("design")) reader.required<std::string>("design");
   if (reader.has("reference")) reader.map("reference");  // for who compares, not for a fit
   reader.finish();

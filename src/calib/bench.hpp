@@ -17,7 +17,8 @@ namespace pmg::calib {
 /// What the joint moves besides its own rotor. On a linear rig kg and N.
 struct JointLoad {
   double inertia_kg_m2 = 0.0;  ///< about the axis
-  double gravity_Nm = 0.0;     ///< torque on the joint is -gravity_Nm sin(q): q = 0 hangs down
+  double gravity_Nm = 0.0;     ///< torque on the joint is -gravity_Nm sin(q - hangs_at): hangs_at is down
+  double hangs_at_rad = 0.0;   ///< 0 but for a robot's joints
 };
 
 enum class Rig { kPendulum, kHorizontal, kLinear, kRobot };
@@ -33,13 +34,15 @@ struct BenchLoad {
 struct BenchRun {
   std::string file, trajectory;
   int repeat = 0;
-  double kp = 1.0, kd = 0.0;  ///< what the drive was told, in its own unit; 1 where runs.csv says nothing
+  std::optional<double> temp_C;  ///< as runs.csv says
+  double kp = 1.0, kd = 0.0;     ///< what the drive was told, in its own unit; 1 where runs.csv says nothing
   JointLoad load;
   Recording recording;
 };
 
 struct Bench {
   std::filesystem::path folder;
+  std::string robot, joint;  ///< of a robot's rig; empty where bench.yaml doesn't say
   Rig rig = Rig::kPendulum;
   DriveLaw law = DriveLaw::kPositionPd;
   double sample_rate_hz = 100.0;

@@ -43,12 +43,17 @@ const std::vector<Effect>& effects() {
       {"brake", {"drive.brake_when_disabled"}},
       {"zero_offset", {"sensor.zero_offset_rad"}},
       {"sensor_lag", {"sensor.lag_s"}},
+      {"hysteresis", {"sensor.hysteresis_rad"}},
+      {"eccentricity", {"sensor.eccentricity_rad", "sensor.eccentricity_phase_rad"}},
+      {"quantisation", {"sensor.quantum_rad"}},
       {"velocity_lag", {"sensor.velocity_lag_s"}},
       {"backlash",
        {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad", "transmission.backlash_rad"}},
       {"compliance", {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad"}},
       {"cogging", {"ripple.amplitude_Nm", "ripple.order", "ripple.phase_rad"}},
       {"offset", {"ripple.offset_Nm"}},
+      {"thermal_drift", {"thermal.friction_per_K", "thermal.torque_per_K"}},
+      {"self_heating", {"thermal.friction_per_Nm2_s"}},
       {"inertia", {kInertia}},
       {"gravity", {kGravity}},
   };
@@ -78,7 +83,12 @@ FitParameter fit_parameter(const std::string& name, const Bench& bench) {
   if (bench.law == DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
   // A linear axis moves kilograms by hundreds of newtons.
   const bool linear = bench.rig == Rig::kLinear;
-  const double scale = linear && p.unit.starts_with("kg") ? 1000.0 : linear && p.unit.starts_with("Nm") ? 100.0 : 1.0;
+  const double scale = !linear                         ? 1.0
+                       : p.unit.starts_with("kg")      ? 1000.0
+                       : p.unit.starts_with("Nm")      ? 100.0
+                       : p.unit.starts_with("1/Nm")    ? 0.01
+                       : p.unit.starts_with("1/(Nm^2") ? 1e-4
+                                                       : 1.0;
   if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
   return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
 }

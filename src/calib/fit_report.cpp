@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "calib/fit_results.hpp"
+#include "pages/plot_picture.hpp"
 
 namespace pmg::calib {
 
@@ -88,16 +89,20 @@ void show_parameters(pages::Page& page, const FitResults& results) {
   page.table(table);
 }
 
-void show_inverse(pages::Page& page, const InverseDynamics& found) {
+void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
   const auto row = [](const char* name, const InverseDynamics::Estimate& e) {
     return std::vector<std::string>{name, fmt::format("{:.5g}", e.value), fmt::format("{:.2g}", e.deviation)};
   };
   page.heading("Inverse dynamics");
+  if (taken) page.paragraph("The model has these values; the rollouts found what they leave open.");
   page.paragraph(fmt::format(
       "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.samples, found.residual_Nm));
+  page.paragraph(fmt::format("Dry friction {:.4g} forwards, {:.4g} backwards.",
+                             found.coulomb_Nm.value - found.offset_Nm.value,
+                             found.coulomb_Nm.value + found.offset_Nm.value));
   page.table({.header = {"parameter", "value", "one standard deviation"},
               .rows = {row("transmission.armature_kg_m2", found.armature_kg_m2),
                        row("friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad),
@@ -105,6 +110,36 @@ void show_inverse(pages::Page& page, const InverseDynamics& found) {
 }
 
 }  // namespace
+
+std::string fit_picture(const FitResults& results, const JointModel& before) {
+  const Assessment& shown = results.scored ? *results.scored : results.fitted;
+  std::vector<std::size_t> order(shown.runs->size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return shown.after[a].mean_absolute_rad() < shown.after[b].mean_absolute_rad();
+  });
+  const SingleJoint& joint = (*shown.runs)[order[order.size() / 2]];
+  const Recording& r = joint.run().recording;
+  const std::vector<double> old = joint.rollout(before), simulated = joint.rollout(results.fit.model);
+  std::vector<double> old_miss(old.size()), miss(old.size());
+  for (std::size_t k = 0; k < miss.size(); ++k) {
+    old_miss[k] = 1e3 * (old[k] - r.q_rad[k]);
+    miss[k] = 1e3 * (simulated[k] - r.q_rad[k]);
+  }
+  const std::string unit = position_unit(*results.bench, false);
+  const auto line = [&](const char* name, const std::vector<double>& y, const char* colour) {
+    return pages::PlotLine{.name = name, .x = r.t_s, .y = y, .colour = colour};
+  };
+  return pages::svg_file(
+      {{.title = fmt::format("{}: position [{}]", joint.run().file, unit),
+        .x_name = "time [s]",
+        .lines = {line("command", r.q_cmd_rad, pages::colour::kGrey), line("measured", r.q_rad, pages::colour::kInk),
+                  line("simulated", simulated, pages::colour::kVermillion)}},
+       {.title = fmt::format("simulated minus measured [{}]", position_unit(*results.bench, true)),
+        .x_name = "time [s]",
+        .lines = {line("before", old_miss, pages::colour::kGrey), line("after", miss, pages::colour::kBlue)},
+        .show_zero = true}});
+}
 
 pages::Page fit_report(const FitResults& results) {
   const Assessment& shown = results.scored ? *results.scored : results.fitted;
@@ -119,12 +154,20 @@ pages::Page fit_report(const FitResults& results) {
   show_runs(page, results, shown);
   page.heading("Parameters");
   show_parameters(page, results);
-  if (results.inverse) show_inverse(page, *results.inverse);
+  if (results.inverse) show_inverse(page, *results.inverse, results.inverse_taken);
   page.heading("Where the error is");
   page.columns([&] {
     show_groups(page, results, results.fitted, "fitted runs");
     if (results.scored) show_groups(page, results, *results.scored, "runs that were not fitted");
   });
+  if (!results.noise_floor.pairs.empty()) {
+    const NoiseFloor& floor = results.noise_floor;
+    page.paragraph(
+        fmt::format("The noise floor: {} pairs of repeats stray by {:.3g} {} about what they have in common "
+                    "({:.3g} to {:.3g}), and differ by {:.3g}. No model explains that.",
+                    floor.pairs.size(), 1e3 * floor.mean_absolute_rad, unit, 1e3 * floor.mean_absolute_low_rad,
+                    1e3 * floor.mean_absolute_high_rad, 1e3 * floor.difference_mean_absolute_rad));
+  }
   page.heading("The search");
   std::vector<double> at(results.fit.history.size()), rms(results.fit.history.size());
   for (std::size_t k = 0; k < at.size(); ++k) {

@@ -37,12 +37,25 @@ Json inverse_json(const InverseDynamics& found) {
   const auto estimate = [](const InverseDynamics::Estimate& e) -> Json {
     return {{"value", e.value}, {"deviation", e.deviation}};
   };
+  const double forward_Nm = found.coulomb_Nm.value - found.offset_Nm.value;
+  const double backward_Nm = found.coulomb_Nm.value + found.offset_Nm.value;
   return {{"transmission.armature_kg_m2", estimate(found.armature_kg_m2)},
           {"friction.viscous_Nm_s_per_rad", estimate(found.viscous_Nm_s_per_rad)},
           {"friction.coulomb_Nm", estimate(found.coulomb_Nm)},
           {"ripple.offset_Nm", estimate(found.offset_Nm)},
+          {"coulomb_forward_Nm", forward_Nm},
+          {"coulomb_backward_Nm", backward_Nm},
           {"residual_Nm", found.residual_Nm},
           {"windows", found.samples}};
+}
+
+Json noise_json(const NoiseFloor& floor) {
+  return {{"pairs", floor.pairs.size()},
+          {"mean_absolute", floor.mean_absolute_rad},
+          {"mean_absolute_low", floor.mean_absolute_low_rad},
+          {"mean_absolute_high", floor.mean_absolute_high_rad},
+          {"rms", floor.rms_rad},
+          {"difference_mean_absolute", floor.difference_mean_absolute_rad}};
 }
 
 /// JSON has no infinity: null.
@@ -76,6 +89,21 @@ std::string reservation(const FitParameter& parameter, double value, const Confi
   return "";
 }
 
+void take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+                           std::vector<FitParameter>& unknowns) {
+  const std::pair<const char*, double> taken[] = {
+      {"transmission.armature_kg_m2", found.armature_kg_m2.value},
+      {"friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad.value},
+      {"friction.coulomb_Nm", found.coulomb_Nm.value},
+      {"ripple.offset_Nm", found.offset_Nm.value},
+  };
+  for (const auto& [name, value] : taken) {
+    set(start, name, value);
+    std::erase_if(unknowns, [name = name](const FitParameter& p) { return p.name == name; });
+  }
+  if (unknowns.empty()) unknowns.push_back(fit_parameter("sensor.velocity_lag_s", bench));
+}
+
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads) {
   return {filter, &runs, errors(before, runs, threads), errors(after, runs, threads)};
@@ -95,7 +123,11 @@ Json fit_json(const FitResults& results) {
     json["gains"] = {{"kp_Nm_per_rad", results.fit.model.actuator.drive.kp_scale * run.kp},
                      {"kd_Nm_s_per_rad", results.fit.model.actuator.drive.kd_scale * run.kd}};
   }
-  if (results.inverse) json["inverse_dynamics"] = inverse_json(*results.inverse);
+  if (results.inverse) {
+    json["inverse_dynamics"] = inverse_json(*results.inverse);
+    json["inverse_dynamics"]["taken"] = results.inverse_taken;
+  }
+  if (!results.noise_floor.pairs.empty()) json["noise_floor"] = noise_json(results.noise_floor);
   json["fit"] = assessment_json(results.fitted);
   if (results.scored) json["score"] = assessment_json(*results.scored);
   json["evaluations"] = results.fit.evaluations;

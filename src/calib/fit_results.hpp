@@ -9,6 +9,7 @@
 #include "calib/fit_confidence.hpp"
 #include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
+#include "calib/noise_floor.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::calib {
@@ -29,14 +30,23 @@ struct FitResults {
   unsigned threads = 1;
   double wall_s = 0.0;
   std::optional<InverseDynamics> inverse;  ///< where the drive was recorded
+  bool inverse_taken = false;              ///< and then the model has it, and rollouts found the rest
+  NoiseFloor noise_floor;                  ///< of fitted and scored runs that repeat each other
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };
+
+/// What inverse dynamics determines becomes the model's own and is looked for no longer: a rollout can't tell inertia
+/// from a lag of the drive's velocity, the recorded drive can. Where nothing is left to look for, that lag is.
+void take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+                           std::vector<FitParameter>& unknowns);
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads);
 
 nlohmann::ordered_json fit_json(const FitResults& results);
+/// The usual run as an SVG file: command, measured and simulated position, before the fit and after, and the miss.
+std::string fit_picture(const FitResults& results, const JointModel& before);
 pages::Page fit_report(const FitResults& results);
 std::vector<std::string> motor_remarks(const FitResults& results);
 

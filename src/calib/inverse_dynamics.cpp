@@ -56,7 +56,7 @@ void add(const Bench& bench, const BenchRun& run, double window_s, Equations& eq
   for (std::size_t k = reach; k + reach < drive.size(); k += 2 * reach + 1) {  // windows that share no sample
     const Eigen::Vector3d q = cubic(r.q_rad, k);
     if (std::abs(q[1]) < kRest_share * fastest) continue;
-    const double load_Nm = run.load.inertia_kg_m2 * q[2] + run.load.gravity_Nm * std::sin(q[0]);
+    const double load_Nm = run.load.inertia_kg_m2 * q[2] + run.load.gravity_Nm * std::sin(q[0] - run.load.hangs_at_rad);
     equations.rows.emplace_back(q[2], q[1], q[1] > 0.0 ? 1.0 : -1.0, -1.0);
     equations.torque_Nm.push_back(torque_per_unit * cubic(drive, k)[0] - load_Nm);
   }

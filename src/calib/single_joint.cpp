@@ -21,6 +21,10 @@ sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t
   if (bench.law == DriveLaw::kTorque) input.feed_forward = r.torque_Nm[sample];
   if (bench.law == DriveLaw::kServoVoltage) input.supply = r.bus_V.empty() ? bench.supply_V : r.bus_V[sample];
   if (!r.enabled.empty()) input.enabled = r.enabled[sample];
+  if (!r.temp_C.empty())
+    input.temperature_C = r.temp_C[sample];
+  else if (run.temp_C)
+    input.temperature_C = *run.temp_C;
   return input;
 }
 
@@ -68,7 +72,8 @@ void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
     const sim::ActuatorTorque drive = actuator.step(input(k), q_rad, dq_rad_s);
-    const double torque_Nm = drive.torque_Nm - (gravity_Nm != 0.0 ? gravity_Nm * std::sin(q_rad) : 0.0);
+    const double torque_Nm =
+        drive.torque_Nm - (gravity_Nm != 0.0 ? gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad) : 0.0);
     dq_rad_s += step_s_ * torque_Nm / (inertia_kg_m2 - step_s_ * drive.slope_Nm_s_per_rad);
     const double before_rad = q_rad;
     q_rad += step_s_ * dq_rad_s;

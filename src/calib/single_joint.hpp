@@ -40,7 +40,7 @@ class SingleJoint {
   std::size_t steps() const { return sample_of_step_.size(); }
   sim::ActuatorInput input(std::size_t step) const;
   double start_rad(const JointModel& model) const {
-    return run_.recording.q_rad.front() - model.actuator.sensor.zero_offset_rad;
+    return sim::ActuatorModel::joint_rad(model.actuator.sensor, run_.recording.q_rad.front());
   }
 
  private:

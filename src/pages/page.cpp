@@ -12,6 +12,7 @@
 #include "pages/assets.hpp"
 #include "pages/bar_picture.hpp"
 #include "pages/line_data.hpp"
+#include "pages/plot_picture.hpp"
 #include "pages/text.hpp"
 
 namespace pmg::pages {
@@ -143,6 +144,7 @@ void Page::lanes(const Lanes& lanes) {
 
 void Page::bars(const Bars& bars) { picture(bars.title, svg(bars)); }
 void Page::histogram(const Histogram& histogram) { picture(histogram.title, svg(histogram)); }
+void Page::plot(const Plot& plot) { picture(plot.title, svg(plot)); }
 
 void Page::columns(const std::function<void()>& fill) {
   body_ += "<div class=\"columns\">\n";

@@ -27,6 +27,7 @@ class Page {
   void lanes(const Lanes& lanes);
   void bars(const Bars& bars);
   void histogram(const Histogram& histogram);
+  void plot(const Plot& plot);  ///< throws std::invalid_argument where svg(Plot) does
 
   void columns(const std::function<void()>& fill);  ///< pictures side by side where there is room
   void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown on a click

@@ -99,6 +99,30 @@ struct Histogram {
   std::vector<Set> sets;
 };
 
+/// One line of a Plot.
+struct PlotLine {
+  std::string name;              ///< "" leaves it out of the legend
+  std::span<const double> x, y;  ///< NaN in y is a gap
+  std::string colour = colour::kBlue;
+  std::vector<Interval> intervals = {};  ///< one a value, or none
+  double width_px = 1.4;
+  bool dashed = false;
+  bool stepped = false;
+  bool points = false;  ///< a dot at each value
+  bool joined = true;   ///< a line between them
+};
+
+/// Lines over any quantity, each picture with axes of its own.
+struct Plot {
+  std::string title;   ///< with the unit of y
+  std::string x_name;  ///< with its unit
+  std::vector<PlotLine> lines;
+  std::vector<Mark> marks = {};
+  bool logarithmic_x = false, logarithmic_y = false;
+  bool show_zero = false;  ///< y = 0 is in the picture, with a line
+  int height_px = 170;
+};
+
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;

@@ -40,6 +40,7 @@ class MujocoJoint {
   }
 
   double q_rad() const { return data_->qpos[0]; }
+  double reading_rad() const { return actuator_.reading_rad(q_rad()); }
   mjModel* mj_model() { return model_.get(); }
   mjData* mj_data() { return data_.get(); }
 
@@ -54,10 +55,11 @@ class MujocoJoint {
     return fmt::format(R"(<mujoco><compiler angle="radian" balanceinertia="false" boundmass="0"/>
       <option timestep="{}" integrator="implicit" gravity="0 0 -{}"/>
       <worldbody><body><joint name="joint" type="hinge" axis="0 1 0"/>
-        <inertial pos="0 0 {}" mass="{}" diaginertia="{} {} {}"/></body></worldbody>
+        <inertial pos="{} 0 {}" mass="{}" diaginertia="{} {} {}"/></body></worldbody>
       <actuator><general name="joint" joint="joint" gaintype="fixed" biastype="affine"/></actuator></mujoco>)",
-                       step_s, kGravity_m_s2, load.gravity_Nm > 0.0 ? -lever_m : 0.0, mass_kg, own_kg_m2, own_kg_m2,
-                       own_kg_m2);
+                       step_s, kGravity_m_s2, load.gravity_Nm > 0.0 ? lever_m * std::sin(load.hangs_at_rad) : 0.0,
+                       load.gravity_Nm > 0.0 ? -lever_m * std::cos(load.hangs_at_rad) : 0.0, mass_kg, own_kg_m2,
+                       own_kg_m2, own_kg_m2);
   }
 
   struct FreeModel {

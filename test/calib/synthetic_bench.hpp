@@ -51,7 +51,7 @@ inline std::vector<calib::SingleJoint> record(const calib::Bench& bench, const c
     run.trajectory = fmt::format("excitation{}", number);
     run.kp = number % 2 == 0 ? 20.0 : 40.0;
     run.kd = number < 2 ? 0.8 : 1.6;  // of one kd alone nothing tells it from viscous friction
-    run.load = {0.02 + 0.01 * number, pendulum ? 1.0 + 0.5 * number : 0.0};
+    run.load = {0.02 + 0.01 * number, pendulum ? 1.0 + 0.5 * number : 0.0, 0.0};
     run.recording = excitation(number);
     const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
     run.recording.q_rad = joint.rollout(truth);

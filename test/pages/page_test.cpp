@@ -36,6 +36,7 @@ Page full_page(const std::string& name) {
   page.folded(name, [&] {
     page.bars({.title = name, .unit = name, .names = {name}, .sets = {{name, {1.0}}, {name, {2.0}}}});
     page.histogram({.title = name, .unit = name, .sets = {{name, kY}}});
+    page.plot({.title = name, .x_name = name, .lines = {{.name = name, .x = kX, .y = kY}}, .marks = {{1.0, name}}});
   });
   return page;
 }

@@ -1,0 +1,74 @@
+// Motor zero points from still poses (paper III-C.2, Motor-IMU alignment).
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "calib/sole_load.hpp"
+#include "calib/standing_constraint.hpp"
+#include "calib/zero_poses.hpp"
+
+namespace pmg::calib {
+
+struct ZeroOptions {
+  // The paper's symbols; it gives no values.
+  double tau_rad = 0.01;      ///< a pose counts when the simulated IMU's gravity is this near the real one's
+  double alpha = 0.5;         ///< damping of the update
+  double epsilon_rad = 1e-5;  ///< converged when no joint's update exceeds it ...
+  int M = 5;                  ///< ... over so many consecutive iterations
+  int most_iterations = 200;
+
+  // What a pose can be trusted with: assumed, one standard deviation each.
+  double sole_tilt_rad = 0.001;      ///< of a sole that is said to lie flat: give of sole and ground
+  double height_m = 0.0003;          ///< of one sole over the other, likewise
+  double deflection_rad = 0.001;     ///< of a joint in one pose against the others: play, bending
+  double sole_give_m = 0.003;        ///< of a sole and its ground under the whole weight, same in all poses
+  double imu_mounting_rad = 0.001;   ///< of the IMU's attitude against robot.yaml's, same in all poses
+  double expected_offset_rad = 0.1;  ///< of a zero point before anything is known
+  double least_load = 0.1;           ///< share of the weight on a sole that stands
+  double least_inside_m = 0.01;      ///< of the centre of pressure from the sole's edge when the sole lies flat
+  double observable_rad = 0.002;     ///< a zero point is observable when one standard deviation is at most this
+};
+
+/// What became of a pose.
+struct ZeroPose {
+  bool used = false;
+  std::string why_not;            ///< empty when used
+  double misalignment_rad = 0.0;  ///< |s_real - s_sim|, of the worse foot
+  double height_miss_m = 0.0;
+  PerFoot<SoleLoad> load;
+};
+
+/// Joints of which nothing but a combination can be told.
+struct BlindDirection {
+  double deviation_rad = 0.0;  ///< along it
+  std::string text;            ///< "0.71 left_hip_pitch - 0.70 left_ankle_pitch"
+};
+
+struct ZeroCalibration {
+  std::vector<int> joints;        ///< between soles and IMU; no other joint can be seen
+  Eigen::VectorXd z_rad;          ///< to be added to the reading, by joints
+  Eigen::VectorXd deviation_rad;  ///< one standard deviation, given the options' trust
+  std::vector<bool> observable;
+  Eigen::Vector2d imu_tilt_rad = Eigen::Vector2d::Zero();  ///< of its mounting, about its x and y
+  /// Of soles and ground: pitch and roll [rad/Nm], height [m/N].
+  Eigen::Vector3d give = Eigen::Vector3d::Zero();
+  std::vector<double> singular_values;  ///< of the poses' stacked, weighted Jacobian by the zero points [1/rad]
+  std::vector<BlindDirection> blind;
+  std::vector<ZeroPose> poses;    ///< in the order of the input
+  std::vector<double> steps_rad;  ///< largest |alpha delta_i| of each iteration
+  double weighted_rms = 0.0;      ///< of what is left, 1 when it is as large as the options say
+  bool converged = false;
+  std::size_t used() const;
+};
+
+/// Called with the iteration's number; false ends the work with what was found.
+using ZeroProgress = std::function<bool(int iteration)>;
+
+/// Throws std::invalid_argument when no pose is one of a robot that stands on both soles.
+ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector<StillPose>& poses,
+                               const ZeroOptions& options = {}, const ZeroProgress& progress = {});
+
+}  // namespace pmg::calib

@@ -1,0 +1,38 @@
+// Poses that a robot held still, from its logs: what its encoders, drives and IMU said there on average.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/robot_model.hpp"
+
+namespace pmg::calib {
+
+/// Means over one still stretch, joints in the robot's order.
+struct StillPose {
+  std::string log;  ///< folder or file as it was named
+  double from_s = 0.0, to_s = 0.0;
+  JointVector reading_rad;  ///< r of the paper
+  JointVector torque_Nm;
+  Eigen::Vector3d gravity_I = -Eigen::Vector3d::UnitZ();  ///< s of the paper: unit vector, from the IMU's attitude
+};
+
+struct StillnessOptions {
+  double block_s = 0.2;              ///< over which noise is averaged before anything is compared
+  double largest_change_rad = 4e-3;  ///< of any joint, and of the gravity direction, from one block to the next
+  double settled_after_s = 0.6;      ///< what the beginning of a stretch may still swing
+  double shortest_s = 0.8;           ///< of what remains
+};
+
+/// Called with the share that is read; false ends the reading.
+using ReadingProgress = std::function<bool(double share)>;
+
+/// Every still stretch of these logs (files or folders), each log by itself. Throws std::runtime_error when a log can't
+/// be read, has no state in it, or is of a robot with other joints.
+std::vector<StillPose> read_still_poses(const std::vector<std::filesystem::path>& logs, const model::RobotModel& robot,
+                                        const StillnessOptions& options = {}, const ReadingProgress& progress = {});
+
+}  // namespace pmg::calib

@@ -1,0 +1,37 @@
+// A finished zero calibration for people and machines: zero.json, report.html, and the actuators of zero.yaml.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/zero_calibration.hpp"
+#include "pages/page.hpp"
+#include "sim/motor_file.hpp"
+
+namespace pmg::calib {
+
+struct ZeroResults {
+  const model::RobotModel* robot = nullptr;
+  const std::vector<StillPose>* poses = nullptr;
+  ZeroOptions options;
+  ZeroCalibration found;
+  bool interrupted = false;
+};
+
+/// The actuators with sensor.zero_offset_rad (reading less truth, so -z) of the joints that could be observed; what an
+/// actuator had there is what the firmware's zero had taken no account of, and is replaced.
+sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results);
+
+/// Joints of the robot whose zero the poses can't tell, with the reason.
+struct UnobservedJoint {
+  std::string name, why;
+};
+std::vector<UnobservedJoint> unobserved_joints(const ZeroResults& results);
+
+nlohmann::ordered_json zero_json(const ZeroResults& results);
+pages::Page zero_report(const ZeroResults& results);
+std::vector<std::string> zero_text(const ZeroResults& results);     ///< lines for a console
+std::vector<std::string> zero_remarks(const ZeroResults& results);  ///< of zero.yaml
+
+}  // namespace pmg::calib
