@@ -4,14 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "calib/fit_results.hpp"
+#include "excitation_command.hpp"
+#include "io/whole_file.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 #include "sim/motor_file.hpp"
 
@@ -24,12 +25,17 @@ enum ExitCode { kOk = 0, kNotBetter = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/motor.yaml (what pmg_sil --motor
-reads), DIR/fit.json and DIR/report.html. Fitted are the drive's gain and damping, the rotor's inertia, whatever
+reads), DIR/fit.json, DIR/report.html and DIR/fit.svg. Fitted are the drive's gain and damping, the rotor's inertia, whatever
 bench.yaml calls unknown, and what --also names: damping, friction, stribeck, load_friction, asymmetry, presliding,
-delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, velocity_lag, backlash, compliance,
-cogging, offset, inertia, gravity, or a parameter of motor.yaml by its own name.
+delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, hysteresis,
+eccentricity, quantisation, velocity_lag, backlash, compliance, cogging, offset, thermal_drift, self_heating, inertia,
+gravity, or a parameter of motor.yaml by its own name.
+
+With --make-excitation nothing is fitted: DIR is what to record, steps and smooth segments within limits (commands/,
+runs.csv), for pmg_sil --bench, pmg_controller --bench, or a rig of your own.
 
 Example:
+  pmg_calibrate_motor --make-excitation --robot z1 --joint left_knee --out out/excitation
   pmg_calibrate_motor data/bench/servo --also damping friction delay --fit "repeat == 0" --score "repeat == 1" --out out/servo
 
 Exit codes: 0 fitted, 1 fitted but no better than where it started, 2 bad input or output, 130 interrupted (what was
@@ -42,11 +48,12 @@ struct Arguments {
   double step_s = 0.0;
   unsigned starts = 8, threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
   bool only = false, json = false;
+  apps::ExcitationCommand excitation;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
-  app.add_option("BENCH", arguments.bench, "folder of the bench")->required();
+  app.add_option("BENCH", arguments.bench, "folder of the bench");
   app.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
   app.add_option("--also", arguments.also, "effects to fit besides the gains and the rotor");
   app.add_flag("--only", arguments.only, "fit what --also names and nothing else");
@@ -64,12 +71,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--step", arguments.step_s,
                  "of the simulation [s]; the SIL's, or a quarter of the recording's, if not given")
       ->check(CLI::Range(1e-5, 0.01));
-  app.add_option("--joint", arguments.joint, "its name in motor.yaml; the bench folder's if not given");
+  app.add_option("--joint", arguments.joint, "its name in motor.yaml; bench.yaml's or the bench folder's if not given");
+  arguments.excitation.declare(app);
   app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
 }
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 std::vector<std::string> names_to_fit(const Arguments& arguments, const calib::Bench& bench) {
   std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
@@ -126,7 +131,7 @@ std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::strin
   std::vector<calib::SingleJoint> joints;
   for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter), [&](double share) {
          progress.show(share, "reading " + bench.folder.string());
-         return interrupt_requested == 0;
+         return apps::interrupt_requested == 0;
        })) {
     joints.emplace_back(bench, std::move(run), step_s);
   }
@@ -145,22 +150,13 @@ void expect_apart(const std::vector<calib::SingleJoint>& fitted, const std::vect
   }
 }
 
-/// Whole or not at all.
-void write(const fs::path& file, const std::string& text) {
-  const fs::path unfinished = file.string() + ".part";
-  std::ofstream stream(unfinished);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error(fmt::format("{} cannot be written", file.string()));
-  fs::rename(unfinished, file);
-}
-
-void write_results(const calib::FitResults& results, const fs::path& out) {
+void write_results(const calib::FitResults& results, const calib::JointModel& before, const fs::path& out) {
   fs::create_directories(out);
+  io::write_whole_file(out / "fit.svg", calib::fit_picture(results, before));
   calib::fit_report(results).write(out / "report.html");
-  write(out / "motor.yaml",
-        sim::motor_yaml({{results.joint, results.fit.model.actuator}}, calib::motor_remarks(results)));
-  write(out / "fit.json", calib::fit_json(results).dump(2) + "\n");
+  io::write_whole_file(out / "motor.yaml",
+                       sim::motor_yaml({{results.joint, results.fit.model.actuator}}, calib::motor_remarks(results)));
+  io::write_whole_file(out / "fit.json", calib::fit_json(results).dump(2) + "\n");
 }
 
 void tell(const calib::FitResults& results, const fs::path& out) {
@@ -178,26 +174,56 @@ void tell(const calib::FitResults& results, const fs::path& out) {
   };
   if (results.inverse) {
     const calib::InverseDynamics& found = *results.inverse;
-    std::cout << fmt::format("inverse dynamics: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g}, offset {:.4g}\n",
-                             found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value, found.coulomb_Nm.value,
-                             found.offset_Nm.value);
+    const double coulomb = found.coulomb_Nm.value, offset = found.offset_Nm.value;
+    std::cout << fmt::format(
+        "inverse dynamics{}: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g} ({:.4g} forwards, {:.4g} backwards), "
+        "offset "
+        "{:.4g}\n",
+        results.inverse_taken ? " (taken)" : "", found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value, coulomb,
+        coulomb - offset, coulomb + offset, offset);
   }
   line("fitted", results.fitted);
   if (results.scored) line("scored", *results.scored);
+  if (!results.noise_floor.pairs.empty()) {
+    std::cout << fmt::format(
+        "noise floor: repeats differ by {:.4g} {}, and stray by {:.4g} about what they have in common\n",
+        1e3 * results.noise_floor.difference_mean_absolute_rad, unit, 1e3 * results.noise_floor.mean_absolute_rad);
+  }
   std::cout << fmt::format("{} evaluations in {:.1f} s on {} threads; results in {}\n", results.fit.evaluations,
                            results.wall_s, results.threads, out.string());
 }
 
+calib::NoiseFloor noise_floor(const std::vector<calib::SingleJoint>& fitted,
+                              const std::vector<calib::SingleJoint>& scored) {
+  std::vector<const calib::BenchRun*> runs;
+  for (const std::vector<calib::SingleJoint>* joints : {&fitted, &scored}) {
+    for (const calib::SingleJoint& joint : *joints) runs.push_back(&joint.run());
+  }
+  return calib::noise_floor(runs);
+}
+
 int calibrate(const Arguments& arguments) {
+  if (arguments.excitation.wanted()) {
+    std::cout << arguments.excitation.run(arguments.joint, arguments.out, arguments.seed) << '\n';
+    return kOk;
+  }
+  if (arguments.bench.empty()) throw std::invalid_argument("BENCH is missing (--help shows an example)");
   apps::ProgressLine progress;
   const calib::Bench bench = calib::read_bench(arguments.bench);
-  const std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
-  const calib::JointModel start = start_model(arguments, bench);
+  std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
+  calib::JointModel start = start_model(arguments, bench);
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
   std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, step_s, progress), scored;
   if (!arguments.score.empty()) scored = read(bench, arguments.score, step_s, progress);
-  if (interrupt_requested != 0) return kInterrupted;  // nothing is found yet
+  if (apps::interrupt_requested != 0) return kInterrupted;  // nothing is found yet
   expect_apart(fitted, scored);
+  calib::FitResults results;
+  results.noise_floor = noise_floor(fitted, scored);
+  std::vector<calib::BenchRun> runs;
+  for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
+  results.inverse = calib::inverse_dynamics(bench, runs);
+  results.inverse_taken = results.inverse && bench.law == calib::DriveLaw::kCascadePd && !arguments.only;
+  if (results.inverse_taken) calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));
   calib::FitOptions options;
   options.method = calib::method_of(arguments.method);
@@ -206,28 +232,26 @@ int calibrate(const Arguments& arguments) {
   options.seed = arguments.seed;
 
   const auto begin = std::chrono::steady_clock::now();
-  calib::FitResults results;
   results.fit = calib::fit(problem, options, [&](double share, const std::string& text) {
     progress.show(share, text);
-    return interrupt_requested == 0;
+    return apps::interrupt_requested == 0;
   });
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.clear();
   results.confidence = calib::confidence(problem, results.fit.point, arguments.threads);
   results.bench = &bench;
   results.problem = &problem;
-  std::vector<calib::BenchRun> runs;
-  for (const calib::SingleJoint& joint : problem.runs()) runs.push_back(joint.run());
-  results.inverse = calib::inverse_dynamics(bench, runs);
   results.method = arguments.method;
   results.threads = arguments.threads;
-  results.joint = arguments.joint.empty() ? fs::weakly_canonical(arguments.bench).filename().string() : arguments.joint;
+  results.joint = !arguments.joint.empty() ? arguments.joint
+                  : !bench.joint.empty()   ? bench.joint
+                                           : fs::weakly_canonical(arguments.bench).filename().string();
   const calib::JointModel neutral = problem.model_at(problem.point_of(start));
   results.fitted = calib::assess(arguments.fit, problem.runs(), neutral, results.fit.model, arguments.threads);
   if (!scored.empty()) {
     results.scored = calib::assess(arguments.score, scored, neutral, results.fit.model, arguments.threads);
   }
-  write_results(results, arguments.out);
+  write_results(results, neutral, arguments.out);
   if (arguments.json)
     std::cout << calib::fit_json(results).dump(2) << '\n';
   else
@@ -244,16 +268,8 @@ int main(int argc, char** argv) {
   CLI::App app("Fits a motor model to recordings of one joint.", "pmg_calibrate_motor");
   Arguments arguments;
   declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  std::signal(SIGINT, on_interrupt);
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
     return calibrate(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_calibrate_motor: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

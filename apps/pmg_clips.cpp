@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
@@ -21,6 +20,7 @@
 #include "model/command_inverse_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 
 namespace {
@@ -46,8 +46,6 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   posture("squat", kHeight);
 }
 
-volatile std::sig_atomic_t interrupted = 0;
-
 struct Interrupted {};
 
 /// Throws model::ConfigError unless the directory, or the one that it would be made in, takes new files. Makes nothing.
@@ -68,7 +66,7 @@ int write_inverse(const model::RobotModel& robot, const std::filesystem::path& c
   apps::ProgressLine progress;
   const CommandInverse inverse =
       gco::make_command_inverse(robot, model::load_clip_library(clips, robot), [&progress](double share) {
-        if (interrupted != 0) throw Interrupted{};
+        if (apps::interrupt_requested != 0) throw Interrupted{};
         progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
       });
   progress.clear();
@@ -88,7 +86,7 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
   require_writable(out);  // now, not after a minute's work
   apps::ProgressLine progress;
   const ClipLibrary library = generator::synthesize(robot, [&progress](const std::string& clip) {
-    if (interrupted != 0) {
+    if (apps::interrupt_requested != 0) {
       throw Interrupted{};
     }
     progress.show("making " + clip);
@@ -182,7 +180,7 @@ int show(const ShowOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes and shows clip libraries."};
+  CLI::App app("Makes and shows clip libraries.", "pmg_clips");
   app.require_subcommand(1);
   app.footer(
       "Example: pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show --robot z1\n"
@@ -204,19 +202,13 @@ int main(int argc, char** argv) {
       "invert", "Make inverse.csv: what to ask of the clips so that the mean optimised command is the user's");
   invert_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
   invert_command->add_option("--clips", inverse_clips, "directory of the clips; the robot's own if left out");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  try {
-    if (invert_command->parsed()) return invert(robot, inverse_clips);
-    return synth_command->parsed() ? synth(robot, out) : show(options);
-  } catch (const model::ConfigError& error) {
-    std::cerr << error.what() << "\n";
-    return 2;
-  } catch (const Interrupted&) {
-    return 130;
-  }
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
+    try {
+      if (invert_command->parsed()) return invert(robot, inverse_clips);
+      return synth_command->parsed() ? synth(robot, out) : show(options);
+    } catch (const Interrupted&) {
+      return 130;
+    }
+  });
 }

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <ctime>
@@ -12,7 +13,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bench_session.hpp"
 #include "io/lcm_link.hpp"
+#include "program.hpp"
 #include "runtime/comms.hpp"
 #include "runtime/control_setup.hpp"
 #include "runtime/controller.hpp"
@@ -20,6 +23,7 @@
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/simulated_robot.hpp"
+#include "sim/motors_in_force.hpp"
 
 namespace {
 
@@ -35,18 +39,24 @@ constexpr const char* kFooter = R"(
 Starts in Passive and waits for operators on LCM (pmg_send, pmg_watch). SIGINT, SIGTERM and SIGHUP damp the robot, close the
 log and end the program. Software stops are not safety-rated: docs/safety.md.
 
+With --bench the robot excites one joint as soon as it stands (pmg_send stand), the others holding, and damps when all is
+recorded. It must hang clear of the ground with its base held fast. Stops, faults and limits are in force as ever, and what
+was recorded whole until then is kept; nothing begins again by itself.
+
 Example:
   pmg_controller --hal sil --gantry --robot z1 --log out/first
   pmg_send walk --robot z1 --vx 0.4 --for 5
+  pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
 
-Exit codes: 0 ended by a signal or --duration, 1 it could not run on (the drives don't answer, or a thread failed; the robot
+Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
 was damped), 2 bad input, or a network, name or log folder that can't be used.)";
 
 struct Arguments {
   std::string hal;
   runtime::ControlSetup control;
   std::string name, lcm_url;
-  fs::path log;
+  fs::path log, motor, excitation, bench_out;
+  std::string bench;
   bool no_log = false, gantry = false, no_realtime = false, print_config = false, json = false;
   std::uint64_t seed = 0;
   std::optional<double> duration_s;
@@ -69,6 +79,15 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; out/NAME-TIME if not given");
   app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
   app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
+  app.add_option("--motor", arguments.motor,
+                 "sil: motor.yaml, how the drives really are; robot.yaml's if not given, none for none");
+  CLI::Option* bench = app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot once");
+  CLI::Option* excitation = app.add_option("--excitation", arguments.excitation,
+                                           "what to excite it by: a folder of pmg_calibrate_motor --make-excitation");
+  CLI::Option* bench_out = app.add_option("--bench-out", arguments.bench_out, "folder of the bench that is recorded");
+  excitation->needs(bench);
+  bench_out->needs(bench);
+  bench->needs(excitation)->needs(bench_out);
   app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
   app.add_option("--bus-cpu", arguments.threads.bus.cpu, "the one CPU of the bus thread; -1: any")
       ->check(CLI::Range(-1, 4095))
@@ -100,6 +119,10 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   json["log"] = arguments.log.string();
   json["gantry"] = arguments.gantry;
   json["seed"] = arguments.seed;
+  if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
+  if (!arguments.bench.empty()) {
+    json["bench"] = {{"joint", arguments.bench}, {"excitation", arguments.excitation.string()}};
+  }
   json["realtime"] = {{"asked_for", arguments.threads.realtime},
                       {"bus", thread_json(arguments.threads.bus)},
                       {"control", thread_json(arguments.threads.control)}};
@@ -166,8 +189,8 @@ void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant v
 }
 
 /// Waits until somebody or something ends the run.
-void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
-               Console& console) {
+void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments, Console& console,
+               const std::atomic<bool>& bench_over) {
   constexpr long kPoll_ms = 20;
   const auto start = std::chrono::steady_clock::now();
   const auto expired = [&] {
@@ -175,7 +198,7 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
            std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(*arguments.duration_s);
   };
   bool signalled = false;
-  while (!signalled && !expired() && controller.failure().empty()) {
+  while (!signalled && !expired() && !bench_over && controller.failure().empty()) {
     signalled = signals.wait_ms(kPoll_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
   }
@@ -196,12 +219,13 @@ runtime::RunInfo run_info(const Arguments& arguments, const runtime::LoadedContr
 
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
-             runtime::Comms& comms, runtime::Recorder& recorder, Console& console) {
+             runtime::Comms& comms, runtime::Recorder& recorder, Console& console,
+             const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
     controller.start([&] { comms.step(kCommsWait_ms); }, [&] { recorder.drain(); });
     spdlog::info("mode: passive");
-    supervise(controller, signals, arguments, console);
+    supervise(controller, signals, arguments, console, bench_over);
     failure = controller.failure();
     spdlog::info("{}: damping, then closing", failure.empty() ? "asked to end" : "can't run on");
     if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
@@ -233,6 +257,17 @@ int control(Arguments& arguments) {
   }
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
   runtime::expect_shared_host(loaded.options);
+  std::optional<apps::BenchSession> bench;
+  std::optional<runtime::ExcitationRecorder> excited;
+  if (!arguments.bench.empty()) {
+    if (arguments.control.policy != "none") {
+      throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
+    }
+    arguments.gantry = true;
+    bench.emplace(loaded.robot, arguments.bench, arguments.excitation, arguments.bench_out, loaded.options.dt_s);
+    excited.emplace(bench->recorder());
+    loaded.options.excitation = bench->plan();
+  }
   if (arguments.name.empty()) arguments.name = loaded.robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
@@ -245,7 +280,10 @@ int control(Arguments& arguments) {
   const EndSignals signals;
   const io::WallClock clock;
   io::LcmLink link(arguments.lcm_url);
-  sim::World world(loaded.robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
+  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
+  world_options.stand = bench.has_value();
+  sim::World world(loaded.robot, world_options);
   runtime::SimulatedRobot robot(world, arguments.gantry, !arguments.no_log);
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
@@ -259,13 +297,19 @@ int control(Arguments& arguments) {
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
+  std::atomic<bool> bench_over{false};
   recorder.after_record = [&](const runtime::TickRecord& record) {
     const runtime::TruthSample* truth = robot.take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
+    if (!excited) return;
+    excited->add(record);
+    if (excited->progress().over) bench_over = true;
   };
   Console console(loaded.robot, arguments.name);
-  const ExitCode code = run(arguments, signals, controller, comms, recorder, console);
+  const ExitCode code = run(arguments, signals, controller, comms, recorder, console, bench_over);
+  if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
+  if (bench && code == kOk && !bench->whole(*excited)) return kFailed;
   return code;
 }
 
@@ -275,17 +319,9 @@ int main(int argc, char** argv) {
   CLI::App app("The controller on its own host: real-time threads, operators over LCM.", "pmg_controller");
   Arguments arguments;
   declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
-  spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
+    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
     return control(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_controller: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

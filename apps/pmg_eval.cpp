@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,8 @@
 #include "evaluation/push.hpp"
 #include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
+#include "evaluation/table2.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/summary.hpp"
 
@@ -31,6 +32,7 @@ Each runs the real controller in lockstep with MuJoCo, writes DIR/report.html (s
 Examples:
   pmg_eval table1 --robot z1 --seeds 20 --out out/table1
   pmg_eval table1 --policy pmg=trained/new.onnx --policy without_gco --seeds 4 --out out/new
+  pmg_eval table2 --robot z1 --policy pmg --out out/table2
   pmg_eval push --trials 200 --out out/push
   pmg_eval robust --seeds 20 --out out/robust
   pmg_eval gait --out out/gait
@@ -41,7 +43,8 @@ done until then is written and marked incomplete).)";
 struct Arguments {
   std::string robot = "z1";
   std::vector<std::string> policies;
-  fs::path clips, out, scenario, variation = "config/evaluation/variation.yaml", norms;
+  fs::path clips, out, scenario, variation = "config/evaluation/variation.yaml", norms,
+                                 plants = "config/evaluation/table2.yaml";
   std::vector<double> strengths_N_s = {0.0, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0};
   int seeds = 20, trials = 200, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   double speed_m_s = 0.8;
@@ -49,9 +52,6 @@ struct Arguments {
 
   std::string ranges_file() const { return nominal ? "" : variation.string(); }
 };
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 void declare_common(CLI::App& command, Arguments& arguments) {
   command.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
@@ -119,7 +119,7 @@ class Watch {
  public:
   explicit Watch(const Arguments& arguments) {
     supervision_.jobs = arguments.jobs;
-    supervision_.interrupted = [] { return interrupt_requested != 0; };
+    supervision_.interrupted = [] { return apps::interrupt_requested != 0; };
     supervision_.progress = [this](std::size_t done, std::size_t count) { show(done, count); };
   }
   Watch(const Watch&) = delete;
@@ -183,6 +183,19 @@ int table1(const Arguments& arguments) {
   return hand_over(arguments, table, table.campaign.complete, table.all_reached());
 }
 
+int table2(const Arguments& arguments) {
+  evaluation::Table2 table;
+  table.robot = arguments.robot;
+  table.policy = candidate(arguments.policies.front(), arguments).control.policy;
+  table.plants_file = arguments.plants.string();
+  table.scenario_file = arguments.scenario.string();
+  table.ranges = evaluation::load_plant_ranges(arguments.plants);
+  table.scenario = runtime::load_scenario(arguments.scenario);
+  fs::create_directories(arguments.out);
+  run_table2(table, arguments.out, Watch(arguments).supervision());
+  return hand_over(arguments, table, table.complete, table.complete && table.all_reached());
+}
+
 int push(const Arguments& arguments) {
   evaluation::PushTest test;
   test.robot = arguments.robot;
@@ -237,6 +250,20 @@ int main(int argc, char** argv) {
       ->default_str("pmg without_gco single_gait");
   table1_command->add_flag("--video", arguments.video, "film each policy with seed 1 (needs ffmpeg; minutes each)");
   table1_command->add_flag("--gantry", arguments.gantry, "hang the robot in a gantry: nothing is judged");
+  CLI::App* table2_command = app.add_subcommand(
+      "table2", "How far simulations are from robots with hidden actuators, by calibration: Table II of the paper");
+  table2_command->add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
+      ->capture_default_str();
+  declare_policy(*table2_command, arguments);
+  table2_command->add_option("--scenario", arguments.scenario, "commands (YAML)")
+      ->default_str("config/scenarios/table2.yaml");
+  table2_command->add_option("--plants", arguments.plants, "what the robots' actuators are drawn from (YAML)")
+      ->capture_default_str();
+  table2_command->add_option("--jobs", arguments.jobs, "runs at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  table2_command->add_option("--out", arguments.out, "folder for the results; made if absent")->required();
+  table2_command->add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
   CLI::App* push_command = app.add_subcommand("push", "Impulses at the torso: how many are survived");
   declare_common(*push_command, arguments);
   declare_policy(*push_command, arguments);
@@ -261,24 +288,19 @@ int main(int argc, char** argv) {
   gait_command->add_option("--speed", arguments.speed_m_s, "forward [m/s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  std::signal(SIGINT, on_interrupt);
-  const bool compares = table1_command->parsed();
-  if (arguments.policies.empty()) arguments.policies = {"pmg"};
-  if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};
-  if (arguments.scenario.empty())
-    arguments.scenario = compares ? "config/scenarios/table1.yaml" : "config/scenarios/tour.yaml";
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
+    const bool compares = table1_command->parsed();
+    if (arguments.policies.empty()) arguments.policies = {"pmg"};
+    if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};
+    if (arguments.scenario.empty())
+      arguments.scenario = table2_command->parsed() ? "config/scenarios/table2.yaml"
+                           : compares               ? "config/scenarios/table1.yaml"
+                                                    : "config/scenarios/tour.yaml";
     if (compares) return table1(arguments);
+    if (table2_command->parsed()) return table2(arguments);
     if (push_command->parsed()) return push(arguments);
     if (robust_command->parsed()) return robust(arguments);
     return gait(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_eval: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
 #include "logs/replay.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 
 namespace {
@@ -42,9 +42,6 @@ struct Arguments {
   bool tolerant = false;
   double tolerance = 0.0;
 };
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 int info(const Arguments& arguments) {
   const logs::LogSummary summary = logs::summarise_logs(io::log_files(arguments.logs));
@@ -107,11 +104,11 @@ void print_export(const Arguments& arguments, const fs::path& into, const logs::
 int export_log(const Arguments& arguments) {
   if (arguments.csv.empty() && arguments.mcap.empty())
     throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
-  std::signal(SIGINT, on_interrupt);
+  apps::notice({SIGINT});
   apps::ProgressLine line;
   const auto progress = [&line](double time_s) {
     line.show(fmt::format("{:8.1f} s exported", time_s));
-    return interrupt_requested == 0;
+    return apps::interrupt_requested == 0;
   };
   const std::vector<fs::path> files = io::log_files(arguments.logs);
   const auto tell = [&](const fs::path& target, const logs::ExportReport& exported) {
@@ -119,10 +116,10 @@ int export_log(const Arguments& arguments) {
     print_export(arguments, target, exported);
   };
   if (!arguments.csv.empty()) tell(arguments.csv, logs::export_csv(files, arguments.csv, progress));
-  if (!arguments.mcap.empty() && interrupt_requested == 0) {
+  if (!arguments.mcap.empty() && apps::interrupt_requested == 0) {
     tell(arguments.mcap, logs::export_mcap(files, arguments.mcap, progress));
   }
-  return interrupt_requested == 0 ? kOk : kInterrupted;
+  return apps::interrupt_requested == 0 ? kOk : kInterrupted;
 }
 
 logs::ReplayReport replay_with_progress(const Arguments& arguments) {
@@ -172,16 +169,8 @@ int main(int argc, char** argv) {
                    "differences up to this pass: for a log of another compiler or mathematics library")
       ->check(CLI::NonNegativeNumber)
       ->each([&](const std::string&) { arguments.tolerant = true; });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
     if (info_command->parsed()) return info(arguments);
     return export_command->parsed() ? export_log(arguments) : replay(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_log: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

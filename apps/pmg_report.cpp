@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "logs/run_figures.hpp"
 #include "logs/run_report.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 
 namespace {
@@ -34,16 +34,13 @@ struct Arguments {
   bool json = false;
 };
 
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
-
 std::vector<logs::RunSeries> read(const std::vector<fs::path>& logs) {
   std::vector<logs::RunSeries> runs;
   apps::ProgressLine progress;
   for (const fs::path& log : logs) {
     runs.push_back(logs::read_run(log, [&](double share) {
       progress.show(share, "reading " + log.string());
-      return interrupt_requested == 0;
+      return apps::interrupt_requested == 0;
     }));
   }
   return runs;
@@ -71,7 +68,7 @@ int report(const Arguments& arguments) {
   const std::vector<logs::RunSeries> runs = read(arguments.logs);
   logs::run_report(runs).write(arguments.out);
   tell(arguments, runs);
-  if (interrupt_requested != 0) return kInterrupted;
+  if (apps::interrupt_requested != 0) return kInterrupted;
   return std::ranges::all_of(runs, [](const auto& run) { return run.problems.empty(); }) ? kOk : kIncomplete;
 }
 
@@ -85,16 +82,8 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--out", arguments.out, "file for the page")->capture_default_str();
   app.add_flag("--json", arguments.json, "print the runs' figures on stdout as JSON instead of one line each");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  std::signal(SIGINT, on_interrupt);
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
     return report(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_report: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

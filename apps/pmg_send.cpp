@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +13,7 @@
 #include "operator/drive.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/words.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -57,9 +57,6 @@ constexpr Request kRequests[] = {
     {"reset", ops::Goal::kReset, 2.0, "leave a latched fault for damping, if its cause is gone"},
 };
 constexpr double kDriveTimeout_s = 10.0;
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
   CLI::App* drive = app.add_subcommand(name, help);
@@ -114,7 +111,7 @@ class Session {
     if (!arguments_.robot.empty()) return arguments_.robot;
     const std::int64_t begin_ns = clock_.now_ns();
     const auto elapsed_ns = [&] { return clock_.now_ns() - begin_ns; };
-    while (interrupt_requested == 0 && static_cast<double>(elapsed_ns()) * 1e-9 < within_s &&
+    while (apps::interrupt_requested == 0 && static_cast<double>(elapsed_ns()) * 1e-9 < within_s &&
            (source_.heard().empty() || elapsed_ns() < ops::ModeWish::kGather_ns)) {
       link_.receive(10);
     }
@@ -132,10 +129,10 @@ class Session {
   int ask(const Request& request) {
     const bool every_robot = request.goal == ops::Goal::kStop;
     const std::string robot = every_robot ? arguments_.robot : find_robot(timeout_s(request.timeout_s));
-    if (robot.empty() && !every_robot) return interrupt_requested != 0 ? kInterrupted : kNotReached;
+    if (robot.empty() && !every_robot) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
     ops::ModeWish wish(source_, robot, request.goal, timeout_s(request.timeout_s));
     ops::Progress progress = ops::Progress::kPending;
-    while (progress == ops::Progress::kPending && interrupt_requested == 0) {
+    while (progress == ops::Progress::kPending && apps::interrupt_requested == 0) {
       link_.receive(10);
       progress = wish.step();
     }
@@ -146,12 +143,12 @@ class Session {
     }
     const bool reached = progress == ops::Progress::kReached;
     report(answers, reached, wish.elapsed_s());
-    return interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
+    return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 
   int drive() {
     const std::string robot = find_robot(timeout_s(kDriveTimeout_s));
-    if (robot.empty()) return interrupt_requested != 0 ? kInterrupted : kNotReached;
+    if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
     ops::Drive drive(source_, robot, arguments_.command,
                      {.duration_s = arguments_.duration_s,
                       .climb = arguments_.request == "walk",
@@ -159,7 +156,7 @@ class Session {
     ops::Progress progress = ops::Progress::kPending;
     while (progress == ops::Progress::kPending) {
       link_.receive(5);
-      if (interrupt_requested != 0) drive.end_early();
+      if (apps::interrupt_requested != 0) drive.end_early();
       progress = drive.step();
       show_progress(robot, drive);
     }
@@ -171,7 +168,7 @@ class Session {
     }
     if (reached) answer.text = fmt::format("drove for {:.1f} s", drive.driven_s());
     report({answer}, reached, drive.driven_s());
-    return interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
+    return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 
   /// Once a second, when somebody watches.
@@ -227,21 +224,12 @@ int main(int argc, char** argv) {
   CLI::App app("Asks a running controller for a mode, drives it for a while, or stops it.", "pmg_send");
   Arguments arguments;
   declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  arguments.request = app.get_subcommands().front()->get_name();
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    arguments.request = app.get_subcommands().front()->get_name();
+    apps::notice({SIGINT, SIGTERM});
     for (const double value : arguments.command.u) {
       if (!std::isfinite(value)) throw std::invalid_argument("a command's values must be finite numbers");
     }
     return Session(arguments).run();
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_send: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

@@ -3,13 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bench_session.hpp"
 #include "hal/sil_hal.hpp"
+#include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/control_setup.hpp"
 #include "runtime/controller_report.hpp"
@@ -18,6 +19,7 @@
 #include "runtime/lockstep.hpp"
 #include "runtime/realtime_run.hpp"
 #include "runtime/summary.hpp"
+#include "sim/motors_in_force.hpp"
 
 namespace {
 
@@ -31,15 +33,20 @@ Writes DIR/log.lcm (simulation time only: same binary, inputs and seed give the 
 DIR/summary.json, and with --video DIR/video.mp4. With --realtime the controller's threads run by the wall clock, and
 summary.json says under "punctuality" how well they kept their times.
 
+With --bench one joint of the hanging robot is excited while the others hold, and DIR is a bench of that joint for
+pmg_calibrate_motor and pmg_diagnose: bench.yaml, runs.csv, runs/. The other files are as ever.
+
 Example:
   pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
+  pmg_sil --robot z1 --bench left_knee --excitation out/excitation --motor out/knee/motor.yaml --out out/knee-bench
 
-Exit codes: 0 the scenario ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
+Exit codes: 0 the scenario (the bench) ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
 or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
-  fs::path scenario, out, export_mjcf, motor, vary;
+  fs::path scenario, out, export_mjcf, motor, vary, excitation;
+  std::string bench;
   std::uint64_t seed = 0;
   bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
 };
@@ -58,7 +65,9 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"gain", "paper"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
-  app.add_option("--motor", arguments.motor, "motor.yaml of pmg_calibrate_motor: how the drives really are");
+  app.add_option(
+      "--motor", arguments.motor,
+      "motor.yaml of pmg_calibrate_motor: how the drives really are; robot.yaml's if not given, none for none");
   app.add_flag("--gantry", arguments.gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--vary", arguments.vary,
                  "draw the simulated robot, its ground and its noise from these ranges (YAML) by the seed");
@@ -66,15 +75,19 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
                                        "the robot's threads and the wall clock instead of lockstep; not reproducible");
   CLI::Option* video = app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)")->excludes(realtime);
+  CLI::Option* bench =
+      app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot and write a bench of it")
+          ->excludes(realtime)
+          ->excludes("--scenario");
+  app.add_option("--excitation", arguments.excitation,
+                 "what to excite it by: a folder of pmg_calibrate_motor --make-excitation")
+      ->needs(bench);
   app.add_flag("--viewer", arguments.viewer, "watch the run in a window, at the speed of real time; Esc or q ends it")
       ->excludes(video);
   app.add_option("--export-mjcf", arguments.export_mjcf, "write the robot's MuJoCo model to this file and exit");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
   app.add_flag("--json", arguments.json, "print summary.json on stdout instead of the short report");
 }
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
 
 /// A flag's absence that CLI11 can't judge, because --export-mjcf and --print-config need less.
 void require(const fs::path& value, const char* option) {
@@ -87,6 +100,9 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
+  if (!arguments.bench.empty()) {
+    json["bench"] = {{"joint", arguments.bench}, {"excitation", arguments.excitation.string()}};
+  }
   if (!arguments.vary.empty()) json["vary"] = arguments.vary.string();
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
   json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
@@ -145,8 +161,9 @@ struct Stage {
   sim::World& world;
   io::LogWriter& log_file;
   runtime::Tick& tick;
-  runtime::LiveView* view;  // may be null
-  bool over() const { return interrupt_requested != 0 || (view != nullptr && view->closed()); }
+  runtime::LiveView* view;                  // may be null
+  runtime::ExcitationRecorder* excitation;  // may be null
+  bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
 };
 
@@ -171,6 +188,9 @@ Played play_lockstep(const Stage& stage) {
       robot, bus, plant, stage.tick, stage.scenario, &log,
       {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
   lockstep.interrupted = [&stage] { return stage.over(); };
+  if (stage.excitation != nullptr) {
+    lockstep.after_record = [&stage](const runtime::TickRecord& record) { stage.excitation->add(record); };
+  }
   lockstep.after_tick = [&](const runtime::RunProgress& now) {
     if (film) film->after_tick(now);
     if (stage.view != nullptr) stage.view->after_tick(now);
@@ -209,22 +229,53 @@ Played play_realtime(const Stage& stage) {
   return {outcome, run.timing(), runtime::punctuality_json(controller)};
 }
 
-int simulate(const Arguments& arguments) {
-  require(arguments.scenario, "--scenario");
+/// Stands for as long as the excitation takes, then damps.
+runtime::Scenario bench_scenario(const apps::BenchSession& bench, double control_period_s) {
+  constexpr double kEntry_s = 2.0, kDamping_s = 0.5;
+  const double stand_s = bench.duration_s(control_period_s) + kEntry_s;
+  runtime::ScenarioStep stand, damping;
+  stand.duration_s = damping.start_s = stand_s;
+  stand.text = "excite " + bench.joint().name;
+  damping.duration_s = kDamping_s;
+  damping.text = "damping";
+  damping.mode = runtime::Mode::kDamping;
+  return {.name = "bench of " + bench.joint().name, .steps = {stand, damping}};
+}
+
+int simulate(Arguments arguments) {
+  const bool benching = !arguments.bench.empty();
+  if (benching) {
+    require(arguments.excitation, "--excitation");
+    if (arguments.control.policy != "none") {
+      throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
+    }
+    arguments.gantry = true;
+  } else {
+    require(arguments.scenario, "--scenario");
+  }
   // Everything that input can spoil comes first: nothing is written for bad input.
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
   if (arguments.realtime) runtime::expect_shared_host(loaded.options);
-  const runtime::Scenario scenario = runtime::load_scenario(arguments.scenario);
+  std::optional<apps::BenchSession> bench;
+  std::optional<runtime::ExcitationRecorder> recorder;
+  if (benching) {
+    bench.emplace(loaded.robot, arguments.bench, arguments.excitation, arguments.out, loaded.options.dt_s);
+    recorder.emplace(bench->recorder());
+    loaded.options.excitation = bench->plan();
+  }
+  const runtime::Scenario scenario =
+      benching ? bench_scenario(*bench, loaded.options.dt_s) : runtime::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
   sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  world_options.stand = benching;
   if (!arguments.vary.empty()) {
     sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
   }
-  if (!arguments.motor.empty()) world_options.motors = sim::read_motor_file(arguments.motor, loaded.robot.joint_index);
+  world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   sim::World world(loaded.robot, world_options);
   std::optional<runtime::LiveView> view;
   if (arguments.viewer) view.emplace(world, loaded.robot);
@@ -235,7 +286,8 @@ int simulate(const Arguments& arguments) {
   }
   const io::WallClock wall_clock;
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
-  const Stage stage{arguments, loaded, scenario, world, log_file, *tick, view ? &*view : nullptr};
+  const Stage stage{
+      arguments, loaded, scenario, world, log_file, *tick, view ? &*view : nullptr, recorder ? &*recorder : nullptr};
 
   const std::int64_t start_ns = wall_clock.now_ns();
   const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);
@@ -247,14 +299,18 @@ int simulate(const Arguments& arguments) {
                              arguments.control.policy == "none" ? "" : to_string(loaded.variant)},
                             played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
+  if (bench) summary["bench"] = bench->write(*recorder);
   runtime::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';
+  } else if (bench) {
+    std::cout << fmt::format("{}; results in {}\n", summary["bench"].get<std::string>(), arguments.out.string());
   } else {
     report(played.outcome, summary, arguments.out);
   }
   const runtime::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted) return kInterrupted;
+  if (bench && !bench->whole(*recorder)) return kFellOrFault;
   return outcome.fell || outcome.diverged || !outcome.faults.empty() ? kFellOrFault : kOk;
 }
 
@@ -276,16 +332,8 @@ int main(int argc, char** argv) {
       "pmg_sil");
   Arguments arguments;
   declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  std::signal(SIGINT, on_interrupt);
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
     return arguments.export_mjcf.empty() ? simulate(arguments) : export_mjcf(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_sil: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

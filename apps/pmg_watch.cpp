@@ -15,6 +15,7 @@
 #include "io/lcm_link.hpp"
 #include "operator/robot_board.hpp"
 #include "operator/robot_text.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -42,9 +43,6 @@ struct Arguments {
   bool once = false, json = false;
 };
 
-volatile std::sig_atomic_t interrupt_requested = 0;
-void on_interrupt(int /*signal*/) { interrupt_requested = 1; }
-
 /// A longer line would wrap, and the next picture begin too high.
 std::size_t columns() {
   winsize size{};
@@ -65,7 +63,7 @@ class Watch {
              std::ranges::all_of(shown, [](const ops::RobotNews* news) { return news->info && news->link; });
     };
     std::optional<double> heard_at_s;
-    while (interrupt_requested == 0 && elapsed_s() < arguments_.timeout_s && !complete()) {
+    while (apps::interrupt_requested == 0 && elapsed_s() < arguments_.timeout_s && !complete()) {
       link_.receive(20);
       if (!heard_at_s && !selected().empty()) heard_at_s = elapsed_s();
       if (heard_at_s && elapsed_s() - *heard_at_s > 1.2) break;
@@ -77,7 +75,7 @@ class Watch {
   int forever() {
     const bool terminal = isatty(STDOUT_FILENO) != 0 && !arguments_.json;
     const double period_s = terminal ? 0.2 : 1.0;
-    for (double next_s = period_s; interrupt_requested == 0 && std::cout.good();) {
+    for (double next_s = period_s; apps::interrupt_requested == 0 && std::cout.good();) {
       link_.receive(20);
       if (elapsed_s() < next_s) continue;
       next_s = elapsed_s() + period_s;
@@ -161,19 +159,10 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_flag("--json", arguments.json, "print JSON, an object a line");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kBadInput;
-  }
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  std::signal(SIGPIPE, SIG_IGN);  // pmg_watch | head
-  try {
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT, SIGTERM});
+    std::signal(SIGPIPE, SIG_IGN);  // pmg_watch | head
     Watch watch(arguments);
     return arguments.once ? watch.once() : watch.forever();
-  } catch (const std::exception& error) {
-    std::cerr << "pmg_watch: " << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

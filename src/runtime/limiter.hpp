@@ -26,6 +26,10 @@ class Limiter {
   Limiter(const model::RobotModel& robot, const JointVector& kp, const JointVector& kd, double dt_s,
           const LimiterOptions& options);
 
+  void set_gains(Eigen::Index joint, double kp_Nm_per_rad, double kd_Nm_s_per_rad) noexcept {
+    kp_[joint] = kp_Nm_per_rad;
+    kd_[joint] = kd_Nm_s_per_rad;
+  }
   void start_from(const JointVector& q) noexcept;  ///< the posture that targets move away from [rad]
 
   /// Limits q_des in place: first its rate, then the torque that it asks for at this state, last its range, which

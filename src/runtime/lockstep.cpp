@@ -56,9 +56,11 @@ void Lockstep::control(double time_s) {
   control_cycle_.run(clock_.now_ns());
   timing_.add(time_s, tick_.result().times);
   if (log_ != nullptr) log_->write(control_cycle_.record());
+  if (after_record) after_record(control_cycle_.record());
 
   if (!options_.always_hoisted) {
-    hoist_.step(player_.current().hoist_without_policy && !options_.balanced_by_policy, kTickPeriod_s);
+    hoist_.step(options_.balanced_by_policy ? Support::kNone : player_.current().support_without_policy(),
+                kTickPeriod_s);
     plant_.set_hoist(hoist_.lift_m(), hoist_.engaged());
   }
 }

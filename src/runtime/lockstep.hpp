@@ -31,6 +31,8 @@ class Lockstep {
 
   /// Called after every tick, for progress and pictures.
   std::function<void(const RunProgress&)> after_tick;
+  /// Called after every tick, with all of it.
+  std::function<void(const TickRecord&)> after_record;
   /// Asked before every tick: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 

@@ -50,7 +50,7 @@ void RealtimeRun::speak() {
   // A full inbox means that the control thread stands still; the next message will do.
   controller_.inbox().put(player_.drive());
   controller_.inbox().put(player_.request());
-  robot_.carry(hoists_ && player_.current().hoist_without_policy);
+  robot_.support(hoists_ ? player_.current().support_without_policy() : Support::kNone);
   next_ns_ = std::max(next_ns_ + ControlCycle::kPeriod_ns, clock_.now_ns());
   std::this_thread::sleep_for(std::chrono::nanoseconds(next_ns_ - clock_.now_ns()));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pmg/command.hpp"
+#include "runtime/hoist.hpp"
 #include "runtime/mode.hpp"
 
 namespace pmg::runtime {
@@ -19,6 +20,10 @@ struct ScenarioStep {
   Command command;  ///< channels that the file doesn't name are zero
   /// The gantry carries the robot through this step unless a policy balances it.
   bool hoist_without_policy = false;
+  bool steady_without_policy = false;  ///< or steadies it; hoisting goes before
+  Support support_without_policy() const {
+    return hoist_without_policy ? Support::kLifted : steady_without_policy ? Support::kSteady : Support::kNone;
+  }
 };
 
 struct Scenario {
@@ -29,8 +34,8 @@ struct Scenario {
   const ScenarioStep& at(double time_s) const;  ///< the last step stays in force at and after the end
 };
 
-/// Reads a scenario (docs/file-formats.md). mode and hoist_without_policy hold on until a later step changes them; a
-/// command belongs to its step alone. Throws model::ConfigError with file, line and column.
+/// Reads a scenario (docs/file-formats.md). mode and the gantry's part hold on until a later step changes them; a command
+/// belongs to its step alone. Throws model::ConfigError with file, line and column.
 Scenario load_scenario(const std::filesystem::path& file);
 
 /// Speaks a scenario as an operator would: in every tick a fresh command and the mode it wants.

@@ -50,7 +50,7 @@ const TruthSample* SimulatedRobot::take_truth(std::uint64_t bus_sample) noexcept
 }
 
 void SimulatedRobot::move_gantry() noexcept {
-  hoist_.step(carry_.load(std::memory_order_relaxed), kBusPeriod_s);
+  hoist_.step(support_.load(std::memory_order_relaxed), kBusPeriod_s);
   world_.set_hoist(hoist_.lift_m(), hoist_.engaged());
 }
 

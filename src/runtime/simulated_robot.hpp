@@ -51,7 +51,7 @@ class SimulatedRobot final : public hal::Hal {
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
 
-  void carry(bool carry) noexcept { carry_.store(carry, std::memory_order_relaxed); }  ///< by the gantry; any thread
+  void support(Support by) noexcept { support_.store(by, std::memory_order_relaxed); }  ///< by the gantry; any thread
   /// The truth of this bus cycle or, when it was dropped, nothing; older ones are given up. One reader.
   const TruthSample* take_truth(std::uint64_t bus_sample) noexcept;
   bool take(PoseSample& pose) noexcept { return poses_.take(pose); }  ///< one reader
@@ -68,7 +68,8 @@ class SimulatedRobot final : public hal::Hal {
   TruthSample truth_;  // the bus thread's
   PoseSample pose_;
   std::int64_t cycles_ = 0;
-  std::atomic<bool> carry_{false}, diverged_{false};
+  std::atomic<Support> support_{Support::kNone};
+  std::atomic<bool> diverged_{false};
   boost::lockfree::spsc_queue<TruthSample> truths_{kTruths};
   TruthSample taken_;  // the reader's
   io::Mailbox<PoseSample> poses_;

@@ -90,6 +90,13 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     values->setZero(robot.joint_index.size());
   }
   result_.reference = motion_.reference();
+  if (!options.excitation) return;
+  if (policy_->action_bound_rad()) throw std::invalid_argument("a joint is excited without a policy; expected none");
+  const Eigen::Index joint = options.excitation->joint;
+  if (joint < 0 || joint >= target_.size()) throw std::invalid_argument("excitation: no such joint");
+  excitation_.emplace(
+      *options.excitation, robot,
+      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s);
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {
@@ -114,6 +121,10 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
   if (result_.mode != Mode::kStand && result_.mode != Mode::kWalk) release(input.state);
+  if (excitation_) {
+    if (result_.mode != Mode::kStand) excitation_->give_up();
+    result_.excitation = excitation_->progress();
+  }
 
   for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
@@ -130,11 +141,13 @@ void Tick::take_messages(const TickInput& input) noexcept {
   result_.ack_count = 0;
   for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
     const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns);
-    if (judgement.fresh) supervisor_.request(request);
+    const bool refused = excitation_ && request.mode == Mode::kWalk && !request.reset_fault;
+    if (judgement.fresh && !refused) supervisor_.request(request);
     // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.
     if (request.stops() && judgement.verdict == Verdict::kTaken) supervisor_.stop();
-    result_.acks[result_.ack_count++] = {
-        .source = request.source, .sequence = request.sequence, .verdict = judgement.verdict};
+    result_.acks[result_.ack_count++] = {.source = request.source,
+                                         .sequence = request.sequence,
+                                         .verdict = refused ? Verdict::kNoMode : judgement.verdict};
   }
   result_.ignored = intake_.ignored();
   result_.command_age_s = intake_.age_s(input.now_ns);
@@ -179,12 +192,22 @@ Fault Tick::drive(const model::RobotState& state) noexcept {
   model::JointCommand& command = result_.command;
   command.q = target_;
   entry_.apply(dt_s_, command.q);
-  result_.limited = limiter_.apply(state, command.q);
-  command.dq.setZero();
   command.kp = gains_.kp_Nm_per_rad;
   command.kd = gains_.kd_Nm_s_per_rad;
+  if (excitation_ && entry_.done()) excite(command);
+  result_.limited = limiter_.apply(state, command.q);
+  command.dq.setZero();
   command.tau_ff.setZero();
   return {};
+}
+
+void Tick::excite(model::JointCommand& command) noexcept {
+  const ExcitationPlayer::Told& told = excitation_->step();
+  const Eigen::Index joint = excitation_->joint();
+  command.q[joint] = told.q_rad;
+  command.kp[joint] = told.kp_Nm_per_rad;
+  command.kd[joint] = told.kd_Nm_s_per_rad;
+  limiter_.set_gains(joint, told.kp_Nm_per_rad, told.kd_Nm_s_per_rad);
 }
 
 Fault Tick::make_reference() noexcept {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "gco/motion_composition.hpp"
@@ -17,6 +18,7 @@
 #include "runtime/action_monitor.hpp"
 #include "runtime/command_intake.hpp"
 #include "runtime/entry_ramp.hpp"
+#include "runtime/excitation_player.hpp"
 #include "runtime/limiter.hpp"
 #include "runtime/mode.hpp"
 #include "runtime/supervisor.hpp"
@@ -31,6 +33,8 @@ struct TickOptions {
   LimiterOptions limiter;
   EntryRampOptions entry;
   ActionMonitorOptions action_monitor;
+  /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
+  std::optional<ExcitationPlan> excitation{};
   int late_policy_ticks = 3;  ///< results in a row that the policy may owe: so long its last target is held
 };
 
@@ -60,11 +64,12 @@ struct StageTimes {
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
-  Fault fault;               ///< kNone unless mode is kFault
-  Command user;              ///< the driving source's command as far as the mode admits it
-  Reference reference;       ///< of this tick in Stand and Walk; otherwise of the last such tick
-  gco::Result optimised;     ///< likewise; its command is what the policy observes
-  bool policy_held = false;  ///< the policy gave no result for this tick: its last target is in force
+  Fault fault;                    ///< kNone unless mode is kFault
+  Command user;                   ///< the driving source's command as far as the mode admits it
+  Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
+  gco::Result optimised;          ///< likewise; its command is what the policy observes
+  ExcitationProgress excitation;  ///< what the command belongs to
+  bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
   LimitReport limited;
   IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
   double command_age_s = 0.0;              ///< infinite before the first command
@@ -93,6 +98,7 @@ class Tick {
   /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
   Fault drive(const model::RobotState& state) noexcept;
   Fault make_reference() noexcept;
+  void excite(model::JointCommand& command) noexcept;
   Fault ask_policy(const model::RobotState& state) noexcept;
   void release(const model::RobotState& state) noexcept;
 
@@ -106,6 +112,7 @@ class Tick {
   CommandIntake intake_;
   Supervisor supervisor_;
   EntryRamp entry_;
+  std::optional<ExcitationPlayer> excitation_;
   Limiter limiter_;
   ActionMonitor action_monitor_;
   JointVector target_;  // the policy's last good one, before ramp and limits

@@ -1,0 +1,99 @@
+// A bench that is made of a robot: an excitation's files, the tick that plays them, and the bench that is written.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "calib/bench_writer.hpp"
+#include "calib/excitation.hpp"
+#include "runtime/excitation_recorder.hpp"
+#include "runtime/tick.hpp"
+#include "sim/joint_load.hpp"
+
+namespace pmg::apps {
+
+class BenchSession {
+ public:
+  /// Everything that input can spoil. Throws std::invalid_argument or model::ConfigError.
+  BenchSession(const model::RobotModel& robot, const std::string& joint, const std::filesystem::path& excitation,
+               const std::filesystem::path& out, double control_period_s)
+      : robot_(robot), joint_(joint_of(robot, joint)), out_(out), excitation_(calib::read_excitation(excitation)) {
+    if (std::abs(excitation_.rate_hz * control_period_s - 1.0) > 1e-6) {
+      throw std::invalid_argument(fmt::format("{}: {} commands a second; expected {:g}, one a control tick",
+                                              excitation.string(), excitation_.rate_hz, 1.0 / control_period_s));
+    }
+    if (std::filesystem::exists(out / "bench.yaml")) {
+      throw std::invalid_argument(out.string() + " holds a bench already; expected a new folder");
+    }
+    plan_.joint = joint_;
+    for (const calib::ExcitationRow& row : excitation_.rows) {
+      plan_.runs.push_back(
+          {excitation_.trajectory(row.trajectory).q_cmd_rad, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad});
+    }
+    runtime::check(plan_, robot);
+    load_ = sim::hanging_load(robot, joint);
+  }
+
+  const runtime::ExcitationPlan& plan() const { return plan_; }
+  const model::Joint& joint() const { return robot_.joints[static_cast<std::size_t>(joint_)]; }
+
+  double duration_s(double control_period_s) const {
+    return runtime::ExcitationPlayer(plan_, robot_, {joint().stand_rad, joint().kp_Nm_per_rad, joint().kd_Nm_s_per_rad},
+                                     control_period_s)
+        .duration_s();
+  }
+
+  runtime::ExcitationRecorder recorder() const {
+    std::vector<std::size_t> samples;
+    for (const runtime::ExcitationRun& run : plan_.runs) samples.push_back(run.q_cmd_rad.size());
+    return {joint_, std::move(samples)};
+  }
+
+  /// Writes what is complete, if anything is; says how many runs of how many.
+  std::string write(const runtime::ExcitationRecorder& recorder) const {
+    std::vector<calib::WrittenRun> runs;
+    for (const runtime::RecordedRun& run : recorder.complete()) {
+      const calib::ExcitationRow& row = excitation_.rows[static_cast<std::size_t>(run.run)];
+      runs.push_back({row.file, row.trajectory, row.repeat, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad, run.t_s,
+                      run.q_cmd_rad, run.q_rad, run.dq_rad_s, run.torque_Nm, run.temp_C});
+    }
+    if (!runs.empty()) {
+      calib::write_bench(
+          out_,
+          {.robot = robot_.name,
+           .joint = joint().name,
+           .design = fmt::format("{} of {} hanging, others hold the standing posture", joint().name, robot_.name),
+           .sample_rate_hz = excitation_.rate_hz,
+           .effort_limit_Nm = joint().effort_limit_Nm,
+           .load_mass_kg = load_.mass_kg,
+           .load = {load_.inertia_kg_m2, load_.gravity_Nm, load_.hangs_at_rad}},
+          runs);
+    }
+    return fmt::format("{} of {} runs of {} recorded{}", runs.size(), excitation_.rows.size(), joint().name,
+                       recorder.progress().given_up ? "; the robot left Stand, which ended it" : "");
+  }
+
+  bool whole(const runtime::ExcitationRecorder& recorder) const {
+    return recorder.complete().size() == excitation_.rows.size();
+  }
+
+ private:
+  static int joint_of(const model::RobotModel& robot, const std::string& name) {
+    const auto index = robot.joint_index.find(name);
+    if (!index) throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint", name, robot.name));
+    return *index;
+  }
+
+  const model::RobotModel& robot_;
+  int joint_;
+  std::filesystem::path out_;
+  calib::Excitation excitation_;
+  runtime::ExcitationPlan plan_;
+  sim::HangingLoad load_;
+};
+
+}  // namespace pmg::apps

@@ -1,0 +1,100 @@
+// pmg_calibrate_motor --make-excitation: its options, and what becomes of them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "calib/csv_table.hpp"
+#include "calib/excitation.hpp"
+#include "model/robot_model.hpp"
+
+namespace pmg::apps {
+
+class ExcitationCommand {
+ public:
+  void declare(CLI::App& app) {
+    CLI::Option* make = app.add_flag("--make-excitation", wanted_,
+                                     "write what to record instead of fitting: DIR is a bench without recordings");
+    const auto needing = [make](CLI::Option* option) { return option->needs(make); };
+    needing(app.add_option("--robot", robot_, "limits and gains of --joint come from this robot"));
+    needing(app.add_option("--angle", angle_, "LOWER:UPPER [rad]; with --robot, within its range if not given"));
+    needing(app.add_option("--speed", speed_rad_s_, "of smooth segments [rad/s]; with --robot, a third of the joint's"))
+        ->check(CLI::PositiveNumber);
+    needing(app.add_option("--gains", gains_,
+                           "KP,KD pairs [Nm/rad, Nm s/rad]; with --robot, its own, half its kp, half "
+                           "of both"));
+    needing(app.add_option("--rate", limits_.rate_hz, "commands a second"))->capture_default_str();
+    needing(app.add_option("--seconds", limits_.seconds, "of one trajectory"))->capture_default_str();
+    needing(app.add_option("--repeats", repeats_, "of the whole"))->check(CLI::Range(1, 100))->capture_default_str();
+  }
+
+  bool wanted() const { return wanted_; }
+
+  /// Writes the bench; says what it is. Throws std::invalid_argument, model::ConfigError or std::runtime_error.
+  std::string run(const std::string& joint, const std::filesystem::path& out, unsigned seed) const {
+    calib::ExcitationLimits limits = limits_;
+    std::vector<calib::ExcitationGains> gains;
+    if (!robot_.empty()) take_robot(joint, limits, gains);
+    if (!angle_.empty()) std::tie(limits.lower_rad, limits.upper_rad) = pair(angle_, ':', "--angle", "LOWER:UPPER");
+    if (robot_.empty() && angle_.empty()) missing("--angle");
+    if (speed_rad_s_ > 0.0) limits.speed_rad_s = speed_rad_s_;
+    if (robot_.empty() && speed_rad_s_ <= 0.0) missing("--speed");
+    if (!gains_.empty()) gains.clear();
+    for (const std::string& text : gains_) {
+      const auto [kp, kd] = pair(text, ',', "--gains", "KP,KD");
+      gains.push_back({kp, kd});
+    }
+    if (gains.empty()) missing("--gains");
+    const calib::Excitation excitation = calib::make_excitation(limits, gains, repeats_, seed);
+    calib::write_excitation(out, excitation,
+                            fmt::format("{} trajectories x {} pairs of gains x {} repeats, {:g} s each",
+                                        excitation.trajectories.size(), gains.size(), repeats_, limits.seconds));
+    return fmt::format("{} runs of {:g} s between {:.3f} and {:.3f} rad, at most {:.3g} rad/s in smooth segments: {}",
+                       excitation.rows.size(), limits.seconds, limits.lower_rad, limits.upper_rad, limits.speed_rad_s,
+                       out.string());
+  }
+
+ private:
+  /// Half of the way from the standing posture to the nearer end of the range, and no more than half a radian: others
+  /// hold still, and a limb that swings far meets them.
+  void take_robot(const std::string& name, calib::ExcitationLimits& limits,
+                  std::vector<calib::ExcitationGains>& gains) const {
+    const model::RobotModel robot = model::load_robot(model::find_robot(robot_));
+    const auto index = robot.joint_index.find(name);
+    if (!index) throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint", name, robot.name));
+    const model::Joint& joint = robot.joints[static_cast<std::size_t>(*index)];
+    const double nearer_rad = std::min(joint.stand_rad - joint.lower_rad, joint.upper_rad - joint.stand_rad);
+    const double reach_rad = std::min(0.5, 0.5 * nearer_rad);
+    limits.lower_rad = joint.stand_rad - reach_rad;
+    limits.upper_rad = joint.stand_rad + reach_rad;
+    limits.speed_rad_s = joint.velocity_limit_rad_s / 3.0;
+    const double kp = joint.kp_Nm_per_rad, kd = joint.kd_Nm_s_per_rad;
+    gains = {{kp, kd}, {0.5 * kp, kd}, {0.5 * kp, 0.5 * kd}};
+  }
+
+  static std::pair<double, double> pair(const std::string& text, char between, const char* option, const char* form) {
+    const std::size_t at = text.find(between);
+    const auto first = calib::to_number(text.substr(0, at));
+    const auto second = at == std::string::npos ? std::nullopt : calib::to_number(text.substr(at + 1));
+    if (!first || !second) throw std::invalid_argument(fmt::format("{} {}; expected {}", option, text, form));
+    return {*first, *second};
+  }
+
+  [[noreturn]] static void missing(const char* option) {
+    throw std::invalid_argument(fmt::format("--make-excitation needs {}, or --robot and --joint", option));
+  }
+
+  bool wanted_ = false;
+  std::string robot_, angle_;
+  std::vector<std::string> gains_;
+  double speed_rad_s_ = 0.0;
+  int repeats_ = 2;
+  calib::ExcitationLimits limits_;
+};
+
+}  // namespace pmg::apps

@@ -1,0 +1,128 @@
+// pmg_calibrate_zero: from logs of a robot that stood still to the zero points of its joints.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "calib/zero_results.hpp"
+#include "calib/zero_stances.hpp"
+#include "io/whole_file.hpp"
+#include "program.hpp"
+#include "progress_line.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kNotAll = 1, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+LOG is a log, or a run's folder, of pmg_sil or pmg_controller in which the robot stood still on both feet on level
+ground, in several postures (docs/zero-calibration.md). Writes DIR/zero.yaml (what pmg_sil --motor reads), DIR/zero.json
+and DIR/report.html. --make-stances writes a robot folder and a scenario with which to take such logs instead.
+
+Examples:
+  pmg_calibrate_zero --robot z1 --make-stances out/stances
+  pmg_sil --robot out/stances --scenario out/stances/scenario.yaml --motor hidden.yaml --out out/zero_run
+  pmg_calibrate_zero out/zero_run --robot z1 --out out/zero
+
+Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are not observable or the iteration did not
+converge, 2 bad input or output, 130 interrupted (what was found until then is kept).)";
+
+struct Arguments {
+  std::vector<fs::path> logs;
+  std::string robot = "z1";
+  fs::path out, stances, motor;
+  calib::ZeroOptions options;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.add_option("LOG", arguments.logs, "logs or folders of runs");
+  app.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")->capture_default_str();
+  app.add_option("--out", arguments.out, "folder for the results; made if absent");
+  app.add_option("--make-stances", arguments.stances,
+                 "write a robot folder and scenario.yaml for taking logs, and exit");
+  app.add_option("--motor", arguments.motor, "motor.yaml whose other numbers zero.yaml shall keep");
+  app.add_option("--tau", arguments.options.tau_rad, "largest misalignment of the IMU in a pose that counts [rad]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--alpha", arguments.options.alpha, "damping of the update, in (0, 1]")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->capture_default_str();
+  app.add_option("--epsilon", arguments.options.epsilon_rad, "largest update of a converged zero point [rad]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("-M,--iterations", arguments.options.M, "consecutive iterations that updates must stay below epsilon")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--imu-mounting", arguments.options.imu_mounting_rad,
+                 "how well the IMU's attitude against robot.yaml is known, one standard deviation [rad]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--json", arguments.json, "print zero.json on stdout instead of the short report");
+}
+
+int make_stances(const Arguments& arguments) {
+  calib::write_zero_rig(model::load_robot(model::find_robot(arguments.robot)), arguments.stances);
+  std::cout << fmt::format("stances in {}\n", arguments.stances.string());
+  return kOk;
+}
+
+void write_results(const calib::ZeroResults& results, const sim::ActuatorsByJoint& known, const fs::path& out) {
+  fs::create_directories(out);
+  calib::zero_report(results).write(out / "report.html");
+  io::write_whole_file(out / "zero.yaml",
+                       sim::motor_yaml(calib::with_zero_offsets(known, results), calib::zero_remarks(results)));
+  io::write_whole_file(out / "zero.json", calib::zero_json(results).dump(2) + "\n");
+}
+
+int calibrate(const Arguments& arguments) {
+  if (arguments.logs.empty())
+    throw std::invalid_argument("LOG is missing (pmg_calibrate_zero --help shows an example)");
+  if (arguments.out.empty()) throw std::invalid_argument("--out is missing; expected a folder for the results");
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  sim::ActuatorsByJoint known;
+  if (!arguments.motor.empty()) known = sim::read_motor_file(arguments.motor, robot.joint_index);
+  apps::ProgressLine progress;
+  const std::vector<calib::StillPose> poses = calib::read_still_poses(arguments.logs, robot, {}, [&](double share) {
+    progress.show(share, "reading logs");
+    return apps::interrupt_requested == 0;
+  });
+  calib::ZeroResults results{.robot = &robot, .poses = &poses, .options = arguments.options, .found = {}};
+  results.found = calib::calibrate_zero(robot, poses, arguments.options, [&](int iteration) {
+    progress.show(fmt::format("iteration {}", iteration + 1));
+    return apps::interrupt_requested == 0;
+  });
+  results.interrupted = apps::interrupt_requested != 0;
+  progress.clear();
+  if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // nothing is found yet
+  write_results(results, known, arguments.out);
+  if (arguments.json) {
+    std::cout << calib::zero_json(results).dump(2) << '\n';
+  } else {
+    for (const std::string& line : calib::zero_text(results)) std::cout << line << '\n';
+    std::cout << fmt::format("results in {}\n", arguments.out.string());
+  }
+  if (results.interrupted) return kInterrupted;
+  const auto& observable = results.found.observable;
+  return results.found.converged && std::find(observable.begin(), observable.end(), false) == observable.end()
+             ? kOk
+             : kNotAll;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Finds the zero points of joints from logs of still poses.", "pmg_calibrate_zero");
+  Arguments arguments;
+  declare(app, arguments);
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
+    return arguments.stances.empty() ? calibrate(arguments) : make_stances(arguments);
+  });
+}

@@ -1,0 +1,205 @@
+// pmg_diagnose: what the simulation gets wrong of a recorded joint, and why.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "calib/fit_results.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis/report.hpp"
+#include "diagnosis/signature.hpp"
+#include "io/whole_file.hpp"
+#include "program.hpp"
+#include "progress_line.hpp"
+#include "robot_diagnosis.hpp"
+#include "sim/motor_file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pmg;
+
+enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
+
+constexpr const char* kFooter = R"(
+BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/report.html (pictures first),
+DIR/diagnosis.json and DIR/motor.yaml: the model with the effects that were found, which pmg_sil --motor and training
+read. Where two effects can't be told apart, DIR/next_excitation.csv is the command to record next. Without --model the
+drive's gain and damping, the rotor's inertia and whatever bench.yaml calls unknown are fitted first.
+
+Example:
+  pmg_diagnose data/bench/servo --model out/servo/motor.yaml --fit "repeat == 0" --score "repeat == 1" --out out/why
+  pmg_diagnose --robot z1 --record out/excited
+  pmg_diagnose --robot z1 out/excited/hanging.lcm out/excited/standing.lcm --out out/why_robot
+
+Exit codes: 0 a verdict (found, ambiguous, none, unexplained), 2 bad input or output, 130 interrupted (the verdict of
+what was done until then is kept).)";
+
+struct Arguments {
+  fs::path bench, out, model, record;
+  std::vector<fs::path> inputs;
+  std::string robot;
+  std::string fit, score, joint;
+  double step_s = 0.0;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.footer(kFooter);
+  app.add_option("BENCH", arguments.inputs, "folder of the bench; with --robot logs of runs: files or folders");
+  app.add_option("--out", arguments.out, "folder for the results; made if absent");
+  app.add_option("--robot", arguments.robot, "diagnose a whole robot from logs: its name or folder");
+  app.add_option("--record", arguments.record,
+                 "with --robot: a simulated one plays what shows most, into DIR/hanging.lcm and DIR/standing.lcm");
+  app.add_option("--model", arguments.model, "motor.yaml that the simulation has now");
+  app.add_option("--joint", arguments.joint,
+                 "its name in motor.yaml; the bench folder's, or the only one, if not given");
+  app.add_option("--fit", arguments.fit,
+                 "rows of runs.csv to diagnose, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
+  app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
+  app.add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
+  app.add_option("--threads", arguments.threads, "at most")->check(CLI::Range(1U, 256U));
+  app.add_option("--step", arguments.step_s, "of the simulation [s]; chosen if not given")
+      ->check(CLI::Range(1e-5, 0.01));
+  app.add_flag("--json", arguments.json, "print diagnosis.json on stdout instead of the short report");
+}
+
+/// The joint of the file that is meant; also sets its name.
+sim::ActuatorParameters given_model(Arguments& arguments) {
+  const sim::ActuatorsByJoint joints = sim::read_motor_file(arguments.model);
+  if (joints.size() == 1 && arguments.joint.empty()) arguments.joint = joints.begin()->first;
+  const auto joint = joints.find(arguments.joint);
+  if (joint != joints.end()) return joint->second;
+  std::vector<std::string> names;
+  for (const auto& [name, actuator] : joints) names.push_back(name);
+  throw std::invalid_argument(fmt::format("{}: no joint '{}'; expected --joint with one of {}",
+                                          arguments.model.string(), arguments.joint, fmt::join(names, ", ")));
+}
+
+std::string excitation_csv(const diagnosis::NextExcitation& next, const std::string& unit) {
+  std::string text = fmt::format("t_s,q_cmd_{}\n", unit);
+  for (std::size_t k = 0; k < next.t_s.size(); ++k)
+    text += fmt::format("{:.6g},{:.6g}\n", next.t_s[k], next.q_cmd_rad[k]);
+  return text;
+}
+
+std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib::Bench& bench) {
+  const std::string unit = calib::position_unit(bench, true);
+  std::vector<std::string> lines = {
+      fmt::format("Written by pmg_diagnose from {}: {}", bench.folder.filename().string(), name(found.verdict))};
+  for (const diagnosis::Cause& cause : found.causes) {
+    lines.push_back(fmt::format("{}: held-out error {:.4g} {} without it, {:.4g} with it", cause.effect,
+                                1e3 * cause.held_out_error_before, unit, 1e3 * cause.held_out_error_after));
+  }
+  if (found.after.inertia_scale != 1.0 || found.after.gravity_scale != 1.0) {
+    lines.push_back(fmt::format("The bench's loads were off: inertia times {:.4g}, gravity torque times {:.4g}",
+                                found.after.inertia_scale, found.after.gravity_scale));
+  }
+  return lines;
+}
+
+void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs::path& out, double wall_s) {
+  const std::string unit = calib::position_unit(bench, true);
+  std::cout << "verdict: " << name(found.verdict) << '\n';
+  for (const diagnosis::Cause& cause : found.causes) {
+    std::cout << fmt::format("  {}{}: {:.4g} -> {:.4g} {}\n", cause.effect,
+                             cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),
+                             1e3 * cause.held_out_error_before, 1e3 * cause.held_out_error_after, unit);
+    for (const diagnosis::ParameterEstimate& p : cause.parameters) {
+      std::cout << fmt::format("    {} = {:.4g} ({:.4g} to {:.4g}) {}\n", p.name, p.estimate.value, p.estimate.low,
+                               p.estimate.high, p.unit);
+    }
+  }
+  if (!found.depends_on.empty())
+    std::cout << fmt::format("what remains depends on {}\n", fmt::join(found.depends_on, ", "));
+  if (found.next_excitation) std::cout << "record next: " << found.next_excitation->text << '\n';
+  std::cout << fmt::format("{} mean absolute error {:.4g} -> {:.4g} {}; noise floor {:.4g} ({}); {:.0f} % of the way\n",
+                           found.held_out ? "held-out" : "fitted", 1e3 * found.held_out_before.value,
+                           1e3 * found.held_out_after.value, unit, 1e3 * found.noise_floor.mean_absolute_rad,
+                           found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
+  std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());
+}
+
+int diagnose_robot(const Arguments& arguments) {
+  if (!arguments.record.empty()) {
+    apps::record_robot(arguments.robot, arguments.record, arguments.seed);
+    return kOk;
+  }
+  if (arguments.inputs.empty() || arguments.out.empty())
+    throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
+  apps::ProgressLine progress;
+  apps::diagnose_robot_logs({.robot = arguments.robot,
+                             .logs = arguments.inputs,
+                             .out = arguments.out,
+                             .json = arguments.json,
+                             .progress = [&](double share) {
+                               progress.show(share, "equations of motion");
+                               return apps::interrupt_requested == 0;
+                             }});
+  return kOk;
+}
+
+int diagnose(Arguments arguments) {
+  if (arguments.inputs.size() != 1 || arguments.out.empty())
+    throw std::invalid_argument("expected one BENCH and --out DIR");
+  arguments.bench = arguments.inputs.front();
+  apps::ProgressLine progress;
+  const calib::Bench bench = calib::read_bench(arguments.bench);
+  diagnosis::DiagnoseOptions options;
+  options.fit = arguments.fit;
+  options.score = arguments.score;
+  options.threads = arguments.threads;
+  options.seed = arguments.seed;
+  options.step_s = arguments.step_s;
+  if (!arguments.model.empty()) options.model = given_model(arguments);
+  if (arguments.joint.empty()) arguments.joint = fs::weakly_canonical(arguments.bench).filename().string();
+  const auto begin = std::chrono::steady_clock::now();
+  diagnosis::DiagnosedRuns runs;
+  const diagnosis::Diagnosis found =
+      diagnosis::diagnose(bench, options, &runs, [&](double share, const std::string& text) {
+        progress.show(share, text);
+        return apps::interrupt_requested == 0;
+      });
+  progress.clear();
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  fs::create_directories(arguments.out);
+  nlohmann::ordered_json json = diagnosis::diagnosis_json(found);
+  json["interrupted"] = apps::interrupt_requested != 0;
+  json["wall_s"] = wall_s;
+  io::write_whole_file(arguments.out / "motor.yaml",
+                       sim::motor_yaml({{arguments.joint, found.after.actuator}}, remarks(found, bench)));
+  if (found.next_excitation) {
+    io::write_whole_file(arguments.out / "next_excitation.csv",
+                         excitation_csv(*found.next_excitation, calib::position_unit(bench, false)));
+  }
+  std::vector<calib::BenchRun> recorded;
+  for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());
+  const std::vector<diagnosis::Signature> checks = diagnosis::signatures(bench, recorded);
+  io::write_whole_file(arguments.out / "report.html",
+                       diagnosis::diagnosis_report(bench, found, runs, checks, arguments.threads).html());
+  io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
+  if (arguments.json)
+    std::cout << json.dump(2) << '\n';
+  else
+    tell(found, bench, arguments.out, wall_s);
+  return apps::interrupt_requested != 0 ? kInterrupted : kOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Finds what the simulation gets wrong of a recorded joint.", "pmg_diagnose");
+  Arguments arguments;
+  declare(app, arguments);
+  return apps::run_program(app, argc, argv, [&]() -> int {
+    apps::notice({SIGINT});
+    return arguments.robot.empty() ? diagnose(arguments) : diagnose_robot(arguments);
+  });
+}

@@ -1,0 +1,54 @@
+// pmg_diagnose --robot: from logs of a whole robot, or from a simulated one that plays the excitation, to a verdict.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "diagnosis/robot_diagnosis.hpp"
+#include "diagnosis/robot_excitation.hpp"
+#include "diagnosis/robot_report.hpp"
+#include "io/whole_file.hpp"
+#include "model/clip_library_file.hpp"
+#include "runtime/simulated_robot.hpp"
+
+namespace pmg::apps {
+
+struct RobotDiagnosisArguments {
+  std::string robot;                        ///< name or folder
+  std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
+  std::filesystem::path out;
+  bool json = false;
+  std::function<bool(double share)> progress{};
+};
+
+/// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm.
+inline void record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(name));
+  const ClipLibrary clips = model::load_clip_library(robot.directory / "clips", robot);
+  std::filesystem::create_directories(out);
+  sim::World gantry(robot, runtime::world_with_noise(seed, true));
+  diagnosis::write_robot_log(diagnosis::play(gantry, diagnosis::hanging_excitation(robot), "hanging"), robot,
+                             out / "hanging.lcm");
+  sim::World ground(robot, runtime::world_with_noise(seed, false));
+  diagnosis::write_robot_log(diagnosis::play(ground, diagnosis::standing_excitation(robot, clips), "standing"), robot,
+                             out / "standing.lcm");
+}
+
+/// Writes DIR/diagnosis.json and DIR/report.html and tells the verdict on stdout. Throws std::exception on bad input,
+/// before anything is written.
+inline void diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  const std::vector<diagnosis::RobotRecording> recordings = diagnosis::read_robot_logs(arguments.logs, robot);
+  const diagnosis::RobotDiagnosis found = diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
+  const nlohmann::ordered_json json = diagnosis::robot_diagnosis_json(found);
+  std::filesystem::create_directories(arguments.out);
+  io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
+  diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
+  std::cout << (arguments.json ? json.dump(2) + "\n" : diagnosis::robot_diagnosis_text(found));
+}
+
+}  // namespace pmg::apps

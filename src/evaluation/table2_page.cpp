@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "evaluation/table2.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kOnePolicy =
+    "The paper trains a policy for each configuration. Here one policy walks in all four, so what differs is the "
+    "simulation and the robot, not what a policy has "
+    "learned: imitation by a policy that was trained with the calibrated motors could be better.";
+
+std::string interval(const Estimate& e) { return fmt::format("{:.4f} ({:.4f} to {:.4f})", e.mean, e.lower, e.upper); }
+
+pages::Bars bars(const Table2& table, std::size_t metric, const std::string& title) {
+  pages::Bars picture{.title = title,
+                      .unit = "rad",
+                      .names = {},
+                      .sets = {{.name = "ours", .values = {}, .colour = pages::colour::kBlue},
+                               {.name = "paper", .values = {}, .colour = pages::colour::kGrey}}};
+  for (std::size_t c = 0; c < kConfigurations; ++c) {
+    const ConfigurationResult& r = table.results[c];
+    const Estimate& e = metric == 0 ? r.imitation_rad : r.sim_to_real_rad;
+    picture.names.push_back(kConfigurationNames[c]);
+    picture.sets[0].values.push_back(e.mean);
+    picture.sets[0].intervals.push_back({e.lower, e.upper});
+    picture.sets[1].values.push_back(published(static_cast<Configuration>(c))[metric]);
+  }
+  return picture;
+}
+
+}  // namespace
+
+ordered_json to_json(const Table2& table) {
+  ordered_json json = {{"kind", "table2"},
+                       {"complete", table.complete},
+                       {"robot", table.robot},
+                       {"policy", table.policy},
+                       {"plants_file", table.plants_file},
+                       {"scenario", table.scenario_file},
+                       {"policies_trained", 1},
+                       {"joints", table.joints},
+                       {"configurations", ordered_json::array()},
+                       {"plants", ordered_json::array()}};
+  if (table.complete) {
+    json["limits"] = {{"ratio", table.ratio()}, {"limit", kAskedRatio}, {"all_reached", table.all_reached()}};
+    for (std::size_t c = 0; c < kConfigurations; ++c) {
+      const ConfigurationResult& r = table.results[c];
+      const auto paper = published(static_cast<Configuration>(c));
+      json["configurations"].push_back({{"name", kConfigurationNames[c]},
+                                        {"imitation_rad", to_json(r.imitation_rad)},
+                                        {"sim_to_real_rad", to_json(r.sim_to_real_rad)},
+                                        {"paper", {{"imitation_rad", paper[0]}, {"sim_to_real_rad", paper[1]}}},
+                                        {"imitation_of_plants_rad", r.imitation_of_plant_rad},
+                                        {"sim_to_real_of_plants_rad", r.sim_to_real_of_plant_rad},
+                                        {"robot_falls", r.robot_falls},
+                                        {"simulation_falls", r.simulation_falls}});
+    }
+  }
+  for (const CalibratedPlant& plant : table.plants) {
+    ordered_json offsets = ordered_json::object();
+    for (const FoundOffset& found : plant.offsets) offsets[found.joint] = found.zero_offset_rad;
+    json["plants"].push_back({{"truth", sim::motor_yaml(plant.truth)},
+                              {"calibrated_motors", sim::motor_yaml(plant.motors)},
+                              {"calibrated_zero_offsets_rad", offsets},
+                              {"worst_offset_left_rad", plant.worst_offset_rad}});
+  }
+  return json;
+}
+
+pages::Page page_of(const Table2& table) {
+  pages::Page page(fmt::format("{}: sim-to-real, Table II", table.robot));
+  if (!table.complete) {
+    page.verdict(pages::Tone::kBad, "interrupted: nothing can be compared");
+    return page;
+  }
+  page.verdict(table.all_reached() ? pages::Tone::kGood : pages::Tone::kBad,
+               fmt::format("full calibration leaves {:.2f} of the baseline's sim-to-real error (paper {:.2f})",
+                           table.ratio(), kAskedRatio));
+  page.paragraph(kOnePolicy);
+  page.heading("Errors");
+  page.columns([&] {
+    page.bars(bars(table, 0, "motion imitation error [rad]"));
+    page.bars(bars(table, 1, "sim-to-real error [rad]"));
+  });
+  pages::Table figures{.header = {"configuration", "imitation [rad]", "paper", "sim-to-real [rad]", "paper",
+                                  "robots that fell", "simulations that fell"},
+                       .rows = {}};
+  for (std::size_t c = 0; c < kConfigurations; ++c) {
+    const ConfigurationResult& r = table.results[c];
+    const auto paper = published(static_cast<Configuration>(c));
+    figures.rows.push_back({kConfigurationNames[c], interval(r.imitation_rad), fmt::format("{:.4f}", paper[0]),
+                            interval(r.sim_to_real_rad), fmt::format("{:.4f}", paper[1]),
+                            fmt::format("{} of {}", r.robot_falls, table.plants.size()),
+                            fmt::format("{}", r.simulation_falls)});
+  }
+  page.table(figures);
+  page.heading("A knee, robot 1");
+  std::vector<double> phase;
+  for (std::size_t bin = 0; bin < WalkCurves::kBins; ++bin)
+    phase.push_back((static_cast<double>(bin) + 0.5) / static_cast<double>(WalkCurves::kBins));
+  for (std::size_t c = 0; c < kConfigurations; ++c) {
+    page.chart(
+        {.title = fmt::format("{}: {} over the gait cycle [rad]", kConfigurationNames[c],
+                              table.joints.size() > 3 ? table.joints[3] : ""),
+         .x_name = "phase",
+         .x_unit = "",
+         .lines =
+             {{.name = "robot", .x = phase, .y = table.shown_robot[c], .colour = pages::colour::kInk},
+              {.name = "simulation", .x = phase, .y = table.shown_simulation[c], .colour = pages::colour::kVermillion}},
+         .height_px = 170});
+  }
+  page.heading("Calibration");
+  pages::Table plants{.header = {"robot", "zero points found", "worst offset left [mrad]"}, .rows = {}};
+  for (std::size_t k = 0; k < table.plants.size(); ++k) {
+    plants.rows.push_back({std::to_string(k + 1), std::to_string(table.plants[k].offsets.size()),
+                           fmt::format("{:.2f}", 1e3 * table.plants[k].worst_offset_rad)});
+  }
+  page.table(plants);
+  return page;
+}
+
+std::vector<std::string> text_of(const Table2& table) {
+  if (!table.complete) return {"interrupted: nothing can be compared"};
+  std::vector<std::string> lines = {fmt::format("{:<36}{:>18}{:>9}{:>18}{:>9}{:>8}", "RMS over leg joints [rad]",
+                                                "imitation", "paper", "sim-to-real", "paper", "falls")};
+  for (std::size_t c = 0; c < kConfigurations; ++c) {
+    const ConfigurationResult& r = table.results[c];
+    const auto paper = published(static_cast<Configuration>(c));
+    lines.push_back(fmt::format(
+        "{:<36}{:>18}{:>9.4f}{:>18}{:>9.4f}{:>8}", kConfigurationNames[c],
+        fmt::format("{:.4f} +-{:.4f}", r.imitation_rad.mean, r.imitation_rad.upper - r.imitation_rad.mean), paper[0],
+        fmt::format("{:.4f} +-{:.4f}", r.sim_to_real_rad.mean, r.sim_to_real_rad.upper - r.sim_to_real_rad.mean),
+        paper[1], fmt::format("{}/{}", r.robot_falls, table.plants.size())));
+  }
+  lines.push_back(fmt::format("sim-to-real error of full calibration: {:.2f} of the baseline's (asked: {})",
+                              table.ratio(), kAskedRatio));
+  lines.push_back("one policy in all configurations, not four");
+  return lines;
+}
+
+}  // namespace pmg::evaluation

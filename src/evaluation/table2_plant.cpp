@@ -1,0 +1,212 @@
+#include "evaluation/table2_plant.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <random>
+
+#include "calib/motor_fit.hpp"
+#include "calib/zero_calibration.hpp"
+#include "calib/zero_stances.hpp"
+#include "hal/sil_hal.hpp"
+#include "io/clock.hpp"
+#include "io/log_writer.hpp"
+#include "model/config_reader.hpp"
+#include "runtime/lockstep.hpp"
+#include "runtime/simulated_robot.hpp"
+#include "sim/joint_load.hpp"
+#include "sim/sensor_noise.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+constexpr double kRate_Hz = 100.0;
+constexpr int kBenchSamples = 500;  // a recording of five seconds
+constexpr int kBenchRuns = 4;
+constexpr double kAmplitude_rad = 0.3;
+constexpr double kWeight_kg = 4.0, kArm_m = 0.3;  // hung on the joint in half of the runs
+
+/// MuJoCo 2.2.2's XML reader and error handlers are global.
+std::mutex& mujoco_reads() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+sim::Range range(model::ConfigReader& reader, const std::string& key) {
+  const std::vector<double> ends = reader.numbers(key, 2, model::non_negative());
+  if (ends[0] > ends[1]) reader.fail(key, "runs backwards", "[lower, upper]");
+  return {ends[0], ends[1]};
+}
+
+/// std::uniform_real_distribution may differ from one standard library to the next; the engine may not.
+double draw(const sim::Range& range, std::mt19937_64& random) {
+  return range.lower + (range.upper - range.lower) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+/// Steps and smooth segments about 0 (paper III-C.1), another for each number, with pauses in which a joint comes to
+/// rest.
+calib::Recording excitation(int number) {
+  calib::Recording recording;
+  for (int k = 0; k < kBenchSamples; ++k) {
+    const double t_s = static_cast<double>(k) / kRate_Hz, pace = 1.0 + 0.5 * number;
+    const double smooth = 0.7 * std::sin(2.0 * pace * t_s) + 0.3 * std::sin(9.0 * t_s + number);
+    const double step = t_s < 3.0 ? 0.8 : t_s < 3.8 ? -0.6 : 0.2;
+    recording.t_s.push_back(t_s);
+    recording.q_cmd_rad.push_back(t_s < 0.1 ? 0.0 : kAmplitude_rad * (t_s < 2.2 ? smooth : step));
+    recording.q_rad.push_back(0.0);
+    recording.valid.push_back(true);
+  }
+  return recording;
+}
+
+std::vector<calib::SingleJoint> record(const calib::Bench& bench, const sim::ActuatorParameters& truth,
+                                       const sim::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
+  sim::NormalSource noise(seed);
+  calib::JointModel plant;
+  plant.actuator = truth;
+  // A position drive's zero doesn't show on its own encoder: the bench hangs the limb, which says where down is, but
+  // the paper fits response alone.
+  plant.actuator.sensor.zero_offset_rad = 0.0;
+  std::vector<calib::SingleJoint> runs;
+  for (int number = 0; number < kBenchRuns; ++number) {
+    calib::BenchRun run;
+    run.file = fmt::format("run{}.csv", number);
+    run.kp = kp * (number % 2 == 0 ? 1.0 : 0.5);
+    run.kd = kd * (number < 2 ? 1.0 : 0.5);  // of one kd alone nothing tells it from viscous friction
+    // A known weight in two of the runs: of a limb lighter than its rotor alone, gain, rotor and friction could all be
+    // larger by one factor.
+    const bool weighted = number == 1 || number == 2;
+    run.load.inertia_kg_m2 = load.inertia_kg_m2 + (weighted ? kWeight_kg * kArm_m * kArm_m : 0.0);
+    run.load.gravity_Nm = load.gravity_Nm + (weighted ? 9.81 * kWeight_kg * kArm_m : 0.0);
+    run.recording = excitation(number);
+    const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
+    run.recording.q_rad = joint.rollout(plant);
+    for (double& q_rad : run.recording.q_rad) q_rad += runtime::kEncoderNoise_rad * noise.next();
+    runs.emplace_back(bench, run, calib::simulation_step_s(bench));
+  }
+  return runs;
+}
+
+std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::WorldOptions& options) {
+  const std::scoped_lock lock(mujoco_reads());
+  return std::make_unique<sim::World>(robot, options);
+}
+
+/// Plays the stances; false when it was stopped.
+bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
+                  const std::function<bool()>& stop) {
+  runtime::LoadedControl loaded = runtime::load_control({.robot = (folder / "stances").string(), .clips = {}});
+  const runtime::Scenario scenario = runtime::load_scenario(folder / "stances/scenario.yaml");
+  sim::WorldOptions options = runtime::world_with_noise(seed, false);
+  options.motors = plant;
+  const std::unique_ptr<sim::World> world = build(loaded.robot, options);
+  const io::WallClock stopwatch;
+  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, stopwatch);
+  hal::SilHal bus(*world);
+  runtime::WorldPlant truth(*world);
+  io::LogWriter file(folder / "log.lcm");
+  runtime::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
+  runtime::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
+  lockstep.interrupted = stop;
+  const bool interrupted = lockstep.run().interrupted;
+  file.flush();
+  return !interrupted;
+}
+
+}  // namespace
+
+PlantRanges load_plant_ranges(const std::filesystem::path& file) {
+  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  PlantRanges ranges;
+  ranges.plants = reader.required<int>("plants", model::positive());
+  ranges.seed = reader.required<int>("seed", model::non_negative());
+  ranges.coulomb_Nm = range(reader, "coulomb_Nm");
+  ranges.viscous_Nm_s_per_rad = range(reader, "viscous_Nm_s_per_rad");
+  ranges.armature_factor = range(reader, "armature_factor");
+  ranges.kp_factor = range(reader, "kp_factor");
+  ranges.kd_factor = range(reader, "kd_factor");
+  ranges.delay_s = range(reader, "delay_s");
+  ranges.zero_offset_rad = range(reader, "zero_offset_rad");
+  ranges.backlash_rad = range(reader, "backlash_rad");
+  ranges.stiffness_Nm_per_rad = range(reader, "stiffness_Nm_per_rad");
+  ranges.load_friction = range(reader, "load_friction");
+  reader.finish();
+  return ranges;
+}
+
+// The order of the draws is part of what a seed means.
+sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotModel& robot, int number) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(ranges.seed) + 1000 * static_cast<std::uint64_t>(number));
+  const double delay_s = draw(ranges.delay_s, random);
+  sim::ActuatorsByJoint plant;
+  for (const model::Joint& joint : robot.joints) {
+    if (!joint.policy) continue;
+    sim::ActuatorParameters& p = plant[joint.name];
+    p.command.delay_s = delay_s;
+    p.drive.kp_scale = draw(ranges.kp_factor, random);
+    p.drive.kd_scale = draw(ranges.kd_factor, random);
+    p.transmission.armature_kg_m2 = joint.armature_kg_m2 * draw(ranges.armature_factor, random);
+    p.transmission.backlash_rad = draw(ranges.backlash_rad, random);
+    p.transmission.stiffness_Nm_per_rad = draw(ranges.stiffness_Nm_per_rad, random);
+    // A shaft that rings with a tenth of its critical damping, as steel with bearings and grease about does.
+    p.transmission.damping_Nm_s_per_rad =
+        0.2 * std::sqrt(p.transmission.stiffness_Nm_per_rad * p.transmission.armature_kg_m2);
+    p.friction.coulomb_Nm = draw(ranges.coulomb_Nm, random);
+    p.friction.viscous_Nm_s_per_rad = draw(ranges.viscous_Nm_s_per_rad, random);
+    p.friction.load_driving = p.friction.load_backdriving = draw(ranges.load_friction, random);
+    p.sensor.zero_offset_rad = draw(ranges.zero_offset_rad, random) * (random() >> 63 == 0 ? 1.0 : -1.0);
+  }
+  return plant;
+}
+
+sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
+                                        const Gains& gains, unsigned seed) {
+  calib::Bench bench;
+  bench.rig = calib::Rig::kPendulum;
+  bench.law = calib::DriveLaw::kPositionPd;
+  calib::FitOptions options;
+  options.starts = 2;
+  options.screened_per_dimension = 8;
+  options.seed = seed;
+  sim::ActuatorsByJoint found;
+  for (const auto& [name, truth] : plant) {
+    const int joint = robot.joint_index.at(name);
+    sim::HangingLoad load;
+    {
+      const std::scoped_lock lock(mujoco_reads());
+      load = sim::hanging_load(robot, name);
+    }
+    std::vector<calib::FitParameter> unknowns;
+    for (const char* parameter : {"drive.kp_scale", "drive.kd_scale", "transmission.armature_kg_m2",
+                                  "friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}) {
+      unknowns.push_back(calib::fit_parameter(parameter, bench));
+    }
+    calib::JointModel start;
+    start.actuator.transmission.armature_kg_m2 = robot.joints[static_cast<std::size_t>(joint)].armature_kg_m2;
+    const calib::FitProblem problem(unknowns, start,
+                                    record(bench, truth, load, gains.kp_Nm_per_rad[joint], gains.kd_Nm_s_per_rad[joint],
+                                           seed + 17U * static_cast<unsigned>(joint)));
+    found[name] = calib::fit(problem, options).model.actuator;
+  }
+  return found;
+}
+
+std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
+                                            const std::filesystem::path& folder, std::uint64_t seed,
+                                            const std::function<bool()>& stop) {
+  calib::write_zero_rig(robot, folder / "stances");
+  if (!take_stances(plant, folder, seed, stop)) return {};
+  const calib::ZeroCalibration found =
+      calib::calibrate_zero(robot, calib::read_still_poses({folder / "log.lcm"}, robot));
+  std::vector<FoundOffset> offsets;
+  for (std::size_t i = 0; i < found.joints.size(); ++i) {
+    if (found.observable[i])
+      offsets.push_back({robot.joint_index.name(found.joints[i]), -found.z_rad[static_cast<Eigen::Index>(i)]});
+  }
+  return offsets;
+}
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,37 @@
+// What an excited joint did, run by run, out of the ticks' records.
+#pragma once
+
+#include <vector>
+
+#include "runtime/tick_record.hpp"
+
+namespace pmg::runtime {
+
+/// Columns of one run. q_cmd is what the drives were told from that moment on, limits included.
+struct RecordedRun {
+  int run = -1;  ///< of the plan
+  std::vector<double> t_s, q_cmd_rad, q_rad, dq_rad_s, torque_Nm, temp_C;
+};
+
+class ExcitationRecorder {
+ public:
+  /// samples_of_run: how many commands each run of the plan has.
+  ExcitationRecorder(int joint, std::vector<std::size_t> samples_of_run);
+
+  void add(const TickRecord& record);
+
+  /// Runs that were recorded from their first to their last sample; one that was cut off, or of which a tick is
+  /// missing, isn't among them.
+  const std::vector<RecordedRun>& complete() const { return complete_; }
+  const ExcitationProgress& progress() const { return progress_; }
+
+ private:
+  int joint_;
+  std::vector<std::size_t> samples_of_run_;
+  RecordedRun current_;
+  std::int64_t start_ns_ = 0;
+  std::vector<RecordedRun> complete_;
+  ExcitationProgress progress_;
+};
+
+}  // namespace pmg::runtime

@@ -1,0 +1,82 @@
+// Table II's parts: plants that stay the same, curves over the gait cycle, gains, and a calibration that finds what is
+// hidden.
+#include "evaluation/table2.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pmg::evaluation {
+namespace {
+
+const model::RobotModel& z1() {
+  static const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
+  return robot;
+}
+
+PlantRanges ranges() { return load_plant_ranges("config/evaluation/table2.yaml"); }
+
+TEST(Table2, PlantsAreTheSameEveryTimeAndDifferFromOneAnother) {
+  const sim::ActuatorsByJoint first = draw_plant(ranges(), z1(), 1);
+  EXPECT_EQ(first, draw_plant(ranges(), z1(), 1));
+  EXPECT_NE(first, draw_plant(ranges(), z1(), 2));
+  EXPECT_EQ(first.size(), 12U) << "the legs'";
+  EXPECT_EQ(ranges().plants, 10);
+  for (const auto& [joint, p] : first) {
+    EXPECT_GE(std::abs(p.sensor.zero_offset_rad), 0.02) << joint;
+    EXPECT_LE(std::abs(p.sensor.zero_offset_rad), 0.05) << joint;
+    EXPECT_GT(p.transmission.backlash_rad, 0.0) << joint;
+    EXPECT_GT(p.friction.load_driving, 0.0) << joint;
+  }
+}
+
+TEST(Table2, WalksAreComparedPhaseByPhase) {
+  WalkCurves a(1, 2), b(1, 2), empty(1, 2);
+  for (int k = 0; k < 200; ++k) {
+    const double phase = std::fmod(0.037 * k, 1.0);
+    const double q = std::sin(2.0 * std::numbers::pi * phase);
+    const JointVector reference = JointVector::Constant(2, q);
+    a.add(0, phase, reference, reference);
+    // As long at every phase above as below: what differs from cycle to cycle averages out, an offset doesn't.
+    b.add(0, phase, (reference.array() + 0.03 + 0.01).matrix(), reference);
+    b.add(0, phase, (reference.array() + 0.03 - 0.01).matrix(), reference);
+  }
+  EXPECT_NEAR(WalkCurves::difference_rad(a, b), 0.03, 1e-12);
+  EXPECT_EQ(a.imitation_rad(), 0.0);
+  EXPECT_NEAR(b.imitation_rad(), std::sqrt(0.03 * 0.03 + 0.01 * 0.01), 1e-12);
+  EXPECT_TRUE(std::isnan(WalkCurves::difference_rad(a, empty)));
+  EXPECT_TRUE(std::isnan(empty.imitation_rad()));
+}
+
+TEST(Table2, InformedGainsFollowFromTheRotorsInertia) {
+  const auto joints = static_cast<Eigen::Index>(z1().joints.size());
+  const Gains gains = informed_gains(z1(), {JointVector::Constant(joints, 7.0), JointVector::Constant(joints, 3.0)});
+  const int knee = z1().joint_index.at("left_knee"), elbow = z1().joint_index.at("left_elbow");
+  EXPECT_NEAR(gains.kp_Nm_per_rad[knee], 0.04 * 3947.84, 0.01) << "I omega^2";
+  EXPECT_NEAR(gains.kd_Nm_s_per_rad[knee], 2.0 * 2.0 * 0.04 * 62.832, 0.001) << "2 zeta I omega";
+  EXPECT_EQ(gains.kp_Nm_per_rad[elbow], 7.0) << "not a joint of the policy";
+}
+
+TEST(Table2, TheAskedRatioIsThePapers) {
+  EXPECT_NEAR(published(kFullCalibration)[1] / published(kBaseline)[1], kAskedRatio, 0.0005);
+}
+
+TEST(Table2, MotorCalibrationFindsWhatIsHiddenInADrive) {
+  sim::ActuatorParameters hidden;
+  hidden.drive.kp_scale = 0.9;
+  hidden.transmission.armature_kg_m2 = 0.055;
+  hidden.friction.coulomb_Nm = 1.5;
+  hidden.friction.viscous_Nm_s_per_rad = 0.5;
+  hidden.command.delay_s = 0.006;
+  const auto joints = static_cast<Eigen::Index>(z1().joints.size());
+  const sim::ActuatorsByJoint found = calibrated_motors(
+      {{"left_knee", hidden}}, z1(), {JointVector::Constant(joints, 150.0), JointVector::Constant(joints, 6.0)}, 1);
+  const sim::ActuatorParameters& knee = found.at("left_knee");
+  EXPECT_NEAR(knee.drive.kp_scale, 0.9, 0.05);
+  EXPECT_NEAR(knee.friction.coulomb_Nm, 1.5, 0.2);
+  EXPECT_NEAR(knee.command.delay_s, 0.006, 0.002);
+}
+
+}  // namespace
+}  // namespace pmg::evaluation
