@@ -1,0 +1,86 @@
+// What a diagnosis of a bench says: what the simulation gets wrong, why, and how much better it is once that is known.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/single_joint.hpp"
+
+namespace pmg::diagnosis {
+
+enum class Verdict {
+  kFound,        ///< the causes are these
+  kAmbiguous,    ///< at least one cause can't be told from another with this data: record next_excitation
+  kNone,         ///< nothing beyond noise
+  kUnexplained,  ///< something real remains that no effect of the catalogue explains
+};
+
+/// found, ambiguous, none, unexplained.
+const char* name(Verdict verdict);
+
+/// A number and where it lies with 95 % probability.
+struct Interval {
+  double value = 0.0, low = 0.0, high = 0.0;
+};
+
+/// One parameter of an effect. The name is one of sim::actuator_parameters, or load.inertia_scale, load.gravity_scale.
+struct ParameterEstimate {
+  std::string name;
+  Interval estimate;
+  std::string unit;
+};
+
+/// An effect that the simulation lacked. Errors are mean absolute ones of open-loop rollouts [rad; m on a linear axis]
+/// over the held-out runs: of the whole model without this effect (the rest fitted again), and with it.
+struct Cause {
+  std::string effect;  ///< of the catalogue
+  std::vector<ParameterEstimate> parameters;
+  double held_out_error_before = 0.0, held_out_error_after = 0.0;
+  std::vector<std::string> evidence;    ///< sentences: folds won, and model-free checks that agree or disagree
+  std::vector<std::string> or_instead;  ///< effects that explain as much as this one; empty where it is told apart
+};
+
+struct Rejected {
+  std::string effect;
+  std::string why;
+};
+
+/// Errors that no model can go below, as mean absolute and root mean square ones [rad].
+struct NoiseFloor {
+  double mean_absolute_rad = 0.0, rms_rad = 0.0;
+  bool from_repeats = false;
+  std::string how;  ///< one line for people: from how many pairs of repeats, or how else it was estimated
+};
+
+/// A command to record next, and what it is to tell apart.
+struct NextExcitation {
+  std::string text;  ///< one line for the engineer
+  std::vector<std::string> tells_apart;
+  double kp = 1.0, kd = 0.0;  ///< what to tell the drive, as BenchRun's
+  calib::JointLoad load;
+  double load_mass_kg = 0.0, load_length_m = 0.0;  ///< as in runs.csv; 0 on a bench without loads
+  std::vector<double> t_s, q_cmd_rad;
+  double separation_rad = 0.0;  ///< rms between what the two models do
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::kNone;
+  std::vector<Cause> causes;  ///< the strongest first
+  std::vector<Rejected> rejected;
+  NoiseFloor noise_floor;
+  /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
+  Interval held_out_before, held_out_after;
+  bool held_out = false;               ///< runs were kept for the score; else the two above are from folds
+  double share_of_way_to_floor = 0.0;  ///< (before - after) / (before - floor)
+  /// What a usual block of half a second of the fitted runs misses by, in the noise (rms; geometric mean over blocks):
+  /// 1 where only noise is left.
+  double before_over_noise = 1.0, after_over_noise = 1.0;
+  std::vector<std::string> depends_on;  ///< what a remaining residual hangs together with: velocity, position, ...
+  std::optional<NextExcitation> next_excitation;
+  std::string unit = "rad";
+  calib::JointModel before, after;
+  std::vector<std::string> base_parameters;  ///< fitted with and without effects
+};
+
+}  // namespace pmg::diagnosis

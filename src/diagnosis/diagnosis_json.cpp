@@ -1,0 +1,70 @@
+#include "diagnosis/diagnosis_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace pmg::diagnosis {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity: null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json interval_json(const Interval& interval) {
+  return {{"value", number(interval.value)}, {"low", number(interval.low)}, {"high", number(interval.high)}};
+}
+
+Json cause_json(const Cause& cause) {
+  Json parameters = Json::object();
+  for (const ParameterEstimate& parameter : cause.parameters) {
+    parameters[parameter.name] = interval_json(parameter.estimate);
+    parameters[parameter.name]["unit"] = parameter.unit;
+  }
+  return {{"effect", cause.effect},
+          {"parameters", parameters},
+          {"held_out_error_before", number(cause.held_out_error_before)},
+          {"held_out_error_after", number(cause.held_out_error_after)},
+          {"evidence", cause.evidence},
+          {"or_instead", cause.or_instead}};
+}
+
+Json excitation_json(const NextExcitation& next) {
+  return {{"text", next.text},
+          {"tells_apart", next.tells_apart},
+          {"kp", next.kp},
+          {"kd", next.kd},
+          {"load_mass_kg", next.load_mass_kg},
+          {"load_length_m", next.load_length_m},
+          {"separation", next.separation_rad},
+          {"duration_s", next.t_s.empty() ? 0.0 : next.t_s.back()}};
+}
+
+}  // namespace
+
+Json diagnosis_json(const Diagnosis& diagnosis) {
+  Json json = {{"verdict", name(diagnosis.verdict)}, {"causes", Json::array()}, {"rejected", Json::array()}};
+  for (const Cause& cause : diagnosis.causes) json["causes"].push_back(cause_json(cause));
+  for (const Rejected& rejected : diagnosis.rejected) {
+    json["rejected"].push_back({{"effect", rejected.effect}, {"why", rejected.why}});
+  }
+  json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
+  json["noise_floor_from"] = diagnosis.noise_floor.how;
+  json["held_out_error_before"] = number(diagnosis.held_out_before.value);
+  json["held_out_error_after"] = number(diagnosis.held_out_after.value);
+  json["held_out_error_before_interval"] = {number(diagnosis.held_out_before.low),
+                                            number(diagnosis.held_out_before.high)};
+  json["held_out_error_after_interval"] = {number(diagnosis.held_out_after.low), number(diagnosis.held_out_after.high)};
+  json["share_of_way_to_floor"] = number(diagnosis.share_of_way_to_floor);
+  json["scored_on_held_out_runs"] = diagnosis.held_out;
+  json["unit"] = diagnosis.unit;
+  json["before_over_noise"] = number(diagnosis.before_over_noise);
+  json["after_over_noise"] = number(diagnosis.after_over_noise);
+  json["depends_on"] = diagnosis.depends_on;
+  json["base_parameters"] = diagnosis.base_parameters;
+  json["next_excitation"] = diagnosis.next_excitation ? excitation_json(*diagnosis.next_excitation) : Json(nullptr);
+  return json;
+}
+
+}  // namespace pmg::diagnosis

@@ -1,0 +1,270 @@
+#include "diagnosis/effect_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit_problem.hpp"
+#include "diagnosis/start_screen.hpp"
+
+namespace pmg::diagnosis {
+
+namespace {
+
+constexpr std::size_t kMostEffects = 6;
+constexpr std::size_t kFitted = 8;       // effects of a round that are worth a fit, by the linear look
+constexpr std::size_t kExchanged = 5;    // effects that may stand for another
+constexpr std::size_t kFinished = 3;     // and a fit to the end
+constexpr double kWorthFinishing = 0.4;  // of the best gain
+constexpr int kFewIterations = 4, kManyIterations = 15;
+// What convinces besides the limits: a mean over blocks of half a second that is three of its deviations off zero, and
+// more folds for it than against.
+constexpr double kDeviations = 3.0, kFoldsWon = 0.6;
+constexpr double kEqual = 0.03;  // of the gain: such a difference doesn't choose
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> with(std::vector<std::string> effects, const std::string& effect) {
+  effects.push_back(effect);
+  return effects;
+}
+
+std::vector<std::string> less(std::vector<std::string> effects, const std::string& effect) {
+  std::erase(effects, effect);
+  return effects;
+}
+
+}  // namespace
+
+EffectSearch::EffectSearch(const calib::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
+                           SearchProgress progress)
+    : bench_(bench),
+      fit_(fit),
+      base_(std::move(base)),
+      limits_(limits),
+      progress_(std::move(progress)),
+      compare_(fit, folds(fit), limits.noise_squares),
+      base_extension_(extend({}, base_.model, kManyIterations)) {}
+
+bool EffectSearch::going(const std::string& text) {
+  if (progress_ && !progress_(text)) stopped_ = true;
+  return !stopped_;
+}
+
+/// The base's, and the effects' over their whole range.
+std::vector<Unknown> EffectSearch::unknowns(const std::vector<std::string>& effects) const {
+  std::vector<Unknown> found = base_.unknowns;
+  for (const std::string& name : effects) {
+    for (const std::string& parameter : effect(name).parameters) {
+      if (is_jagged(parameter)) continue;
+      const Unknown full = unknown(parameter, bench_, base_.scale);
+      const auto there =
+          std::find_if(found.begin(), found.end(), [&](const Unknown& u) { return u.name == parameter; });
+      if (there == found.end())
+        found.push_back(full);
+      else
+        *there = full;
+    }
+  }
+  return found;
+}
+
+/// Without the effect, but for parameters that the kept ones share.
+calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
+                                      const std::vector<std::string>& kept) const {
+  for (const std::string& parameter : diagnosis::effect(effect).parameters) {
+    const bool shared = std::any_of(kept.begin(), kept.end(), [&](const std::string& name) {
+      return contains(diagnosis::effect(name).parameters, parameter);
+    });
+    if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
+  }
+  return model;
+}
+
+Extension EffectSearch::extend(const std::vector<std::string>& effects, const calib::JointModel& start,
+                               int iterations) const {
+  Extension extension{effects, fit_.fit(start, unknowns(effects), iterations), {}};
+  fit_.linearise(extension.fitted);
+  extension.held_out = diagnosis::held_out_squares(fit_, extension.fitted, compare_.folds());
+  return extension;
+}
+
+Extension EffectSearch::without(const Extension& extension, const std::string& effect) const {
+  const std::vector<std::string> kept = less(extension.effects, effect);
+  return extend(kept, reset(extension.fitted.model, effect, kept), kManyIterations);
+}
+
+Extension EffectSearch::settled(const Extension& extension) const {
+  const NestedModel& loose = extension.fitted;
+  const bool known =
+      std::any_of(loose.unknowns.begin(), loose.unknowns.end(), [](const Unknown& u) { return u.deviation > 0.0; });
+  if (!known) return extension;
+  // The misses of a block hang together: it is one observation, of which a calibration's number is another.
+  const double weight = loose.squares / static_cast<double>(std::max<std::size_t>(1, loose.blocks.size()));
+  calib::JointModel given = loose.model;
+  std::vector<Unknown> effects_only;
+  for (const Unknown& u : loose.unknowns) {
+    if (u.deviation > 0.0)
+      calib::set(given, u.name, u.expected);
+    else
+      effects_only.push_back(u);
+  }
+  given = fit_.fit(given, effects_only, kManyIterations).model;
+  Extension best = extension;
+  double least = std::numeric_limits<double>::infinity();
+  for (const calib::JointModel& start : {given, loose.model}) {
+    NestedModel fitted = fit_.fit(start, loose.unknowns, kManyIterations, nullptr, weight);
+    const double squares = fitted.squares + prior(fitted).squares;
+    if (squares >= least) continue;
+    least = squares;
+    best.fitted = std::move(fitted);
+  }
+  fit_.linearise(best.fitted);
+  best.held_out = diagnosis::held_out_squares(fit_, best.fitted, compare_.folds());
+  return best;
+}
+
+Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {
+  Trial found{effect, compare_(without.held_out, with.held_out), 0.0, with};
+  const double rest = without.held_out_squares() / fit_.samples() - limits_.healthy_squares;
+  found.share_of_rest = rest > 0.0 ? found.comparison.gain / rest : 0.0;
+  if (limits_.healthy_squares <= limits_.noise_squares) {
+    const double usual = usual_rest(without);
+    if (usual > 0.0) found.share_of_rest = std::max(found.share_of_rest, found.comparison.usual_gain / usual);
+  }
+  return found;
+}
+
+std::string EffectSearch::objection(const Trial& trial) const {
+  const Comparison& c = trial.comparison;
+  // What nobody calibrated before may leave single blocks that go another way altogether; the usual one counts.
+  const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
+  const double gain = from_scratch ? std::max(c.gain, c.usual_gain) : c.gain;
+  if (gain <= 0.0) return "runs left out are predicted no better with it";
+  if (trial.share_of_rest <= 0.0) return "what is left is no more than models that are in order leave";
+  const double amplitude = std::sqrt(gain);
+  const double beginning = std::max(0.0, base_extension_.held_out_squares() / fit_.samples() - limits_.noise_squares);
+  if (c.deviations < kDeviations) {
+    return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
+  }
+  if (c.folds_won < kFoldsWon) return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
+  if (amplitude < limits_.of_noise * std::sqrt(limits_.noise_squares))
+    return "what it explains is small beside the noise";
+  if (amplitude < limits_.of_beginning * std::sqrt(beginning)) return "what it explains is small beside what was wrong";
+  if (trial.share_of_rest < limits_.of_rest) {
+    return fmt::format("it explains {:.0f} % of what is left, as others' forms not being quite right would",
+                       100.0 * trial.share_of_rest);
+  }
+  return "";
+}
+
+/// The effects that the extension doesn't have: looked at by the linearised fit, the most promising fitted.
+std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t most) {
+  struct Promising {
+    const Effect* effect;
+    std::vector<ScreenedStart> starts;
+  };
+  const StartScreen screen(fit_, current.fitted);
+  std::vector<Promising> promising;
+  for (const Effect& one : catalogue()) {
+    if (contains(current.effects, one.name)) continue;
+    if (!going(fmt::format("looking at {}", one.title))) return {};
+    std::vector<ScreenedStart> starts = screen.best(one, base_.scale);
+    if (!starts.empty()) promising.push_back({&one, std::move(starts)});
+  }
+  std::stable_sort(promising.begin(), promising.end(), [](const Promising& a, const Promising& b) {
+    return a.starts.front().squares < b.starts.front().squares;
+  });
+  promising.resize(std::min(promising.size(), most));
+  std::vector<Trial> trials;
+  for (const Promising& p : promising) {
+    if (!going(fmt::format("fitting {}", p.effect->title))) return {};
+    const std::vector<std::string> effects = with(current.effects, p.effect->name);
+    Extension best;
+    best.fitted.squares = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < std::min<std::size_t>(2, p.starts.size()); ++s) {
+      const NestedModel fitted = fit_.fit(p.starts[s].model, unknowns(effects), kFewIterations, &screen.slopes());
+      if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}};
+    }
+    fit_.linearise(best.fitted, &screen.slopes());
+    best.held_out = diagnosis::held_out_squares(fit_, best.fitted, compare_.folds());
+    trials.push_back(trial(current, best, p.effect->name));
+  }
+  const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
+  std::stable_sort(trials.begin(), trials.end(), better);
+  // Few steps may leave a fit in a valley (friction that grows with the load for friction that doesn't): the one that
+  // meets the runs best so far is finished whatever the folds say of it as yet.
+  const auto closest = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+    return a.extension.fitted.squares < b.extension.fitted.squares;
+  });
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const bool worth =
+        t < kFinished && trials[t].comparison.log_gain >= kWorthFinishing * trials.front().comparison.log_gain;
+    if (!worth && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
+    if (!going(fmt::format("finishing {}", effect(trials[t].effect).title))) return {};
+    trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model, kManyIterations),
+                      trials[t].effect);
+  }
+  std::stable_sort(trials.begin(), trials.end(), better);
+  return trials;
+}
+
+std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, kFitted); }
+
+double EffectSearch::usual_rest(const Extension& extension) const {
+  Eigen::VectorXd squares(static_cast<Eigen::Index>(extension.fitted.blocks.size()));
+  for (Eigen::Index b = 0; b < squares.size(); ++b) {
+    squares[b] = extension.fitted.blocks[static_cast<std::size_t>(b)].squares;
+  }
+  return std::max(0.0, std::exp(compare_.score(squares)) - 2.0 * limits_.noise_squares);
+}
+
+Comparison EffectSearch::compared(const Extension& first, const Extension& second) const {
+  return compare_(first.held_out, second.held_out);
+}
+
+std::vector<Trial> EffectSearch::alternatives(const Extension& without, const std::string& effect) {
+  std::vector<Trial> trials = tried(without, kExchanged);
+  // What contains the effect as a special case explains as much; the simpler one stands.
+  std::erase_if(trials, [&](const Trial& trial) {
+    return trial.effect == effect || contains(diagnosis::effect(trial.effect).contains, effect);
+  });
+  return trials;
+}
+
+Extension EffectSearch::choose() {
+  Extension current = base_extension_;
+  while (current.effects.size() < kMostEffects && !stopped_) {
+    last_additions_ = additions(current);
+    std::vector<Trial> trials = last_additions_;
+    std::erase_if(trials, [&](const Trial& trial) { return !objection(trial).empty(); });
+    if (trials.empty()) break;
+    // Of those that are nearly equal, the one with the fewest parameters; a special case unless it is clearly worse.
+    const double best = trials.front().comparison.log_gain;
+    const Trial* chosen = &trials.front();
+    for (const Trial& trial : trials) {
+      const bool special = contains(effect(chosen->effect).contains, trial.effect) &&
+                           compared(trial.extension, chosen->extension).deviations < kDeviations;
+      if (trial.comparison.log_gain < (1.0 - kEqual) * best && !special) continue;
+      if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
+    }
+    current = chosen->extension;
+    // What came first may only have stood for what came later.
+    for (std::size_t e = 0; e + 1 < current.effects.size() && !stopped_;) {
+      const std::string name = current.effects[e];
+      const Extension rest = without(current, name);
+      if (objection(trial(rest, current, name)).empty()) {
+        ++e;
+      } else {
+        current = rest;
+      }
+    }
+  }
+  return current;
+}
+
+}  // namespace pmg::diagnosis

@@ -1,0 +1,15 @@
+// The report's pictures of what the residual hangs together with.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/diagnosis.hpp"
+#include "pages/page.hpp"
+
+namespace pmg::diagnosis {
+
+/// A section of the page: residual before and after against each circumstance, and over frequency.
+void show_residuals(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis,
+                    const std::vector<calib::SingleJoint>& runs, unsigned threads);
+
+}  // namespace pmg::diagnosis

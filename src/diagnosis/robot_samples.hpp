@@ -1,0 +1,33 @@
+// A recording as what equations of motion are made of: means over control ticks, low-passed alike.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "diagnosis/robot_recording.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::diagnosis {
+
+/// All as weighted means over a few ticks. Joint vectors are in joint order; torques are what the drives make of their
+/// commands if they do as robot.yaml says: spring + damper + feed_forward.
+struct RobotSample {
+  double t_s = 0.0;
+  JointVector q, dq, ddq;
+  JointVector spring_Nm, damper_Nm, feed_forward_Nm;
+  JointVector direction;                                     ///< of motion, -1 to 1: near 0 it turned, or stood still
+  JointVector late_Nm_per_s;                                 ///< d torque / d delay of the command
+  Eigen::Vector3d omega_I, alpha_I, specific_force_I, up_I;  ///< IMU frame; up_I by the IMU's own orientation, unit
+};
+
+/// Readings at the end of a tick aren't what they were in its middle: a command that is held for a tick makes torques
+/// saw-toothed. How far each joint's torque at the reading of tick k lies from its trend [Nm]; 0 at both ends.
+std::vector<JointVector> torque_ripple(const RobotRecording& recording);
+
+/// One sample every so many ticks; 50 ms lose nothing that the low-pass lets through. ripple_I: what the accelerometer
+/// shows too much at every tick for that reason [m/s^2], or empty.
+std::vector<RobotSample> robot_samples(const RobotRecording& recording, int ticks_per_sample = 5,
+                                       std::span<const Eigen::Vector3d> ripple_I = {});
+
+}  // namespace pmg::diagnosis

@@ -1,0 +1,123 @@
+#include "diagnosis/start_screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit_problem.hpp"
+
+namespace pmg::diagnosis {
+
+namespace {
+
+constexpr std::size_t kMostStarts = 4;
+constexpr double kPi = 3.141592653589793;
+
+}  // namespace
+
+StartScreen::StartScreen(const NestedFit& fit, const NestedModel& current)
+    : fit_(fit), current_(current), misses_(fit.misses(current.model)), slopes_(fit.slopes(current, misses_)) {
+  const Eigen::Index count = current.coordinates.size();
+  information_ = Eigen::MatrixXd::Zero(count, count);
+  for (const Eigen::MatrixXd& slope : slopes_.of_run) information_ += slope.transpose() * slope;
+}
+
+/// The unknowns that the effect doesn't set move to where their slopes say; squares as expected there.
+void StartScreen::follow(const Misses& misses, const Effect& effect, ScreenedStart& start) const {
+  start.squares = fit_.squares(misses);
+  if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(current_.coordinates.size());
+  for (std::size_t i = 0; i < misses.size(); ++i) gradient += slopes_.of_run[i].transpose() * misses[i];
+  const Eigen::VectorXd step = bounded_step(information_, gradient, current_.unknowns, current_.coordinates, 1e-3);
+  start.squares = std::max(0.0, start.squares + 2.0 * gradient.dot(step) + step.dot(information_ * step));
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
+    if (std::find(effect.parameters.begin(), effect.parameters.end(), u.name) != effect.parameters.end()) continue;
+    calib::set(start.model, u.name, u.value(current_.coordinates[i] + step[i]));
+  }
+}
+
+void StartScreen::look(const Effect& effect, const std::vector<double>& values,
+                       std::vector<ScreenedStart>& into) const {
+  ScreenedStart start{current_.model, 0.0};
+  for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
+  const Misses there = fit_.misses(start.model);
+  if (there.empty()) return;
+  follow(there, effect, start);
+  if (std::isfinite(start.squares)) into.push_back(start);
+  // Along the straight line from the model without it, how much of it would be best?
+  const double from = calib::value(current_.model, effect.parameters.front());
+  if (!std::isfinite(from) || values.size() != 1) return;
+  double along = 0.0, across = 0.0;
+  Misses moved = there;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const Eigen::VectorXd direction = there[i] - misses_[i];
+    along -= direction.dot(misses_[i]);
+    across += direction.squaredNorm();
+  }
+  if (!(across > 0.0)) return;
+  const double share = std::clamp(along / across, 0.0, 3.0);
+  if (share < 0.02) return;
+  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = misses_[i] + share * (there[i] - misses_[i]);
+  ScreenedStart scaled{current_.model, 0.0};
+  follow(moved, effect, scaled);
+  calib::set(scaled.model, effect.parameters.front(), from + share * (values.front() - from));
+  if (std::isfinite(scaled.squares)) into.push_back(scaled);
+}
+
+/// The response to a small wave over the joint's angle is linear in its sine and cosine.
+void StartScreen::look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase,
+                               double height, const calib::JointModel& flat, std::vector<ScreenedStart>& into) const {
+  ScreenedStart start{flat, 0.0};
+  calib::set(start.model, amplitude, height);
+  calib::set(start.model, phase, 0.0);
+  const Misses sine = fit_.misses(start.model);
+  calib::set(start.model, phase, 0.5 * kPi);
+  const Misses cosine = fit_.misses(start.model);
+  if (sine.empty() || cosine.empty()) return;
+  Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < sine.size(); ++i) {
+    const Eigen::VectorXd s = sine[i] - misses_[i], c = cosine[i] - misses_[i];
+    a(0, 0) += s.squaredNorm();
+    a(0, 1) += s.dot(c);
+    a(1, 1) += c.squaredNorm();
+    b[0] -= s.dot(misses_[i]);
+    b[1] -= c.dot(misses_[i]);
+  }
+  a(1, 0) = a(0, 1);
+  const double determinant = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
+  if (!(determinant > 1e-9 * a(0, 0) * a(1, 1))) return;
+  const Eigen::Vector2d share((a(1, 1) * b[0] - a(0, 1) * b[1]) / determinant,
+                              (-a(0, 1) * b[0] + a(0, 0) * b[1]) / determinant);
+  Misses moved = misses_;
+  for (std::size_t i = 0; i < sine.size(); ++i) {
+    moved[i] += share[0] * (sine[i] - misses_[i]) + share[1] * (cosine[i] - misses_[i]);
+  }
+  calib::set(start.model, amplitude, height * std::min(share.norm(), 10.0));
+  calib::set(start.model, phase, std::atan2(share[1], share[0]));
+  follow(moved, effect, start);
+  if (std::isfinite(start.squares)) into.push_back(start);
+}
+
+std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchScale& scale) const {
+  std::vector<ScreenedStart> found;
+  for (const std::vector<double>& values : starts(effect, current_.model, scale)) {
+    if (effect.name == "cogging") {
+      calib::JointModel flat = current_.model;
+      flat.actuator.ripple.order = values[1];
+      look_at_wave(effect, "ripple.amplitude_Nm", "ripple.phase_rad", values[0], flat, found);
+    } else if (effect.name == "eccentricity") {
+      look_at_wave(effect, "sensor.eccentricity_rad", "sensor.eccentricity_phase_rad", values[0], current_.model,
+                   found);
+    } else {
+      look(effect, values, found);
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const ScreenedStart& a, const ScreenedStart& b) { return a.squares < b.squares; });
+  found.resize(std::min(found.size(), kMostStarts));
+  return found;
+}
+
+}  // namespace pmg::diagnosis

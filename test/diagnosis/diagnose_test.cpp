@@ -1,0 +1,128 @@
+#include "diagnosis/diagnose.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "calib/synthetic_bench.hpp"
+#include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis/next_excitation.hpp"
+
+namespace pmg::diagnosis {
+namespace {
+
+namespace fs = std::filesystem;
+
+sim::ActuatorParameters known() {
+  sim::ActuatorParameters known;
+  known.transmission.armature_kg_m2 = 0.01;
+  known.friction.viscous_Nm_s_per_rad = 0.1;
+  known.friction.coulomb_Nm = 0.05;
+  return known;
+}
+
+/// A bench in files, moved by what is known and what is hidden.
+class Diagnose : public testing::Test {
+ protected:
+  Diagnosis diagnosed(const std::function<void(sim::ActuatorParameters&)>& hide) {
+    calib::JointModel truth;
+    truth.actuator = known();
+    hide(truth.actuator);
+    test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4, 2e-4));
+    DiagnoseOptions options;
+    options.model = known();
+    return diagnose(calib::read_bench(folder_), options);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  const fs::path folder_ = fs::temp_directory_path() / ("pmg_diagnose_" + std::to_string(getpid()));
+};
+
+TEST_F(Diagnose, NamesADelayWithItsInterval) {
+  const Diagnosis found = diagnosed([](sim::ActuatorParameters& p) { p.command.delay_s = 0.015; });
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "delay");
+  const Interval delay_s = found.causes.front().parameters.front().estimate;
+  EXPECT_LT(delay_s.low, 0.015);
+  EXPECT_GT(delay_s.high, 0.015);
+  EXPECT_EQ(found.verdict, Verdict::kFound);
+  EXPECT_GT(found.share_of_way_to_floor, 0.9);
+  EXPECT_NEAR(found.after.actuator.command.delay_s, 0.015, 0.001);
+}
+
+TEST_F(Diagnose, FindsNothingWhereNothingIsWrong) {
+  const Diagnosis found = diagnosed([](sim::ActuatorParameters&) {});
+  EXPECT_EQ(found.verdict, Verdict::kNone);
+  EXPECT_TRUE(found.causes.empty());
+  EXPECT_FALSE(found.rejected.empty());
+}
+
+TEST_F(Diagnose, SaysInJsonWhatTheFormatAsksFor) {
+  const nlohmann::ordered_json json =
+      diagnosis_json(diagnosed([](sim::ActuatorParameters& p) { p.friction.coulomb_Nm = 0.5; }));
+  EXPECT_EQ(json.at("verdict"), "found");
+  const auto& cause = json.at("causes").at(0);
+  EXPECT_EQ(cause.at("effect"), "coulomb");
+  const auto& parameter = cause.at("parameters").at("friction.coulomb_Nm");
+  for (const char* key : {"value", "low", "high", "unit"}) EXPECT_TRUE(parameter.contains(key)) << key;
+  EXPECT_LT(cause.at("held_out_error_after"), cause.at("held_out_error_before"));
+  for (const char* key :
+       {"rejected", "noise_floor", "held_out_error_before", "held_out_error_after", "unit", "next_excitation"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+}
+
+TEST_F(Diagnose, RefusesToScoreWhatItFits) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  test::write_bench(folder_, test::record(test::pd_bench(true), truth, 2));
+  DiagnoseOptions options;
+  options.score = "repeat == 0";
+  EXPECT_THROW(diagnose(calib::read_bench(folder_), options), std::invalid_argument);
+}
+
+NestedModel held(const calib::JointModel& model) { return {model, {}, {}, 0.0, {}, 0.0}; }
+
+TEST(NextExcitation, AsksForNothingThatARivalCouldAbsorb) {
+  // A gain that is free may imitate the other model's altogether.
+  const calib::Bench bench = test::pd_bench(true);
+  calib::JointModel one, other;
+  one.actuator = other.actuator = known();
+  other.actuator.drive.kp_scale = 1.01;
+  const NestedFit fit(test::record(bench, one, 2), 1);
+  const Unknown gain = unknown("drive.kp_scale", bench, scale_of(bench, fit.runs(), one));
+  const auto fixed = next_excitation(bench, fit.runs(), {held(one), {held(other)}, {"a", "b"}});
+  NestedModel first = held(one), second = held(other);
+  first.unknowns = second.unknowns = {gain};
+  first.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.0));
+  second.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.01));
+  const auto freed = next_excitation(bench, fit.runs(), {first, {second}, {"a", "b"}});
+  ASSERT_TRUE(fixed && freed);
+  EXPECT_LT(freed->separation_rad, 0.1 * fixed->separation_rad);
+}
+
+TEST(NextExcitation, PartsTwoModelsFurtherThanTheNoise) {
+  const calib::Bench bench = test::pd_bench(true);
+  calib::JointModel slow, late;
+  slow.actuator = late.actuator = known();
+  late.actuator.command.delay_s = 0.01;
+  slow.actuator.command.rate_limit_rad_s = 2.0;
+  const auto next =
+      next_excitation(bench, test::record(bench, slow, 2), {held(slow), {held(late)}, {"rate_limit", "delay"}});
+  ASSERT_TRUE(next);
+  EXPECT_GT(next->separation_rad, 0.01);
+  EXPECT_EQ(next->t_s.size(), next->q_cmd_rad.size());
+  for (const double q_rad : next->q_cmd_rad) EXPECT_LE(std::abs(q_rad), 1.2);  // the range of the runs' commands
+}
+
+TEST(NextExcitation, AsksForNothingWhereTwoModelsAreTheSame) {
+  const calib::Bench bench = test::pd_bench(true);
+  calib::JointModel model;
+  model.actuator = known();
+  EXPECT_FALSE(next_excitation(bench, test::record(bench, model, 1), {held(model), {held(model)}, {"a", "b"}}));
+}
+
+}  // namespace
+}  // namespace pmg::diagnosis

@@ -1,0 +1,85 @@
+// The nightly campaign: many hidden robots, how often the diagnosis is right, as the table of docs/robot-diagnosis.md.
+// Usage: hidden_robot_campaign [COUNT [FIRST_SEED]]. Exit code 1 when a promise is broken.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+
+#include "diagnosis/hidden_robot.hpp"
+#include "diagnosis/robot_diagnosis.hpp"
+#include "model/robot_model.hpp"
+
+namespace {
+
+using namespace pmg;
+using namespace pmg::diagnosis;
+
+struct Count {
+  int right = 0, of = 0;
+  void add(bool was_right) {
+    ++of;
+    right += was_right ? 1 : 0;
+  }
+  bool holds(double share) const { return of == 0 || right >= share * of; }
+};
+
+/// Within 15 % a payload, within 0.3 degrees an IMU; of the rest the name counts.
+bool value_is_right(const HiddenEffect& hidden, const RobotCause& cause) {
+  for (std::size_t i = 0; i < hidden.values.size(); ++i) {
+    const double error = std::abs(cause.parameters[i].estimate.value - hidden.values[i]);
+    if (hidden.effect == "payload" && error > 0.15 * hidden.values[i]) return false;
+    if (hidden.effect == "imu_mounting" && error > 0.3 * std::numbers::pi / 180.0) return false;
+  }
+  return true;
+}
+
+bool found(const HiddenEffect& hidden, const RobotDiagnosis& diagnosis) {
+  if (hidden.effect.empty()) return diagnosis.verdict == Verdict::kNone;
+  return diagnosis.verdict == Verdict::kFound && diagnosis.causes.front().effect == hidden.effect &&
+         diagnosis.causes.front().place == hidden.place && value_is_right(hidden, diagnosis.causes.front());
+}
+
+std::string kind(const HiddenEffect& hidden) {
+  const bool whole = hidden.effect.empty() || hidden.effect == "payload" || hidden.effect == "center_of_mass" ||
+                     hidden.effect == "imu_mounting";
+  return hidden.effect.empty() ? "clean" : whole ? hidden.effect : "joint";
+}
+
+std::string said(const RobotDiagnosis& diagnosis) {
+  std::string text = name(diagnosis.verdict);
+  for (const RobotCause& cause : diagnosis.causes) {
+    text += fmt::format("; {} of {}", cause.effect, cause.place);
+    for (const ParameterEstimate& p : cause.parameters) text += fmt::format(" {:.3g}", p.estimate.value);
+  }
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 100, first = argc > 2 ? std::atoi(argv[2]) : 0;
+  const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
+  std::map<std::string, Count> counts;
+  Count ground;
+  fmt::print("| seed | hidden | said | right |\n|---|---|---|---|\n");
+  for (int seed = first; seed < first + count; ++seed) {
+    const HiddenRobot hidden = hide(robot, static_cast<std::uint64_t>(seed));
+    const RobotDiagnosis diagnosis = diagnose_robot(robot, record_hidden(hidden));
+    const bool right = found(hidden.hidden, diagnosis);
+    counts[kind(hidden.hidden)].add(right);
+    ground.add(!diagnosis.ground.observable || std::abs(diagnosis.ground.value - hidden.ground_friction) <= 0.1);
+    std::string truth =
+        hidden.hidden.effect.empty() ? "nothing" : fmt::format("{} of {}", hidden.hidden.effect, hidden.hidden.place);
+    for (const double value : hidden.hidden.values) truth += fmt::format(" {:.3g}", value);
+    fmt::print("| {} | {} | {} | {} |\n", seed, truth, said(diagnosis), right ? "yes" : "no");
+    std::fflush(stdout);
+  }
+  fmt::print("\n| kind | right | of |\n|---|---|---|\n");
+  for (const auto& [name, c] : counts) fmt::print("| {} | {} | {} |\n", name, c.right, c.of);
+  fmt::print("| ground friction within 0.1 or not observable | {} | {} |\n", ground.right, ground.of);
+  const bool kept = counts["clean"].holds(0.95) && counts["joint"].holds(0.85) && counts["payload"].holds(1.0) &&
+                    counts["imu_mounting"].holds(1.0) && ground.holds(1.0);
+  return kept ? 0 : 1;
+}

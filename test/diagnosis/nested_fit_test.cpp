@@ -1,0 +1,96 @@
+#include "diagnosis/nested_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "calib/fit_problem.hpp"
+#include "calib/synthetic_bench.hpp"
+#include "diagnosis/folds.hpp"
+#include "diagnosis/intervals.hpp"
+
+namespace pmg::diagnosis {
+namespace {
+
+calib::JointModel healthy() {
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.01;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  return model;
+}
+
+struct Setting {
+  calib::Bench bench = test::pd_bench(true);
+  NestedFit fit;
+  BenchScale scale;
+  explicit Setting(const calib::JointModel& truth)
+      : fit(test::record(bench, truth, 4, 1e-4), 1), scale(scale_of(bench, fit.runs(), healthy())) {}
+};
+
+TEST(NestedFit, FindsFrictionAndDelayWithinTheirIntervals) {
+  calib::JointModel truth = healthy();
+  truth.actuator.friction.coulomb_Nm = 0.3;
+  truth.actuator.command.delay_s = 0.012;
+  const Setting s(truth);
+  NestedModel fitted = s.fit.fit(
+      healthy(), {unknown("friction.coulomb_Nm", s.bench, s.scale), unknown("command.delay_s", s.bench, s.scale)}, 20);
+  s.fit.linearise(fitted);
+  const std::vector<Interval> found = parameter_intervals(fitted, folds(s.fit), 1e-8);
+  EXPECT_LT(found[0].low, 0.3);
+  EXPECT_GT(found[0].high, 0.3);
+  EXPECT_LT(found[1].low, 0.012);
+  EXPECT_GT(found[1].high, 0.012);
+  EXPECT_LT(found[0].high - found[0].low, 0.1 * 0.3);
+}
+
+TEST(NestedFit, NeverEndsWorseThanItsStart) {
+  const Setting s(healthy());
+  calib::JointModel start = healthy();
+  const double before = s.fit.squares(s.fit.misses(start));
+  for (const char* name : {"friction.coulomb_Nm", "command.rate_limit_rad_s", "drive.kp_scale"}) {
+    // Within the range of the unknown: an infinite rate limit begins at its end.
+    const Unknown u = unknown(name, s.bench, s.scale);
+    calib::JointModel inside = start;
+    calib::set(inside, name, u.value(u.coordinate(calib::value(start, name))));
+    EXPECT_LE(s.fit.fit(inside, {u}, 5).squares, s.fit.squares(s.fit.misses(inside))) << name;
+  }
+  EXPECT_LE(s.fit.fit(start, {}, 5).squares, before);
+}
+
+TEST(NestedFit, StepsStayInTheRangesAndTheOthersMakeUpForIt) {
+  Eigen::Matrix2d information;
+  information << 1.0, 0.5, 0.5, 1.0;
+  const Eigen::Vector2d gradient(-3.0, 0.0), at(0.0, 0.0);
+  const Unknown u{"x", "", -1.0, 1.0, false, 1.0};
+  const Eigen::VectorXd step = bounded_step(information, gradient, {u, u}, at, 0.0);
+  EXPECT_DOUBLE_EQ(step[0], 1.0);
+  EXPECT_NEAR(step[1], -0.5, 1e-6);  // the optimum along the edge
+}
+
+TEST(Folds, LeaveOutEachGainEachLoadAndEachTrajectory) {
+  const Setting s(healthy());
+  std::size_t gains = 0, loads = 0, trajectories = 0;
+  for (const Fold& fold : folds(s.fit)) {
+    gains += fold.name == "gain" ? 1 : 0;
+    loads += fold.name == "load" ? 1 : 0;
+    trajectories += fold.name == "trajectory" ? 1 : 0;
+    EXPECT_FALSE(fold.blocks.empty());
+  }
+  EXPECT_EQ(gains, 4U);  // kp and kd of the synthetic bench
+  EXPECT_EQ(loads, 4U);
+  EXPECT_EQ(trajectories, 4U);
+}
+
+TEST(Folds, WhatOnlyFitsNoiseGainsNothingOnBlocksLeftOut) {
+  const Setting s(healthy());
+  const std::vector<Fold> left_out = folds(s.fit);
+  NestedModel base = s.fit.fit(healthy(), {}, 1);
+  NestedModel extended = s.fit.fit(healthy(), {unknown("ripple.offset_Nm", s.bench, s.scale)}, 10);
+  s.fit.linearise(base);
+  s.fit.linearise(extended);
+  const BlockComparison compare(s.fit, left_out, 1e-8);
+  const Comparison found = compare(held_out_squares(s.fit, base, left_out), held_out_squares(s.fit, extended, left_out));
+  EXPECT_LT(found.deviations, 2.5);
+  EXPECT_LT(found.log_gain, 0.02);
+}
+
+}  // namespace
+}  // namespace pmg::diagnosis

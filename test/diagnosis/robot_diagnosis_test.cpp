@@ -1,0 +1,128 @@
+// What is hidden in a simulated robot is found from its logs alone.
+#include "diagnosis/robot_diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "diagnosis/hidden_robot.hpp"
+#include "diagnosis/robot_excitation.hpp"
+#include "diagnosis/robot_report.hpp"
+#include "model/clip_library_file.hpp"
+#include "sim/robots.hpp"
+
+namespace pmg::diagnosis {
+namespace {
+
+HiddenRobot healthy() {
+  HiddenRobot robot{.hidden = {}, .robot = z1(), .options = {}};
+  robot.options.seed = 3;
+  robot.options.gyro_noise_rad_s = 0.01;
+  robot.options.encoder_noise_rad = 0.0004;
+  robot.options.orientation_noise_rad = 0.002;
+  return robot;
+}
+
+RobotDiagnosis diagnosed(const HiddenRobot& hidden) {
+  const std::vector<RobotRecording> recordings = record_hidden(hidden);
+  return diagnose_robot(z1(), recordings);
+}
+
+TEST(RobotDiagnosis, FindsNothingInARobotThatIsAsItsModel) {
+  const RobotDiagnosis d = diagnosed(healthy());
+  EXPECT_EQ(d.verdict, Verdict::kNone) << robot_diagnosis_text(d);
+  EXPECT_GT(d.coverage.hanging_s, 25.0);
+  EXPECT_GT(d.coverage.standing_s, 30.0);
+}
+
+TEST(RobotDiagnosis, FindsAPayloadOnTheTorso) {
+  HiddenRobot hidden = healthy();
+  hidden.options.variation.torso_mass_kg = 2.0;
+  const RobotDiagnosis d = diagnosed(hidden);
+  ASSERT_FALSE(d.causes.empty());
+  EXPECT_EQ(d.causes.front().effect, "payload") << robot_diagnosis_text(d);
+  EXPECT_EQ(d.causes.front().place, "torso");
+  EXPECT_NEAR(d.causes.front().parameters.front().estimate.value, 2.0, 0.15 * 2.0);  // the promise: 15 %
+}
+
+TEST(RobotDiagnosis, FindsAnImuThatIsMountedAskew) {
+  HiddenRobot hidden = healthy();
+  const Eigen::Vector3d turn_rad(0.03, -0.02, 0.015);
+  hidden.robot.imu.T_LI.linear() =
+      hidden.robot.imu.T_LI.linear() * Eigen::AngleAxisd(turn_rad.norm(), turn_rad.normalized()).toRotationMatrix();
+  const RobotDiagnosis d = diagnosed(hidden);
+  ASSERT_FALSE(d.causes.empty());
+  ASSERT_EQ(d.causes.front().effect, "imu_mounting") << robot_diagnosis_text(d);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(d.causes.front().parameters[axis].estimate.value, turn_rad[static_cast<Eigen::Index>(axis)],
+                0.3 * M_PI / 180.0);  // the promise: 0.3 degrees
+  }
+}
+
+TEST(RobotDiagnosis, FindsTheJointWhoseGearHoldsTooFirmly) {
+  HiddenRobot hidden = healthy();
+  hidden.options.variation.joint_friction_factor = JointVector::Ones(z1().joint_index.size());
+  hidden.options.variation.joint_friction_factor[z1().joint_index.at("left_elbow")] = 3.0;
+  const RobotDiagnosis d = diagnosed(hidden);
+  ASSERT_FALSE(d.causes.empty());
+  EXPECT_EQ(d.causes.front().effect, "coulomb") << robot_diagnosis_text(d);
+  EXPECT_EQ(d.causes.front().place, "left_elbow");
+  EXPECT_NEAR(d.causes.front().parameters.front().estimate.value, 0.4, 0.1);  // Nm; 0.2 Nm is the joint's own
+}
+
+TEST(RobotDiagnosis, GravityTorquesOfAHangingRobotAreThoseThatMuJoCoHolds) {
+  // At rest the equations hold with nothing but gravity: no residual beyond dry friction.
+  RobotParameterList none;
+  RobotEquations equations(z1(), none);
+  HiddenRobot hidden{.hidden = {}, .robot = z1(), .options = {}};
+  hidden.options.gantry = true;
+  sim::World world(hidden.robot, hidden.options);
+  const std::vector<model::JointCommand> hold(300, hanging_excitation(z1()).front());
+  const std::vector<RobotSample> samples = robot_samples(play(world, hold, "hold"));
+  const RobotSample& last = samples.back();
+  ASSERT_EQ(equations.support(last), Support::kHanging);
+  for (const RobotRow& row : equations.rows(last, Support::kHanging)) {
+    EXPECT_LE(std::abs(row.residual), z1().joints[static_cast<std::size_t>(row.kind)].friction_Nm + 0.05)
+        << equations.kind_name(row.kind);
+  }
+}
+
+TEST(RobotDiagnosis, ExcitationsStayInsideJointLimits) {
+  const ClipLibrary clips = model::load_clip_library(z1().directory / "clips", z1());
+  for (const auto& commands : {hanging_excitation(z1()), standing_excitation(z1(), clips)}) {
+    for (const model::JointCommand& command : commands) {
+      ASSERT_TRUE(((command.q - z1().q_lower()).array() >= 0.0).all());
+      ASSERT_TRUE(((z1().q_upper() - command.q).array() >= 0.0).all());
+    }
+  }
+}
+
+TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
+  sim::World world(z1(), {});
+  const std::vector<model::JointCommand> hold(150, standing_command(z1()));
+  const RobotRecording recording = play(world, hold, "stand");
+  const auto file = std::filesystem::path(testing::TempDir()) / "robot_diagnosis_stand.lcm";
+  write_robot_log(recording, z1(), file);
+  const std::vector<RobotRecording> read = read_robot_logs({file}, z1());
+  ASSERT_EQ(read.size(), 1U);
+  ASSERT_EQ(read.front().ticks.size(), recording.ticks.size());
+  for (std::size_t k = 0; k < recording.ticks.size(); ++k) {
+    EXPECT_EQ(read.front().ticks[k].state.q, recording.ticks[k].state.q);
+    EXPECT_EQ(read.front().ticks[k].command.kp, recording.ticks[k].command.kp);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(RobotDiagnosis, ALogOfAnotherRobotIsRefused) {
+  sim::World world(biped(), {});
+  const std::vector<model::JointCommand> hold(150, standing_command(biped()));
+  const auto file = std::filesystem::path(testing::TempDir()) / "robot_diagnosis_biped.lcm";
+  write_robot_log(play(world, hold, "stand"), biped(), file);
+  EXPECT_THROW(read_robot_logs({file}, z1()), std::runtime_error);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace pmg::diagnosis

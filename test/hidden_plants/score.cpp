@@ -1,0 +1,268 @@
+#include "score.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace pmg::hidden {
+
+namespace {
+
+using Value = nlohmann::json;
+using Names = std::set<std::string>;
+
+constexpr double kPromisedWidth = 0.25;
+
+struct Planted {
+  Names all, strong;
+};
+
+Planted planted(const Value& truth) {
+  Planted names;
+  for (const Value& effect : truth.at("effects")) {
+    const auto name = effect.at("effect").get<std::string>();
+    names.all.insert(name);
+    if (effect.at("moves_floors").get<double>() >= kStrong_floors) names.strong.insert(name);
+  }
+  return names;
+}
+
+/// A cause with what it can't be told from.
+std::vector<Names> suspects(const Value& diagnosis) {
+  std::vector<Names> found;
+  for (const Value& cause : diagnosis.at("causes")) {
+    Names names = {cause.at("effect").get<std::string>()};
+    if (cause.contains("or_instead")) {
+      for (const Value& other : cause.at("or_instead")) names.insert(other.get<std::string>());
+    }
+    found.push_back(names);
+  }
+  return found;
+}
+
+/// Every strong effect is among the suspects, one cause each, and every cause has a planted effect among its suspects.
+bool contains_truth(const Planted& truth, const Value& diagnosis) {
+  const std::vector<Names> all = suspects(diagnosis);
+  const auto meets = [](const Names& a, const Names& b) {
+    return std::any_of(a.begin(), a.end(), [&](const std::string& name) { return b.contains(name); });
+  };
+  return std::all_of(all.begin(), all.end(), [&](const Names& names) { return meets(names, truth.all); }) &&
+         std::all_of(truth.strong.begin(), truth.strong.end(), [&](const std::string& name) {
+           return std::any_of(all.begin(), all.end(), [&](const Names& names) { return names.contains(name); });
+         });
+}
+
+bool names_truth(const Planted& truth, const Value& diagnosis) {
+  Names named;
+  for (const Value& cause : diagnosis.at("causes")) named.insert(cause.at("effect").get<std::string>());
+  return diagnosis.at("verdict") == "found" &&
+         std::includes(truth.all.begin(), truth.all.end(), named.begin(), named.end()) &&
+         std::includes(named.begin(), named.end(), truth.strong.begin(), truth.strong.end());
+}
+
+std::vector<ScoredParameter> scored_parameters(const Value& truth, const Value& diagnosis) {
+  std::map<std::string, double> numbers;
+  for (const Value& effect : truth.at("effects")) {
+    for (const auto& [name, value] : effect.at("parameters").items()) numbers[name] = value.get<double>();
+  }
+  std::vector<ScoredParameter> scored;
+  for (const Value& cause : diagnosis.at("causes")) {
+    for (const auto& [name, interval] : cause.at("parameters").items()) {
+      const auto number = numbers.find(name);
+      if (number == numbers.end()) continue;
+      scored.push_back({name, number->second, interval.at("low").get<double>(), interval.at("high").get<double>()});
+    }
+  }
+  return scored;
+}
+
+std::string planted_text(const Value& truth) {
+  std::string text;
+  for (const Value& effect : truth.at("effects")) {
+    text += fmt::format("{}{} ({:.1f})", text.empty() ? "" : ", ", effect.at("effect").get<std::string>(),
+                        effect.at("moves_floors").get<double>());
+  }
+  return text;
+}
+
+std::string said_text(const Value& diagnosis) {
+  std::string text = diagnosis.at("verdict").get<std::string>();
+  for (const Value& cause : diagnosis.at("causes")) {
+    text += (text.find(':') == std::string::npos ? ": " : ", ") + cause.at("effect").get<std::string>();
+    if (!cause.contains("or_instead")) continue;
+    for (const Value& other : cause.at("or_instead")) text += " or " + other.get<std::string>();
+  }
+  return text;
+}
+
+Promise promise(const std::string& what, double promised, const std::vector<Score>& scores, auto counts, auto keeps) {
+  Promise p{what, true, promised};
+  for (const Score& s : scores) {
+    if (!counts(s)) continue;
+    ++p.of;
+    if (keeps(s)) ++p.kept;
+  }
+  return p;
+}
+
+std::vector<Promise> promises(const std::vector<Score>& scores) {
+  const auto from_catalogue = [](const Score& s) { return s.strong && s.kind != "strange"; };
+  std::vector<Promise> all;
+  all.push_back(promise("named", 0.90, scores, from_catalogue, [](const Score& s) { return s.named; }));
+  all.push_back(promise("verdict ambiguous", 0.15, scores, from_catalogue, [](const Score& s) { return s.ambiguous; }));
+  all.back().at_least = false;
+  all.push_back(promise(
+      "settled by the excitation asked for", 0.80, scores,
+      [&](const Score& s) { return from_catalogue(s) && s.ambiguous; }, [](const Score& s) { return s.settled; }));
+  all.push_back(promise(
+      "clean: no false cause", 0.95, scores, [](const Score& s) { return s.kind == "clean"; },
+      [](const Score& s) { return !s.accused; }));
+  all.push_back(promise(
+      "off the catalogue: unexplained", 0.80, scores, [](const Score& s) { return s.strong && s.kind == "strange"; },
+      [](const Score& s) { return s.verdict == "unexplained"; }));
+  Promise inside{"parameters in their intervals", true, 0.85};
+  for (const Score& s : scores) {
+    for (const ScoredParameter& p : s.parameters) {
+      ++inside.of;
+      if (p.inside()) ++inside.kept;
+    }
+  }
+  all.push_back(inside);
+  return all;
+}
+
+double median_width(const std::vector<Score>& scores) {
+  std::vector<double> widths;
+  for (const Score& s : scores) {
+    for (const ScoredParameter& p : s.parameters) widths.push_back(p.width());
+  }
+  if (widths.empty()) return 0.0;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
+}
+
+bool right(const Score& s) {
+  return s.kind == "clean" ? !s.accused : s.kind == "strange" ? s.verdict == "unexplained" : s.named;
+}
+
+/// Of each effect: planted strongly, named, ambiguous, and what was said instead.
+std::string by_effect(const std::vector<Score>& scores) {
+  struct Row {
+    int strong = 0, named = 0, ambiguous = 0;
+    std::map<std::string, int> instead;
+  };
+  std::map<std::string, Row> rows;
+  for (const Score& s : scores) {
+    if (s.kind == "double" || (s.kind != "clean" && !s.strong)) continue;
+    Row& row = rows[s.kind == "clean" ? "nothing" : s.planted.substr(0, s.planted.find(' '))];
+    ++row.strong;
+    row.named += right(s) ? 1 : 0;
+    row.ambiguous += s.ambiguous ? 1 : 0;
+    if (!right(s)) ++row.instead[s.said];
+  }
+  std::string text = "| planted | plants | right | of these ambiguous | said instead |\n|---|---|---|---|---|\n";
+  for (const auto& [name, row] : rows) {
+    std::string instead;
+    for (const auto& [said, count] : row.instead) {
+      instead += (instead.empty() ? "" : "; ") + said + (count > 1 ? fmt::format(" ({})", count) : "");
+    }
+    text += fmt::format("| {} | {} | {} | {} | {} |\n", name, row.strong, row.named, row.ambiguous, instead);
+  }
+  return text;
+}
+
+}  // namespace
+
+double Promise::chance() const {
+  if (of == 0) return 1.0;
+  const boost::math::binomial_distribution<> expected(of, promised);
+  if (at_least) return boost::math::cdf(expected, kept);
+  return kept == 0 ? 1.0 : boost::math::cdf(boost::math::complement(expected, kept - 1));
+}
+
+Score score(const Value& result) {
+  const Value &truth = result.at("truth"), &diagnosis = result.at("diagnosis");
+  const Planted names = planted(truth);
+  Score s;
+  s.seed = truth.at("seed").get<std::uint64_t>();
+  s.kind = truth.at("kind").get<std::string>();
+  s.planted = planted_text(truth);
+  s.said = said_text(diagnosis);
+  s.verdict = diagnosis.at("verdict").get<std::string>();
+  s.strong = !names.strong.empty();
+  s.ambiguous = s.verdict == "ambiguous";
+  s.named = s.ambiguous ? contains_truth(names, diagnosis) : names_truth(names, diagnosis);
+  s.settled = result.contains("asked") && names_truth(names, result.at("asked"));
+  for (const Names& cause : suspects(diagnosis)) {
+    s.accused =
+        s.accused || std::none_of(cause.begin(), cause.end(), [&](const auto& n) { return names.all.contains(n); });
+  }
+  if (s.named) s.parameters = scored_parameters(truth, diagnosis);
+  s.seconds = result.at("seconds").get<double>();
+  return s;
+}
+
+Tally tally(const std::filesystem::path& results) {
+  std::vector<std::filesystem::path> files;
+  if (std::filesystem::is_directory(results)) {
+    for (const auto& entry : std::filesystem::directory_iterator(results)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+  }
+  if (files.empty()) throw std::runtime_error(results.string() + ": no results; expected *.json of a campaign");
+  Tally tally;
+  for (const std::filesystem::path& file : files) {
+    std::ifstream stream(file);
+    tally.scores.push_back(score(Value::parse(stream)));
+  }
+  std::sort(tally.scores.begin(), tally.scores.end(), [](const Score& a, const Score& b) { return a.seed < b.seed; });
+  tally.promises = promises(tally.scores);
+  tally.median_width = median_width(tally.scores);
+  return tally;
+}
+
+std::string markdown(const Tally& tally) {
+  std::string text = "| | promised | kept | of | share |\n|---|---|---|---|---|\n";
+  for (const Promise& p : tally.promises) {
+    text += fmt::format("| {} | {} {:.0f} % | {} | {} | {} |\n", p.what, p.at_least ? "at least" : "at most",
+                        100.0 * p.promised, p.kept, p.of, p.of == 0 ? "" : fmt::format("{:.1f} %", 100.0 * p.share()));
+  }
+  text += fmt::format("| median width of the intervals | at most {:.0f} % | | | {:.1f} % |\n\n", 100.0 * kPromisedWidth,
+                      100.0 * tally.median_width);
+  text += by_effect(tally.scores) + "\n";
+  text += "| seed | kind | planted (noise floors) | said | right | s |\n|---|---|---|---|---|---|\n";
+  for (const Score& s : tally.scores) {
+    const char* mark = s.kind != "clean" && !s.strong ? "weak" : right(s) ? "yes" : "no";
+    text += fmt::format("| {} | {} | {} | {} | {}{} | {:.1f} |\n", s.seed, s.kind, s.planted, s.said, mark,
+                        s.settled ? ", settled" : "", s.seconds);
+  }
+  return text;
+}
+
+nlohmann::ordered_json json(const Tally& tally) {
+  using Json = nlohmann::ordered_json;
+  Json promises = Json::array(), plants = Json::array();
+  for (const Promise& p : tally.promises) {
+    promises.push_back(
+        {{"what", p.what}, {"at_least", p.at_least}, {"promised", p.promised}, {"kept", p.kept}, {"of", p.of}});
+  }
+  for (const Score& s : tally.scores) {
+    plants.push_back({{"seed", s.seed},
+                      {"kind", s.kind},
+                      {"planted", s.planted},
+                      {"said", s.said},
+                      {"counts", s.kind == "clean" || s.strong},
+                      {"right", right(s)},
+                      {"settled", s.settled}});
+  }
+  return {{"promises", promises}, {"median_interval_width", tally.median_width}, {"plants", plants}};
+}
+
+}  // namespace pmg::hidden
