@@ -80,6 +80,7 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/faults/tilt_rad", faults.tilt_rad);
   visit("/faults/torso_error_rad", faults.torso_error_rad);
   visit("/faults/persist_ticks", faults.persist_ticks);
+  visit("/faults/overrun_ticks", faults.overrun_ticks);
 }
 
 nlohmann::ordered_json tick_json(const TickOptions& tick) {

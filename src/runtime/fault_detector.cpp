@@ -95,8 +95,8 @@ Fault FaultDetector::check_timing(const FaultEvidence& evidence) noexcept {
   if (evidence.late_ns > 0) {
     overrun = {.code = FaultCode::kOverrun, .value = static_cast<double>(evidence.late_ns) * 1e-9};
   }
-  policy = persisting(FaultCode::kStalePolicy, policy, limits_.persist_ticks);
-  overrun = persisting(FaultCode::kOverrun, overrun, limits_.persist_ticks);
+  policy = persisting(FaultCode::kStalePolicy, policy, limits_.overrun_ticks);
+  overrun = persisting(FaultCode::kOverrun, overrun, limits_.overrun_ticks);
   if (evidence.guard_trip == hal::TripCause::kControlFrozen) return {.code = FaultCode::kControlFrozen};
   if (evidence.guard_trip == hal::TripCause::kCommandNotFinite) return {.code = FaultCode::kCommandNotFinite};
   return is_fault(policy) ? policy : overrun;

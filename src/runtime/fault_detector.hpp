@@ -22,8 +22,8 @@ struct FaultLimits {
   double torque_factor = 1.2;            ///< of the URDF's effort limit
   double tilt_rad = 1.0;                 ///< of the IMU's link from upright
   double torso_error_rad = 0.6;          ///< of the torso from its commanded pitch and roll
-  int persist_ticks = 3;  ///< limit, velocity, torque, tilt, overrun and late policy must hold so long: one glitch of a
-                          ///< sensor or of the host is no fault
+  int persist_ticks = 3;  ///< limit, velocity, torque and tilt must hold so long: one glitch of a sensor is no fault
+  int overrun_ticks = 3;  ///< ticks that end late, or whose policy does, must follow each other so long
   /// A host that stops both threads for a while may run the control thread first: it finds an old state once.
   int stale_state_ticks = 2;
 };

@@ -21,7 +21,10 @@ sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry) {
   return options;
 }
 
-void expect_shared_host(TickOptions& options) { options.supervisor.fault_limits.stale_state_s = 0.2; }
+void expect_shared_host(TickOptions& options) {
+  options.supervisor.fault_limits.stale_state_s = 0.2;
+  options.supervisor.fault_limits.overrun_ticks = 20;
+}
 
 SimulatedRobot::SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth)
     : world_(world), bus_(world), always_hoisted_(always_hoisted), keep_truth_(keep_truth) {}

@@ -37,8 +37,8 @@ inline constexpr double kGyroNoise_rad_s = 0.01, kEncoderNoise_rad = 0.0004, kOr
 sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry);
 
 /// For controllers whose robot is simulated by the same host in real time: a host that others share stops both for tens
-/// of milliseconds now and then, and the physics with them. Such a state is not stale before 0.2 s; everything else is
-/// as on a robot.
+/// of milliseconds now and then, and the physics with them. Such a state is not stale before 0.2 s, nor are late ticks
+/// a fault; everything else is as on a robot.
 void expect_shared_host(TickOptions& options);
 
 class SimulatedRobot final : public hal::Hal {
