@@ -44,7 +44,7 @@ struct ClipLibrary {
   JointVector q_stand;                                                 ///< [rad]
   JointVector q_lower, q_upper;                                        ///< joint limits [rad]
   MirrorMap mirror;
-  CommandInverse inverse;                                              ///< empty: the command as it is
+  CommandInverse inverse;  ///< empty: the command as it is
 };
 
 }  // namespace pmg

@@ -96,8 +96,7 @@ Bundle bundle(const RobotModel& robot, const fs::path& clips, const std::vector<
   return result;
 }
 
-std::string clip_library_sha256(const fs::path& clips) {
-  std::vector<fs::path> files = clip_library_files(clips);
+std::string files_sha256(std::vector<fs::path> files) {
   std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
   Sha256 hash;
   for (const fs::path& file : files) {
@@ -107,5 +106,7 @@ std::string clip_library_sha256(const fs::path& clips) {
   }
   return hash.hex();
 }
+
+std::string clip_library_sha256(const fs::path& clips) { return files_sha256(clip_library_files(clips)); }
 
 }  // namespace pmg::model

@@ -23,8 +23,11 @@ struct Bundle {
 Bundle bundle(const RobotModel& robot, const std::filesystem::path& clips,
               const std::vector<std::filesystem::path>& policies = {});
 
-/// One number for the clips that a policy was trained on: SHA-256 over "NAME\nSIZE\nBYTES" of the library's files in
-/// the order of their names. Throws ConfigError naming a file that can't be read.
+/// SHA-256 in hexadecimal over "NAME\nSIZE\nBYTES" of each of these files, in the order of their names. Throws
+/// ConfigError naming a file that can't be read.
+std::string files_sha256(std::vector<std::filesystem::path> files);
+
+/// One number for the clips that a policy was trained on: files_sha256 of the library's files.
 std::string clip_library_sha256(const std::filesystem::path& clips);
 
 }  // namespace pmg::model

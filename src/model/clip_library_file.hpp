@@ -16,10 +16,10 @@ inline constexpr double kMaxContactCenterSpread = 0.15;
 inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< the periods of all dynamic clips together stay below
 
 /// Reads DIRECTORY/{forward,backward,lateral,turn}.{csv,yaml} (backward, lateral_right and turn_right optional) and
-/// {bend,lean,squat}.{csv,yaml} for this robot, and inverse.csv where there is one. Throws ConfigError with file and line: wrong or missing joint columns,
-/// NaN, contact centres of one foot that differ by more than 0.15, static commands that don't increase, dynamic clips
-/// of ten seconds or more in total, samples outside joint limits, mean velocities in the wrong direction, a posture
-/// that at command 0 isn't the standing one.
+/// {bend,lean,squat}.{csv,yaml} for this robot, and inverse.csv where there is one. Throws ConfigError with file and
+/// line: wrong or missing joint columns, NaN, contact centres of one foot that differ by more than 0.15, static
+/// commands that don't increase, dynamic clips of ten seconds or more in total, samples outside joint limits, mean
+/// velocities in the wrong direction, a posture that at command 0 isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
 
 /// Those of the files named above that are there.

@@ -21,9 +21,9 @@ constexpr const char* kMetadataKey = "pmg_policy";
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
-/// One thread: ONNX Runtime's pool would keep a core spinning beside the real-time threads. Without its memory arena and
-/// memory patterns an inference takes no lock and costs the same; what remains are 35 small heap allocations, the same
-/// ones in every inference.
+/// One thread: ONNX Runtime's pool would keep a core spinning beside the real-time threads. Without its memory arena
+/// and memory patterns an inference takes no lock and costs the same; what remains are 35 small heap allocations, the
+/// same ones in every inference.
 Ort::SessionOptions session_options() {
   Ort::SessionOptions options;
   options.SetIntraOpNumThreads(1);

@@ -24,7 +24,8 @@ class OnnxPolicy final : public Policy {
   std::optional<double> action_bound_rad() const override;
   void reset() noexcept override;
 
-  /// One thread, no lock, inputs and outputs bound beforehand; ONNX Runtime's heap allocations are as many in each call.
+  /// One thread, no lock, inputs and outputs bound beforehand; ONNX Runtime's heap allocations are as many in each
+  /// call.
   Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
              JointVector& q_des) noexcept override;
 

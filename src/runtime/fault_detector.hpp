@@ -36,7 +36,8 @@ struct FaultEvidence {
   std::int64_t late_ns = 0;                           ///< the last tick behind its deadline
   bool policy_late = false;                           ///< because of its policy alone
   std::int64_t now_ns = 0;
-  std::optional<RollPitchAim> torso = std::nullopt;  ///< where the torso is to be; nothing while it need not be anywhere
+  std::optional<RollPitchAim> torso =
+      std::nullopt;  ///< where the torso is to be; nothing while it need not be anywhere
 };
 
 class FaultDetector {

@@ -8,8 +8,8 @@
 
 namespace pmg::sim {
 
-/// The file that is named ("none": none), or else the one that robot.yaml's `motor` names, beside it; or none. Throws as
-/// read_motor_file.
+/// The file that is named ("none": none), or else the one that robot.yaml's `motor` names, beside it; or none. Throws
+/// as read_motor_file.
 ActuatorsByJoint motors_in_force(const model::RobotModel& robot, const std::filesystem::path& named);
 
 }  // namespace pmg::sim

@@ -91,13 +91,17 @@ TEST_F(NormsFile, AnyEqualStepsAreTakenAndPelvicTiltIsOffTheHip) {
 }
 
 TEST_F(NormsFile, WhatIsWrongIsNamed) {
-  EXPECT_THAT(refusal(), HasSubstr("can't be read"));
-  write("pct_cycle,hip_flexion_mean\n0,1\n");
-  EXPECT_THAT(refusal(), HasSubstr("no column knee_flexion"));
+  EXPECT_THAT(refusal(), HasSubstr("cannot be read"));
+  std::string few_columns = "pct_cycle,hip_flexion_mean\n";
+  for (int row = 0; row <= 10; ++row) few_columns += std::to_string(row) + ",1\n";
+  write(few_columns);
+  EXPECT_THAT(refusal(), HasSubstr(":1: knee_flexion..._mean: is missing"));
   write(std::string(kHeader) + "0,1,2,3,4,5\n");
   EXPECT_THAT(refusal(), HasSubstr("1 rows"));
-  write(std::string(kHeader) + "0,1,2,3,four,5\n");
-  EXPECT_THAT(refusal(), HasSubstr(":3: \"four\""));
+  std::string text = std::string(kHeader) + "0,1,2,3,four,5\n";
+  for (int row = 1; row <= 10; ++row) text += "0,1,2,3,4,5\n";
+  write(text);
+  EXPECT_THAT(refusal(), HasSubstr(":3: knee_flexion+_mean: is 'four'"));
 }
 
 TEST(Gait, BuiltInNormsAreThoseOfWalking) {
