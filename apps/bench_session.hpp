@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -16,12 +17,31 @@
 
 namespace pmg::apps {
 
+/// Every run of an excitation for this joint. Throws std::invalid_argument when the joint's range or gains forbid it.
+inline runtime::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,
+                                               const calib::Excitation& excitation) {
+  const auto index = robot.joint_index.find(joint);
+  if (!index) throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint", joint, robot.name));
+  runtime::ExcitationPlan plan;
+  plan.joint = *index;
+  for (const calib::ExcitationRow& row : excitation.rows) {
+    plan.runs.push_back(
+        {excitation.trajectory(row.trajectory).q_cmd_rad, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad});
+  }
+  runtime::check(plan, robot);
+  return plan;
+}
+
 class BenchSession {
  public:
   /// Everything that input can spoil. Throws std::invalid_argument or model::ConfigError.
   BenchSession(const model::RobotModel& robot, const std::string& joint, const std::filesystem::path& excitation,
                const std::filesystem::path& out, double control_period_s)
-      : robot_(robot), joint_(joint_of(robot, joint)), out_(out), excitation_(calib::read_excitation(excitation)) {
+      : robot_(robot),
+        folder_(excitation),
+        out_(out),
+        excitation_(calib::read_excitation(excitation)),
+        plan_(excitation_plan(robot, joint, excitation_)) {
     if (std::abs(excitation_.rate_hz * control_period_s - 1.0) > 1e-6) {
       throw std::invalid_argument(fmt::format("{}: {} commands a second; expected {:g}, one a control tick",
                                               excitation.string(), excitation_.rate_hz, 1.0 / control_period_s));
@@ -29,17 +49,17 @@ class BenchSession {
     if (std::filesystem::exists(out / "bench.yaml")) {
       throw std::invalid_argument(out.string() + " holds a bench already; expected a new folder");
     }
-    plan_.joint = joint_;
-    for (const calib::ExcitationRow& row : excitation_.rows) {
-      plan_.runs.push_back(
-          {excitation_.trajectory(row.trajectory).q_cmd_rad, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad});
-    }
-    runtime::check(plan_, robot);
     load_ = sim::hanging_load(robot, joint);
   }
 
   const runtime::ExcitationPlan& plan() const { return plan_; }
-  const model::Joint& joint() const { return robot_.joints[static_cast<std::size_t>(joint_)]; }
+  const model::Joint& joint() const { return robot_.joints[static_cast<std::size_t>(plan_.joint)]; }
+  /// What a log says of it, so that it can be replayed.
+  nlohmann::ordered_json json() const {
+    return {{"joint", joint().name},
+            {"excitation", folder_.string()},
+            {"sha256", calib::excitation_sha256(folder_, excitation_)}};
+  }
 
   double duration_s(double control_period_s) const {
     return runtime::ExcitationPlayer(plan_, robot_, {joint().stand_rad, joint().kp_Nm_per_rad, joint().kd_Nm_s_per_rad},
@@ -50,7 +70,7 @@ class BenchSession {
   runtime::ExcitationRecorder recorder() const {
     std::vector<std::size_t> samples;
     for (const runtime::ExcitationRun& run : plan_.runs) samples.push_back(run.q_cmd_rad.size());
-    return {joint_, std::move(samples)};
+    return {plan_.joint, std::move(samples)};
   }
 
   /// Writes what is complete, if anything is; says how many runs of how many.
@@ -82,15 +102,8 @@ class BenchSession {
   }
 
  private:
-  static int joint_of(const model::RobotModel& robot, const std::string& name) {
-    const auto index = robot.joint_index.find(name);
-    if (!index) throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint", name, robot.name));
-    return *index;
-  }
-
   const model::RobotModel& robot_;
-  int joint_;
-  std::filesystem::path out_;
+  std::filesystem::path folder_, out_;
   calib::Excitation excitation_;
   runtime::ExcitationPlan plan_;
   sim::HangingLoad load_;

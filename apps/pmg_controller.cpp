@@ -111,7 +111,9 @@ nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
   return {{"priority", schedule.priority}, {"cpu", schedule.cpu}};
 }
 
-nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded) {
+/// bench: null without --bench.
+nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
+                                   const apps::BenchSession* bench) {
   nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
   json["name"] = arguments.name;
   json["hal"] = arguments.hal;
@@ -120,9 +122,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
   json["gantry"] = arguments.gantry;
   json["seed"] = arguments.seed;
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
-  if (!arguments.bench.empty()) {
-    json["bench"] = {{"joint", arguments.bench}, {"excitation", arguments.excitation.string()}};
-  }
+  if (bench != nullptr) json["bench"] = bench->json();
   json["realtime"] = {{"asked_for", arguments.threads.realtime},
                       {"bus", thread_json(arguments.threads.bus)},
                       {"control", thread_json(arguments.threads.control)}};
@@ -205,12 +205,12 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
 }
 
 runtime::RunInfo run_info(const Arguments& arguments, const runtime::LoadedControl& loaded,
-                          const runtime::Controller& controller) {
+                          const runtime::Controller& controller, const apps::BenchSession* bench) {
   return {.robot = arguments.name,
           .session = std::chrono::system_clock::now().time_since_epoch().count(),
           .policy = arguments.control.policy,
           .backend = arguments.hal,
-          .options = config_json(arguments, loaded).dump(),
+          .options = config_json(arguments, loaded, bench).dump(),
           .bundle = loaded.bundle,
           .files = loaded.files,
           .realtime = controller.refused().empty(),
@@ -273,7 +273,7 @@ int control(Arguments& arguments) {
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
   arguments.threads.realtime = !arguments.no_realtime;
   if (arguments.print_config) {
-    std::cout << config_json(arguments, loaded).dump(2) << '\n';
+    std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
   }
 
@@ -282,12 +282,12 @@ int control(Arguments& arguments) {
   io::LcmLink link(arguments.lcm_url);
   sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
-  world_options.stand = bench.has_value();
+  world_options.benched_joint = arguments.bench;
   sim::World world(loaded.robot, world_options);
   runtime::SimulatedRobot robot(world, arguments.gantry, !arguments.no_log);
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
-  const runtime::RunInfo info = run_info(arguments, loaded, controller);
+  const runtime::RunInfo info = run_info(arguments, loaded, controller, bench ? &*bench : nullptr);
   announce(arguments, info, loaded.variant);
 
   const double rate_Hz = 1.0 / loaded.options.dt_s;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "bench_session.hpp"
 #include "io/log_series.hpp"
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
@@ -39,6 +40,7 @@ struct Arguments {
   bool json = false;
   fs::path csv, mcap;
   logs::ReplayOptions replay;
+  fs::path excitation;
   bool tolerant = false;
   double tolerance = 0.0;
 };
@@ -122,9 +124,24 @@ int export_log(const Arguments& arguments) {
   return apps::interrupt_requested == 0 ? kOk : kInterrupted;
 }
 
+/// What a run with --bench played, from where it was then or from the folder that --excitation names.
+logs::PlayedExcitation played_excitation(const model::RobotModel& robot, const std::string& joint,
+                                         const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw std::invalid_argument(fmt::format(
+        "this run excited {} by {}, which isn't here; expected its place now in --excitation", joint, folder.string()));
+  }
+  const calib::Excitation excitation = calib::read_excitation(folder);
+  return {apps::excitation_plan(robot, joint, excitation), calib::excitation_sha256(folder, excitation)};
+}
+
 logs::ReplayReport replay_with_progress(const Arguments& arguments) {
   apps::ProgressLine line;
-  return logs::replay(io::log_files(arguments.logs), arguments.replay,
+  logs::ReplayOptions options = arguments.replay;
+  options.excitation = [&](const model::RobotModel& robot, const std::string& joint, const fs::path& logged) {
+    return played_excitation(robot, joint, arguments.excitation.empty() ? logged : arguments.excitation);
+  };
+  return logs::replay(io::log_files(arguments.logs), options,
                       [&line](double time_s) { line.show(fmt::format("{:8.1f} s replayed", time_s)); });
 }
 
@@ -164,6 +181,8 @@ int main(int argc, char** argv) {
   replay_command->add_flag("--json", arguments.json, "as JSON");
   replay_command->add_option("--robot", arguments.replay.robot, "robot's name or folder; as the log says if not given");
   replay_command->add_option("--clips", arguments.replay.clips, "clip library; as the log says if not given");
+  replay_command->add_option("--excitation", arguments.excitation,
+                             "folder of the excitation that a run with --bench played; as the log says if not given");
   replay_command
       ->add_option("--tolerance", arguments.tolerance,
                    "differences up to this pass: for a log of another compiler or mathematics library")

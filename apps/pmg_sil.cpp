@@ -95,14 +95,14 @@ void require(const fs::path& value, const char* option) {
     throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
 }
 
-nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded) {
+/// bench: null without --bench.
+nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
+                                   const apps::BenchSession* bench) {
   nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
-  if (!arguments.bench.empty()) {
-    json["bench"] = {{"joint", arguments.bench}, {"excitation", arguments.excitation.string()}};
-  }
+  if (bench != nullptr) json["bench"] = bench->json();
   if (!arguments.vary.empty()) json["vary"] = arguments.vary.string();
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
   json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
@@ -162,7 +162,8 @@ struct Stage {
   io::LogWriter& log_file;
   runtime::Tick& tick;
   runtime::LiveView* view;                  // may be null
-  runtime::ExcitationRecorder* excitation;  // may be null
+  const apps::BenchSession* bench;          // may be null
+  runtime::ExcitationRecorder* excitation;  // null without a bench
   bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
 };
@@ -170,7 +171,7 @@ struct Stage {
 runtime::RunInfo run_info(const Stage& stage) {
   return {.robot = stage.loaded.robot.name,
           .policy = stage.arguments.control.policy,
-          .options = config_json(stage.arguments, stage.loaded).dump(),
+          .options = config_json(stage.arguments, stage.loaded, stage.bench).dump(),
           .bundle = stage.loaded.bundle,
           .files = stage.loaded.files};
 }
@@ -266,12 +267,12 @@ int simulate(Arguments arguments) {
   const runtime::Scenario scenario =
       benching ? bench_scenario(*bench, loaded.options.dt_s) : runtime::load_scenario(arguments.scenario);
   if (arguments.print_config) {
-    std::cout << config_json(arguments, loaded).dump(2) << '\n';
+    std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
   sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
-  world_options.stand = benching;
+  world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
     sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
   }
@@ -286,8 +287,15 @@ int simulate(Arguments arguments) {
   }
   const io::WallClock wall_clock;
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
-  const Stage stage{
-      arguments, loaded, scenario, world, log_file, *tick, view ? &*view : nullptr, recorder ? &*recorder : nullptr};
+  const Stage stage{arguments,
+                    loaded,
+                    scenario,
+                    world,
+                    log_file,
+                    *tick,
+                    view ? &*view : nullptr,
+                    bench ? &*bench : nullptr,
+                    recorder ? &*recorder : nullptr};
 
   const std::int64_t start_ns = wall_clock.now_ns();
   const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);

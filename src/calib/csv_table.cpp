@@ -28,7 +28,7 @@ std::vector<std::string> cells(std::string line) {
 void check_header(const CsvTable& table) {
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
-    const model::Place place{table.file.string(), 1};
+    const model::Place place{table.file.string(), table.header_line};
     if (name.empty()) model::raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
     if (std::count(table.header.begin(), table.header.end(), name) > 1) {
       model::raise(place, name, "is there twice", "it once");
@@ -54,7 +54,7 @@ std::optional<std::size_t> CsvTable::find(const std::string& column) const {
 
 std::vector<double> CsvTable::numbers(const std::string& column) const {
   const std::optional<std::size_t> c = find(column);
-  if (!c) model::raise({file.string(), 1}, column, "is missing", "a column of that name");
+  if (!c) model::raise({file.string(), header_line}, column, "is missing", "a column of that name");
   std::vector<double> values;
   values.reserve(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -75,7 +75,8 @@ CsvTable read_csv(const std::filesystem::path& file) {
   CsvTable table;
   table.file = file;
   std::string line;
-  if (std::getline(stream, line)) table.header = cells(line);
+  while (std::getline(stream, line) && line.starts_with('#')) ++table.header_line;
+  if (stream) table.header = cells(line);
   check_header(table);
   while (std::getline(stream, line)) {
     if (line.empty() && stream.peek() == std::ifstream::traits_type::eof()) break;

@@ -55,4 +55,7 @@ void write_excitation(const std::filesystem::path& folder, const Excitation& exc
 /// Reads back runs.csv and commands/. Throws model::ConfigError on what is missing, unknown or not evenly timed.
 Excitation read_excitation(const std::filesystem::path& folder);
 
+/// model::files_sha256 of what read_excitation reads of this excitation's folder.
+std::string excitation_sha256(const std::filesystem::path& folder, const Excitation& excitation);
+
 }  // namespace pmg::calib

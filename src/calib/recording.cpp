@@ -100,7 +100,7 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
     if (table.find(name)) return table.numbers(name);
     for (const std::string& other : table.header) {
       if (other.starts_with(quantity + "_") && !other.ends_with("_raw")) {
-        model::raise({file.string(), 1}, other, "is in another unit", name);
+        model::raise({file.string(), table.header_line}, other, "is in another unit", name);
       }
     }
     return table.numbers(name);

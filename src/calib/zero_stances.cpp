@@ -4,9 +4,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Dense>
-#include <fstream>
 #include <stdexcept>
 
+#include "io/whole_file.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/leg_kinematics.hpp"
 
@@ -87,12 +87,6 @@ void expect_within_limits(const JointVector& q, const model::RobotModel& robot, 
         fmt::format("{}: the stance \"{}\" needs {} at {:.3f} rad; its range is {:.3f} to {:.3f}, less {} at each end",
                     robot.name, stance, joint.name, angle_rad, joint.lower_rad, joint.upper_rad, margin_rad[j]));
   }
-}
-
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  if (!stream.flush()) throw std::runtime_error(file.string() + " can't be written");
 }
 
 /// robot.yaml with soft soles and a height channel that counts stances.
@@ -237,8 +231,8 @@ void write_zero_rig(const model::RobotModel& robot, const fs::path& out) {
     if (file.stem() != "inverse") fs::copy_file(file, clips / file.filename(), fs::copy_options::overwrite_existing);
   }
   model::write_static_clip(clips, "squat", kHeight, clip, robot, "stances of the zero calibration");
-  write(out / "robot.yaml", rig_yaml(robot, stances.size()));
-  write(out / "scenario.yaml", scenario_yaml(stances));
+  io::write_whole_file(out / "robot.yaml", rig_yaml(robot, stances.size()));
+  io::write_whole_file(out / "scenario.yaml", scenario_yaml(stances));
 }
 
 }  // namespace pmg::calib

@@ -170,10 +170,24 @@ class Replay {
     }
     note_options(logged, runtime::control_json(setup, loaded_), report_.notes);
     runtime::restore_options(logged, loaded_.options);
+    if (logged.contains("bench")) take_excitation(logged["bench"]);
     run_.robot = reference_.robot = motor_command_.robot = info.robot;
     run_.session = info.session;
     joint_count_ = loaded_.robot.joint_index.size();
     tick_ = runtime::make_tick(loaded_, stopwatch_);
+  }
+
+  void take_excitation(const ordered_json& bench) {
+    const std::string joint = text_of(bench, "joint", ""), folder = text_of(bench, "excitation", "");
+    if (!options_.excitation) {
+      throw std::runtime_error(
+          fmt::format("this run played the excitation in {} on {}, which nobody reads here", folder, joint));
+    }
+    PlayedExcitation played = options_.excitation(loaded_.robot, joint, folder);
+    if (played.sha256 != text_of(bench, "sha256", "")) {
+      report_.notes.push_back(fmt::format("the excitation of {} is not the one that the log was made with", joint));
+    }
+    loaded_.options.excitation = std::move(played.plan);
   }
 
   void take_state(const io::LogReader& event) {

@@ -9,11 +9,23 @@
 #include <string>
 #include <vector>
 
+#include "runtime/excitation_player.hpp"
+
 namespace pmg::logs {
+
+/// What a run with --bench played.
+struct PlayedExcitation {
+  runtime::ExcitationPlan plan;
+  std::string sha256;  ///< of its files
+};
 
 struct ReplayOptions {
   std::string robot;            ///< name or folder; empty: as the log says
   std::filesystem::path clips;  ///< empty: as the log says; the robot's own if robot is given
+  /// Reads the excitation of this joint; folder as the log says. Absent: a run with one is refused.
+  std::function<PlayedExcitation(const model::RobotModel&, const std::string& joint,
+                                 const std::filesystem::path& folder)>
+      excitation{};
 };
 
 /// Where an output isn't the logged one.

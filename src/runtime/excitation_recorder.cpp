@@ -4,6 +4,12 @@
 
 namespace pmg::runtime {
 
+namespace {
+
+constexpr double kLongestGap_s = 0.05;  // five commands: what a bench's recordings may have between two samples
+
+}  // namespace
+
 ExcitationRecorder::ExcitationRecorder(int joint, std::vector<std::size_t> samples_of_run)
     : joint_(joint), samples_of_run_(std::move(samples_of_run)) {}
 
@@ -20,8 +26,10 @@ void ExcitationRecorder::add(const TickRecord& record) {
   }
   const bool next = current_.run == progress_.run && std::cmp_equal(current_.t_s.size(), progress_.sample);
   const double t_s = static_cast<double>(record.state.stamp_ns - start_ns_) * 1e-9;
-  // Without news from the bus a tick sees the sample before once more; such a run has a hole.
-  if (!next || (!current_.t_s.empty() && t_s <= current_.t_s.back())) {
+  // Without news from the bus a tick sees the sample before once more, and a host that stops for long leaves a gap:
+  // such a run has a hole.
+  const bool hole = !current_.t_s.empty() && (t_s <= current_.t_s.back() || t_s > current_.t_s.back() + kLongestGap_s);
+  if (!next || hole) {
     current_ = {};
     return;
   }

@@ -20,8 +20,8 @@ class ExcitationRecorder {
 
   void add(const TickRecord& record);
 
-  /// Runs that were recorded from their first to their last sample; one that was cut off, or of which a tick is
-  /// missing, isn't among them.
+  /// Runs that were recorded from their first to their last sample; one that was cut off, or that has a hole (a tick is
+  /// missing, the bus gave nothing new, the host stopped for more than 0.05 s), isn't among them.
   const std::vector<RecordedRun>& complete() const { return complete_; }
   const ExcitationProgress& progress() const { return progress_; }
 

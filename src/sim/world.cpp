@@ -14,7 +14,7 @@ namespace pmg::sim {
 namespace {
 
 constexpr double kGantryLift_m = 0.2;            // of a world that starts hanging
-constexpr double kStandInertia = 1e9;            // [kg, kg m^2] of a base in a stand
+constexpr double kClampInertia = 1e12;           // [kg, kg m^2] 100 Nm turn it by 0.05 mrad in 1000 s
 constexpr double kRopeLength_m = 4.0;            // as drawn
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
@@ -87,8 +87,7 @@ struct World::Impl {
       dof_address.push_back(model->jnt_dofadr[id]);
     }
     base_body = find(model.get(), mjOBJ_BODY, robot.base_link);
-    if (options.stand)
-      std::fill_n(model->dof_armature + model->jnt_dofadr[model->body_jntadr[base_body]], 6, kStandInertia);
+    if (!options.benched_joint.empty()) clamp_all_but(options.benched_joint);
     torso_body = find(model.get(), mjOBJ_BODY, robot.torso_link);
     for (const Foot foot : {kLeft, kRight}) {
       foot_body[foot] = find(model.get(), mjOBJ_BODY, robot.feet[foot].link);
@@ -111,6 +110,15 @@ struct World::Impl {
     if (!std::isfinite(parameters.drive.limit)) parameters.drive.limit = joint.effort_limit_Nm;
     motors.back().emplace(parameters, options.timestep_s);
     hand_over(model.get(), index, *motors.back());
+  }
+
+  /// A rotor has no weight and adds nothing to what hangs further up: a heavy one holds a joint like a clamp, at any
+  /// step and without a spring that could ring.
+  void clamp_all_but(const std::string& joint) {
+    const int free_dof = model->jnt_dofadr[find(model.get(), mjOBJ_JOINT, joint)];
+    for (int dof = 0; dof < model->nv; ++dof) {
+      if (dof != free_dof) model->dof_armature[dof] = kClampInertia;
+    }
   }
 
   WorldOptions options;

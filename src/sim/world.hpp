@@ -19,7 +19,8 @@ namespace pmg::sim {
 struct WorldOptions {
   double timestep_s = 0.002;  ///< one physics step a bus cycle
   bool gantry = false;        ///< hang the torso in a soft suspension, feet clear of the ground
-  bool stand = false;         ///< with gantry: the base is clamped into a stand and doesn't move
+  /// With gantry: a bench. The base and every joint but this one are clamped in the standing posture. Empty: none is.
+  std::string benched_joint;
   double floor_friction = 0.8;
   std::uint64_t seed = 0;                                                               ///< of the sensor noise
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations

@@ -119,5 +119,27 @@ TEST_F(PmgLog, OnceInARunOfTheSimulationReplaysBitForBit) {
   EXPECT_THAT(same.out, HasSubstr("the same, bit for bit"));
 }
 
+TEST_F(PmgLog, ABenchReplaysWithItsExcitationAndIsRefusedWithout) {
+  const fs::path excitation = folder_ / "excitation", moved = folder_ / "moved", out = folder_ / "bench";
+  const std::string bin = std::string(PMG_BIN_DIR) + "/", quiet = " >" + (folder_ / "said").string() + " 2>&1";
+  const std::string make = bin + "pmg_calibrate_motor --make-excitation --robot z1 --joint head_pitch --seconds 4 " +
+                           "--repeats 1 --gains 40,1 --out " + excitation.string() + quiet;
+  ASSERT_EQ(std::system(make.c_str()), 0) << test::text_of(folder_ / "said");
+  const std::string play = bin + "pmg_sil --robot z1 --bench head_pitch --excitation " + excitation.string() +
+                           " --out " + out.string() + quiet;
+  ASSERT_EQ(std::system(play.c_str()), 0) << test::text_of(folder_ / "said");
+
+  const Finished same = run("replay " + out.string());
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  EXPECT_THAT(same.out, HasSubstr("the same, bit for bit"));
+  fs::rename(excitation, moved);
+  expect_refused("replay " + out.string(), "expected its place now in --excitation");
+  EXPECT_EQ(run("replay --excitation " + moved.string() + " " + out.string()).exit_code, 0);
+  std::ofstream(moved / "commands/steps.csv", std::ios::app) << "4.00,0.0\n";
+  const Finished another = run("replay --excitation " + moved.string() + " " + out.string());
+  EXPECT_EQ(another.exit_code, 1) << "a sample more";
+  EXPECT_THAT(another.out, HasSubstr("the excitation of head_pitch is not the one that the log was made with"));
+}
+
 }  // namespace
 }  // namespace pmg

@@ -119,6 +119,20 @@ TEST(Excitation, EndsWithAFault) {
   EXPECT_EQ(bench.recorder.complete().size(), 0U);
 }
 
+TEST(Excitation, ARunWithAHoleIsNotRecordedAndTheNextOneIs) {
+  for (const double pause_s : {0.1, -kTick_s}) {  // the host stopped; the bus had nothing new
+    Bench bench;
+    bench.until_run(0);
+    const auto pause_ns = static_cast<std::int64_t>(pause_s * 1e9);
+    bench.record.now_ns += pause_ns;
+    bench.step();
+    if (pause_ns < 0) bench.record.now_ns -= pause_ns;
+    for (int k = 0; k < 2000 && !bench.step().excitation.over;) ++k;
+    ASSERT_EQ(bench.recorder.complete().size(), 1U) << pause_s;
+    EXPECT_EQ(bench.recorder.complete()[0].run, 1);
+  }
+}
+
 TEST(Excitation, NeverWalks) {
   Bench bench;
   bench.until_run(0);
