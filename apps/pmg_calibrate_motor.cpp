@@ -228,6 +228,8 @@ int calibrate(const Arguments& arguments) {
   calib::FitOptions options;
   options.method = calib::method_of(arguments.method);
   options.starts = arguments.starts;
+  options.runs_while_searching = 8;
+  options.newton_steps = 30;
   options.threads = arguments.threads;
   options.seed = arguments.seed;
 

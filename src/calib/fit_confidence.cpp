@@ -6,67 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/parallel.hpp"
+#include "calib/linearised.hpp"
 
 namespace pmg::calib {
 
 namespace {
 
-constexpr double kStep = 1e-3;        // of the cube's edge, to either side
-constexpr double kBlock_s = 0.5;      // a joint's motion forgets its disturbance within that
 constexpr double kAlike = 0.98;       // correlation
 constexpr double kUnseen_rad = 1e-9;  // movement of the rollouts by a whole edge of the cube
-
-struct Normal {
-  Eigen::MatrixXd information;  // J^T J
-  Eigen::MatrixXd scatter;      // sum over blocks of (J^T e)(J^T e)^T
-  int blocks = 0;
-};
-
-/// Both ends of the difference stay in the cube.
-struct Ends {
-  std::vector<double> below, above;
-  double apart;
-};
-
-Ends ends(const std::vector<double>& point, std::size_t d) {
-  Ends e{point, point, 0.0};
-  e.below[d] = std::max(0.0, point[d] - kStep);
-  e.above[d] = std::min(1.0, point[d] + kStep);
-  e.apart = e.above[d] - e.below[d];
-  return e;
-}
-
-Normal linearise(const FitProblem& problem, const std::vector<double>& point, const SingleJoint& joint) {
-  const auto parameters = static_cast<Eigen::Index>(problem.dimensions());
-  const Recording& recording = joint.run().recording;
-  const std::vector<double> at = joint.rollout(problem.model_at(point));
-  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(at.size()), parameters);
-  for (std::size_t d = 0; d < problem.dimensions(); ++d) {
-    const Ends e = ends(point, d);
-    const std::vector<double> below = joint.rollout(problem.model_at(e.below));
-    const std::vector<double> above = joint.rollout(problem.model_at(e.above));
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      slopes(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d)) = (above[k] - below[k]) / e.apart;
-    }
-  }
-  Normal normal{Eigen::MatrixXd::Zero(parameters, parameters), Eigen::MatrixXd::Zero(parameters, parameters)};
-  Eigen::VectorXd block = Eigen::VectorXd::Zero(parameters);
-  double block_ends_s = recording.t_s.front() + kBlock_s;
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (recording.t_s[k] >= block_ends_s || k + 1 == at.size()) {
-      normal.scatter += block * block.transpose();
-      ++normal.blocks;
-      block.setZero();
-      block_ends_s += kBlock_s;
-    }
-    if (!recording.valid[k]) continue;
-    const Eigen::VectorXd slope = slopes.row(static_cast<Eigen::Index>(k)).transpose();
-    normal.information += slope * slope.transpose();
-    block += slope * (at[k] - recording.q_rad[k]);
-  }
-  return normal;
-}
 
 /// What a whole edge of the cube would be at the point's slope, in the parameter's unit.
 double edge(const FitProblem& problem, const std::vector<double>& point, std::size_t d) {
@@ -79,15 +26,7 @@ double edge(const FitProblem& problem, const std::vector<double>& point, std::si
 
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads) {
   const auto count = static_cast<Eigen::Index>(problem.dimensions());
-  std::vector<Normal> by_run(problem.runs().size());
-  for_each_in_parallel(by_run.size(), threads,
-                       [&](std::size_t i) { by_run[i] = linearise(problem, point, problem.runs()[i]); });
-  Normal sum{Eigen::MatrixXd::Zero(count, count), Eigen::MatrixXd::Zero(count, count)};
-  for (const Normal& normal : by_run) {
-    sum.information += normal.information;
-    sum.scatter += normal.scatter;
-    sum.blocks += normal.blocks;
-  }
+  Linearised sum = linearise(problem, point, threads);
   // What the fit took from the misses, the customary correction gives back.
   const int spare = std::max(1, sum.blocks - static_cast<int>(count));
   sum.scatter *= static_cast<double>(sum.blocks) / static_cast<double>(spare);

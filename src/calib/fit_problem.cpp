@@ -170,6 +170,21 @@ std::vector<double> FitProblem::point_of(const JointModel& model) const {
   return point;
 }
 
+std::vector<double> FitProblem::with_torques_scaled(std::span<const double> point, double factor) const {
+  const auto fitted = [&](const char* name) {
+    return std::any_of(parameters_.begin(), parameters_.end(), [&](const FitParameter& p) { return p.name == name; });
+  };
+  const bool gains_are_torques = !fitted("drive.torque_per_unit_Nm");  // a voltage servo's are its firmware's numbers
+  std::vector<double> scaled(point.begin(), point.end());
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const FitParameter& p = parameters_[i];
+    const bool gain = p.name == "drive.kp_scale" || p.name == "drive.kd_scale";
+    if (!(p.unit.starts_with("Nm") || p.unit.starts_with("kg") || (gain && gains_are_torques))) continue;
+    scaled[i] = to_unit(p, factor * to_range(p, point[i]));
+  }
+  return scaled;
+}
+
 double FitProblem::loss(std::span<const double> point, unsigned threads) const {
   try {
     return std::min(total(errors(model_at(point), runs_, threads)).mean_square_rad2(), kSenseless_rad2);

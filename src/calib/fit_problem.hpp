@@ -47,6 +47,9 @@ class FitProblem {
   std::vector<double> point_of(const JointModel& model) const;  ///< clamped into the cube
   const JointModel& start() const { return start_; }
 
+  /// The point with all fitted torques, the rotor's inertia among them, larger by this factor; clamped into the cube.
+  std::vector<double> with_torques_scaled(std::span<const double> point, double factor) const;
+
   /// L(eta) of the paper over the number of samples [rad^2], over all runs; a large number where the model makes no
   /// sense. The same whatever the number of threads.
   double loss(std::span<const double> point, unsigned threads = 1) const;

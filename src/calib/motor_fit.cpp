@@ -9,6 +9,7 @@
 #include <numeric>
 #include <random>
 
+#include "calib/gauss_newton.hpp"
 #include "calib/parallel.hpp"
 
 namespace pmg::calib {
@@ -111,7 +112,7 @@ class Fitting {
       if (found < best.loss) best = {chosen.front().point, found, 1};
     }
     for (std::size_t c = 0; c < chosen.size() && !stopped_; ++c) {
-      Found at = chosen[c];
+      Found at = followed(chosen[c], loss);
       for (const Method method : {Method::kBobyqa, Method::kSbplx}) {
         SearchOptions finely = limits(method, 0.03, 0);
         finely.relative_tolerance = 1e-6;
@@ -125,6 +126,32 @@ class Fitting {
     fit.point = best.point;
     fit.loss_rad2 = best.loss;
     fit.history = history;
+  }
+
+  /// All torques by one factor, which a load that is light beside the rotor hardly tells: in that valley friction makes
+  /// hollows, and every search stops in one.
+  std::vector<double> rescaled(const std::vector<double>& point, const Loss& loss) {
+    constexpr int kLooks = 8;      // to either side
+    constexpr double kMost = 4.0;  // up or down
+    std::vector<double> best = point;
+    double lowest = loss(point);
+    for (int k = -kLooks; k <= kLooks && !stopped_; ++k) {
+      const std::vector<double> there =
+          all_.with_torques_scaled(point, std::pow(kMost, static_cast<double>(k) / kLooks));
+      const double value = loss(there);
+      if (value < lowest) lowest = value, best = there;
+    }
+    return best;
+  }
+
+  /// Along valleys that the searches took for the bottom.
+  Found followed(const Found& start, const Loss& loss) {
+    if (options_.newton_steps == 0) return start;
+    const std::vector<double> point = rescaled(start.point, loss);
+    const Found at = gauss_newton(all_, {point, loss(point), 1}, options_.newton_steps, options_.threads, stopping());
+    evaluations_ += at.evaluations;
+    simulated_s_ += at.evaluations * seconds(all_.runs());
+    return at;
   }
 
   /// Searches of the whole cube need more looks than those of a neighbourhood.
