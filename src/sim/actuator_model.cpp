@@ -147,12 +147,18 @@ ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_ra
   return {-brake * dq_rad_s, -brake};
 }
 
+/// A bridge takes duty times the motor's current from the bus. With T the torque and F = unit supply that of full duty,
+/// T = unit (supply (1 - sag duty T) duty - back_emf dq): a source resistance that the motor sees as duty^2 of itself.
+/// What brakes feeds the bus.
+double ActuatorModel::sag(double full_Nm) const noexcept {
+  const double duty = held_output_ / parameters_.drive.limit;  // 0 of a drive without a limit: it regulates its current
+  return parameters_.drive.supply_sag_per_Nm * full_Nm * duty * duty;
+}
+
 ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s,
                                            double dq_rad_s) noexcept {
   const ActuatorParameters::Drive& p = parameters_.drive;
-  const double sag = std::max(0.0, 1.0 - p.supply_sag_per_Nm * std::abs(given_.torque_Nm));
-  const double per_unit_Nm = p.torque_per_unit_Nm * torque_factor_;
-  const double scale = per_unit_Nm * supply * sag;
+  double per_unit_Nm = p.torque_per_unit_Nm * torque_factor_;
   const double kd = p.kd_scale * told.kd;
   bool follows_speed = !lagging_ && !velocity_lagging_;
   held_for_s_ += step_s_;
@@ -166,6 +172,8 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   } else {
     follows_speed = false;
   }
+  per_unit_Nm /= 1.0 + sag(per_unit_Nm * supply);
+  const double scale = per_unit_Nm * supply;
   Line motor{scale * held_output_ - per_unit_Nm * p.back_emf_s_per_rad * dq_rad_s,
              -per_unit_Nm * p.back_emf_s_per_rad - (follows_speed ? scale * kd : 0.0)};
   if (!torque_speed_) return motor;
@@ -203,7 +211,7 @@ void ActuatorModel::warm(double temperature_C) noexcept {
   temperature_C_ = temperature_C;
   const double above_K = temperature_C - kReferenceTemperature_C;
   friction_factor_ = std::exp(p.friction_per_K * above_K + p.friction_per_Nm2_s * heat_Nm2_s_);
-  torque_factor_ = std::exp(p.torque_per_K * above_K);
+  torque_factor_ = std::max(0.0, 1.0 + p.torque_per_K * above_K);
 }
 
 ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {

@@ -67,6 +67,7 @@ class ActuatorModel {
   double sensed_velocity(double dq_rad_s) noexcept;
   Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
   Line powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s, double dq_rad_s) noexcept;
+  double sag(double full_Nm) const noexcept;
   Line dry_friction(double dq_rad_s) noexcept;
   void warm(double temperature_C) noexcept;
   ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;

@@ -24,10 +24,12 @@ struct ActuatorParameters {
   struct Drive {
     double kp_scale = 1.0, kd_scale = 1.0;  ///< what a gain really is over what it is called
     double limit = std::numeric_limits<double>::infinity();
-    double dead_band_rad = 0.0;        ///< position errors below it give no output
-    double torque_per_unit_Nm = 1.0;   ///< per unit of output times supply
-    double back_emf_s_per_rad = 0.0;   ///< [output times supply per rad/s]
-    double supply_sag_per_Nm = 0.0;    ///< share of the supply lost per Nm of torque
+    double dead_band_rad = 0.0;       ///< position errors below it give no output
+    double torque_per_unit_Nm = 1.0;  ///< per unit of output times supply
+    double back_emf_s_per_rad = 0.0;  ///< [output times supply per rad/s]
+    /// Of a voltage servo: share of the supply lost to its source per Nm at full duty (output at its limit). A bridge
+    /// takes duty times the motor's current from the bus.
+    double supply_sag_per_Nm = 0.0;
     double brake_when_disabled = 0.0;  ///< share of the back-EMF torque that stays when the drive is switched off
     double stall_torque_Nm = std::numeric_limits<double>::infinity();  ///< torque-speed line: at rest
     double no_load_rad_s = std::numeric_limits<double>::infinity();    ///< and where none is left
@@ -71,9 +73,10 @@ struct ActuatorParameters {
     bool operator==(const Friction&) const = default;
   } friction;
 
-  /// What warming up does, as a factor exp(share of it): friction, as at 25 degC, follows the temperature (lubricant)
-  /// and, where none is known, the heat that the drive has put into its winding since the start, the integral of
-  /// torque^2 less what has cooled away; the torque per unit of output follows the temperature (magnets, copper).
+  /// What warming up does. Friction, as at 25 degC, times exp(share of it): it follows the temperature (lubricants thin
+  /// exponentially) and, where none is known, the heat that the drive has put into its winding since the start, the
+  /// integral of torque^2 less what has cooled away. Torque per unit of output times 1 + torque_per_K (T - 25 degC), as
+  /// data sheets give it for magnets and copper.
   struct Thermal {
     double friction_per_K = 0.0;  ///< negative: a warm gear turns easily
     double torque_per_K = 0.0;

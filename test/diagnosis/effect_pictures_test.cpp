@@ -43,6 +43,15 @@ struct Demonstration {
 
 using Against = Demonstration::Against;
 
+/// Full voltage from 0.4 rad of error; 3.6 Nm at rest, none at 10 rad/s.
+void hobby_servo(sim::ActuatorParameters& p) {
+  p.drive.limit = 1.0;
+  p.drive.kp_scale = 0.1;
+  p.drive.kd_scale = 0.0;
+  p.drive.torque_per_unit_Nm = 3.6;
+  p.drive.back_emf_s_per_rad = 0.1;
+}
+
 const std::map<std::string, Demonstration>& demonstrations() {
   using P = sim::ActuatorParameters;
   static const std::map<std::string, Demonstration> kAll = {
@@ -81,7 +90,7 @@ const std::map<std::string, Demonstration>& demonstrations() {
           p.drive.stall_torque_Nm = 8.0;
           p.drive.no_load_rad_s = 3.5;
         }}},
-      {"supply_sag", {big_step, [](P& p) { p.drive.supply_sag_per_Nm = 0.05; }}},
+      {"supply_sag", {big_step, [](P& p) { p.drive.supply_sag_per_Nm = 0.2; }, hobby_servo}},
       {"gain", {steps, [](P& p) { p.drive.kp_scale = 0.6; }}},
       {"dead_band", {steps, [](P& p) { p.drive.dead_band_rad = 0.08; }}},
       {"sensor_lag", {steps, [](P& p) { p.sensor.lag_s = 0.03; }}},

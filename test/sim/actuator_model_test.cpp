@@ -117,6 +117,22 @@ TEST(ActuatorModel, GivesNoMoreThanItsTorqueSpeedLine) {
   EXPECT_DOUBLE_EQ(torque_Nm(3.0, 4.0), 3.0);
 }
 
+TEST(ActuatorModel, LosesOfItsBusWhatTheBridgeTakesFromIt) {
+  const double full_Nm = 0.3 * 12.0, sag_per_Nm = 0.2, back_emf_V_s_per_rad = 1.2;
+  const auto parameters = with([&](auto& p) {
+    p.drive = {.limit = 1.0, .torque_per_unit_Nm = 0.3, .back_emf_s_per_rad = back_emf_V_s_per_rad};
+    p.drive.supply_sag_per_Nm = sag_per_Nm;
+  });
+  for (const double duty : {-1.0, 0.5, 0.05}) {
+    for (const double dq_rad_s : {0.0, 3.0}) {
+      const double torque_Nm =
+          ActuatorModel(parameters, kStep_s).step({.feed_forward = duty, .supply = 12.0}, 0.0, dq_rad_s).torque_Nm;
+      const double bus_V = 12.0 * (1.0 - sag_per_Nm * duty * torque_Nm);
+      EXPECT_NEAR(torque_Nm, 0.3 * (duty * bus_V - back_emf_V_s_per_rad * dq_rad_s), 1e-12 * full_Nm) << duty;
+    }
+  }
+}
+
 TEST(ActuatorModel, LeavesAJointFreeWithinItsBacklash) {
   const auto parameters = with([](auto& p) {
     p.transmission = {

@@ -121,7 +121,7 @@ class ActuatorModel:
         p, above = self.p, temperature_C - REFERENCE_TEMPERATURE_C
         self.heat.add_(self.step_s * (self.driven ** 2 - self.heat / p["thermal.cooling_s"]))
         return (torch.exp(p["thermal.friction_per_K"] * above + p["thermal.friction_per_Nm2_s"] * self.heat),
-                torch.exp(p["thermal.torque_per_K"] * above))
+                (1 + p["thermal.torque_per_K"] * above).clamp(min=0))
 
     def _told(self, *now) -> torch.Tensor:
         """What has arrived of it, after the delay: straight between two steps."""
@@ -168,13 +168,15 @@ class ActuatorModel:
         """The drive's loop, and what the motor makes of its output."""
         p, h = self.p, self.step_s
         back_emf, hold = p["drive.back_emf_s_per_rad"], p["command.hold_s"]
-        scale = unit * supply * (1 - p["drive.supply_sag_per_Nm"] * self.given_torque.abs()).clamp(min=0)
         held_for = self.held_for + h
         due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
         self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), held_for))
         within = torch.minimum(torch.maximum(wish, -p["drive.limit"]), p["drive.limit"])
         self.held_output.copy_(torch.where(due, within, self.held_output))
         follows_speed = due & ~self.lagging & ~self.velocity_lagging & (within == wish) & (hold <= h)
+        # A bridge takes duty times the motor's current from the bus.
+        unit = unit / (1 + p["drive.supply_sag_per_Nm"] * unit * supply * (self.held_output / p["drive.limit"]) ** 2)
+        scale = unit * supply
         torque = scale * self.held_output - unit * back_emf * dq
         slope = -unit * back_emf - torch.where(follows_speed, scale * p["drive.kd_scale"] * kd, 0.0)
         return self._within_torque_speed_line(torque, slope, dq)
