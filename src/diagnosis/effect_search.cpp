@@ -41,11 +41,12 @@ std::vector<std::string> less(std::vector<std::string> effects, const std::strin
 }  // namespace
 
 EffectSearch::EffectSearch(const calib::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
-                           SearchProgress progress)
+                           DirectEvidence evidence, SearchProgress progress)
     : bench_(bench),
       fit_(fit),
       base_(std::move(base)),
       limits_(limits),
+      evidence_(std::move(evidence)),
       progress_(std::move(progress)),
       compare_(fit, folds(fit), limits.noise_squares),
       base_extension_(extend({}, base_.model, kManyIterations)) {}
@@ -91,6 +92,28 @@ Extension EffectSearch::extend(const std::vector<std::string>& effects, const ca
   fit_.linearise(extension.fitted);
   extension.held_out = diagnosis::held_out_squares(fit_, extension.fitted, compare_.folds());
   return extension;
+}
+
+const MeasuredCause* EffectSearch::measured(const std::string& effect) const {
+  const std::vector<MeasuredCause>& all = evidence_.measured;
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const MeasuredCause& cause) { return cause.effect == effect; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+bool EffectSearch::refuted(const std::string& effect) const { return contains(evidence_.refuted, effect); }
+
+bool EffectSearch::shown(const std::string& effect) const { return contains(evidence_.shown, effect); }
+
+Extension EffectSearch::with_measured() const {
+  if (evidence_.measured.empty()) return base_extension_;
+  calib::JointModel model = base_extension_.fitted.model;
+  std::vector<std::string> effects;
+  for (const MeasuredCause& cause : evidence_.measured) {
+    calib::set(model, cause.parameter, cause.value.value);
+    effects.push_back(cause.effect);
+  }
+  return extend(effects, model, kManyIterations);
 }
 
 Extension EffectSearch::without(const Extension& extension, const std::string& effect) const {
@@ -141,6 +164,9 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
 
 std::string EffectSearch::objection(const Trial& trial) const {
   const Comparison& c = trial.comparison;
+  if (shown(trial.effect)) {  // half-second blocks hardly see what is one number a run
+    return c.log_gain > 0.0 && c.folds_won >= kFoldsWon ? "" : "runs left out are predicted no better with it";
+  }
   // What nobody calibrated before may leave single blocks that go another way altogether; the usual one counts.
   const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
   const double gain = from_scratch ? std::max(c.gain, c.usual_gain) : c.gain;
@@ -171,13 +197,14 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t mos
   const StartScreen screen(fit_, current.fitted);
   std::vector<Promising> promising;
   for (const Effect& one : catalogue()) {
-    if (contains(current.effects, one.name)) continue;
+    if (contains(current.effects, one.name) || refuted(one.name)) continue;
     if (!going(fmt::format("looking at {}", one.title))) return {};
     std::vector<ScreenedStart> starts = screen.best(one, base_.scale);
     if (!starts.empty()) promising.push_back({&one, std::move(starts)});
   }
-  std::stable_sort(promising.begin(), promising.end(), [](const Promising& a, const Promising& b) {
-    return a.starts.front().squares < b.starts.front().squares;
+  std::stable_sort(promising.begin(), promising.end(), [this](const Promising& a, const Promising& b) {
+    const bool a_shown = shown(a.effect->name), b_shown = shown(b.effect->name);
+    return a_shown != b_shown ? a_shown : a.starts.front().squares < b.starts.front().squares;
   });
   promising.resize(std::min(promising.size(), most));
   std::vector<Trial> trials;
@@ -204,7 +231,7 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t mos
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const bool worth =
         t < kFinished && trials[t].comparison.log_gain >= kWorthFinishing * trials.front().comparison.log_gain;
-    if (!worth && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
+    if (!worth && !shown(trials[t].effect) && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
     if (!going(fmt::format("finishing {}", effect(trials[t].effect).title))) return {};
     trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model, kManyIterations),
                       trials[t].effect);
@@ -236,33 +263,54 @@ std::vector<Trial> EffectSearch::alternatives(const Extension& without, const st
   return trials;
 }
 
+/// Of those that convince and are nearly equal, the one with the fewest parameters; a special case unless it is clearly
+/// worse. Null where none convinces.
+const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
+  const Trial* chosen = nullptr;
+  double best = 0.0;
+  for (const Trial& trial : trials) {
+    if (!objection(trial).empty()) continue;
+    if (chosen == nullptr) {  // the best comes first
+      chosen = &trial;
+      best = trial.comparison.log_gain;
+      continue;
+    }
+    const bool special = contains(effect(chosen->effect).contains, trial.effect) &&
+                         compared(trial.extension, chosen->extension).deviations < kDeviations;
+    if (trial.comparison.log_gain < (1.0 - kEqual) * best && !special) continue;
+    if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
+  }
+  return chosen;
+}
+
+/// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end.
+Extension EffectSearch::pruned(Extension current) {
+  for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
+    const std::string name = current.effects[e];
+    if (measured(name) != nullptr) {
+      ++e;
+      continue;
+    }
+    const Extension rest = without(current, name);
+    if (objection(trial(rest, current, name)).empty()) {
+      ++e;
+    } else {
+      current = rest;
+    }
+  }
+  return current;
+}
+
 Extension EffectSearch::choose() {
-  Extension current = base_extension_;
-  while (current.effects.size() < kMostEffects && !stopped_) {
+  Extension current = with_measured();
+  for (std::size_t round = 0; round < kMostEffects && !stopped_; ++round) {
     last_additions_ = additions(current);
-    std::vector<Trial> trials = last_additions_;
-    std::erase_if(trials, [&](const Trial& trial) { return !objection(trial).empty(); });
-    if (trials.empty()) break;
-    // Of those that are nearly equal, the one with the fewest parameters; a special case unless it is clearly worse.
-    const double best = trials.front().comparison.log_gain;
-    const Trial* chosen = &trials.front();
-    for (const Trial& trial : trials) {
-      const bool special = contains(effect(chosen->effect).contains, trial.effect) &&
-                           compared(trial.extension, chosen->extension).deviations < kDeviations;
-      if (trial.comparison.log_gain < (1.0 - kEqual) * best && !special) continue;
-      if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
-    }
-    current = chosen->extension;
-    // What came first may only have stood for what came later.
-    for (std::size_t e = 0; e + 1 < current.effects.size() && !stopped_;) {
-      const std::string name = current.effects[e];
-      const Extension rest = without(current, name);
-      if (objection(trial(rest, current, name)).empty()) {
-        ++e;
-      } else {
-        current = rest;
-      }
-    }
+    const Trial* next = chosen(last_additions_);
+    if (next == nullptr) break;
+    const Extension with_next = pruned(next->extension);
+    const bool nothing_new = with_next.effects == current.effects && with_next.fitted.squares >= current.fitted.squares;
+    if (nothing_new) break;
+    current = with_next;
   }
   return current;
 }

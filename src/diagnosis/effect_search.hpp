@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/base_model.hpp"
+#include "diagnosis/direct_evidence.hpp"
 #include "diagnosis/folds.hpp"
 
 namespace pmg::diagnosis {
@@ -42,12 +43,12 @@ using SearchProgress = std::function<bool(const std::string& text)>;
 class EffectSearch {
  public:
   EffectSearch(const calib::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
-               SearchProgress progress);
+               DirectEvidence evidence, SearchProgress progress);
 
   /// The base fitted, no effects in it.
   const Extension& base() const { return base_extension_; }
-  /// Effects added one by one while folds say so, exchanged where another does better, and left out again where they
-  /// have become superfluous.
+  /// What is measured stands; effects are added to it one by one while folds say so, exchanged where another does
+  /// better, and left out again where they have become superfluous.
   Extension choose();
   /// Fits of other effects in the place of the one that has been left out, the best first.
   std::vector<Trial> alternatives(const Extension& without, const std::string& effect);
@@ -58,6 +59,13 @@ class EffectSearch {
   /// The same effects where the rest of the model may leave what is given only as far as a calibration errs: loose, it
   /// takes over part of the effects, and its own start may have kept it there.
   Extension settled(const Extension& extension) const;
+
+  /// The effect's, where recordings show it by themselves; else null.
+  const MeasuredCause* measured(const std::string& effect) const;
+  /// Recordings show it by themselves, though not how much.
+  bool shown(const std::string& effect) const;
+  /// Recordings would show it by themselves, and don't.
+  bool refuted(const std::string& effect) const;
 
   /// Why the trial isn't convincing, or "".
   std::string objection(const Trial& trial) const;
@@ -73,15 +81,19 @@ class EffectSearch {
   std::vector<Unknown> unknowns(const std::vector<std::string>& effects) const;
   calib::JointModel reset(calib::JointModel model, const std::string& effect,
                           const std::vector<std::string>& kept) const;
+  Extension with_measured() const;
   Extension extend(const std::vector<std::string>& effects, const calib::JointModel& start, int iterations) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
   std::vector<Trial> tried(const Extension& without, std::size_t most);
+  const Trial* chosen(const std::vector<Trial>& trials) const;
+  Extension pruned(Extension current);
   bool going(const std::string& text);
 
   const calib::Bench& bench_;
   const NestedFit& fit_;
   BaseModel base_;
   SearchLimits limits_;
+  DirectEvidence evidence_;
   SearchProgress progress_;
   BlockComparison compare_;
   Extension base_extension_;

@@ -174,9 +174,7 @@ class BalanceChecks {
       add_term("load", base, balance_.load_inertia_Nm(), "inertia of the load beyond what its weight says", "", false,
                2.0 * kConstant_share);
     }
-    add_term("supply_sag", base,
-             balance_.integral([](const BalancePoint& p) { return std::abs(p.load_Nm) * p.load_Nm; }),
-             "drive that large torques need beyond their share", "", true, kDrive_share);
+    add_supply_sag(base);
     const double fastest_rad_s = balance_.fastest_rad_s();
     const Column hard_and_fast = balance_.integral([fastest_rad_s](const BalancePoint& p) {
       return p.drive * p.direction > 0.0 ? p.drive * std::abs(p.dq_rad_s) / fastest_rad_s : 0.0;
@@ -189,6 +187,17 @@ class BalanceChecks {
         balance_.integral([](const BalancePoint& p) { return p.since_turn_s < 0.03 ? p.drive : 0.0; });
     add_term("backlash", base, turning, "share of the drive that is missing within 30 ms of its reversal", "", true,
              kDrive_share);
+  }
+
+  /// A source resistance in front of a bridge counts by the duty's square.
+  void add_supply_sag(const std::vector<Column>& base) {
+    if (bench_.law != calib::DriveLaw::kServoVoltage) {
+      return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
+    }
+    const double full = bench_.known.drive.limit * bench_.supply_V;
+    add_term("supply_sag", base,
+             balance_.integral([full](const BalancePoint& p) { return std::pow(p.drive / full, 2) * p.load_Nm; }),
+             "drive that torques need beyond their share at full duty", "V/Nm", true, kDrive_share);
   }
 
   /// Within the band the whole of the gain's output is missing: a share of 1 is what tells it from friction.

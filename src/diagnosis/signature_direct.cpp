@@ -212,12 +212,16 @@ Signature quantum_check(const std::vector<calib::BenchRun>& runs) {
   std::sort(steps_rad.begin(), steps_rad.end());
   const double quantum_rad = median({steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(kFewest)});
   std::size_t multiples = 0;
+  Interval single{quantum_rad, quantum_rad, quantum_rad};  // files round each
   for (const double step_rad : steps_rad) {
     const double count = step_rad / quantum_rad;
-    multiples += std::abs(count - std::round(count)) < kOff && count > 0.5 ? 1 : 0;
+    if (std::abs(count - std::round(count)) >= kOff || count <= 0.5) continue;
+    ++multiples;
+    single.low = std::min(single.low, step_rad / std::round(count));
+    single.high = std::max(single.high, step_rad / std::round(count));
   }
   const double share = static_cast<double>(multiples) / static_cast<double>(steps_rad.size());
-  s.value = {quantum_rad, quantum_rad * (1.0 - kOff), quantum_rad * (1.0 + kOff)};
+  s.value = single;
   if (share > 0.9 && quantum_rad > kCoarse_rad) {
     s.agreement = Agreement::kAgrees;
     s.sentence = fmt::format("{:.0f} % of the {} different readings are {:.3g} rad apart, or multiples of it",

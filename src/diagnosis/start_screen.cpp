@@ -45,11 +45,14 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
   if (there.empty()) return;
   follow(there, effect, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  // Along the straight line from the model without it, how much of it would be best?
-  const double from = calib::value(current_.model, effect.parameters.front());
-  if (!std::isfinite(from) || values.size() != 1) return;
+  look_along(effect, values, there, into);
+}
+
+/// Along the straight line from the model without it, how much of it would be best? A speed at which friction falls is
+/// no amount.
+void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const Misses& there,
+                             std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
-  Misses moved = there;
   for (std::size_t i = 0; i < there.size(); ++i) {
     const Eigen::VectorXd direction = there[i] - misses_[i];
     along -= direction.dot(misses_[i]);
@@ -58,10 +61,16 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
   if (!(across > 0.0)) return;
   const double share = std::clamp(along / across, 0.0, 3.0);
   if (share < 0.02) return;
-  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = misses_[i] + share * (there[i] - misses_[i]);
   ScreenedStart scaled{current_.model, 0.0};
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const double from = calib::value(current_.model, effect.parameters[p]);
+    if (!std::isfinite(from)) return;
+    const bool amount = effect.parameters[p] != "friction.stribeck_rad_s";
+    calib::set(scaled.model, effect.parameters[p], amount ? from + share * (values[p] - from) : values[p]);
+  }
+  Misses moved = there;
+  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = misses_[i] + share * (there[i] - misses_[i]);
   follow(moved, effect, scaled);
-  calib::set(scaled.model, effect.parameters.front(), from + share * (values.front() - from));
   if (std::isfinite(scaled.squares)) into.push_back(scaled);
 }
 

@@ -25,6 +25,8 @@ class StartScreen {
 
  private:
   void look(const Effect& effect, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
+  void look_along(const Effect& effect, const std::vector<double>& values, const Misses& there,
+                  std::vector<ScreenedStart>& into) const;
   void look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
                     const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
   void follow(const Misses& misses, const Effect& effect, ScreenedStart& start) const;

@@ -123,7 +123,7 @@ Unknown unknown(const std::string& name, const calib::Bench& bench, const BenchS
     u.typical = 0.02;
   } else if (u.unit == "1/Nm") {
     u.typical = 0.3 / torque;
-    u.upper = 0.9 / scale.torque_peak_Nm;
+    u.upper = 3.0 / scale.torque_peak_Nm;  // a source three times as weak as the motor it feeds
   } else if (u.unit == "s") {
     u.typical = 0.01;
   } else if (u.unit == "rad") {
@@ -194,7 +194,8 @@ std::vector<std::vector<double>> starts(const Effect& effect, const JointModel& 
       for (const double no_load : {1.05, 1.4, 2.5}) found.push_back({stall * peak, no_load * speed});
     }
   } else if (effect.name == "supply_sag") {
-    each({0.05, 0.2, 0.5}, 1.0 / peak);
+    // What stands against back-EMF is a voltage; other drives regulate their current, whatever the bus.
+    if (a.drive.back_emf_s_per_rad > 0.0) each({0.05, 0.2, 0.5, 1.0}, 1.0 / peak);
   } else if (effect.name == "gain") {
     each({0.6, 0.8, 0.9, 1.1, 1.25, 1.6}, a.drive.kp_scale);
   } else if (effect.name == "dead_band") {

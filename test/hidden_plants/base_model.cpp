@@ -76,6 +76,7 @@ sim::ActuatorParameters nominal_model(const Rig& rig) {
     model.drive.kp_scale = p.drive.kp_factor;
     model.drive.torque_per_unit_Nm = p.drive.torque_Nm_per_V;
     model.drive.back_emf_s_per_rad = p.drive.back_emf_V_s_per_rad;
+    model.drive.supply_sag_per_Nm = p.drive.sag_per_Nm;
   } else {
     model.drive.limit = p.drive.limit;
   }

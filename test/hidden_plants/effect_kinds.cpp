@@ -87,10 +87,9 @@ Parameters torque_speed(Draw& draw, Rig& rig, PlantParameters& p) {
           {"drive.no_load_rad_s", How::kIs, p.drive.no_load_rad_s}};
 }
 
-/// Its number means another thing in motor.yaml, where the bus sags with torque whatever the duty.
 Parameters supply_sag(Draw& draw, Rig&, PlantParameters& p) {
   p.drive.sag_per_Nm = draw.spread(0.04, 0.3);
-  return {};
+  return {{"drive.supply_sag_per_Nm", How::kIs, p.drive.sag_per_Nm}};
 }
 
 /// A bench whose joint warms up a good deal, which the temperature column shows.

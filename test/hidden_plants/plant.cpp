@@ -94,22 +94,29 @@ void Plant::drive(const PlantCommand& command) {
   if (!command.enabled) return;
   double error_rad = limited_rad_ - seen_rad;
   if (std::abs(error_rad) < p_.drive.dead_band_rad) error_rad = 0.0;
-  held_Nm_ = electric_torque(command, error_rad, seen_rad_s, motor_rad_s);
+  const double wish = p_.drive.kp_factor * command.kp * error_rad - p_.drive.kd_factor * command.kd * seen_rad_s;
+  if (p_.drive.servo)
+    bridge(wish, command.bus_V);
+  else
+    held_Nm_ = regulated_torque_Nm(wish, motor_rad_s);
   const double strength = 1.0 + p_.thermal.torque_per_K * (temperature_C_ - kReference_C);
   held_Nm_ *= strength;
-  if (p_.drive.servo) emf_slope_ = p_.drive.torque_Nm_per_V * p_.drive.back_emf_V_s_per_rad * strength;
+  emf_slope_ *= strength;
   torque_before_Nm_ = held_Nm_ - emf_slope_ * motor_rad_s;
 }
 
-double Plant::electric_torque(const PlantCommand& command, double error_rad, double speed_rad_s,
-                              double motor_rad_s) const {
+/// The bus loses a share sag duty torque of itself to its source, and the torque follows the bus: solved for both at
+/// once.
+void Plant::bridge(double wish, double bus_V) {
   const PlantParameters::Drive& d = p_.drive;
-  const double wish = d.kp_factor * command.kp * error_rad - d.kd_factor * command.kd * speed_rad_s;
-  if (d.servo) {
-    const double duty = std::clamp(wish, -1.0, 1.0);
-    const double lost = std::min(1.0, d.sag_per_Nm * std::abs(duty * torque_before_Nm_));
-    return d.torque_Nm_per_V * duty * command.bus_V * (1.0 - lost);
-  }
+  const double duty = std::clamp(wish, -1.0, 1.0);
+  const double sags = 1.0 + d.sag_per_Nm * d.torque_Nm_per_V * bus_V * duty * duty;
+  held_Nm_ = d.torque_Nm_per_V * duty * bus_V / sags;
+  emf_slope_ = d.torque_Nm_per_V * d.back_emf_V_s_per_rad / sags;
+}
+
+double Plant::regulated_torque_Nm(double wish, double motor_rad_s) const {
+  const PlantParameters::Drive& d = p_.drive;
   const double torque_Nm = std::clamp(wish, -d.limit, d.limit);
   if (!std::isfinite(d.stall_torque_Nm)) return torque_Nm;
   const double towards = torque_Nm >= 0.0 ? 1.0 : -1.0;

@@ -50,7 +50,8 @@ class Plant {
 
   double command_now(const PlantCommand& command) const;
   void drive(const PlantCommand& command);
-  double electric_torque(const PlantCommand& command, double error_rad, double speed_rad_s, double motor_rad_s) const;
+  void bridge(double wish, double bus_V);
+  double regulated_torque_Nm(double wish, double motor_rad_s) const;
   /// The mechanical part over h with the drive's torque held.
   void move(double h);
   State rk4(const State& at, double h) const;

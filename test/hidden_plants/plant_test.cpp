@@ -246,7 +246,7 @@ TEST(Plant, NeutralPlantMovesAsTheProjectsSimulationDoes) {
   EXPECT_LT(difference_from_single_joint_rad(pendulum(), 0.8), 1e-3);
 }
 
-TEST(Plant, KnownFrictionDelayAndServoMoveAsTheProjectsSimulationDoes) {
+TEST(Plant, KnownFrictionDelayServoAndSagMoveAsTheProjectsSimulationDoes) {
   PlantParameters p = pendulum();
   p.friction = {.coulomb_Nm = 0.3, .viscous_Nm_s_per_rad = 0.1, .stribeck_Nm = 0.1, .stribeck_rad_s = 0.3};
   p.command.delay_s = 0.004;
@@ -258,6 +258,8 @@ TEST(Plant, KnownFrictionDelayAndServoMoveAsTheProjectsSimulationDoes) {
   servo.drive = {.servo = true, .kp_factor = 0.16, .torque_Nm_per_V = 0.3, .back_emf_V_s_per_rad = 1.2};
   Rig rig;
   rig.bus_V = 12.0;
+  EXPECT_LT(difference_from_single_joint_rad(servo, 0.0, rig), 1e-3);
+  servo.drive.sag_per_Nm = 0.3;  // 3.6 Nm of full duty at rest become 1.7
   EXPECT_LT(difference_from_single_joint_rad(servo, 0.0, rig), 1e-3);
 }
 
