@@ -12,6 +12,7 @@
 #include "calib/fit_results.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis/next_excitation_files.hpp"
 #include "diagnosis/report.hpp"
 #include "diagnosis/signature.hpp"
 #include "io/whole_file.hpp"
@@ -30,8 +31,8 @@ enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
 constexpr const char* kFooter = R"(
 BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/report.html (pictures first),
 DIR/diagnosis.json and DIR/motor.yaml: the model with the effects that were found, which pmg_sil --motor and training
-read. Where two effects can't be told apart, DIR/next_excitation.csv is the command to record next. Without --model the
-drive's gain and damping, the rotor's inertia and whatever bench.yaml calls unknown are fitted first.
+read. Where effects can't be told apart, DIR/next_excitation/ is what to record next. Without --model the drive's gain
+and damping, the rotor's inertia and whatever bench.yaml calls unknown are fitted first.
 
 Example:
   pmg_diagnose data/bench/servo --model out/servo/motor.yaml --fit "repeat == 0" --score "repeat == 1" --out out/why
@@ -83,13 +84,6 @@ sim::ActuatorParameters given_model(Arguments& arguments) {
                                           arguments.model.string(), arguments.joint, fmt::join(names, ", ")));
 }
 
-std::string excitation_csv(const diagnosis::NextExcitation& next, const std::string& unit) {
-  std::string text = fmt::format("t_s,q_cmd_{}\n", unit);
-  for (std::size_t k = 0; k < next.t_s.size(); ++k)
-    text += fmt::format("{:.6g},{:.6g}\n", next.t_s[k], next.q_cmd_rad[k]);
-  return text;
-}
-
 std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib::Bench& bench) {
   const std::string unit = calib::position_unit(bench, true);
   std::vector<std::string> lines = {
@@ -112,6 +106,8 @@ void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs
     std::cout << fmt::format("  {}{}: {:.4g} -> {:.4g} {}\n", cause.effect,
                              cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),
                              1e3 * cause.held_out_error_before, 1e3 * cause.held_out_error_after, unit);
+    if (!cause.same_here.empty())
+      std::cout << fmt::format("    which on this rig is the same as {}\n", fmt::join(cause.same_here, ", "));
     for (const diagnosis::ParameterEstimate& p : cause.parameters) {
       std::cout << fmt::format("    {} = {:.4g} ({:.4g} to {:.4g}) {}\n", p.name, p.estimate.value, p.estimate.low,
                                p.estimate.high, p.unit);
@@ -128,22 +124,25 @@ void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs
 }
 
 int diagnose_robot(const Arguments& arguments) {
-  if (!arguments.record.empty()) {
-    apps::record_robot(arguments.robot, arguments.record, arguments.seed);
-    return kOk;
-  }
+  apps::ProgressLine progress;
+  const auto showing = [&progress](const char* what) {
+    return [&progress, what](double share) {
+      progress.show(share, what);
+      return apps::interrupt_requested == 0;
+    };
+  };
+  if (!arguments.record.empty())
+    return apps::record_robot(arguments.robot, arguments.record, arguments.seed, showing("excitation")) ? kOk
+                                                                                                      : kInterrupted;
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
-  apps::ProgressLine progress;
-  apps::diagnose_robot_logs({.robot = arguments.robot,
-                             .logs = arguments.inputs,
-                             .out = arguments.out,
-                             .json = arguments.json,
-                             .progress = [&](double share) {
-                               progress.show(share, "equations of motion");
-                               return apps::interrupt_requested == 0;
-                             }});
-  return kOk;
+  return apps::diagnose_robot_logs({.robot = arguments.robot,
+                                    .logs = arguments.inputs,
+                                    .out = arguments.out,
+                                    .json = arguments.json,
+                                    .progress = showing("equations of motion")})
+             ? kOk
+             : kInterrupted;
 }
 
 int diagnose(Arguments arguments) {
@@ -176,8 +175,7 @@ int diagnose(Arguments arguments) {
   io::write_whole_file(arguments.out / "motor.yaml",
                        sim::motor_yaml({{arguments.joint, found.after.actuator}}, remarks(found, bench)));
   if (found.next_excitation) {
-    io::write_whole_file(arguments.out / "next_excitation.csv",
-                         excitation_csv(*found.next_excitation, calib::position_unit(bench, false)));
+    diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
   }
   std::vector<calib::BenchRun> recorded;
   for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());

@@ -39,6 +39,7 @@ struct Cause {
   double held_out_error_before = 0.0, held_out_error_after = 0.0;
   std::vector<std::string> evidence;    ///< sentences: folds won, and model-free checks that agree or disagree
   std::vector<std::string> or_instead;  ///< effects that explain as much as this one; empty where it is told apart
+  std::vector<std::string> same_here;  ///< effects that no run on this rig would tell from this one: other names for it
 };
 
 struct Rejected {
@@ -53,15 +54,29 @@ struct NoiseFloor {
   std::string how;  ///< one line for people: from how many pairs of repeats, or how else it was estimated
 };
 
-/// A command to record next, and what it is to tell apart.
-struct NextExcitation {
-  std::string text;  ///< one line for the engineer
-  std::vector<std::string> tells_apart;
+/// A run to record next.
+struct NextRun {
+  std::string name;           ///< of the trajectory
+  std::string shape;          ///< of the command, in words
+  int times = 1;              ///< to be recorded; all of them to be fitted
   double kp = 1.0, kd = 0.0;  ///< what to tell the drive, as BenchRun's
   calib::JointLoad load;
   double load_mass_kg = 0.0, load_length_m = 0.0;  ///< as in runs.csv; 0 on a bench without loads
   std::vector<double> t_s, q_cmd_rad;
-  double separation_rad = 0.0;  ///< rms between what the two models do
+};
+
+/// How surely two effects part once the runs are there.
+struct ExpectedPair {
+  std::string first, second;
+  double deviations = 0.0;  ///< of their comparison on runs left out, which tells them apart from 2 on
+};
+
+/// A small campaign to record next, and what it is to tell apart.
+struct NextExcitation {
+  std::string text;  ///< one line for the engineer
+  std::vector<std::string> tells_apart;
+  std::vector<NextRun> runs;
+  std::vector<ExpectedPair> pairs;
 };
 
 struct Diagnosis {

@@ -27,18 +27,31 @@ Json cause_json(const Cause& cause) {
           {"held_out_error_before", number(cause.held_out_error_before)},
           {"held_out_error_after", number(cause.held_out_error_after)},
           {"evidence", cause.evidence},
-          {"or_instead", cause.or_instead}};
+          {"or_instead", cause.or_instead},
+          {"same_here", cause.same_here}};
+}
+
+Json run_json(const NextRun& run) {
+  return {{"trajectory", run.name},
+          {"shape", run.shape},
+          {"times", run.times},
+          {"kp", run.kp},
+          {"kd", run.kd},
+          {"load_mass_kg", run.load_mass_kg},
+          {"load_length_m", run.load_length_m},
+          {"duration_s", run.t_s.empty() ? 0.0 : run.t_s.back()}};
 }
 
 Json excitation_json(const NextExcitation& next) {
-  return {{"text", next.text},
-          {"tells_apart", next.tells_apart},
-          {"kp", next.kp},
-          {"kd", next.kd},
-          {"load_mass_kg", next.load_mass_kg},
-          {"load_length_m", next.load_length_m},
-          {"separation", next.separation_rad},
-          {"duration_s", next.t_s.empty() ? 0.0 : next.t_s.back()}};
+  Json json = {{"text", next.text},
+               {"tells_apart", next.tells_apart},
+               {"runs", Json::array()},
+               {"expected", Json::array()}};
+  for (const NextRun& run : next.runs) json["runs"].push_back(run_json(run));
+  for (const ExpectedPair& pair : next.pairs) {
+    json["expected"].push_back({{"effects", {pair.first, pair.second}}, {"deviations", number(pair.deviations)}});
+  }
+  return json;
 }
 
 }  // namespace

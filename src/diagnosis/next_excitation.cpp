@@ -5,164 +5,233 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numbers>
-#include <set>
-#include <tuple>
+#include <map>
+
+#include "calib/parallel.hpp"
+#include "diagnosis/excitation_candidates.hpp"
+#include "diagnosis/separation.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kDuration_s = 6.0;
-constexpr double kRest_s = 0.3;  // before the first motion
+constexpr std::size_t kMostRuns = 6;  // that differ
+constexpr int kTimes = 2, kMostTimes = 8, kMostRecordings = 24;
+constexpr double kEnough = 2.0;      // times what is wanted: what is found strays by one deviation of two
+constexpr double kWorthARun = 0.01;  // of what all pairs together want
 
-/// -1 .. 1 over time, of the range that the runs' commands had.
-struct Shape {
-  const char* name;
-  std::function<double(double t_s)> at;
+bool are(const std::string& a, const std::string& b, const char* one, const char* other) {
+  return (a == one && b == other) || (a == other && b == one);
+}
+
+/// Dry friction c (1 + a) one way and c (1 - a) the other is friction c both ways and a constant torque -a c, whether
+/// the joint slides or sticks, unless c varies: with speed, load, temperature or heat.
+bool are_one_torque(const std::string& a, const std::string& b, const sim::ActuatorParameters& model) {
+  const auto& f = model.friction;
+  const bool varies = f.stribeck_Nm != 0.0 || f.load_driving != 0.0 || f.load_backdriving != 0.0 ||
+                      model.thermal.friction_per_K != 0.0 || model.thermal.friction_per_Nm2_s != 0.0;
+  return !varies && are(a, b, "offset", "direction_friction");
+}
+
+/// One of two models as the truth and the other one against it.
+struct Pair {
+  std::size_t rivals, truth, other;
+  Separation separation;
 };
 
-double wave(double cycles) { return std::sin(2.0 * std::numbers::pi * cycles); }
-double triangle(double cycles) { return 2.0 / std::numbers::pi * std::asin(wave(cycles)); }
+/// A run not made yet, as every pair would see it.
+using Seen = std::vector<Separation::Blocks>;
 
-const std::vector<Shape>& shapes() {
-  static const std::vector<Shape> kShapes = {
-      {"large steps of 1 s", [](double t) { return wave(0.5 * t) >= 0.0 ? 0.9 : -0.9; }},
-      {"small steps of 0.5 s", [](double t) { return wave(t) >= 0.0 ? 0.15 : -0.15; }},
-      {"steps of growing size", [](double t) { return (wave(0.8 * t) >= 0.0 ? 1.0 : -1.0) * (0.1 + 0.13 * t); }},
-      {"a slow sweep through the whole range", [](double t) { return 0.95 * triangle(t / kDuration_s); }},
-      {"a slow sweep and back, twice", [](double t) { return 0.9 * triangle(2.0 * t / kDuration_s); }},
-      {"slow small reversals", [](double t) { return 0.12 * triangle(0.5 * t); }},
-      {"fast small reversals", [](double t) { return 0.12 * triangle(2.5 * t); }},
-      {"a sine from 0.3 to 4 Hz", [](double t) { return 0.5 * wave(0.3 * t + 0.3 * t * t); }},
-      {"a large sine of 1 Hz", [](double t) { return 0.9 * wave(t); }},
-      {"slow reversals off centre", [](double t) { return 0.6 + 0.3 * triangle(0.4 * t); }},
-  };
-  return kShapes;
-}
-
-double mean_or(const std::vector<double>& values, double otherwise) {
-  if (values.empty()) return otherwise;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-/// The shape as a run like the other one.
-calib::BenchRun run_like(const calib::Bench& bench, const calib::BenchRun& like, const Shape& shape, double low_rad,
-                         double high_rad) {
-  calib::BenchRun run = like;
-  calib::Recording r;
-  const auto count = static_cast<std::size_t>(kDuration_s * bench.sample_rate_hz);
-  for (std::size_t k = 0; k < count; ++k) {
-    const double t_s = static_cast<double>(k) / bench.sample_rate_hz;
-    const double level = t_s < kRest_s ? shape.at(0.0) : shape.at(t_s - kRest_s);
-    r.t_s.push_back(t_s);
-    r.q_cmd_rad.push_back(0.5 * (low_rad + high_rad) + 0.5 * (high_rad - low_rad) * std::clamp(level, -1.0, 1.0));
+class Campaign {
+ public:
+  Campaign(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs, const std::vector<Rivals>& rivals,
+           const SeparationWanted& wanted, unsigned threads)
+      : rivals_(rivals), wanted_(wanted), candidates_(excitation_candidates(bench, runs)), seen_(candidates_.size()) {
+    for (std::size_t g = 0; g < rivals.size(); ++g) {
+      const std::vector<NestedModel>& models = rivals[g].models;
+      for (std::size_t t = 0; t < models.size(); ++t) {
+        for (std::size_t o = 0; o < models.size(); ++o) {
+          if (t == o) continue;
+          if (are_one_torque(rivals[g].names[t], rivals[g].names[o], models[t].model.actuator)) {
+            if (t < o) same_here_.emplace_back(rivals[g].names[t], rivals[g].names[o]);
+            continue;
+          }
+          pairs_.push_back({g, t, o, Separation(models[t], models[o], wanted.noise_squares)});
+        }
+      }
+    }
+    calib::for_each_in_parallel(candidates_.size(), threads, [&](std::size_t c) {
+      seen_[c] = look(bench, candidates_[c].run, runs.front().step_s());
+    });
   }
-  r.q_rad.assign(count, r.q_cmd_rad.front());
-  r.valid.assign(count, true);
-  if (!like.recording.bus_V.empty()) r.bus_V.assign(count, mean_or(like.recording.bus_V, bench.supply_V));
-  if (!like.recording.temp_C.empty()) r.temp_C.assign(count, mean_or(like.recording.temp_C, 25.0));
-  run.recording = r;
-  return run;
-}
 
-/// One run of each gain and load, at most so many.
-std::vector<const calib::BenchRun*> settings(const std::vector<calib::SingleJoint>& runs) {
-  constexpr std::size_t kMost = 8;
-  std::set<std::tuple<double, double, double, double>> seen;
-  std::vector<const calib::BenchRun*> found;
-  for (const calib::SingleJoint& joint : runs) {
-    const calib::BenchRun& run = joint.run();
-    if (seen.size() < kMost && seen.insert({run.kp, run.kd, run.load.inertia_kg_m2, run.load.gravity_Nm}).second)
-      found.push_back(&run);
+  /// The candidates' numbers, and how often each is to be recorded.
+  std::map<std::size_t, int> choose() {
+    std::map<std::size_t, int> chosen;
+    const auto count = static_cast<double>(pairs_.size());
+    double reached = total(nullptr);
+    for (int recorded = 0; recorded < kMostRecordings && reached < kEnough * count; recorded += kTimes) {
+      std::size_t best = 0;
+      double most = -1.0;
+      for (std::size_t c = 0; c < candidates_.size(); ++c) {
+        const auto already = chosen.find(c);
+        if (already == chosen.end() ? chosen.size() >= kMostRuns : already->second >= kMostTimes) continue;
+        const double there = total(&seen_[c]);
+        if (there > most) most = there, best = c;
+      }
+      if (most < reached + kWorthARun * count) break;
+      for (std::size_t p = 0; p < pairs_.size(); ++p) pairs_[p].separation.add(seen_[best][p]);
+      chosen[best] += kTimes;
+      reached = total(nullptr);
+    }
+    return chosen;
   }
-  return found;
-}
 
-void name_load(const calib::Bench& bench, NextExcitation& next) {
-  for (const calib::BenchLoad& load : bench.loads) {
-    if (load.load.inertia_kg_m2 != next.load.inertia_kg_m2 || load.load.gravity_Nm != next.load.gravity_Nm) continue;
-    next.load_mass_kg = load.mass_kg;
-    next.load_length_m = load.length_m;
+  /// Names of what is one and the same.
+  const std::vector<std::pair<std::string, std::string>>& same_here() const { return same_here_; }
+  const ExcitationCandidate& candidate(std::size_t c) const { return candidates_[c]; }
+
+  /// What is expected of each two, whichever of them is the truth.
+  std::vector<ExpectedPair> expected() const {
+    std::vector<ExpectedPair> found;
+    for (const Pair& p : pairs_) {
+      if (p.truth > p.other) continue;
+      const auto back = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& q) {
+        return q.rivals == p.rivals && q.truth == p.other && q.other == p.truth;
+      });
+      const double deviations = std::min(p.separation.expected_deviations(), back->separation.expected_deviations());
+      found.push_back({rivals_[p.rivals].names[p.truth], rivals_[p.rivals].names[p.other], deviations});
+    }
+    return found;
+  }
+
+ private:
+  /// Over all pairs, each counted as far as it is wanted.
+  double total(const Seen* further) const {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const Separation& separation = pairs_[p].separation;
+      const double deviations =
+          further == nullptr ? separation.expected_deviations() : separation.expected_deviations_with((*further)[p]);
+      sum += std::min(kEnough, deviations / wanted_.deviations);
+    }
+    return sum;
+  }
+
+  /// Rounded readings would hide what changes by less than a quantum, in the model's derivatives too. A sensor's
+  /// quantum is a rival's matter only where they differ in it.
+  static std::vector<NestedModel> without_rounding(const Rivals& rivals) {
+    std::vector<NestedModel> models = rivals.models;
+    const auto quantum_rad = [](const NestedModel& m) { return m.model.actuator.sensor.quantum_rad; };
+    for (const NestedModel& model : models) {
+      if (quantum_rad(model) != quantum_rad(models.front())) return models;
+    }
+    for (NestedModel& model : models) model.model.actuator.sensor.quantum_rad = 0.0;
+    return models;
+  }
+
+  Seen look(const calib::Bench& bench, const calib::BenchRun& run, double step_s) const {
+    Seen seen(pairs_.size());
+    const calib::SingleJoint unseen(bench, run, step_s);
+    const NestedFit still({unseen}, 1);
+    for (std::size_t g = 0; g < rivals_.size(); ++g) {
+      std::vector<NestedFit> played;
+      std::vector<Slopes> slopes;
+      const std::vector<NestedModel> models = without_rounding(rivals_[g]);
+      for (const NestedModel& model : models) {
+        calib::BenchRun as = run;
+        as.recording.q_rad = unseen.rollout(model.model);
+        played.emplace_back(std::vector{calib::SingleJoint(bench, std::move(as), step_s)}, 1U);
+        slopes.push_back(still.slopes(model, still.misses(model.model)));
+      }
+      for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        if (pairs_[p].rivals != g) continue;
+        NestedModel other = models[pairs_[p].other];
+        played[pairs_[p].truth].linearise(other, &slopes[pairs_[p].other]);
+        for (int time = 0; time < kTimes; ++time) {
+          seen[p].insert(seen[p].end(), other.blocks.begin(), other.blocks.end());
+        }
+      }
+    }
+    return seen;
+  }
+
+  const std::vector<Rivals>& rivals_;
+  SeparationWanted wanted_;
+  std::vector<ExcitationCandidate> candidates_;
+  std::vector<Seen> seen_;
+  std::vector<Pair> pairs_;
+  std::vector<std::pair<std::string, std::string>> same_here_;
+};
+
+/// Of the trajectories that were asked for before and are in runs.csv now, the first free number.
+std::size_t first_number(const calib::Bench& bench) {
+  const auto column = bench.runs.find("trajectory");
+  if (!column) return 0;
+  for (std::size_t number = 0;; ++number) {
+    const std::string name = fmt::format("asked{}", number);
+    const auto& rows = bench.runs.rows;
+    if (std::none_of(rows.begin(), rows.end(), [&](const auto& row) { return row[*column] == name; })) return number;
   }
 }
 
-constexpr double kTimesRecorded = 2.0;
-constexpr double kSame_rad = 1e-9;
-
-/// Rms between the run's readings and the model once it has been fitted to it and, by its blocks, to the runs before.
-double apart_once_fitted_rad(const NestedFit& run, const NestedModel& model, const Misses& misses) {
-  const Eigen::Index count = model.coordinates.size();
-  const double samples = std::max(1.0, run.samples());
-  if (misses.empty()) return 0.0;
-  if (count == 0) return std::sqrt(run.squares(misses) / samples);
-  const Eigen::MatrixXd slope = run.slopes(model, misses).of_run.front();
-  Eigen::MatrixXd information = prior(model).information + kTimesRecorded * slope.transpose() * slope;
-  for (const BlockNormal& block : model.blocks) information += block.information;
-  const Eigen::VectorXd gradient = kTimesRecorded * slope.transpose() * misses.front();
-  const Eigen::VectorXd step = bounded_step(information, gradient, model.unknowns, model.coordinates, 1e-6);
-  return (misses.front() + slope * step).norm() / std::sqrt(samples);
+NextRun next_run(const calib::Bench& bench, const ExcitationCandidate& candidate, int times, std::size_t number) {
+  const calib::BenchRun& run = candidate.run;
+  NextRun next;
+  next.name = fmt::format("asked{}", number);
+  next.shape = candidate.shape;
+  next.times = times;
+  next.kp = run.kp;
+  next.kd = run.kd;
+  next.load = run.load;
+  next.t_s = run.recording.t_s;
+  next.q_cmd_rad = run.recording.q_cmd_rad;
+  for (const calib::BenchLoad& one : bench.loads) {
+    if (one.load.inertia_kg_m2 != run.load.inertia_kg_m2 || one.load.gravity_Nm != run.load.gravity_Nm) continue;
+    next.load_mass_kg = one.mass_kg;
+    next.load_length_m = one.length_m;
+  }
+  return next;
 }
 
-/// The run as the model would do it.
-NestedFit played(const calib::Bench& bench, calib::BenchRun run, const calib::JointModel& model, double step_s) {
-  run.recording.q_rad = calib::SingleJoint(bench, run, step_s).rollout(model);
-  std::vector<calib::SingleJoint> joints;
-  joints.emplace_back(bench, std::move(run), step_s);
-  return {std::move(joints), 1};
+std::string text_of(const NextExcitation& next, double wanted_deviations) {
+  std::vector<std::string> runs;
+  for (const NextRun& run : next.runs) {
+    const std::string load = run.load_mass_kg > 0.0 ? fmt::format(", load {:.3g} kg", run.load_mass_kg) : "";
+    runs.push_back(fmt::format("{} times {} at kp {:.4g}{}", run.times, run.shape, run.kp, load));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const ExpectedPair& pair : next.pairs) least = std::min(least, pair.deviations);
+  return fmt::format("{}; {} are then expected to part by {:.1f} deviations or more, and {:.0f} {}",
+                     fmt::join(runs, "; "), fmt::join(next.tells_apart, ", "), least, wanted_deviations,
+                     least < wanted_deviations ? "are needed: it may not be enough" : "are enough");
 }
 
-/// Whichever of the two would absorb more.
-double separation_rad(const calib::Bench& bench, const calib::BenchRun& run, const NestedModel& first,
-                      const NestedModel& second, double step_s) {
-  const NestedFit as_first = played(bench, run, first.model, step_s);
-  const NestedFit as_second = played(bench, run, second.model, step_s);
-  return std::min(apart_once_fitted_rad(as_first, second, as_first.misses(second.model)),
-                  apart_once_fitted_rad(as_second, first, as_second.misses(first.model)));
+void add_once(std::vector<std::string>& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
 }  // namespace
 
-std::optional<NextExcitation> next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
-                                              const Rivals& rivals) {
-  if (bench.law == calib::DriveLaw::kTorque || runs.empty()) return std::nullopt;
-  double low_rad = runs.front().run().recording.q_cmd_rad.front(), high_rad = low_rad;
-  for (const calib::SingleJoint& joint : runs) {
-    for (const double q_rad : joint.run().recording.q_cmd_rad) {
-      low_rad = std::min(low_rad, q_rad);
-      high_rad = std::max(high_rad, q_rad);
-    }
+AskedFor next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+                         const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads) {
+  if (bench.law == calib::DriveLaw::kTorque || runs.empty() || rivals.empty()) return {};
+  Campaign campaign(bench, runs, rivals, wanted, threads);
+  const std::map<std::size_t, int> chosen = campaign.choose();
+  AskedFor asked{std::nullopt, campaign.same_here()};
+  if (chosen.empty()) return asked;
+  NextExcitation next;
+  next.pairs = campaign.expected();
+  for (const ExpectedPair& pair : next.pairs) {
+    add_once(next.tells_apart, pair.first);
+    add_once(next.tells_apart, pair.second);
   }
-  std::optional<NextExcitation> best;
-  for (const calib::BenchRun* like : settings(runs)) {
-    for (const Shape& shape : shapes()) {
-      const calib::BenchRun run = run_like(bench, *like, shape, low_rad, high_rad);
-      double apart_rad = std::numeric_limits<double>::infinity();
-      for (const NestedModel& other : rivals.others) {
-        apart_rad = std::min(apart_rad, separation_rad(bench, run, rivals.first, other, runs.front().step_s()));
-      }
-      if (best && apart_rad <= best->separation_rad) continue;
-      best.emplace();
-      best->tells_apart = rivals.names;
-      best->kp = like->kp;
-      best->kd = like->kd;
-      best->load = like->load;
-      best->t_s = run.recording.t_s;
-      best->q_cmd_rad = run.recording.q_cmd_rad;
-      best->separation_rad = apart_rad;
-      name_load(bench, *best);
-      const std::string load = best->load_mass_kg > 0.0 ? fmt::format(", load {:.3g} kg", best->load_mass_kg) : "";
-      best->text = fmt::format("{} at kp {:.4g}{}: {} then differ by {:.3g} {} rms, each fitted again", shape.name,
-                               like->kp, load, fmt::join(rivals.names, " and "), 1e3 * apart_rad,
-                               bench.rig == calib::Rig::kLinear ? "mm" : "mrad");
-    }
-  }
-  if (best && best->separation_rad < kSame_rad) return std::nullopt;
-  return best;
+  std::size_t number = first_number(bench);
+  for (const auto& [c, times] : chosen) next.runs.push_back(next_run(bench, campaign.candidate(c), times, number++));
+  next.text = text_of(next, wanted.deviations);
+  asked.next = std::move(next);
+  return asked;
 }
 
 }  // namespace pmg::diagnosis

@@ -1,7 +1,8 @@
-// What to record next so that two explanations part.
+// What to record next so that explanations part.
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
@@ -9,18 +10,30 @@
 
 namespace pmg::diagnosis {
 
-/// Models that explain the runs equally well, fitted and linearised, and what they are called.
+/// Models that explain the runs equally well, fitted and linearised, and what they are called: a cause and what could
+/// stand in its place.
 struct Rivals {
-  NestedModel first;
-  std::vector<NestedModel> others;
-  std::vector<std::string> names;  ///< the first's, then the others'
+  std::vector<NestedModel> models;
+  std::vector<std::string> names;  ///< the models'
 };
 
-/// Of a small catalogue of commands (steps, slow and fast sweeps, small reversals) at gains and loads like the runs',
-/// within the range of their commands: the one that parts the first model from the nearest of the others furthest. What
-/// counts is what remains between their rollouts after either was fitted again, along its linearisation, to the runs
-/// and to what the other one would do: a rival may absorb the rest. Nothing where all models are the same.
-std::optional<NextExcitation> next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
-                                              const Rivals& rivals);
+/// How sure a comparison has to be before it tells two models apart.
+struct SeparationWanted {
+  double deviations = 2.0;     ///< of the mean over blocks
+  double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
+};
+
+struct AskedFor {
+  std::optional<NextExcitation> next;
+  std::vector<std::pair<std::string, std::string>> same_here;  ///< two names for one torque on this rig
+};
+
+/// A small campaign, chosen recording by recording: of the candidates (excitation_candidates.hpp) the one that brings
+/// all pairs of rivals together furthest towards twice of what is wanted, as Separation expects it, whichever of a pair
+/// is the truth; until all are there, or recordings don't help any more, or there are six runs or 24 recordings. Twice:
+/// what is found strays by one deviation. Direction-dependent friction and a constant torque are one where the friction
+/// varies with nothing; such a pair is named and not asked about.
+AskedFor next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+                         const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads = 1);
 
 }  // namespace pmg::diagnosis

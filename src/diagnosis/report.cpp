@@ -158,10 +158,19 @@ void show_causes(pages::Page& page, const calib::Bench& bench, const Diagnosis& 
 void show_next(pages::Page& page, const NextExcitation& next) {
   page.heading("What to record next");
   page.paragraph(next.text);
-  if (next.t_s.size() < 2 || next.t_s.size() != next.q_cmd_rad.size()) return;
-  page.plot({.title = fmt::format("command that tells {} apart", fmt::join(next.tells_apart, " and ")),
-             .x_name = "time [s]",
-             .lines = {{.name = "", .x = next.t_s, .y = next.q_cmd_rad, .stepped = true}}});
+  for (const NextRun& run : next.runs) {
+    const std::string load = run.load_mass_kg > 0.0 ? fmt::format(", load {:.4g} kg", run.load_mass_kg) : "";
+    page.plot({.title = fmt::format("{}, {} times: {}, kp {:.4g}{}", run.name, run.times, run.shape, run.kp, load),
+               .x_name = "time [s]",
+               .lines = {{.name = "", .x = run.t_s, .y = run.q_cmd_rad, .stepped = true}}});
+  }
+  if (next.pairs.empty()) return;
+  pages::Table table{.header = {"two effects", "expected to part by [deviations]"}, .rows = {}};
+  for (const ExpectedPair& pair : next.pairs) {
+    table.rows.push_back(
+        {fmt::format("{}, {}", title(pair.first), title(pair.second)), fmt::format("{:.1f}", pair.deviations)});
+  }
+  page.table(table);
 }
 
 void show_rejected(pages::Page& page, const std::vector<Rejected>& rejected) {
@@ -197,6 +206,7 @@ std::string verdict_text(const calib::Bench& bench, const Diagnosis& diagnosis, 
   std::vector<std::string> causes;
   for (const Cause& cause : diagnosis.causes) {
     std::string text = title(cause.effect);
+    for (const std::string& other : cause.same_here) text += " (on this rig the same as " + title(other) + ")";
     for (const std::string& other : cause.or_instead) text += " or " + title(other);
     causes.push_back(text);
   }

@@ -9,7 +9,6 @@
 
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/diagnosis_json.hpp"
-#include "diagnosis/next_excitation.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -59,6 +58,22 @@ TEST_F(Diagnose, FindsNothingWhereNothingIsWrong) {
   EXPECT_FALSE(found.rejected.empty());
 }
 
+TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  truth.actuator.sensor.quantum_rad = 0.02;
+  test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4));
+  DiagnoseOptions options;
+  options.model = known();
+  const Diagnosis found = diagnose(calib::read_bench(folder_), options);
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "quantisation");
+  const Interval quantum_rad = found.causes.front().parameters.front().estimate;
+  EXPECT_LE(quantum_rad.low, 0.02);
+  EXPECT_GE(quantum_rad.high, 0.02);
+  EXPECT_LT(quantum_rad.high - quantum_rad.low, 1e-4);  // files hold microradians
+}
+
 TEST_F(Diagnose, SaysInJsonWhatTheFormatAsksFor) {
   const nlohmann::ordered_json json =
       diagnosis_json(diagnosed([](sim::ActuatorParameters& p) { p.friction.coulomb_Nm = 0.5; }));
@@ -81,47 +96,6 @@ TEST_F(Diagnose, RefusesToScoreWhatItFits) {
   DiagnoseOptions options;
   options.score = "repeat == 0";
   EXPECT_THROW(diagnose(calib::read_bench(folder_), options), std::invalid_argument);
-}
-
-NestedModel held(const calib::JointModel& model) { return {model, {}, {}, 0.0, {}, 0.0}; }
-
-TEST(NextExcitation, AsksForNothingThatARivalCouldAbsorb) {
-  // A gain that is free may imitate the other model's altogether.
-  const calib::Bench bench = test::pd_bench(true);
-  calib::JointModel one, other;
-  one.actuator = other.actuator = known();
-  other.actuator.drive.kp_scale = 1.01;
-  const NestedFit fit(test::record(bench, one, 2), 1);
-  const Unknown gain = unknown("drive.kp_scale", bench, scale_of(bench, fit.runs(), one));
-  const auto fixed = next_excitation(bench, fit.runs(), {held(one), {held(other)}, {"a", "b"}});
-  NestedModel first = held(one), second = held(other);
-  first.unknowns = second.unknowns = {gain};
-  first.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.0));
-  second.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.01));
-  const auto freed = next_excitation(bench, fit.runs(), {first, {second}, {"a", "b"}});
-  ASSERT_TRUE(fixed && freed);
-  EXPECT_LT(freed->separation_rad, 0.1 * fixed->separation_rad);
-}
-
-TEST(NextExcitation, PartsTwoModelsFurtherThanTheNoise) {
-  const calib::Bench bench = test::pd_bench(true);
-  calib::JointModel slow, late;
-  slow.actuator = late.actuator = known();
-  late.actuator.command.delay_s = 0.01;
-  slow.actuator.command.rate_limit_rad_s = 2.0;
-  const auto next =
-      next_excitation(bench, test::record(bench, slow, 2), {held(slow), {held(late)}, {"rate_limit", "delay"}});
-  ASSERT_TRUE(next);
-  EXPECT_GT(next->separation_rad, 0.01);
-  EXPECT_EQ(next->t_s.size(), next->q_cmd_rad.size());
-  for (const double q_rad : next->q_cmd_rad) EXPECT_LE(std::abs(q_rad), 1.2);  // the range of the runs' commands
-}
-
-TEST(NextExcitation, AsksForNothingWhereTwoModelsAreTheSame) {
-  const calib::Bench bench = test::pd_bench(true);
-  calib::JointModel model;
-  model.actuator = known();
-  EXPECT_FALSE(next_excitation(bench, test::record(bench, model, 1), {held(model), {held(model)}, {"a", "b"}}));
 }
 
 }  // namespace

@@ -102,8 +102,10 @@ TEST(Report, ShowsRunsCausesRejectedAndWhatToRecord) {
   NextExcitation next;
   next.text = "record slow steps";
   next.tells_apart = {"coulomb", "dead_band"};
-  next.t_s = {0.0, 1.0, 2.0};
-  next.q_cmd_rad = {0.0, 0.5, 0.0};
+  NextRun& run = next.runs.emplace_back();
+  run.shape = "slow steps";
+  run.t_s = {0.0, 1.0, 2.0};
+  run.q_cmd_rad = {0.0, 0.5, 0.0};
   diagnosis.next_excitation = next;
   const std::string html = diagnosis_report(made.bench, diagnosis, runs, signatures(made.bench, made.runs)).html();
   for (const char* text : {"Coulomb friction or dead band", "record slow steps", "gains nothing", "friction.coulomb_Nm",

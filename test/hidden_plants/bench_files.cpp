@@ -96,7 +96,7 @@ void write_bench(const std::filesystem::path& folder, const HiddenPlant& hidden,
     const RigRun& run = hidden.rig.runs[i];
     writer.add(run_of(hidden, i, take), hidden.rig.commands[run.command].name, run.repeat, run.scored);
   }
-  for (const FurtherRun& one : further) writer.add(one.run, one.trajectory, one.repeat, one.repeat > 0);
+  for (const FurtherRun& one : further) writer.add(one.run, one.trajectory, one.repeat, false);
   writer.finish();
 }
 

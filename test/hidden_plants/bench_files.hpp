@@ -9,7 +9,7 @@
 
 namespace pmg::hidden {
 
-/// A recording that somebody asked for, twice: one to fit, one to score.
+/// A recording that somebody asked for, to be fitted.
 struct FurtherRun {
   PlantRun run;
   std::string trajectory;

@@ -51,6 +51,18 @@ double in_motor_file(const PlantedParameter& planted, const sim::ActuatorParamet
   return planted.value;
 }
 
+/// Dry friction c (1 + a) one way and c (1 - a) the other is friction c both ways and a constant torque -a c, whether
+/// the joint slides or sticks. Another effect it is only where c varies: with speed, load or temperature.
+std::vector<std::string> same_here(const std::string& effect, const PlantParameters& plant) {
+  const PlantParameters::Friction& f = plant.friction;
+  const bool varies =
+      f.stribeck_Nm != 0.0 || f.load_driving != 0.0 || f.load_backdriving != 0.0 || plant.thermal.friction_per_K != 0.0;
+  if (varies) return {};
+  if (effect == "direction_friction") return {"offset"};
+  if (effect == "offset" && std::abs(plant.ripple.offset_Nm) < f.coulomb_Nm) return {"direction_friction"};
+  return {};
+}
+
 }  // namespace
 
 nlohmann::json json(const PlantedTruth& truth) {
@@ -58,7 +70,10 @@ nlohmann::json json(const PlantedTruth& truth) {
   for (const PlantedTruth::Effect& effect : truth.effects) {
     nlohmann::json parameters = nlohmann::json::object();
     for (const auto& [name, value] : effect.parameters) parameters[name] = value;
-    effects.push_back({{"effect", effect.name}, {"moves_floors", effect.moves_floors}, {"parameters", parameters}});
+    effects.push_back({{"effect", effect.name},
+                       {"moves_floors", effect.moves_floors},
+                       {"parameters", parameters},
+                       {"same_here", effect.same_here}});
   }
   return {{"seed", truth.seed},
           {"kind", name(truth.kind)},
@@ -88,7 +103,8 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
       write_bench(without, hidden, effect.plant_without, kCalibrationTake);
       without_rad = rollout_error_rad(prepared.base, without, kScoreFilter);
     }
-    PlantedTruth::Effect planted{effect.name, (truth.error_rad - without_rad) / truth.floor_rad, {}};
+    PlantedTruth::Effect planted{effect.name, (truth.error_rad - without_rad) / truth.floor_rad, {}, {}};
+    planted.same_here = same_here(effect.name, hidden.plant);
     for (const PlantedParameter& p : effect.parameters) {
       planted.parameters.emplace_back(p.name, in_motor_file(p, prepared.base));
     }

@@ -15,6 +15,7 @@ struct PlantedTruth {
     std::string name;
     double moves_floors = 0.0;  ///< by how many noise floors it moves the held-out error of the model without it
     std::vector<std::pair<std::string, double>> parameters;  ///< of motor.yaml
+    std::vector<std::string> same_here;  ///< effects that are the same torque on this rig, whatever is done with it
   };
   std::uint64_t seed = 0;
   PlantKind kind = PlantKind::kClean;

@@ -19,16 +19,28 @@ using Names = std::set<std::string>;
 
 constexpr double kPromisedWidth = 0.25;
 
+/// Of each effect its names: its own, and those of effects that are the same on its rig.
 struct Planted {
-  Names all, strong;
+  std::vector<Names> all, strong;
 };
+
+bool meets(const Names& a, const Names& b) {
+  return std::any_of(a.begin(), a.end(), [&](const std::string& name) { return b.contains(name); });
+}
+
+bool meets_any(const Names& names, const std::vector<Names>& others) {
+  return std::any_of(others.begin(), others.end(), [&](const Names& one) { return meets(names, one); });
+}
 
 Planted planted(const Value& truth) {
   Planted names;
   for (const Value& effect : truth.at("effects")) {
-    const auto name = effect.at("effect").get<std::string>();
-    names.all.insert(name);
-    if (effect.at("moves_floors").get<double>() >= kStrong_floors) names.strong.insert(name);
+    Names one = {effect.at("effect").get<std::string>()};
+    if (effect.contains("same_here")) {
+      for (const Value& other : effect.at("same_here")) one.insert(other.get<std::string>());
+    }
+    names.all.push_back(one);
+    if (effect.at("moves_floors").get<double>() >= kStrong_floors) names.strong.push_back(one);
   }
   return names;
 }
@@ -49,21 +61,18 @@ std::vector<Names> suspects(const Value& diagnosis) {
 /// Every strong effect is among the suspects, one cause each, and every cause has a planted effect among its suspects.
 bool contains_truth(const Planted& truth, const Value& diagnosis) {
   const std::vector<Names> all = suspects(diagnosis);
-  const auto meets = [](const Names& a, const Names& b) {
-    return std::any_of(a.begin(), a.end(), [&](const std::string& name) { return b.contains(name); });
-  };
-  return std::all_of(all.begin(), all.end(), [&](const Names& names) { return meets(names, truth.all); }) &&
-         std::all_of(truth.strong.begin(), truth.strong.end(), [&](const std::string& name) {
-           return std::any_of(all.begin(), all.end(), [&](const Names& names) { return names.contains(name); });
-         });
+  return std::all_of(all.begin(), all.end(), [&](const Names& names) { return meets_any(names, truth.all); }) &&
+         std::all_of(truth.strong.begin(), truth.strong.end(),
+                     [&](const Names& names) { return meets_any(names, all); });
 }
 
 bool names_truth(const Planted& truth, const Value& diagnosis) {
+  if (diagnosis.at("verdict") != "found") return false;
   Names named;
   for (const Value& cause : diagnosis.at("causes")) named.insert(cause.at("effect").get<std::string>());
-  return diagnosis.at("verdict") == "found" &&
-         std::includes(truth.all.begin(), truth.all.end(), named.begin(), named.end()) &&
-         std::includes(named.begin(), named.end(), truth.strong.begin(), truth.strong.end());
+  return std::all_of(named.begin(), named.end(),
+                     [&](const std::string& name) { return meets_any({name}, truth.all); }) &&
+         std::all_of(truth.strong.begin(), truth.strong.end(), [&](const Names& names) { return meets(names, named); });
 }
 
 std::vector<ScoredParameter> scored_parameters(const Value& truth, const Value& diagnosis) {
@@ -95,8 +104,10 @@ std::string said_text(const Value& diagnosis) {
   std::string text = diagnosis.at("verdict").get<std::string>();
   for (const Value& cause : diagnosis.at("causes")) {
     text += (text.find(':') == std::string::npos ? ": " : ", ") + cause.at("effect").get<std::string>();
-    if (!cause.contains("or_instead")) continue;
-    for (const Value& other : cause.at("or_instead")) text += " or " + other.get<std::string>();
+    for (const auto& [list, word] : {std::pair{"same_here", " = "}, std::pair{"or_instead", " or "}}) {
+      if (!cause.contains(list)) continue;
+      for (const Value& other : cause.at(list)) text += word + other.get<std::string>();
+    }
   }
   return text;
 }
@@ -201,8 +212,7 @@ Score score(const Value& result) {
   s.named = s.ambiguous ? contains_truth(names, diagnosis) : names_truth(names, diagnosis);
   s.settled = result.contains("asked") && names_truth(names, result.at("asked"));
   for (const Names& cause : suspects(diagnosis)) {
-    s.accused =
-        s.accused || std::none_of(cause.begin(), cause.end(), [&](const auto& n) { return names.all.contains(n); });
+    s.accused = s.accused || !meets_any(cause, names.all);
   }
   if (s.named) s.parameters = scored_parameters(truth, diagnosis);
   s.seconds = result.at("seconds").get<double>();
