@@ -2,37 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <optional>
 
+#include "calib/csv_table.hpp"
 #include "generator/published_gait.hpp"
-#include "model/config_error.hpp"
 
 namespace pmg::evaluation {
 
 namespace {
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
+constexpr std::size_t kFewestRows = 11;  // steps of 10 %
 
-std::size_t column(const std::filesystem::path& file, const std::vector<std::string>& header,
-                   const std::string& begin) {
-  for (std::size_t i = 0; i < header.size(); ++i) {
-    if (header[i].starts_with(begin) && header[i].ends_with("_mean")) return i;
+/// Degrees of the column whose name begins and ends so, whatever the source says of its sign between.
+std::vector<double> means(const calib::CsvTable& table, const std::string& begin) {
+  for (const std::string& name : table.header) {
+    if (name.starts_with(begin) && name.ends_with("_mean")) return table.numbers(name);
   }
-  throw model::ConfigError(fmt::format("{}: no column {}..._mean in the header", file.string(), begin));
+  model::raise({table.file.string(), table.header_line}, begin + "..._mean", "is missing", "a column of that name");
 }
 
 /// Equal steps from 0 to 100 % of the cycle, linearly onto kCyclePoints.
@@ -62,40 +49,16 @@ GaitNorms built_in_norms() {
 }
 
 GaitNorms load_norms(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw model::ConfigError(file.string() + ": can't be read");
-  std::array<std::size_t, 4> columns{};  // hip, knee, ankle, pelvic tilt
-  std::array<std::vector<double>, 4> values;
-  bool header_seen = false;
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string> cells = split(line);
-    if (!header_seen) {
-      columns = {column(file, cells, "hip_flexion"), column(file, cells, "knee_flexion"),
-                 column(file, cells, "ankle_dorsiflexion"), column(file, cells, "pelvis_tilt")};
-      header_seen = true;
-      continue;
-    }
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      double value = 0.0;
-      const std::string cell = columns[c] < cells.size() ? cells[columns[c]] : "";
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) {
-        throw model::ConfigError(
-            fmt::format("{}:{}: \"{}\" in column {}; expected a number", file.string(), number, cell, columns[c] + 1));
-      }
-      values[c].push_back(value);
-    }
-  }
-  if (values[0].size() < 11) {
-    throw model::ConfigError(fmt::format("{}: {} rows; expected at least 11, from 0 to 100 % of the cycle",
-                                         file.string(), values[0].size()));
+  const calib::CsvTable table = calib::read_csv(file);
+  if (table.rows.size() < kFewestRows) {
+    model::raise({file.string()}, "", fmt::format("{} rows", table.rows.size()),
+                 fmt::format("at least {}, from 0 to 100 % of the cycle", kFewestRows));
   }
   GaitNorms norms{.source = file.filename().string(), .deg = {}};
-  for (std::size_t joint = 0; joint < kGaitJoints; ++joint) norms.deg[joint] = resampled(values[joint]);
-  const std::vector<double> tilt = resampled(values[3]);
+  norms.deg[kHip] = resampled(means(table, "hip_flexion"));
+  norms.deg[kKneeFlexion] = resampled(means(table, "knee_flexion"));
+  norms.deg[kAnkle] = resampled(means(table, "ankle_dorsiflexion"));
+  const std::vector<double> tilt = resampled(means(table, "pelvis_tilt"));
   for (std::size_t k = 0; k < kCyclePoints; ++k) norms.deg[kHip][k] -= tilt[k];
   return norms;
 }
