@@ -40,15 +40,16 @@ void write_bench(const fs::path& folder, const RobotBench& bench, const std::vec
   }
   io::write_whole_file(folder / "runs.csv", table);
   const JointLoad& load = bench.load;
-  io::write_whole_file(folder / "bench.yaml",
-        fmt::format("rig: robot  # gravity torque = gravity_Nm * sin(q - hangs_at_rad)\nrobot: {}\njoint: {}\n"
-                    "units: {{q: rad, t: s}}\nsample_rate_hz: {}\n"
-                    "drive: {{law: position_pd, limit_Nm: {}}}\n"
-                    "loads:  # as the robot's model says\n"
-                    "  - {{mass_kg: {}, inertia_kg_m2: {}, gravity_Nm: {}, hangs_at_rad: {}}}\n"
-                    "design: {}\n",
-                    bench.robot, bench.joint, bench.sample_rate_hz, bench.effort_limit_Nm, bench.load_mass_kg,
-                    load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad, bench.design));
+  io::write_whole_file(
+      folder / "bench.yaml",
+      fmt::format("rig: robot  # gravity torque = gravity_Nm * sin(q - hangs_at_rad)\nrobot: {}\njoint: {}\n"
+                  "units: {{q: rad, t: s}}\nsample_rate_hz: {}\n"
+                  "drive: {{law: position_pd, limit_Nm: {}}}\n"
+                  "loads:  # as the robot's model says\n"
+                  "  - {{mass_kg: {}, inertia_kg_m2: {}, gravity_Nm: {}, hangs_at_rad: {}}}\n"
+                  "design: {}\n",
+                  bench.robot, bench.joint, bench.sample_rate_hz, bench.effort_limit_Nm, bench.load_mass_kg,
+                  load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad, bench.design));
 }
 
 }  // namespace pmg::calib

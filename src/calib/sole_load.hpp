@@ -10,7 +10,7 @@
 namespace pmg::calib {
 
 struct SoleLoad {
-  double force_N = 0.0;  ///< along the sole's normal, positive when the ground pushes
+  double force_N = 0.0;                                 ///< along the sole's normal, positive when the ground pushes
   Eigen::Vector2d moment_Nm = Eigen::Vector2d::Zero();  ///< of the ground on the sole about its centre, its x and y
   /// From the centre of pressure to the nearest edge of the sole [m]: a sole that stands on an edge has it there, one
   /// that lies flat inside.
