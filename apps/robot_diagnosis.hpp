@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,33 +21,51 @@ struct RobotDiagnosisArguments {
   std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
   std::filesystem::path out;
   bool json = false;
-  std::function<bool(double share)> progress{};
+  diagnosis::RobotProgress progress{};
 };
 
-/// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm.
-inline void record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed) {
+/// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm. False when progress ended it:
+/// what was recorded whole until then is kept, and stderr says what.
+inline bool record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed,
+                         const diagnosis::RobotProgress& progress = {}) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
   const ClipLibrary clips = model::load_clip_library(robot.directory / "clips", robot);
   std::filesystem::create_directories(out);
-  sim::World gantry(robot, runtime::world_with_noise(seed, true));
-  diagnosis::write_robot_log(diagnosis::play(gantry, diagnosis::hanging_excitation(robot), "hanging"), robot,
-                             out / "hanging.lcm");
-  sim::World ground(robot, runtime::world_with_noise(seed, false));
-  diagnosis::write_robot_log(diagnosis::play(ground, diagnosis::standing_excitation(robot, clips), "standing"), robot,
-                             out / "standing.lcm");
+  std::string kept = "nothing was written";
+  try {
+    sim::World gantry(robot, runtime::world_with_noise(seed, true));
+    diagnosis::write_robot_log(diagnosis::play(gantry, diagnosis::hanging_excitation(robot), "hanging", progress),
+                               robot, out / "hanging.lcm");
+    kept = "hanging.lcm is written, standing.lcm isn't";
+    sim::World ground(robot, runtime::world_with_noise(seed, false));
+    diagnosis::write_robot_log(
+        diagnosis::play(ground, diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
+        out / "standing.lcm");
+  } catch (const diagnosis::Interrupted&) {
+    std::cerr << "interrupted: " << kept << '\n';
+    return false;
+  }
+  return true;
 }
 
-/// Writes DIR/diagnosis.json and DIR/report.html and tells the verdict on stdout. Throws std::exception on bad input,
-/// before anything is written.
-inline void diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
+/// Writes DIR/diagnosis.json and DIR/report.html and tells the verdict on stdout. False when progress ended it: nothing
+/// is written then, and stderr says so. Throws std::exception on bad input, before anything is written.
+inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
   const std::vector<diagnosis::RobotRecording> recordings = diagnosis::read_robot_logs(arguments.logs, robot);
-  const diagnosis::RobotDiagnosis found = diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
+  diagnosis::RobotDiagnosis found;
+  try {
+    found = diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
+  } catch (const diagnosis::Interrupted&) {
+    std::cerr << "interrupted: nothing was written\n";
+    return false;
+  }
   const nlohmann::ordered_json json = diagnosis::robot_diagnosis_json(found);
   std::filesystem::create_directories(arguments.out);
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
   std::cout << (arguments.json ? json.dump(2) + "\n" : diagnosis::robot_diagnosis_text(found));
+  return true;
 }
 
 }  // namespace pmg::apps

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +24,7 @@ struct RobotCause {
   double log_evidence = 0.0;
   int folds_better = 0, folds = 0;
   std::vector<std::string> or_instead{};  ///< "effect of place"
+  std::string told_apart_by{};            ///< "hanging" or "standing": where these differ most; "" when there are none
 };
 
 /// What the logs had of each kind of support [s].
@@ -43,10 +43,7 @@ struct RobotDiagnosis {
   std::vector<std::string> not_seen;  ///< "effect of place": no strength that matters would have shown in these logs
 };
 
-/// Called now and then with how far it is; false ends it (std::runtime_error).
-using RobotProgress = std::function<bool(double share)>;
-
-/// Throws std::runtime_error when the recordings hold nothing that can be used.
+/// Throws std::runtime_error when the recordings hold nothing that can be used, Interrupted when progress says so.
 RobotDiagnosis diagnose_robot(const model::RobotModel& robot, std::span<const RobotRecording> recordings,
                               const RobotDiagnosisOptions& options = {}, const RobotProgress& progress = {});
 

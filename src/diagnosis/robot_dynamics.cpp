@@ -38,19 +38,12 @@ void RobotDynamics::take_posture(const JointVector& q) {
   mj_comPos(model_.get(), d);
 }
 
-Eigen::Vector3d RobotDynamics::imu_acceleration(const JointVector& q, const JointVector& torque_Nm,
-                                                const std::vector<int>& pinned_bodies) {
+Eigen::Vector3d RobotDynamics::imu_acceleration(const JointVector& q, const JointVector& torque_Nm) {
   take_posture(q);
   mj_crb(model_.get(), data_.get());
   const int n = model_->nv;
   Eigen::MatrixXd mass(n, n);
   mj_fullM(model_.get(), mass.data(), data_->qM);
-  constexpr double kPin = 1e4;  // kg, kg m^2: a hundred times the robot's and more
-  for (const int body : pinned_bodies) {
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> translation(3, n), rotation(3, n);
-    mj_jacBody(model_.get(), data_.get(), translation.data(), rotation.data(), body);
-    mass += kPin * (translation.transpose() * translation + rotation.transpose() * rotation);
-  }
   Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
   for (std::size_t j = 0; j < dof_address_.size(); ++j)
     force[dof_address_[j]] = torque_Nm[static_cast<Eigen::Index>(j)];

@@ -33,16 +33,17 @@ class RobotDynamics {
   /// [N, Nm], joint torques [Nm].
   GeneralizedVector required(const RobotMotion& motion);
 
-  /// At the posture of the last required(): motion of the body's place (B axes, linear then angular).
+  /// For what follows, as required() does.
+  void take_posture(const JointVector& q);
+
+  /// At the posture taken last: motion of the body's place (B axes, linear then angular).
   WrenchJacobian jacobian_of_link(int body) const;
   WrenchJacobian jacobian_of_center(int body) const;
   Eigen::Matrix3d rotation(int body) const;  ///< R_BL
   Eigen::Vector3d origin(int body) const;    ///< p_BL
 
-  /// What these joint torques alone do to the acceleration at the IMU's place [m/s^2, B axes]; the pinned links don't
-  /// move.
-  Eigen::Vector3d imu_acceleration(const JointVector& q, const JointVector& torque_Nm,
-                                   const std::vector<int>& pinned_bodies);
+  /// What these joint torques alone do to the acceleration at the IMU's place, of a robot in the air [m/s^2, B axes].
+  Eigen::Vector3d imu_acceleration(const JointVector& q, const JointVector& torque_Nm);
 
   int body(const std::string& link) const;  ///< throws std::invalid_argument when there is none
   double mass_kg(int body) const { return model_->body_mass[body]; }
@@ -50,7 +51,6 @@ class RobotDynamics {
   void set_link(int body, double mass_factor, double added_kg, const Eigen::Vector3d& center_shift_m);
 
  private:
-  void take_posture(const JointVector& q);
   WrenchJacobian jacobian(int body, const mjtNum* point) const;
 
   struct FreeModel {

@@ -183,9 +183,6 @@ Eigen::VectorXd RobotEquations::torque_column(const RobotParameter& parameter, c
   if (found != joints.end()) {
     const Eigen::Index row = found - joints.begin();
     column[row] = missing_Nm;
-    // The spring's torque as the motion says, not as the encoder does: the same encoder noise in residual and column
-    // would look like too small a gain.
-    if (parameter.kind == Kind::kKp) column[row] -= nominal[row];
   }
   if (support != Support::kStanding) return column;
   for (const Foot foot : {kLeft, kRight}) {
@@ -260,6 +257,12 @@ std::vector<RobotRow> RobotEquations::rows(const RobotSample& sample, Support su
       column = link_column(p, sample, support, nominal);
     }
     add_column(static_cast<int>(k), column, rows);
+    const auto own = std::ranges::find(joints, p.joint);
+    if (p.kind != Kind::kKp || own == joints.end()) continue;
+    RobotRow& row = rows[static_cast<std::size_t>(own - joints.begin())];
+    if (row.coefficients.empty() || row.coefficients.back().first != static_cast<int>(k)) continue;
+    row.own_gain = static_cast<int>(row.coefficients.size()) - 1;
+    row.spring_Nm = sample.spring_Nm[p.joint];
   }
   return rows;
 }
@@ -272,12 +275,21 @@ void RobotEquations::add_column(int parameter, const Eigen::VectorXd& column, st
   }
 }
 
-Eigen::Vector3d RobotEquations::accelerometer_share(const JointVector& q, const JointVector& torque_Nm,
-                                                    Support support) {
-  const bool standing = support == Support::kStanding;
-  return robot_.imu.T_LI.linear().transpose() *
-         dynamics_.imu_acceleration(
-             q, torque_Nm, standing ? std::vector<int>{foot_body_[kLeft], foot_body_[kRight]} : std::vector<int>{});
+Eigen::Vector3d RobotEquations::accelerometer_share(const JointVector& q, const JointVector& torque_Nm) {
+  return robot_.imu.T_LI.linear().transpose() * dynamics_.imu_acceleration(q, torque_Nm);
+}
+
+Eigen::Vector3d RobotEquations::imu_velocity_on_resting_soles(const model::RobotState& state) {
+  const Eigen::Isometry3d& T_BI = robot_.imu.T_LI;
+  const Eigen::Vector3d omega_B = T_BI.linear() * state.gyro_rad_s;
+  GeneralizedVector speed = GeneralizedVector::Zero(6 + joints_);
+  speed.segment<3>(3) = omega_B;
+  speed.tail(joints_) = state.dq;
+  dynamics_.take_posture(state.q);
+  Eigen::Vector3d v_base_B = Eigen::Vector3d::Zero();  // makes both feet rest, on average
+  for (const Foot foot : {kLeft, kRight})
+    v_base_B -= 0.5 * (dynamics_.jacobian_of_link(foot_body_[foot]) * speed).head<3>();
+  return T_BI.linear().transpose() * (v_base_B + omega_B.cross(T_BI.translation()));
 }
 
 PerFoot<FootForce> RobotEquations::foot_forces(const RobotSample& sample) {

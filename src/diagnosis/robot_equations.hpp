@@ -29,6 +29,8 @@ struct RobotRow {
   double friction_variance = 0.0;  ///< of dry friction near standstill, whose direction isn't known
   double standstill = 0.0;         ///< that, as a share of what it is when nothing moves
   std::vector<std::pair<int, double>> coefficients;
+  int own_gain = -1;       ///< which of the coefficients is that of the gain of the row's own joint,
+  double spring_Nm = 0.0;  ///< of which this is the negative, by the encoder
 };
 
 /// Forces on one foot, from its leg's torques.
@@ -44,8 +46,11 @@ class RobotEquations {
   Support support(const RobotSample& sample);
   std::vector<RobotRow> rows(const RobotSample& sample, Support support);
 
-  /// What such torques add to the accelerometer's reading [m/s^2, IMU axes].
-  Eigen::Vector3d accelerometer_share(const JointVector& q, const JointVector& torque_Nm, Support support);
+  /// What such torques add to the accelerometer's reading while the feet are free [m/s^2, IMU axes].
+  Eigen::Vector3d accelerometer_share(const JointVector& q, const JointVector& torque_Nm);
+
+  /// The IMU's velocity while both soles rest [m/s, IMU axes], from the legs.
+  Eigen::Vector3d imu_velocity_on_resting_soles(const model::RobotState& state);
 
   PerFoot<FootForce> foot_forces(const RobotSample& sample);
   double foot_separation_speed_m_s(const RobotSample& sample);

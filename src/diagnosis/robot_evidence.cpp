@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -183,10 +184,9 @@ double log_evidence(const RobotCandidate& candidate, const RobotParameterList& l
 
 class Search {
  public:
-  Search(const std::vector<RobotBlock>& blocks, int kinds, const RobotParameterList& list,
-         const EvidenceOptions& options)
-      : blocks_(blocks), kinds_(kinds), list_(list), options_(options), noise_(kinds), priors_(list) {
-    if (std::ranges::all_of(blocks, [](const RobotBlock& block) { return block.rows.empty(); }))
+  Search(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list, const EvidenceOptions& options)
+      : blocks_(std::move(blocks)), kinds_(kinds), list_(list), options_(options), noise_(kinds), priors_(list) {
+    if (std::ranges::all_of(blocks_, [](const RobotBlock& block) { return block.rows.empty(); }))
       throw std::runtime_error("no stretch of the logs that a diagnosis can use");
     learn_noise();
   }
@@ -201,7 +201,8 @@ class Search {
     for (RobotFinding& finding : evidence.findings) measure(finding);
     evidence.held_out_before = held_out(nothing_found);
     evidence.held_out_after = held_out(priors_);
-    tell_noise(evidence);
+    for (const double variance : noise_of(blocks_, kinds_, evidence.theta).variance)
+      evidence.left.push_back(std::sqrt(variance));
     tell_detectable(evidence);
     return evidence;
   }
@@ -218,9 +219,23 @@ class Search {
       noise_ = noise_of(blocks_, kinds_, theta);
       sum_blocks(parameters);
       theta = estimate(all_, free);
+      clear_own_gains(theta);
     }
     noise_ = noise_of(blocks_, kinds_, theta);
     sum_blocks(parameters);
+  }
+
+  /// A spring's torque as the motion with these parameters takes it, not as the encoder shows it: the same encoder
+  /// noise in a row and in its gain's coefficient would look like too small a gain.
+  void clear_own_gains(const Eigen::VectorXd& theta) {
+    for (RobotBlock& block : blocks_) {
+      for (RobotRow& row : block.rows) {
+        if (row.own_gain < 0) continue;
+        double& coefficient = row.coefficients[static_cast<std::size_t>(row.own_gain)].second;
+        coefficient = -row.spring_Nm;
+        coefficient -= residual(row, theta);
+      }
+    }
   }
 
   void sum_blocks(Eigen::Index parameters) {
@@ -263,29 +278,45 @@ class Search {
         *best = -std::numeric_limits<double>::infinity();
         continue;
       }
-      for (std::size_t other = 0; other < score.size(); ++other) {
-        if (static_cast<int>(other) != candidate && score[other] > *best - options_.told_apart)
-          finding.or_instead.push_back(static_cast<int>(other));
-      }
+      name_rivals(score, with, finding);
       priors_ = with;
       evidence.findings.push_back(std::move(finding));
       return true;
     }
   }
 
-  /// The cause is learned from all other blocks and has to make each block more probable.
+  void name_rivals(const std::vector<double>& score, const Priors& with, RobotFinding& finding) const {
+    for (std::size_t other = 0; other < score.size(); ++other) {
+      if (static_cast<int>(other) != finding.candidate && score[other] > finding.log_evidence - options_.told_apart)
+        finding.or_instead.push_back(static_cast<int>(other));
+    }
+    if (finding.or_instead.empty()) return;
+    std::ranges::sort(finding.or_instead, std::greater{}, [&](int c) { return score[static_cast<std::size_t>(c)]; });
+    Priors with_rival = priors_;
+    with_rival.widen(finding.or_instead.front());
+    const Eigen::VectorXd difference = estimate(all_, with) - estimate(all_, with_rival);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (blocks_[b].rows.empty()) continue;
+      const auto support = static_cast<std::size_t>(3 * blocks_[b].rows.front().kind / kinds_);
+      finding.apart[support] += difference.dot(sums_[b].matrix * difference);
+    }
+  }
+
+  /// No one block carries the evidence, and what blocks that are left out say against the cause doesn't outweigh it.
+  /// They needn't speak for it: many numbers, each a little further off than is normal, often predict as well.
   bool holds_in_folds(const Priors& with, RobotFinding& finding) const {
+    const RobotCandidate& candidate = list_.candidates[static_cast<std::size_t>(finding.candidate)];
+    const Eigen::VectorXd precision = priors_.precision();
     double gain = 0.0;
     for (const NormalEquations& block : sums_) {
+      if (block.rows == 0.0) continue;
       const NormalEquations rest = without(all_, block);
-      const double better = block.chi_square(estimate(rest, priors_)) - block.chi_square(estimate(rest, with));
-      constexpr double kSilent = 0.5;  // blocks that can't see the cause don't vote
-      if (std::abs(better) < kSilent) continue;
-      gain += better;
+      const Posterior now = posterior(rest, priors_);
+      gain += 0.5 * (block.chi_square(now.mean) - block.chi_square(estimate(rest, with)));
       ++finding.folds;
-      if (better > 0.0) ++finding.folds_better;
+      if (log_evidence(candidate, list_, now, precision) > 0.5 * options_.least_log_evidence) ++finding.folds_better;
     }
-    return gain > 0.0 && 2 * finding.folds_better > finding.folds;
+    return finding.log_evidence + gain > options_.least_log_evidence && finding.folds_better == finding.folds;
   }
 
   /// Value from everything; interval from the posterior or from how the blocks disagree, whichever is wider.
@@ -324,15 +355,6 @@ class Search {
     return std::sqrt(sum / std::max(rows, 1.0));
   }
 
-  void tell_noise(RobotEvidence& evidence) const {
-    const NoiseLevels left = noise_of(blocks_, kinds_, evidence.theta);
-    for (std::size_t kind = 0; kind < noise_.variance.size(); ++kind) {
-      evidence.noise.push_back(std::sqrt(noise_.variance[kind]));
-      evidence.unexplained.push_back(
-          noise_.variance[kind] > 0.0 ? std::sqrt(left.variance[kind] / noise_.variance[kind]) : 0.0);
-    }
-  }
-
   /// Where the evidence of one parameter alone would just suffice, the rest being as in every robot.
   void tell_detectable(RobotEvidence& evidence) const {
     const Posterior now = posterior(all_, Priors(list_));
@@ -347,7 +369,7 @@ class Search {
     }
   }
 
-  const std::vector<RobotBlock>& blocks_;
+  std::vector<RobotBlock> blocks_;
   int kinds_;
   const RobotParameterList& list_;
   EvidenceOptions options_;
@@ -359,9 +381,9 @@ class Search {
 
 }  // namespace
 
-RobotEvidence weigh(const std::vector<RobotBlock>& blocks, int kinds, const RobotParameterList& list,
+RobotEvidence weigh(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
                     const EvidenceOptions& options) {
-  return Search(blocks, kinds, list, options).run();
+  return Search(std::move(blocks), kinds, list, options).run();
 }
 
 }  // namespace pmg::diagnosis

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct RobotFinding {
   Eigen::VectorXd value{}, low{}, high{};  ///< 95 %, one a parameter of the candidate
   double log_evidence = 0.0;               ///< natural logarithm of how much more probable the data are with this cause
   int folds_better = 0, folds = 0;
-  std::vector<int> or_instead{};  ///< candidates that explain as much
+  std::vector<int> or_instead{};  ///< candidates that explain as much, the best first
+  /// By how much the strongest of these predicts other equations than this cause does, in squared noise, by Support.
+  std::array<double, 3> apart{};
 };
 
 struct RobotEvidence {
@@ -38,8 +41,7 @@ struct RobotEvidence {
   std::vector<double> candidate_log_evidence;  ///< each alone, before anything was found
   std::vector<double> detectable;  ///< per parameter: smallest value that would have shown (one of its kind alone)
   double held_out_before = 0.0, held_out_after = 0.0;  ///< rms over blocks left out, in units of the noise
-  std::vector<double> noise;        ///< per kind of row: standard deviation, in the row's unit; 0 where it has no rows
-  std::vector<double> unexplained;  ///< per kind: residual with the findings over noise
+  std::vector<double> left;  ///< per kind of row: rms of what remains with the findings, in the row's unit
 };
 
 struct EvidenceOptions {
@@ -49,7 +51,7 @@ struct EvidenceOptions {
 };
 
 /// Throws std::runtime_error when there are no rows.
-RobotEvidence weigh(const std::vector<RobotBlock>& blocks, int kinds, const RobotParameterList& list,
+RobotEvidence weigh(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
                     const EvidenceOptions& options = {});
 
 }  // namespace pmg::diagnosis

@@ -1,9 +1,13 @@
 #include "diagnosis/robot_parameters.hpp"
 
+#include <mujoco/mujoco.h>
+
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "sim/variation.hpp"
+#include "sim/world.hpp"
 
 namespace pmg::diagnosis {
 
@@ -13,7 +17,8 @@ using Kind = RobotParameter::Kind;
 
 class List {
  public:
-  List(const model::RobotModel& robot, const RobotTolerances& tolerances) : robot_(robot), tolerances_(tolerances) {}
+  List(const model::RobotModel& robot, const RobotTolerances& tolerances)
+      : robot_(robot), tolerances_(tolerances), moved_kg_m2_(moved_inertia_kg_m2(robot)) {}
 
   RobotParameterList build() {
     add_links();
@@ -102,19 +107,30 @@ class List {
     const double viscous = std::max(joint.damping_Nm_s_per_rad, 0.05);
     effect("viscous", Kind::kViscous, t.friction_share * viscous, 3.0 * viscous, 0.4 * viscous);
     const double armature = std::max(joint.armature_kg_m2, 0.002);
-    effect("armature", Kind::kArmature, t.armature_share * armature, armature, 0.2 * armature);
+    effect("armature", Kind::kArmature, std::hypot(t.armature_share * armature, t.inertia_share * moved_kg_m2_[j]),
+           armature, 0.2 * armature);
     effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, 0.06, 0.006);
     effect("delay", Kind::kDelay, t.delay_s, 0.01, 0.0015);
   }
 
   const model::RobotModel& robot_;
   const RobotTolerances& tolerances_;
+  const JointVector moved_kg_m2_;
   RobotParameterList list_;
 };
 
 const char* axis_name(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
 }  // namespace
+
+JointVector moved_inertia_kg_m2(const model::RobotModel& robot) {
+  const sim::World world(robot, {});
+  const mjModel* m = world.mj_model();
+  JointVector inertia(robot.joint_index.size());
+  for (int j = 0; j < inertia.size(); ++j)
+    inertia[j] = m->dof_M0[m->jnt_dofadr[mj_name2id(m, mjOBJ_JOINT, robot.joint_index.name(j).c_str())]];
+  return inertia;
+}
 
 RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances) {
   return List(robot, tolerances).build();

@@ -18,6 +18,7 @@ struct RobotTolerances {
   double kp_share = 0.01, kd_share = 0.03;
   double friction_share = 0.15, friction_least_Nm = 0.02;  ///< Coulomb; viscous with a share alike
   double armature_share = 0.06;
+  double inertia_share = 0.01;  ///< of what a joint moves: only its sum with the armature shows
   double zero_offset_rad = 0.0015;
   double delay_s = 0.0004;
 };
@@ -57,6 +58,9 @@ struct RobotParameterList {
   std::vector<RobotParameter> parameters;
   std::vector<RobotCandidate> candidates;
 };
+
+/// About each joint's axis, of all links beyond it and its armature, as the robot stands with straight joints.
+JointVector moved_inertia_kg_m2(const model::RobotModel& robot);
 
 RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances);
 

@@ -137,8 +137,9 @@ std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::p
   return all;
 }
 
-void write_robot_log(const RobotRecording& recording, const model::RobotModel& robot,
-                     const std::filesystem::path& file) {
+namespace {
+
+void write_ticks(const RobotRecording& recording, const model::RobotModel& robot, const std::filesystem::path& file) {
   io::LogWriter writer(file);
   runtime::RunInfo run;
   run.robot = robot.name;
@@ -162,7 +163,25 @@ void write_robot_log(const RobotRecording& recording, const model::RobotModel& r
   writer.flush();
 }
 
-RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name) {
+}  // namespace
+
+void write_robot_log(const RobotRecording& recording, const model::RobotModel& robot,
+                     const std::filesystem::path& file) {
+  std::filesystem::path beside = file;
+  beside += ".part";
+  try {
+    write_ticks(recording, robot, beside);
+    std::filesystem::rename(beside, file);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
+}
+
+RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
+                    const RobotProgress& progress) {
+  constexpr std::size_t kTicksPerReport = 100;
   RobotRecording recording{.name = name, .period_s = kTickPeriod_s, .ticks = {}};
   recording.ticks.reserve(commands.size());
   for (const model::JointCommand& command : commands) {
@@ -174,6 +193,10 @@ RobotRecording play(sim::World& world, std::span<const model::JointCommand> comm
     recording.ticks.push_back(tick);
     for (int cycle = 0; cycle < kBusCyclesPerTick; ++cycle) world.step(tick.command);
     if (world.diverged()) throw std::runtime_error(fmt::format("{}: the simulation diverged at {} s", name, tick.t_s));
+    const std::size_t done = recording.ticks.size();
+    if (progress && done % kTicksPerReport == 0 &&
+        !progress(static_cast<double>(done) / static_cast<double>(commands.size())))
+      throw Interrupted();
   }
   return recording;
 }

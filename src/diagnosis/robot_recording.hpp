@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,13 +36,21 @@ struct RobotRecording {
 std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::path>& logs,
                                             const model::RobotModel& robot);
 
-/// Writes ROBOT_INFO, and STATE and MOTOR_COMMAND of every tick, as a controller's log has them. Throws
-/// std::runtime_error when the file can't be written.
+/// Writes ROBOT_INFO, and STATE and MOTOR_COMMAND of every tick, as a controller's log has them; the file is there
+/// whole or not at all. Throws std::runtime_error when it can't be written.
 void write_robot_log(const RobotRecording& recording, const model::RobotModel& robot,
                      const std::filesystem::path& file);
 
+/// Called now and then with how far it is; false ends it: Interrupted is thrown.
+using RobotProgress = std::function<bool(double share)>;
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
 /// Plays one command a tick on a simulated robot, five bus cycles of 2 ms each, and records it. Throws
 /// std::runtime_error when the simulation diverges.
-RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name);
+RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
+                    const RobotProgress& progress = {});
 
 }  // namespace pmg::diagnosis

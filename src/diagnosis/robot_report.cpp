@@ -42,9 +42,14 @@ std::string next_excitation(const RobotDiagnosis& d) {
   if (d.coverage.hanging_s == 0.0) return "record the hanging excitation: without it single joints aren't told apart";
   if (d.coverage.standing_s == 0.0)
     return "record the standing excitation: without it masses above the hips aren't seen";
-  if (d.verdict == Verdict::kAmbiguous)
-    return "record both excitations twice more: the causes differ by too little noise";
-  return "";
+  std::string next;
+  for (const RobotCause& cause : d.causes) {
+    if (cause.or_instead.empty()) continue;
+    next +=
+        fmt::format("{}record the {} excitation again: it is where {} of {} and {} differ most",
+                    next.empty() ? "" : "; ", cause.told_apart_by, cause.effect, cause.place, cause.or_instead.front());
+  }
+  return next;
 }
 
 std::string ground_text(const GroundFriction& ground) {

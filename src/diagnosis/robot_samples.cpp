@@ -1,21 +1,22 @@
 #include "diagnosis/robot_samples.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kDeviation_s = 0.025;   // of the Gaussian low-pass: -3 dB at 5.3 Hz, the excitation ends at 2.1 Hz
-constexpr int kReach = 8;                // ticks to each side: three deviations and a bit
+constexpr double kDirectionLowPass_s = 0.025;
+constexpr int kMargin = 8;               // ticks at both ends of a recording without samples
 constexpr double kTurning_rad_s = 0.02;  // below it MuJoCo's dry friction isn't fully there
 
 /// A drive that the simulation steps every 2 ms takes the position at the beginning of each step: over a tick of 10 ms
-/// that is the mean of q at 0, 2, 4, 6, 8 ms. Accelerations read with a state belong to the 2 ms before it. A robot's
-/// own drives run faster: there both would be 0.5.
-constexpr double kPositionShare = 0.4, kForceShare = 0.6, kBusCycle_s = 0.002;
+/// that is the mean of q at 0, 2, 4, 6, 8 ms, here of the cubic that has the positions and speeds of both ends: a stiff
+/// light joint gets to a new command within the tick. Accelerations read with a state belong to the 2 ms before it. A
+/// robot's own drives run faster: there both shares would be 0.5 and the speeds' 1/12.
+constexpr double kPositionShare = 0.4, kSpeedShare = 0.08, kForceShare = 0.6, kBusCycle_s = 0.002;
 
 struct TickMeans {
   RobotSample mean;
@@ -23,7 +24,8 @@ struct TickMeans {
   TickMeans(const RobotTick& before, const RobotTick& at, const RobotTick& after, double period_s) {
     const auto between = [](const auto& a, const auto& b, double share) { return (a + share * (b - a)).eval(); };
     mean.t_s = at.t_s + 0.5 * period_s;
-    mean.q = between(at.state.q, after.state.q, kPositionShare);
+    mean.q =
+        between(at.state.q, after.state.q, kPositionShare) + kSpeedShare * period_s * (at.state.dq - after.state.dq);
     // Not the speeds that were read: a command that is held for a tick makes joints ring with the ticks, and a speed
     // read always at the same point of it is off by up to a tenth.
     mean.dq = (after.state.q - at.state.q) / period_s;
@@ -41,7 +43,7 @@ struct TickMeans {
     mean.direction = JointVector::Zero(mean.dq.size());
     mean.omega_I = between(at.state.gyro_rad_s, after.state.gyro_rad_s, 0.5);
     mean.alpha_I = (after.state.gyro_rad_s - at.state.gyro_rad_s) / period_s;
-    mean.specific_force_I = between(at.state.acceleration_m_s2, after.state.acceleration_m_s2, kForceShare);
+    mean.specific_force_I = mean_of_readings(at.state.acceleration_m_s2, after.state.acceleration_m_s2);
     const auto up = [](const model::RobotState& s) {
       return (s.orientation_WI.conjugate() * Eigen::Vector3d::UnitZ()).eval();
     };
@@ -74,27 +76,34 @@ RobotSample zero(int joints) {
   return sample;
 }
 
-std::array<double, 2 * kReach + 1> weights(double period_s) {
-  std::array<double, 2 * kReach + 1> w{};
-  double sum = 0.0;
-  for (int i = -kReach; i <= kReach; ++i) {
-    const double x = i * period_s / kDeviation_s;
-    w[static_cast<std::size_t>(i + kReach)] = std::exp(-0.5 * x * x);
-    sum += w[static_cast<std::size_t>(i + kReach)];
+/// Of a Gaussian low-pass, three deviations to each side.
+std::vector<double> weights(double deviation_s, double period_s) {
+  const int reach = static_cast<int>(std::ceil(3.0 * deviation_s / period_s));
+  std::vector<double> w;
+  for (int i = -reach; i <= reach; ++i) {
+    const double x = i * period_s / deviation_s;
+    w.push_back(std::exp(-0.5 * x * x));
   }
+  const double sum = std::accumulate(w.begin(), w.end(), 0.0);
   for (double& value : w) value /= sum;
   return w;
 }
 
+/// Calls add(k', weight) for the ticks around tick k of so many; the first and the last stand in for those beyond.
+template <typename Add>
+void around(int k, int count, const std::vector<double>& w, Add&& add) {
+  const auto reach = static_cast<int>(w.size() / 2);
+  for (int i = -reach; i <= reach; ++i)
+    add(static_cast<std::size_t>(std::clamp(k + i, 0, count - 1)), w[static_cast<std::size_t>(i + reach)]);
+}
+
 /// Of the low-passed speed: encoder noise alone would turn a slow joint's direction from tick to tick.
 void find_directions(double period_s, std::vector<TickMeans>& means) {
-  const auto w = weights(period_s);
-  const auto last = static_cast<int>(means.size()) - 1;
-  for (int k = 0; k <= last; ++k) {
+  const std::vector<double> w = weights(kDirectionLowPass_s, period_s);
+  const auto count = static_cast<int>(means.size());
+  for (int k = 0; k < count; ++k) {
     JointVector dq = JointVector::Zero(means.front().mean.dq.size());
-    for (int i = -kReach; i <= kReach; ++i)
-      dq +=
-          w[static_cast<std::size_t>(i + kReach)] * means[static_cast<std::size_t>(std::clamp(k + i, 0, last))].mean.dq;
+    around(k, count, w, [&](std::size_t at, double weight) { dq += weight * means[at].mean.dq; });
     means[static_cast<std::size_t>(k)].mean.direction = (dq / kTurning_rad_s).array().tanh();
   }
 }
@@ -121,25 +130,28 @@ std::vector<JointVector> torque_ripple(const RobotRecording& recording) {
   return ripple;
 }
 
-std::vector<RobotSample> robot_samples(const RobotRecording& recording, int ticks_per_sample,
-                                       std::span<const Eigen::Vector3d> ripple_I) {
+Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after) {
+  return at + kForceShare * (after - at);
+}
+
+std::vector<RobotSample> robot_samples(const RobotRecording& recording, const SampleOptions& options) {
   const auto& ticks = recording.ticks;
-  const auto count = static_cast<int>(ticks.size());
-  if (count < 2 * kReach + 3) return {};
+  if (ticks.size() < 2 * kMargin + 3) return {};
   std::vector<TickMeans> means;
   means.reserve(ticks.size());
   for (std::size_t k = 1; k + 1 < ticks.size(); ++k)
     means.emplace_back(ticks[k - 1], ticks[k], ticks[k + 1], recording.period_s);
-  for (std::size_t k = 1; k + 1 < ripple_I.size(); ++k)
-    means[k - 1].mean.specific_force_I -= ripple_I[k] + kForceShare * (ripple_I[k + 1] - ripple_I[k]);
+  const auto forces_I = options.specific_force_I;
+  for (std::size_t k = 1; k < forces_I.size() && k <= means.size(); ++k)
+    means[k - 1].mean.specific_force_I = forces_I[k];
   find_directions(recording.period_s, means);
-  const auto w = weights(recording.period_s);
-  const auto joints = static_cast<int>(ticks.front().state.q.size());
+  const std::vector<double> w = weights(options.low_pass_s, recording.period_s);
+  const auto joints = static_cast<int>(ticks.front().state.q.size()), count = static_cast<int>(means.size());
   std::vector<RobotSample> samples;
-  for (int k = kReach; k + kReach < static_cast<int>(means.size()); k += ticks_per_sample) {
+  for (int k = kMargin; k + kMargin < count; k += options.ticks_per_sample) {
     RobotSample sample = zero(joints);
-    for (int i = -kReach; i <= kReach; ++i)
-      add(means[static_cast<std::size_t>(k + i)].mean, w[static_cast<std::size_t>(i + kReach)], sample);
+    around(k, count, w, [&](std::size_t at, double weight) { add(means[at].mean, weight, sample); });
+    sample.t_s = means[static_cast<std::size_t>(k)].mean.t_s;
     sample.up_I.normalize();
     samples.push_back(std::move(sample));
   }

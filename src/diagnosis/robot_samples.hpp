@@ -25,9 +25,17 @@ struct RobotSample {
 /// saw-toothed. How far each joint's torque at the reading of tick k lies from its trend [Nm]; 0 at both ends.
 std::vector<JointVector> torque_ripple(const RobotRecording& recording);
 
-/// One sample every so many ticks; 50 ms lose nothing that the low-pass lets through. ripple_I: what the accelerometer
-/// shows too much at every tick for that reason [m/s^2], or empty.
-std::vector<RobotSample> robot_samples(const RobotRecording& recording, int ticks_per_sample = 5,
-                                       std::span<const Eigen::Vector3d> ripple_I = {});
+/// Mean of what an accelerometer would show between two ticks, from its readings at both.
+Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after);
+
+struct SampleOptions {
+  int ticks_per_sample = 5;   ///< 50 ms lose nothing that the low-pass lets through
+  double low_pass_s = 0.025;  ///< deviation of the Gaussian: -3 dB at 5.3 Hz; the hanging excitation ends at 2.1 Hz
+  /// Mean between every tick and the next one [m/s^2, IMU axes], where that is known better than by mean_of_readings().
+  std::span<const Eigen::Vector3d> specific_force_I{};
+};
+
+/// Samples at the same times whatever the low-pass; none for recordings shorter than 0.2 s.
+std::vector<RobotSample> robot_samples(const RobotRecording& recording, const SampleOptions& options = {});
 
 }  // namespace pmg::diagnosis

@@ -1,6 +1,8 @@
 #include "diagnosis/hidden_robot.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "diagnosis/robot_excitation.hpp"
@@ -144,6 +146,19 @@ HiddenRobot hide(const model::RobotModel& robot, std::uint64_t seed) {
       break;
   }
   return result;
+}
+
+bool named_right(const HiddenEffect& hidden, const RobotDiagnosis& diagnosis) {
+  if (hidden.effect.empty()) return diagnosis.verdict == Verdict::kNone;
+  if (diagnosis.verdict != Verdict::kFound || diagnosis.causes.size() != 1) return false;
+  const RobotCause& cause = diagnosis.causes.front();
+  if (cause.effect != hidden.effect || cause.place != hidden.place) return false;
+  for (std::size_t i = 0; i < hidden.values.size(); ++i) {
+    const double error = std::abs(cause.parameters[i].estimate.value - hidden.values[i]);
+    if (hidden.effect == "payload" && error > 0.15 * hidden.values[i]) return false;
+    if (hidden.effect == "imu_mounting" && error > 0.3 * std::numbers::pi / 180.0) return false;
+  }
+  return true;
 }
 
 std::vector<RobotRecording> record_hidden(const HiddenRobot& hidden) {

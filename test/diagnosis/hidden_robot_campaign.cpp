@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numbers>
 
 #include "diagnosis/hidden_robot.hpp"
 #include "diagnosis/robot_diagnosis.hpp"
@@ -24,22 +23,6 @@ struct Count {
   }
   bool holds(double share) const { return of == 0 || right >= share * of; }
 };
-
-/// Within 15 % a payload, within 0.3 degrees an IMU; of the rest the name counts.
-bool value_is_right(const HiddenEffect& hidden, const RobotCause& cause) {
-  for (std::size_t i = 0; i < hidden.values.size(); ++i) {
-    const double error = std::abs(cause.parameters[i].estimate.value - hidden.values[i]);
-    if (hidden.effect == "payload" && error > 0.15 * hidden.values[i]) return false;
-    if (hidden.effect == "imu_mounting" && error > 0.3 * std::numbers::pi / 180.0) return false;
-  }
-  return true;
-}
-
-bool found(const HiddenEffect& hidden, const RobotDiagnosis& diagnosis) {
-  if (hidden.effect.empty()) return diagnosis.verdict == Verdict::kNone;
-  return diagnosis.verdict == Verdict::kFound && diagnosis.causes.front().effect == hidden.effect &&
-         diagnosis.causes.front().place == hidden.place && value_is_right(hidden, diagnosis.causes.front());
-}
 
 std::string kind(const HiddenEffect& hidden) {
   const bool whole = hidden.effect.empty() || hidden.effect == "payload" || hidden.effect == "center_of_mass" ||
@@ -67,7 +50,7 @@ int main(int argc, char** argv) {
   for (int seed = first; seed < first + count; ++seed) {
     const HiddenRobot hidden = hide(robot, static_cast<std::uint64_t>(seed));
     const RobotDiagnosis diagnosis = diagnose_robot(robot, record_hidden(hidden));
-    const bool right = found(hidden.hidden, diagnosis);
+    const bool right = named_right(hidden.hidden, diagnosis);
     counts[kind(hidden.hidden)].add(right);
     ground.add(!diagnosis.ground.observable || std::abs(diagnosis.ground.value - hidden.ground_friction) <= 0.1);
     std::string truth =

@@ -30,36 +30,20 @@ RobotDiagnosis diagnosed(const HiddenRobot& hidden) {
   return diagnose_robot(z1(), recordings);
 }
 
-TEST(RobotDiagnosis, FindsNothingInARobotThatIsAsItsModel) {
-  const RobotDiagnosis d = diagnosed(healthy());
-  EXPECT_EQ(d.verdict, Verdict::kNone) << robot_diagnosis_text(d);
+/// Robots with noise and everything a little off, one thing wrong or nothing; the nightly campaign has a hundred.
+class HiddenRobots : public testing::TestWithParam<unsigned> {};
+
+TEST_P(HiddenRobots, TheOneThingThatIsWrongIsNamedAndNothingElse) {
+  const HiddenRobot hidden = hide(z1(), GetParam());
+  const RobotDiagnosis d = diagnosed(hidden);
+  EXPECT_TRUE(named_right(hidden.hidden, d)) << hidden.hidden.effect << " of " << hidden.hidden.place << "\n"
+                                             << robot_diagnosis_text(d);
   EXPECT_GT(d.coverage.hanging_s, 25.0);
   EXPECT_GT(d.coverage.standing_s, 30.0);
 }
 
-TEST(RobotDiagnosis, FindsAPayloadOnTheTorso) {
-  HiddenRobot hidden = healthy();
-  hidden.options.variation.torso_mass_kg = 2.0;
-  const RobotDiagnosis d = diagnosed(hidden);
-  ASSERT_FALSE(d.causes.empty());
-  EXPECT_EQ(d.causes.front().effect, "payload") << robot_diagnosis_text(d);
-  EXPECT_EQ(d.causes.front().place, "torso");
-  EXPECT_NEAR(d.causes.front().parameters.front().estimate.value, 2.0, 0.15 * 2.0);  // the promise: 15 %
-}
-
-TEST(RobotDiagnosis, FindsAnImuThatIsMountedAskew) {
-  HiddenRobot hidden = healthy();
-  const Eigen::Vector3d turn_rad(0.03, -0.02, 0.015);
-  hidden.robot.imu.T_LI.linear() =
-      hidden.robot.imu.T_LI.linear() * Eigen::AngleAxisd(turn_rad.norm(), turn_rad.normalized()).toRotationMatrix();
-  const RobotDiagnosis d = diagnosed(hidden);
-  ASSERT_FALSE(d.causes.empty());
-  ASSERT_EQ(d.causes.front().effect, "imu_mounting") << robot_diagnosis_text(d);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(d.causes.front().parameters[axis].estimate.value, turn_rad[static_cast<Eigen::Index>(axis)],
-                0.3 * M_PI / 180.0);  // the promise: 0.3 degrees
-  }
-}
+// nothing, a payload on the torso, one in a hand, an IMU askew, a joint's armature
+INSTANTIATE_TEST_SUITE_P(OfEveryKind, HiddenRobots, testing::Values(0U, 2U, 3U, 5U, 8U));
 
 TEST(RobotDiagnosis, FindsTheJointWhoseGearHoldsTooFirmly) {
   HiddenRobot hidden = healthy();
@@ -113,6 +97,15 @@ TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
     EXPECT_EQ(read.front().ticks[k].command.kp, recording.ticks[k].command.kp);
   }
   std::filesystem::remove(file);
+}
+
+TEST(RobotDiagnosis, AnInterruptedRecordingOrDiagnosisEndsAsInterrupted) {
+  sim::World world(z1(), {});
+  const std::vector<model::JointCommand> hold(150, standing_command(z1()));
+  const auto stop = [](double) { return false; };
+  EXPECT_THROW(play(world, hold, "stand", stop), Interrupted);
+  const std::vector<RobotRecording> recordings{play(world, hold, "stand")};
+  EXPECT_THROW(diagnose_robot(z1(), recordings, {}, stop), Interrupted);
 }
 
 TEST(RobotDiagnosis, ALogOfAnotherRobotIsRefused) {
