@@ -283,16 +283,15 @@ const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
   return chosen;
 }
 
-/// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end.
-Extension EffectSearch::pruned(Extension current) {
+/// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end, where
+/// one without it now meets the runs better than before.
+Extension EffectSearch::pruned(Extension current, const Extension& before) {
   for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e];
-    if (measured(name) != nullptr) {
-      ++e;
-      continue;
-    }
-    const Extension rest = without(current, name);
-    if (objection(trial(rest, current, name)).empty()) {
+    const bool newest = !contains(before.effects, name);
+    const Extension rest = measured(name) != nullptr ? current : without(current, name);
+    const bool judged = measured(name) == nullptr && (!newest || rest.fitted.squares < before.fitted.squares);
+    if (!judged || objection(trial(rest, current, name)).empty()) {
       ++e;
     } else {
       current = rest;
@@ -307,10 +306,7 @@ Extension EffectSearch::choose() {
     last_additions_ = additions(current);
     const Trial* next = chosen(last_additions_);
     if (next == nullptr) break;
-    const Extension with_next = pruned(next->extension);
-    const bool nothing_new = with_next.effects == current.effects && with_next.fitted.squares >= current.fitted.squares;
-    if (nothing_new) break;
-    current = with_next;
+    current = pruned(next->extension, current);
   }
   return current;
 }

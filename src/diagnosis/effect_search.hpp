@@ -86,7 +86,7 @@ class EffectSearch {
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
   std::vector<Trial> tried(const Extension& without, std::size_t most);
   const Trial* chosen(const std::vector<Trial>& trials) const;
-  Extension pruned(Extension current);
+  Extension pruned(Extension current, const Extension& before);
   bool going(const std::string& text);
 
   const calib::Bench& bench_;

@@ -64,6 +64,7 @@ BenchScale scale_of(const calib::Bench& bench, const std::vector<calib::SingleJo
   for (const calib::SingleJoint& joint : runs) {
     const calib::BenchRun& run = joint.run();
     const calib::Recording& r = run.recording;
+    scale.bus_recorded = scale.bus_recorded || !r.bus_V.empty();
     inertias.push_back(run.load.inertia_kg_m2 + model.actuator.transmission.armature_kg_m2);
     const auto span = static_cast<std::size_t>(std::max(1.0, kSpan_s * bench.sample_rate_hz));
     for (std::size_t k = 0; k < r.t_s.size(); ++k) {
@@ -194,8 +195,9 @@ std::vector<std::vector<double>> starts(const Effect& effect, const JointModel& 
       for (const double no_load : {1.05, 1.4, 2.5}) found.push_back({stall * peak, no_load * speed});
     }
   } else if (effect.name == "supply_sag") {
-    // What stands against back-EMF is a voltage; other drives regulate their current, whatever the bus.
-    if (a.drive.back_emf_s_per_rad > 0.0) each({0.05, 0.2, 0.5, 1.0}, 1.0 / peak);
+    // What stands against back-EMF is a voltage; other drives regulate their current, whatever the bus. A bus that was
+    // recorded is an input, with its sag.
+    if (a.drive.back_emf_s_per_rad > 0.0 && !scale.bus_recorded) each({0.05, 0.2, 0.5, 1.0}, 1.0 / peak);
   } else if (effect.name == "gain") {
     each({0.6, 0.8, 0.9, 1.1, 1.25, 1.6}, a.drive.kp_scale);
   } else if (effect.name == "dead_band") {

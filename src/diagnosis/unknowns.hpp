@@ -17,6 +17,7 @@ struct BenchScale {
   double inertia_kg_m2 = 0.01;  ///< median of the loads with the rotor
   double position_low_rad = 0.0, position_high_rad = 0.0;
   double quantum_rad = 0.0;  ///< the readings are multiples of it; 0 where they aren't
+  bool bus_recorded = false;
 };
 
 BenchScale scale_of(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
