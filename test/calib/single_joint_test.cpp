@@ -26,6 +26,7 @@ const std::vector<Kind>& kinds() {
            [](auto& p) {
              p.drive.torque_per_unit_Nm = 0.9;
              p.drive.back_emf_s_per_rad = 0.3;
+             p.drive.limit = 6.0;
              p.drive.supply_sag_per_Nm = 0.05;
              p.drive.brake_when_disabled = 0.8;
            }},
@@ -66,7 +67,8 @@ const std::vector<Kind>& kinds() {
   return kKinds;
 }
 
-/// The same run of a load that hangs askew, on a day when the joint warms from 25 to 55 degrees, switched off towards its end.
+/// The same run of a load that hangs askew, on a day when the joint warms from 25 to 55 degrees, switched off towards
+/// its end.
 calib::SingleJoint warming(const calib::Bench& bench, const calib::SingleJoint& joint) {
   calib::BenchRun run = joint.run();
   run.load.hangs_at_rad = 0.3;
