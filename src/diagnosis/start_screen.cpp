@@ -45,11 +45,11 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
   if (there.empty()) return;
   follow(there, effect, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  look_along(effect, values, there, into);
+  if (values.size() == 1 || effect.name == "load") look_along(effect, values, there, into);
 }
 
-/// Along the straight line from the model without it, how much of it would be best? A speed at which friction falls is
-/// no amount.
+/// Along the straight line from the model without it, how much of it would be best? For effects of one number, and a
+/// load's two, in which rollouts are nearly linear.
 void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const Misses& there,
                              std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
@@ -65,8 +65,7 @@ void StartScreen::look_along(const Effect& effect, const std::vector<double>& va
   for (std::size_t p = 0; p < values.size(); ++p) {
     const double from = calib::value(current_.model, effect.parameters[p]);
     if (!std::isfinite(from)) return;
-    const bool amount = effect.parameters[p] != "friction.stribeck_rad_s";
-    calib::set(scaled.model, effect.parameters[p], amount ? from + share * (values[p] - from) : values[p]);
+    calib::set(scaled.model, effect.parameters[p], from + share * (values[p] - from));
   }
   Misses moved = there;
   for (std::size_t i = 0; i < there.size(); ++i) moved[i] = misses_[i] + share * (there[i] - misses_[i]);
