@@ -170,10 +170,10 @@ class Diagnosing {
     result_.held_out_before = evidence.held_out_before;
     result_.held_out_after = evidence.held_out_after;
     tell_unexplained(evidence);
-    result_.verdict = !result_.depends_on.empty() ? Verdict::kUnexplained
-                      : ambiguous                 ? Verdict::kAmbiguous
-                      : !result_.causes.empty()   ? Verdict::kFound
-                                                  : Verdict::kNone;
+    result_.verdict = ambiguous                     ? Verdict::kAmbiguous
+                      : !result_.causes.empty()     ? Verdict::kFound
+                      : !result_.depends_on.empty() ? Verdict::kUnexplained
+                                                    : Verdict::kNone;
     tell_others(evidence);
     tell_not_seen(evidence);
   }

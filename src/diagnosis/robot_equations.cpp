@@ -20,6 +20,7 @@ constexpr double kAngleStep_rad = 1e-5, kMassStep_kg = 0.01, kLengthStep_m = 1e-
 constexpr double kInTheAir = 0.12, kOnTheGround = 0.15, kLeastWeight = 0.7, kMostWeight = 1.4;
 constexpr double kStepping_m_s = 0.03;
 constexpr double kFlat_rad = 0.15;
+constexpr double kUpright = 0.7;  // cosine of the base's tilt: a robot that has fallen has its feet in the air too
 
 using Kind = RobotParameter::Kind;
 
@@ -317,6 +318,8 @@ double RobotEquations::foot_separation_speed_m_s(const RobotSample& sample) {
 
 Support RobotEquations::support(const RobotSample& sample) {
   if (!legs_of_six_) return Support::kLoose;
+  const Eigen::Vector3d up_B = robot_.imu.T_LI.linear() * sample.up_I;
+  if (up_B.z() < kUpright) return Support::kLoose;
   const double weight_N = robot_.total_mass_kg * kGravity_m_s2;
   const PerFoot<FootForce> forces = foot_forces(sample);
   const auto most = [](const FootForce& f) { return std::max(std::abs(f.normal_N), f.tangential_N); };
@@ -325,7 +328,6 @@ Support RobotEquations::support(const RobotSample& sample) {
   const bool loaded = std::min(forces[kLeft].normal_N, forces[kRight].normal_N) > kOnTheGround * weight_N &&
                       sum_N > kLeastWeight * weight_N && sum_N < kMostWeight * weight_N;
   if (!loaded || foot_separation_speed_m_s(sample) > kStepping_m_s) return Support::kLoose;
-  const Eigen::Vector3d up_B = robot_.imu.T_LI.linear() * sample.up_I;
   for (const Foot foot : {kLeft, kRight}) {
     const Eigen::Vector3d up_F = dynamics_.rotation(foot_body_[foot]).transpose() * up_B;
     if (up_F.head<2>().norm() > kFlat_rad) return Support::kLoose;
