@@ -22,7 +22,8 @@ constexpr int kFewIterations = 4, kManyIterations = 15;
 // What convinces besides the limits: a mean over blocks of half a second that is three of its deviations off zero, and
 // more folds for it than against.
 constexpr double kDeviations = 3.0, kFoldsWon = 0.6;
-constexpr double kEqual = 0.03;  // of the gain: such a difference doesn't choose
+constexpr double kUnfinished = 0.5;  // of what an effect explains, that a fit without it explains as well
+constexpr double kEqual = 0.03;      // of the gain: such a difference doesn't choose
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -284,13 +285,15 @@ const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
 }
 
 /// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end, where
-/// one without it now meets the runs better than before.
+/// one without it, begun from here, meets the runs by most of what it gained.
 Extension EffectSearch::pruned(Extension current, const Extension& before) {
   for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e];
     const bool newest = !contains(before.effects, name);
     const Extension rest = measured(name) != nullptr ? current : without(current, name);
-    const bool judged = measured(name) == nullptr && (!newest || rest.fitted.squares < before.fitted.squares);
+    const double regained = before.fitted.squares - rest.fitted.squares;
+    const bool unfinished = regained > kUnfinished * (before.fitted.squares - current.fitted.squares);
+    const bool judged = measured(name) == nullptr && (!newest || unfinished);
     if (!judged || objection(trial(rest, current, name)).empty()) {
       ++e;
     } else {

@@ -87,7 +87,8 @@ TEST(Folds, WhatOnlyFitsNoiseGainsNothingOnBlocksLeftOut) {
   s.fit.linearise(base);
   s.fit.linearise(extended);
   const BlockComparison compare(s.fit, left_out, 1e-8);
-  const Comparison found = compare(held_out_squares(s.fit, base, left_out), held_out_squares(s.fit, extended, left_out));
+  const Comparison found =
+      compare(held_out_squares(s.fit, base, left_out), held_out_squares(s.fit, extended, left_out));
   EXPECT_LT(found.deviations, 2.5);
   EXPECT_LT(found.log_gain, 0.02);
 }
