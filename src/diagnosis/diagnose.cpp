@@ -10,23 +10,17 @@
 #include "calib/fit_problem.hpp"
 #include "calib/noise_floor.hpp"
 #include "diagnosis/effect_search.hpp"
-#include "diagnosis/folds.hpp"
+#include "diagnosis/explanation.hpp"
 #include "diagnosis/intervals.hpp"
 #include "diagnosis/next_excitation.hpp"
 #include "diagnosis/residual.hpp"
-#include "diagnosis/separation.hpp"
 #include "diagnosis/signature.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-// Two effects explain alike unless blocks left out, where the two differ, prefer one by two deviations and are closer
-// to what they would show were it the truth (1) than to showing nothing (0).
-constexpr double kApartDeviations = 2.0, kApartShare = 0.5;
-constexpr int kFewestBlocks = 6;             // of half a second, in which two effects differ
-constexpr double kExchangeDeviations = 3.0;  // one effect for another
-constexpr std::size_t kSearchedRuns = 40;    // the choice is made on so many, the result fitted to all
+constexpr std::size_t kSearchedRuns = 40;  // the choice is made on so many, the result fitted to all
 // What remains is something where its mean square is more than that of so much noise (loads are weighed to a percent,
 // friction changes from day to day, and no joint is quite its model), and no small rest of what was found.
 constexpr double kRemains = 8.0, kRemainsOfBeginning = 0.1;
@@ -96,14 +90,13 @@ class Diagnosing {
     if (runs != nullptr) *runs = {fitted, scored};
     checks_ = checks(fitted);
     const NestedFit all(fitted, options_.threads), fit(spread(fitted, kSearchedRuns), options_.threads);
-    searched_ = &fit;
     tell(0.02, "fitting what the simulation has");
     const BaseModel base = diagnosis::base_model(bench_, options_.model, fit, options_.threads);
     EffectSearch search(bench_, fit, base, limits(),
                         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad),
                         [this](const std::string& text) { return tell(share_ + 0.02 * (0.9 - share_), text); });
     for (const Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
-    Extension chosen = exchanged(search, search.choose());
+    Extension chosen = search.choose();
     const Extension settled = search.settled(chosen);
     if (settled.fitted.squares < chosen.fitted.squares) chosen = settled;
     diagnosis_.before = search.base().fitted.model;
@@ -117,7 +110,17 @@ class Diagnosing {
       diagnosis_.after = final_fit.model;
     }
     score(all, scored);
-    explain(search, chosen, final_fit, all);
+    explanation_ = explain(search, chosen,
+                           {.searched = fit,
+                            .all = all,
+                            .judged = *judged_,
+                            .fitted = final_fit,
+                            .checks = checks_,
+                            .noise = diagnosis_.noise_floor,
+                            .error_after = diagnosis_.held_out_after.value,
+                            .unit = diagnosis_.unit});
+    diagnosis_.causes = explanation_.causes;
+    diagnosis_.rejected = explanation_.rejected;
     conclude(search, chosen, fit);
     return diagnosis_;
   }
@@ -151,121 +154,12 @@ class Diagnosing {
     diagnosis_.share_of_way_to_floor = way > 0.0 ? (errors.before.value - errors.after.value) / way : 0.0;
   }
 
-  double judged_error(const calib::JointModel& model) const {
-    return judged_->absolutes_by_block(judged_->misses(model)).mean();
-  }
-
-  void explain(EffectSearch& search, const Extension& chosen, const NestedModel& final_fit, const NestedFit& all) {
-    const std::vector<Interval> intervals =
-        parameter_intervals(final_fit, folds(all), std::pow(diagnosis_.noise_floor.rms_rad, 2));
-    std::set<std::string> told;
-    std::vector<std::pair<double, Cause>> causes;
-    for (const std::string& name : chosen.effects) {
-      Cause cause;
-      cause.effect = name;
-      const MeasuredCause* measured = search.measured(name);
-      for (const std::string& parameter : effect(name).parameters) {
-        cause.parameters.push_back(measured != nullptr && measured->parameter == parameter
-                                       ? ParameterEstimate{parameter, measured->value, diagnosis_.unit}
-                                       : estimate(parameter, final_fit, intervals));
-      }
-      const Extension rest = search.without(chosen, name);
-      const Comparison gain = search.compared(rest, chosen);
-      cause.held_out_error_before = judged_error(rest.fitted.model);
-      cause.held_out_error_after = diagnosis_.held_out_after.value;
-      if (measured == nullptr)
-        cause.evidence.push_back(fmt::format(
-            "runs left out are predicted better in {:.0f} % of the folds over gain, load and trajectory; the "
-            "gain is {:.0f} of its deviations",
-            100.0 * gain.folds_won, gain.deviations));
-      for (const Signature& check : checks_) {
-        if (check.effect != name || check.agreement == Agreement::kCannotTell) continue;
-        cause.evidence.push_back(
-            fmt::format("without a model, {} {}: {}", check.check, diagnosis::name(check.agreement), check.sentence));
-      }
-      const std::vector<Trial> others = measured != nullptr ? std::vector<Trial>{} : search.alternatives(rest, name);
-      Rivals rivals{{chosen.fitted}, {name}};
-      for (const Trial& other : others) {
-        const SeenSeparation apart = seen(chosen, other.extension);
-        if (is_rival(other, apart)) {
-          cause.evidence.push_back(
-              fmt::format("{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they "
-                          "differ, {:.0f} "
-                          "% of what is expected were {} the truth",
-                          other.effect, apart.deviations, apart.blocks, 100.0 * apart.share_of_expected, name));
-          rivals.models.push_back(other.extension.fitted);
-          rivals.names.push_back(other.effect);
-          cause.or_instead.push_back(other.effect);
-          told.insert(other.effect);
-        }
-      }
-      if (rivals.names.size() > 1) rivals_.push_back(std::move(rivals));
-      causes.emplace_back(gain.log_gain, cause);
-    }
-    std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (auto& [gain, cause] : causes) diagnosis_.causes.push_back(cause);
-    reject(search, chosen, told);
-  }
-
-  SeenSeparation seen(const Extension& first, const Extension& other) const {
-    return seen_separation(*searched_, first.fitted.model, other.fitted.model, first.held_out, other.held_out,
-                           std::pow(diagnosis_.noise_floor.rms_rad, 2));
-  }
-
-  static bool is_rival(const Trial& other, const SeenSeparation& apart) {
-    for (const Unknown& u : other.extension.fitted.unknowns) {  // a shaft as stiff as any bends nowhere
-      if (u.name == "transmission.stiffness_Nm_per_rad" &&
-          calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper)
-        return false;
-    }
-    return apart.blocks < kFewestBlocks || apart.deviations < kApartDeviations || apart.share_of_expected < kApartShare;
-  }
-
-  /// What came first may only be what was best before the others came: whatever now does better takes its place.
-  Extension exchanged(EffectSearch& search, Extension chosen) const {
-    for (std::size_t e = 0; chosen.effects.size() > 1 && e < chosen.effects.size(); ++e) {
-      const std::string name = chosen.effects[e];
-      if (search.measured(name) != nullptr) continue;
-      for (const Trial& other : search.alternatives(search.without(chosen, name), name)) {
-        if (search.compared(chosen, other.extension).deviations < kExchangeDeviations) continue;
-        if (!search.objection(other).empty()) continue;
-        chosen = other.extension;
-        e = static_cast<std::size_t>(-1);  // from the first on, with it
-        break;
-      }
-    }
-    return chosen;
-  }
-
-  static ParameterEstimate estimate(const std::string& parameter, const NestedModel& fitted,
-                                    const std::vector<Interval>& intervals) {
-    for (std::size_t i = 0; i < intervals.size(); ++i) {
-      const Unknown& u = fitted.unknowns[i];
-      if (u.name == parameter) return {parameter, intervals[i], u.unit};
-    }
-    const double value = calib::value(fitted.model, parameter);
-    return {parameter, {value, value, value}, ""};
-  }
-
-  void reject(EffectSearch& search, const Extension& chosen, const std::set<std::string>& told) {
-    const std::vector<Trial>& last = search.last_additions();
-    for (const Effect& one : catalogue()) {
-      const auto in = std::find(chosen.effects.begin(), chosen.effects.end(), one.name);
-      if (in != chosen.effects.end() || told.contains(one.name)) continue;
-      const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
-      diagnosis_.rejected.push_back(
-          {one.name, search.refuted(one.name) ? "the recordings would show it without a model, and don't"
-                     : trial == last.end()    ? "a linearised look sees less in it than in others"
-                                              : search.objection(*trial)});
-    }
-  }
-
   /// What no run would tell apart is one cause with several names.
   void ask_for_more(const NestedFit& fit) {
-    if (rivals_.empty()) return;
+    if (explanation_.rivals.empty()) return;
     tell(share_, "looking for what to record next");
     const SeparationWanted wanted{kApartDeviations, std::pow(diagnosis_.noise_floor.rms_rad, 2)};
-    AskedFor asked = next_excitation(bench_, fit.runs(), rivals_, wanted, options_.threads);
+    AskedFor asked = next_excitation(bench_, fit.runs(), explanation_.rivals, wanted, options_.threads);
     diagnosis_.next_excitation = std::move(asked.next);
     for (Cause& cause : diagnosis_.causes) {
       for (const auto& [first, second] : asked.same_here) {
@@ -302,9 +196,8 @@ class Diagnosing {
   double share_ = 0.0;
   Diagnosis diagnosis_;
   std::optional<NestedFit> judged_;
-  std::vector<Signature> checks_;        // without a model
-  const NestedFit* searched_ = nullptr;  // the runs that the choice is made on
-  std::vector<Rivals> rivals_;           // of each cause that can't be told apart
+  std::vector<Signature> checks_;  // without a model
+  Explanation explanation_;
 };
 
 }  // namespace

@@ -13,7 +13,6 @@ namespace pmg::diagnosis {
 
 namespace {
 
-constexpr std::size_t kMostEffects = 6;
 constexpr std::size_t kFitted = 8;       // effects of a round that are worth a fit, by the linear look
 constexpr std::size_t kExchanged = 5;    // effects that may stand for another
 constexpr std::size_t kFinished = 3;     // and a fit to the end
@@ -22,8 +21,6 @@ constexpr int kFewIterations = 4, kManyIterations = 15;
 // What convinces besides the limits: a mean over blocks of half a second that is three of its deviations off zero, and
 // more folds for it than against.
 constexpr double kDeviations = 3.0, kFoldsWon = 0.6;
-constexpr double kUnfinished = 0.5;  // of what an effect explains, that a fit without it explains as well
-constexpr double kEqual = 0.03;      // of the gain: such a difference doesn't choose
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -262,56 +259,6 @@ std::vector<Trial> EffectSearch::alternatives(const Extension& without, const st
     return trial.effect == effect || contains(diagnosis::effect(trial.effect).contains, effect);
   });
   return trials;
-}
-
-/// Of those that convince and are nearly equal, the one with the fewest parameters; a special case unless it is clearly
-/// worse. Null where none convinces.
-const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
-  const Trial* chosen = nullptr;
-  double best = 0.0;
-  for (const Trial& trial : trials) {
-    if (!objection(trial).empty()) continue;
-    if (chosen == nullptr) {  // the best comes first
-      chosen = &trial;
-      best = trial.comparison.log_gain;
-      continue;
-    }
-    const bool special = contains(effect(chosen->effect).contains, trial.effect) &&
-                         compared(trial.extension, chosen->extension).deviations < kDeviations;
-    if (trial.comparison.log_gain < (1.0 - kEqual) * best && !special) continue;
-    if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
-  }
-  return chosen;
-}
-
-/// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end, where
-/// one without it, begun from here, meets the runs by most of what it gained.
-Extension EffectSearch::pruned(Extension current, const Extension& before) {
-  for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
-    const std::string name = current.effects[e];
-    const bool newest = !contains(before.effects, name);
-    const Extension rest = measured(name) != nullptr ? current : without(current, name);
-    const double regained = before.fitted.squares - rest.fitted.squares;
-    const bool unfinished = regained > kUnfinished * (before.fitted.squares - current.fitted.squares);
-    const bool judged = measured(name) == nullptr && (!newest || unfinished);
-    if (!judged || objection(trial(rest, current, name)).empty()) {
-      ++e;
-    } else {
-      current = rest;
-    }
-  }
-  return current;
-}
-
-Extension EffectSearch::choose() {
-  Extension current = with_measured();
-  for (std::size_t round = 0; round < kMostEffects && !stopped_; ++round) {
-    last_additions_ = additions(current);
-    const Trial* next = chosen(last_additions_);
-    if (next == nullptr) break;
-    current = pruned(next->extension, current);
-  }
-  return current;
 }
 
 }  // namespace pmg::diagnosis

@@ -87,6 +87,7 @@ class EffectSearch {
   std::vector<Trial> tried(const Extension& without, std::size_t most);
   const Trial* chosen(const std::vector<Trial>& trials) const;
   Extension pruned(Extension current, const Extension& before);
+  Extension exchanged(Extension current);
   bool going(const std::string& text);
 
   const calib::Bench& bench_;

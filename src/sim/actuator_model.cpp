@@ -172,7 +172,7 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   } else {
     follows_speed = false;
   }
-  per_unit_Nm /= 1.0 + sag(per_unit_Nm * supply);
+  if (p.supply_sag_per_Nm > 0.0) per_unit_Nm /= 1.0 + sag(per_unit_Nm * supply);
   const double scale = per_unit_Nm * supply;
   Line motor{scale * held_output_ - per_unit_Nm * p.back_emf_s_per_rad * dq_rad_s,
              -per_unit_Nm * p.back_emf_s_per_rad - (follows_speed ? scale * kd : 0.0)};

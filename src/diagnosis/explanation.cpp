@@ -1,0 +1,149 @@
+#include "diagnosis/explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "calib/fit_problem.hpp"
+#include "diagnosis/catalogue.hpp"
+#include "diagnosis/folds.hpp"
+#include "diagnosis/intervals.hpp"
+#include "diagnosis/separation.hpp"
+
+namespace pmg::diagnosis {
+
+namespace {
+
+// Besides kApartDeviations: closer to what they would show were it the truth (1) than to showing nothing (0), on so
+// many blocks of half a second in which the two differ.
+constexpr double kApartShare = 0.5;
+constexpr int kFewestBlocks = 6;
+
+class Explaining {
+ public:
+  Explaining(EffectSearch& search, const Extension& chosen, const ExplainedFrom& from)
+      : search_(search),
+        chosen_(chosen),
+        from_(from),
+        noise_squares_(std::pow(from.noise.rms_rad, 2)),
+        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_)) {}
+
+  Explanation run() {
+    std::vector<std::pair<double, Cause>> causes;
+    for (const std::string& name : chosen_.effects) {
+      const Extension rest = search_.without(chosen_, name);
+      const Comparison gain = search_.compared(rest, chosen_);
+      causes.emplace_back(gain.log_gain, cause(name, rest, gain));
+    }
+    std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (auto& [gain, one] : causes) found_.causes.push_back(std::move(one));
+    reject();
+    return std::move(found_);
+  }
+
+ private:
+  Cause cause(const std::string& name, const Extension& rest, const Comparison& gain) {
+    const MeasuredCause* measured = search_.measured(name);
+    Cause cause;
+    cause.effect = name;
+    for (const std::string& parameter : effect(name).parameters) {
+      cause.parameters.push_back(measured != nullptr && measured->parameter == parameter
+                                     ? ParameterEstimate{parameter, measured->value, from_.unit}
+                                     : estimate(parameter));
+    }
+    cause.held_out_error_before = judged_error(rest.fitted.model);
+    cause.held_out_error_after = from_.error_after;
+    if (measured == nullptr) {
+      cause.evidence.push_back(
+          fmt::format("runs left out are predicted better in {:.0f} % of the folds over gain, load and trajectory; the "
+                      "gain is {:.0f} of its deviations",
+                      100.0 * gain.folds_won, gain.deviations));
+    }
+    add_checks(cause);
+    if (measured == nullptr) add_rivals(cause, rest);
+    return cause;
+  }
+
+  void add_checks(Cause& cause) const {
+    for (const Signature& check : from_.checks) {
+      if (check.effect != cause.effect || check.agreement == Agreement::kCannotTell) continue;
+      cause.evidence.push_back(
+          fmt::format("without a model, {} {}: {}", check.check, diagnosis::name(check.agreement), check.sentence));
+    }
+  }
+
+  void add_rivals(Cause& cause, const Extension& rest) {
+    Rivals rivals{{chosen_.fitted}, {cause.effect}};
+    for (const Trial& other : search_.alternatives(rest, cause.effect)) {
+      const SeenSeparation apart = seen(other.extension);
+      if (!is_rival(other, apart)) continue;
+      cause.evidence.push_back(fmt::format(
+          "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % "
+          "of what is expected were {} the truth",
+          other.effect, apart.deviations, apart.blocks, 100.0 * apart.share_of_expected, cause.effect));
+      cause.or_instead.push_back(other.effect);
+      rivals.models.push_back(other.extension.fitted);
+      rivals.names.push_back(other.effect);
+    }
+    if (rivals.names.size() > 1) found_.rivals.push_back(std::move(rivals));
+  }
+
+  SeenSeparation seen(const Extension& other) const {
+    return seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out, other.held_out,
+                           noise_squares_);
+  }
+
+  static bool is_rival(const Trial& other, const SeenSeparation& apart) {
+    for (const Unknown& u : other.extension.fitted.unknowns) {
+      const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
+                            calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
+      if (stiffest) return false;  // a shaft as stiff as any bends nowhere
+    }
+    return apart.blocks < kFewestBlocks || apart.deviations < kApartDeviations || apart.share_of_expected < kApartShare;
+  }
+
+  double judged_error(const calib::JointModel& model) const {
+    return from_.judged.absolutes_by_block(from_.judged.misses(model)).mean();
+  }
+
+  ParameterEstimate estimate(const std::string& parameter) const {
+    for (std::size_t i = 0; i < intervals_.size(); ++i) {
+      const Unknown& u = from_.fitted.unknowns[i];
+      if (u.name == parameter) return {parameter, intervals_[i], u.unit};
+    }
+    const double value = calib::value(from_.fitted.model, parameter);
+    return {parameter, {value, value, value}, ""};
+  }
+
+  void reject() {
+    std::set<std::string> told(chosen_.effects.begin(), chosen_.effects.end());
+    for (const Cause& cause : found_.causes) told.insert(cause.or_instead.begin(), cause.or_instead.end());
+    const std::vector<Trial>& last = search_.last_additions();
+    for (const Effect& one : catalogue()) {
+      if (told.contains(one.name)) continue;
+      const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
+      found_.rejected.push_back({one.name, search_.refuted(one.name)
+                                               ? "the recordings would show it without a model, and don't"
+                                           : trial == last.end() ? "a linearised look sees less in it than in others"
+                                                                 : search_.objection(*trial)});
+    }
+  }
+
+  EffectSearch& search_;
+  const Extension& chosen_;
+  const ExplainedFrom& from_;
+  double noise_squares_;
+  std::vector<Interval> intervals_;
+  Explanation found_;
+};
+
+}  // namespace
+
+Explanation explain(EffectSearch& search, const Extension& chosen, const ExplainedFrom& from) {
+  return Explaining(search, chosen, from).run();
+}
+
+}  // namespace pmg::diagnosis
