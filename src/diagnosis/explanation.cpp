@@ -22,6 +22,14 @@ namespace {
 constexpr double kApartShare = 0.5;
 constexpr int kFewestBlocks = 6;
 
+std::string in_its_place(const std::string& cause, const std::string& other, const SeenSeparation& apart) {
+  if (apart.blocks == 0) return fmt::format("{} in its place does nowhere anything else", other);
+  return fmt::format(
+      "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
+      "what is expected were {} the truth",
+      other, apart.deviations, apart.blocks, 100.0 * apart.share_of_expected, cause);
+}
+
 class Explaining {
  public:
   Explaining(EffectSearch& search, const Extension& chosen, const ExplainedFrom& from)
@@ -80,10 +88,7 @@ class Explaining {
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
       const SeenSeparation apart = seen(other.extension);
       if (!is_rival(other, apart)) continue;
-      cause.evidence.push_back(fmt::format(
-          "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % "
-          "of what is expected were {} the truth",
-          other.effect, apart.deviations, apart.blocks, 100.0 * apart.share_of_expected, cause.effect));
+      cause.evidence.push_back(in_its_place(cause.effect, other.effect, apart));
       cause.or_instead.push_back(other.effect);
       rivals.models.push_back(other.extension.fitted);
       rivals.names.push_back(other.effect);

@@ -41,7 +41,7 @@ pages::Tone tone(Verdict verdict) {
   return pages::Tone::kBad;
 }
 
-std::string thousandths(double value_rad) { return pages::number(1e3 * value_rad); }
+std::string thousandths(double value_rad) { return fmt::format("{:.3g}", 1e3 * value_rad); }
 
 std::string thousandths(const Interval& interval) {
   return fmt::format("{} ({} to {})", thousandths(interval.value), thousandths(interval.low),
@@ -224,7 +224,7 @@ std::string verdict_text(const calib::Bench& bench, const Diagnosis& diagnosis, 
     case Verdict::kUnexplained:
       text = fmt::format("Something real that no effect of the catalogue explains{}{}",
                          diagnosis.depends_on.empty() ? "" : "; it depends on ", fmt::join(diagnosis.depends_on, ", "));
-      if (!causes.empty()) text += fmt::format(" (besides {})", fmt::join(causes, ", "));
+      if (!causes.empty()) text += fmt::format("; besides: {}", fmt::join(causes, ", "));
       break;
   }
   const std::string unit = calib::position_unit(bench, true);
