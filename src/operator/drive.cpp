@@ -36,7 +36,10 @@ double Drive::driven_s() const {
 }
 
 Progress Drive::step() {
-  if (phase_ == Phase::kEnded) return text_.empty() ? Progress::kReached : Progress::kFailed;
+  if (phase_ == Phase::kEnded) {
+    if (!text_.empty()) return Progress::kFailed;
+    return source_.clock().now_ns() - phase_since_ns_ < kRelease_ns ? Progress::kPending : Progress::kReached;
+  }
   send_if_due();
   const std::int64_t in_phase_ns = source_.clock().now_ns() - phase_since_ns_;
   switch (phase_) {

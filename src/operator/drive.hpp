@@ -23,6 +23,7 @@ class Drive {
   static constexpr std::int64_t kPeriod_ns = 20'000'000;
   static constexpr double kLease_s = 0.5;                  ///< a crashed station blocks the others for no longer
   static constexpr double kLastLease_s = 0.02;             ///< of the last command: the next source needn't wait
+  static constexpr std::int64_t kRelease_ns = 50'000'000;  ///< until that lease is over: a script's next line may drive
   static constexpr std::int64_t kCalm_ns = 600'000'000;    ///< zero velocity at the end: the generator's ramp and some
   static constexpr std::int64_t kSettle_ns = 300'000'000;  ///< until the controller must show this source as driving
 

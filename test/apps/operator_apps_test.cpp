@@ -53,6 +53,10 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
+  bool running() {
+    siginfo_t ended{};
+    return ::waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+  }
   int end(int signal) {
     ::kill(pid_, signal);
     return wait();
@@ -109,7 +113,7 @@ class OperatorApps : public testing::Test {
           "pmg_send", std::vector<std::string>{"walk", "--vx", "0.2", "--for", "100", "--robot", name},
           folder_ / "driver.txt");
       std::string mode;
-      for (int look = 0; look < 100 && mode != "walk" && mode != "fault"; ++look) mode = mode_of(name);
+      while (mode != "walk" && mode != "fault" && driver->running()) mode = mode_of(name);
       if (mode == "walk") return driver;
       driver->end(SIGINT);
       stand_again(name);
