@@ -1,9 +1,9 @@
 #include "diagnosis/base_model.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "calib/motor_fit.hpp"
+#include "diagnosis/catalogue.hpp"
 
 namespace pmg::diagnosis {
 
@@ -33,10 +33,6 @@ constexpr Tolerance kTolerances[] = {
 };
 
 constexpr double kDeviation = 0.5;  // of the tolerance: where a calibration's number lies within it
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace pmg::diagnosis {
@@ -132,6 +133,10 @@ const Effect& effect(std::string_view name) {
     names += (names.empty() ? "" : ", ") + one.name;
   }
   throw std::invalid_argument(fmt::format("no effect is called '{}'; expected one of {}", name, names));
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace pmg::diagnosis

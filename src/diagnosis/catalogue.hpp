@@ -26,4 +26,7 @@ std::span<const Effect> catalogue();
 /// Throws std::invalid_argument that lists the names.
 const Effect& effect(std::string_view name);
 
+/// Whether the name of an effect or a parameter is among these.
+bool contains(const std::vector<std::string>& names, const std::string& name);
+
 }  // namespace pmg::diagnosis

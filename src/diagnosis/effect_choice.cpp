@@ -1,6 +1,5 @@
 // How EffectSearch chooses among its trials: one effect after the other, and back.
-#include <algorithm>
-
+#include "diagnosis/catalogue.hpp"
 #include "diagnosis/effect_search.hpp"
 
 namespace pmg::diagnosis {
@@ -11,10 +10,6 @@ constexpr std::size_t kMostEffects = 6;
 constexpr double kEqual = 0.03;      // of the gain: such a difference doesn't choose
 constexpr double kClearly = 3.0;     // deviations that do
 constexpr double kUnfinished = 0.5;  // of what an effect explains, that a fit without it explains as well
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calib/fit_problem.hpp"
+#include "diagnosis/catalogue.hpp"
 #include "diagnosis/start_screen.hpp"
 
 namespace pmg::diagnosis {
@@ -21,10 +22,6 @@ constexpr int kFewIterations = 4, kManyIterations = 15;
 // What convinces besides the limits: a mean over blocks of half a second that is three of its deviations off zero, and
 // more folds for it than against.
 constexpr double kDeviations = 3.0, kFoldsWon = 0.6;
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 std::vector<std::string> with(std::vector<std::string> effects, const std::string& effect) {
   effects.push_back(effect);
