@@ -12,6 +12,7 @@ find_package(Boost REQUIRED) # headers: wait-free queues between threads
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(spdlog REQUIRED)
 find_package(glfw3 REQUIRED)
+find_package(console_bridge REQUIRED) # urdfdom's log: what it says of a file is heard there
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
 pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)

@@ -19,7 +19,10 @@ endif()
 
 add_library(pmg_warnings INTERFACE)
 target_compile_options(pmg_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast -Werror)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
+if(PMG_WARNINGS_AS_ERRORS)
+  target_compile_options(pmg_warnings INTERFACE -Werror)
+endif()
 
 # pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_NAME from src/NAME. Includes are written from
 # src/: #include "model/robot_model.hpp".
@@ -30,11 +33,13 @@ function(pmg_add_room name)
   target_link_libraries(pmg_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
 endfunction()
 
-# pmg_add_app(NAME LINK targets...): the executable bin/NAME from apps/NAME.cpp.
+# pmg_add_app(NAME LINK targets...): the executable bin/NAME from apps/NAME.cpp. The target `programs` builds all of these.
+add_custom_target(programs)
 function(pmg_add_app name)
   cmake_parse_arguments(APP "" "" "LINK" ${ARGN})
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE ${APP_LINK} pmg_warnings)
+  add_dependencies(programs ${name})
 endfunction()
 
 # pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry a TEST, run from the source root.

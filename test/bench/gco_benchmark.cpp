@@ -77,7 +77,10 @@ void solve(benchmark::State& state, const gco::Options& options) {
   gco::GroundAwareCommand gco(states.robot, options);
   std::size_t tick = 0;
   const long before = allocation_count();
-  for (auto _ : state) benchmark::DoNotOptimize(gco.solve(states.at(tick++)).command.u[0]);
+  for (auto _ : state) {
+    double first = gco.solve(states.at(tick++)).command.u[0];
+    benchmark::DoNotOptimize(first);
+  }
   count_allocations(state, before);
 }
 

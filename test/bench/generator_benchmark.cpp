@@ -34,7 +34,10 @@ void BM_generator_step(benchmark::State& state) {
   int tick = 0;
   for (; tick < 1000; ++tick) generator.step(sweep(tick), kDt_s);
   const long before = allocation_count();
-  for (auto _ : state) benchmark::DoNotOptimize(generator.step(sweep(tick++), kDt_s).q[0]);
+  for (auto _ : state) {
+    double first = generator.step(sweep(tick++), kDt_s).q[0];
+    benchmark::DoNotOptimize(first);
+  }
   state.counters["allocations_per_call"] =
       benchmark::Counter(static_cast<double>(allocation_count() - before), benchmark::Counter::kAvgIterations);
 }

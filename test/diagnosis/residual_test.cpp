@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "diagnosis/random_bench.hpp"
 #include "diagnosis/report.hpp"
@@ -18,7 +19,7 @@ std::vector<calib::SingleJoint> joints(const test::RandomBench& made) {
   return found;
 }
 
-const Dependence& named(const std::vector<Dependence>& all, const std::string& name) {
+const Dependence& named(const std::vector<Dependence>& all, std::string_view name) {
   return *std::find_if(all.begin(), all.end(), [&](const Dependence& d) { return d.name == name; });
 }
 

@@ -15,7 +15,9 @@ A segment that carries motors is split into several links so that mass, centre o
 zero posture stay exactly the table's: the main link is the segment minus its motors.
 The zero posture is upright, legs straight, arms hanging. Axes: x forward, y left, z up in every link.
 """
+import functools
 import math
+import operator
 import sys
 from pathlib import Path
 
@@ -86,6 +88,11 @@ MOTORS = {
 }
 
 
+def added(values):
+    """Their sum, from left to right. sum() compensates rounding errors since Python 3.12 and gives other last digits than before."""
+    return functools.reduce(operator.add, values)
+
+
 class Body:
     """Mass [kg], centre of mass [m], inertia [kg m^2] about the centre of mass as a 3 x 3 nested list."""
 
@@ -99,16 +106,16 @@ class Body:
 
     def about(self, point):
         d = [self.com[k] - point[k] for k in range(3)]
-        dd = sum(x * x for x in d)
+        dd = added(x * x for x in d)
         return [[self.inertia[r][c] + self.mass * ((dd if r == c else 0.0) - d[r] * d[c]) for c in range(3)]
                 for r in range(3)]
 
 
 def total(bodies):
-    mass = sum(b.mass for b in bodies)
-    com = [sum(b.mass * b.com[k] for b in bodies) / mass for k in range(3)]
+    mass = added(b.mass for b in bodies)
+    com = [added(b.mass * b.com[k] for b in bodies) / mass for k in range(3)]
     parts = [b.about(com) for b in bodies]
-    return Body(mass, com, [[sum(p[r][c] for p in parts) for c in range(3)] for r in range(3)])
+    return Body(mass, com, [[added(p[r][c] for p in parts) for c in range(3)] for r in range(3)])
 
 
 def without(whole, parts):
@@ -370,7 +377,7 @@ def urdf():
 
 def check(links):
     """Fails when a link that was cut out of a segment isn't a body: mass or a principal moment not positive."""
-    pairs = sum(links[n].mass * (2 if n.startswith(("hip", "knee", "ankle", "shoulder", "elbow", "wrist")) else 1) for n in links)
+    pairs = added(links[n].mass * (2 if n.startswith(("hip", "knee", "ankle", "shoulder", "elbow", "wrist")) else 1) for n in links)
     assert abs(pairs - MASS_kg) < 1e-9, pairs
     for name, body in links.items():
         i = body.inertia
