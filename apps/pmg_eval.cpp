@@ -128,6 +128,7 @@ class Watch {
 
  private:
   void show(std::size_t done, std::size_t count) {
+    if (done == 0) return line_.show(0.0, fmt::format("0 of {}", count));
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
     const double left_s = elapsed.count() / static_cast<double>(done) * static_cast<double>(count - done);
     line_.show(static_cast<double>(done) / static_cast<double>(count),

@@ -1,4 +1,5 @@
-// How far long work is, on stderr: on a terminal one line that renews itself, in a file or a pipe a line every five seconds.
+// How far long work is, on stderr: on a terminal one line that renews itself, in a file or a pipe a line every five
+// seconds.
 #pragma once
 
 #include <fmt/format.h>
@@ -29,12 +30,8 @@ class ProgressLine {
 
   /// As often as one likes: a terminal's line is renewed ten times a second.
   void show(std::string_view text) {
-    const auto now = std::chrono::steady_clock::now();
-    if (shown_ && now - last_ < std::chrono::milliseconds(100)) return;
-    last_ = now;
-    shown_ = true;
     if (terminal_) {
-      std::cerr << fmt::format("\r{:<{}.{}}", text, kWidth, kWidth) << std::flush;
+      renew(text);
     } else {
       const std::lock_guard lock(mutex_);
       text_ = text;
@@ -61,6 +58,14 @@ class ProgressLine {
   }
 
  private:
+  void renew(std::string_view text) {
+    const auto now = std::chrono::steady_clock::now();
+    if (shown_ && now - last_ < std::chrono::milliseconds(100)) return;
+    last_ = now;
+    shown_ = true;
+    std::cerr << fmt::format("\r{:<{}.{}}", text, kWidth, kWidth) << std::flush;
+  }
+
   /// A thread of its own: a line comes also while the work is long between two calls of show.
   void write_lines(const std::stop_token& stop) {
     sigset_t all;

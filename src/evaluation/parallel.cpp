@@ -14,6 +14,7 @@ void for_each_piece(std::size_t count, const Supervision& supervision, const std
   std::mutex mutex;  // of what follows
   std::size_t done = 0;
   std::exception_ptr failure;
+  if (supervision.progress) supervision.progress(0, count);
   const auto run = [&] {
     for (std::size_t piece = next++; piece < count && !supervision.over(); piece = next++) {
       try {

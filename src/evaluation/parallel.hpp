@@ -9,7 +9,7 @@ namespace pmg::evaluation {
 /// What a long evaluation tells and asks meanwhile.
 struct Supervision {
   int jobs = 1;
-  /// Called after each piece, one call at a time, from any thread; may be empty.
+  /// Called before the first piece and after each, one call at a time, from any thread; may be empty.
   std::function<void(std::size_t done, std::size_t count)> progress;
   std::function<bool()> interrupted;  ///< true: begin no more pieces and end those under way; may be empty
 

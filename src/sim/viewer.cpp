@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "sim/scene.hpp"
@@ -28,6 +29,10 @@ class Window {
  public:
   explicit Window(const ViewerOptions& options) {
     glfwSetErrorCallback(keep_complaint);
+#ifdef GLFW_PLATFORM  // since 3.4, which else looks for Wayland first, whose library writes on stderr when there is
+                      // none
+    if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (glfwInit() == GLFW_FALSE) refuse();
     glfwWindowHint(GLFW_SAMPLES, 4);
     window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);

@@ -11,11 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(PmgSilViewer, WithoutADisplayIsRefusedInOneLineBeforeAnythingIsWritten) {
+void expect_refusal_in_one_line() {
   const fs::path folder = fs::path(testing::TempDir()) / "pmg_sil viewer";
   fs::create_directories(folder);
-  unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
+  unsetenv("XDG_RUNTIME_DIR");
   const fs::path out = folder / "out";
   test::RunningProgram program(
       "pmg_sil", {"--scenario", "config/scenarios/stand.yaml", "--viewer", "--out", out.string()}, folder);
@@ -24,6 +24,16 @@ TEST(PmgSilViewer, WithoutADisplayIsRefusedInOneLineBeforeAnythingIsWritten) {
   EXPECT_EQ(std::ranges::count(program.err(), '\n'), 1) << program.err();
   EXPECT_FALSE(fs::exists(out));
   fs::remove_all(folder);
+}
+
+TEST(PmgSilViewer, WithoutADisplayIsRefusedInOneLineBeforeAnythingIsWritten) {
+  unsetenv("DISPLAY");
+  expect_refusal_in_one_line();
+}
+
+TEST(PmgSilViewer, ADisplayThatIsNotThereIsRefusedInOneLineBeforeAnythingIsWritten) {
+  setenv("DISPLAY", ":987654", 1);
+  expect_refusal_in_one_line();
 }
 
 }  // namespace

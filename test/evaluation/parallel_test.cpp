@@ -12,12 +12,14 @@ namespace {
 TEST(Parallel, EveryPieceIsDoneOnceWhateverTheJobs) {
   for (const int jobs : {1, 3, 50}) {
     std::vector<std::atomic<int>> done(20);
-    std::size_t last = 0;
-    const Supervision supervision{
-        .jobs = jobs, .progress = [&last](std::size_t so_far, std::size_t) { last = so_far; }, .interrupted = {}};
+    std::vector<std::size_t> told;
+    const Supervision supervision{.jobs = jobs,
+                                  .progress = [&told](std::size_t so_far, std::size_t) { told.push_back(so_far); },
+                                  .interrupted = {}};
     for_each_piece(done.size(), supervision, [&](std::size_t piece) { ++done[piece]; });
     for (const auto& count : done) EXPECT_EQ(count, 1);
-    EXPECT_EQ(last, done.size());
+    ASSERT_EQ(told.size(), done.size() + 1) << "before the first, and after each";
+    for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], i);
   }
 }
 

@@ -198,15 +198,16 @@ TEST(Tick, TorqueIsLimitedWithTheGainsInForce) {
 TEST(Tick, RefusesGainsThatDoNotFitTheRobot) {
   const model::RobotModel& robot = test::z1();
   const Eigen::Index n = robot.joint_index.size();
-  for (const auto& [kp, kd] :
-       {std::pair{JointVector(JointVector::Constant(n - 1, 90.0)), JointVector(JointVector::Zero(n))},
-        std::pair{JointVector(JointVector::Constant(n, -1.0)), JointVector(JointVector::Zero(n))},
-        std::pair{JointVector(JointVector::Constant(n, 90.0)), JointVector(JointVector::Constant(n, 101.0))},
-        std::pair{JointVector(JointVector::Constant(n, std::nan(""))), JointVector(JointVector::Zero(n))}}) {
+  const auto expect_refusal = [&](Eigen::Index kp_count, double kp, double kd) {
     auto policy = std::make_unique<test::BreakablePolicy>();
-    policy->own_gains = policy::DriveGains{kp, kd};
-    EXPECT_THROW(test::DrivenTick(robot, std::move(policy)), std::invalid_argument);
-  }
+    policy->own_gains = policy::DriveGains{JointVector::Constant(kp_count, kp), JointVector::Constant(n, kd)};
+    EXPECT_THROW(test::DrivenTick(robot, std::move(policy)), std::invalid_argument)
+        << kp_count << " " << kp << " " << kd;
+  };
+  expect_refusal(n - 1, 90.0, 0.0);
+  expect_refusal(n, -1.0, 0.0);
+  expect_refusal(n, 90.0, 101.0);
+  expect_refusal(n, std::nan(""), 0.0);
 }
 
 TEST(Tick, APolicyForgetsItsHistoryOnEveryEntryIntoStand) {
