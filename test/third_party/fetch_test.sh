@@ -6,7 +6,7 @@ source=$1
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 mkdir "$tmp/third_party" "$tmp/cache"
-cp "$source/third_party/fetch" "$source/third_party/pins" "$tmp/third_party/"
+cp "$source"/third_party/{fetch,debian-mirror,pins} "$tmp/third_party/"
 fail() { echo "FAILED: $*"; exit 1; }
 
 fetch() { XDG_CACHE_HOME=$tmp/cache PIP_NO_INDEX=1 PIP_FIND_LINKS='' "$tmp/third_party/fetch" >"$tmp/said" 2>&1; }
