@@ -78,7 +78,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
   CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; out/NAME-TIME if not given");
   app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
-  app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
+  app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands");
   app.add_option("--motor", arguments.motor,
                  "sil: motor.yaml, how the drives really are; robot.yaml's if not given, none for none");
   CLI::Option* bench = app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot once");
@@ -280,11 +280,12 @@ int control(Arguments& arguments) {
   const EndSignals signals;
   const io::WallClock clock;
   io::LcmLink link(arguments.lcm_url);
-  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, true);
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   world_options.benched_joint = arguments.bench;
   sim::World world(loaded.robot, world_options);
-  runtime::SimulatedRobot robot(world, arguments.gantry, !arguments.no_log);
+  runtime::SimulatedRobot robot(world, arguments.gantry ? runtime::HoistedBy::kGantry : runtime::HoistedBy::kCrane,
+                                !arguments.no_log);
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
   const runtime::RunInfo info = run_info(arguments, loaded, controller, bench ? &*bench : nullptr);
@@ -294,6 +295,7 @@ int control(Arguments& arguments) {
   const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };
   runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock);
   comms.on_warning = warn;
+  comms.work(robot.hoist_line());
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);

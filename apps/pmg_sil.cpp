@@ -206,7 +206,8 @@ Played play_lockstep(const Stage& stage) {
 Played play_realtime(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  runtime::SimulatedRobot simulated(stage.world, stage.arguments.gantry, true);
+  runtime::SimulatedRobot simulated(
+      stage.world, stage.arguments.gantry ? runtime::HoistedBy::kGantry : runtime::HoistedBy::kScenario, true);
   runtime::Controller controller(robot, simulated, stage.tick);
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
   runtime::RunInfo info = run_info(stage);

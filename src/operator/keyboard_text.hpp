@@ -1,0 +1,22 @@
+// What is shown beside the keys: in a terminal and in a window alike.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "operator/keyboard_driver.hpp"
+#include "operator/robot_board.hpp"
+
+namespace pmg::ops {
+
+/// The ranges of the configuration in force, as ROBOT_INFO's options name them; nothing when they don't.
+std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info);
+
+/// One line each: mode, what is asked and taken, what was limited, who drives. news: null before the robot was heard.
+std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
+
+/// One line each. closing: how this program is ended.
+std::vector<std::string> key_lines(KeyReport report, const std::string& closing);
+
+}  // namespace pmg::ops
