@@ -59,7 +59,8 @@ int drive(const Arguments& arguments) {
     std::int64_t picture_at_ns = 0;
     while (!station.gone()) {
       if (apps::interrupt_requested != 0 || terminal.ended()) station.let_go();
-      for (const ops::TerminalKey& key : decoder.take(terminal.read(), clock.now_ns())) station.press(key.name, key.shift);
+      for (const ops::TerminalKey& key : decoder.take(terminal.read(), clock.now_ns()))
+        station.press(key.name, key.shift);
       station.step(kWait_ms);
       if (clock.now_ns() < picture_at_ns) continue;
       picture_at_ns = clock.now_ns() + kPicture_ns;

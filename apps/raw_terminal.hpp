@@ -60,7 +60,8 @@ class RawTerminal {
   /// A picture from the top left corner; lines that are too long or too many are cut.
   void draw(const std::vector<std::string>& lines) const {
     winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) size = {.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+      size = {.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
     std::string text = "\x1b[H";
     for (std::size_t i = 0; i < lines.size() && i < size.ws_row; ++i) {
       if (i > 0) text += "\r\n";

@@ -11,12 +11,12 @@ namespace {
 constexpr std::int64_t kBendPeriod_ns = 100'000'000;  // of a posture key that is held
 
 constexpr std::array<std::pair<std::string_view, Key>, 25> kNames = {{
-    {"w", Key::kForwards},  {"up", Key::kForwards},    {"s", Key::kBackwards},     {"down", Key::kBackwards},
-    {"a", Key::kTurnLeft},  {"left", Key::kTurnLeft},  {"d", Key::kTurnRight},     {"right", Key::kTurnRight},
-    {"q", Key::kStepLeft},  {"e", Key::kStepRight},    {"k", Key::kSquat},         {"i", Key::kRise},
-    {"o", Key::kBendForwards}, {"u", Key::kBendBack},  {"j", Key::kLeanLeft},      {"l", Key::kLeanRight},
-    {"n", Key::kUpright},   {"space", Key::kRest},     {"escape", Key::kDamp},     {"backspace", Key::kDamp},
-    {"enter", Key::kStand}, {"r", Key::kReset},        {"h", Key::kLift},          {"g", Key::kSetDown},
+    {"w", Key::kForwards},     {"up", Key::kForwards},   {"s", Key::kBackwards}, {"down", Key::kBackwards},
+    {"a", Key::kTurnLeft},     {"left", Key::kTurnLeft}, {"d", Key::kTurnRight}, {"right", Key::kTurnRight},
+    {"q", Key::kStepLeft},     {"e", Key::kStepRight},   {"k", Key::kSquat},     {"i", Key::kRise},
+    {"o", Key::kBendForwards}, {"u", Key::kBendBack},    {"j", Key::kLeanLeft},  {"l", Key::kLeanRight},
+    {"n", Key::kUpright},      {"space", Key::kRest},    {"escape", Key::kDamp}, {"backspace", Key::kDamp},
+    {"enter", Key::kStand},    {"r", Key::kReset},       {"h", Key::kLift},      {"g", Key::kSetDown},
     {"p", Key::kUpright},
 }};
 

@@ -62,9 +62,9 @@ class KeyCommand {
 
   void press(Key key, bool fast, std::int64_t now_ns) noexcept;
   void repeat(Key key, bool fast, std::int64_t now_ns) noexcept;  ///< of a key that is held
-  void press_other() noexcept { newest_.reset(); }                 ///< of a key that means nothing
+  void press_other() noexcept { newest_.reset(); }                ///< of a key that means nothing
   void release(Key key) noexcept;
-  void release_all() noexcept;                                           ///< the window is no longer listened to
+  void release_all() noexcept;                                          ///< the window is no longer listened to
   void listen(std::int64_t now_ns) noexcept { listened_ns_ = now_ns; }  ///< a window looked at its keys
   void rest() noexcept;     ///< velocity to zero; keys that are held must be pressed anew
   void upright() noexcept;  ///< posture to neutral

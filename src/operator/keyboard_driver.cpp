@@ -217,7 +217,9 @@ std::string KeyboardDriver::trouble() const {
   return "";
 }
 
-bool KeyboardDriver::moves() const noexcept { return asked_[kVx] != 0.0 || asked_[kVy] != 0.0 || asked_[kOmega] != 0.0; }
+bool KeyboardDriver::moves() const noexcept {
+  return asked_[kVx] != 0.0 || asked_[kVy] != 0.0 || asked_[kOmega] != 0.0;
+}
 
 bool KeyboardDriver::bent() const noexcept {
   return asked_[kPitch] != 0.0 || asked_[kRoll] != 0.0 || asked_[kHeight] != 0.0;

@@ -48,8 +48,8 @@ class KeyboardDriver {
   bool gone() const noexcept { return gone_; }  ///< let_go() has come to its end
 
   const std::string& robot() const noexcept { return robot_; }
-  const Command& asked() const noexcept { return asked_; }      ///< by keys, of this moment
-  std::string text() const;  ///< what it does, or why the robot doesn't move
+  const Command& asked() const noexcept { return asked_; }  ///< by keys, of this moment
+  std::string text() const;                                 ///< what it does, or why the robot doesn't move
   bool driving() const noexcept { return doing_ == Doing::kDriving; }
 
  private:

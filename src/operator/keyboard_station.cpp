@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "operator/keyboard_text.hpp"
 #include "operator/words.hpp"
 
 namespace pmg::ops {
@@ -59,9 +58,8 @@ void KeyboardStation::step(int wait_ms) {
   if (stop_everybody_ && stop_everybody_->step() != Progress::kPending) stop_everybody_.reset();
   if (!driver_ && !stop_everybody_ && !letting_go_) find_robot();
   if (!driver_) return;
-  const auto found = board_.robots().find(robot_);
-  if (found != board_.robots().end() && found->second.info) {
-    const pmg_msgs::robot_info_t& info = *found->second.info;
+  if (news() != nullptr && news()->info) {
+    const pmg_msgs::robot_info_t& info = *news()->info;
     if (const auto limits = command_limits(info); limits && (!limits_known_ || limits_session_ != info.session)) {
       driver_->set_limits(*limits);
       limits_known_ = true;
@@ -78,16 +76,26 @@ void KeyboardStation::find_robot() {
   driver_.emplace(source_, robot_, report_);
 }
 
+const RobotNews* KeyboardStation::news() const {
+  const auto found = board_.robots().find(robot_);
+  return found == board_.robots().end() ? nullptr : &found->second;
+}
+
 std::vector<std::string> KeyboardStation::lines() const {
-  if (driver_) {
-    const auto found = board_.robots().find(robot_);
-    const RobotNews* news = found == board_.robots().end() ? nullptr : &found->second;
-    return driving_lines(*driver_, news, news == nullptr ? 0.0 : board_.silence_s(*news));
-  }
-  if (source_.heard().size() < 2) return {fmt::format("no controller is heard on {}", link_.url())};
+  if (!driver_) return {why_no_robot()};
+  return driving_lines(*driver_, news(), news() == nullptr ? 0.0 : board_.silence_s(*news()));
+}
+
+DrivingTable KeyboardStation::table() const {
+  if (!driver_) return {why_no_robot(), ""};
+  return driving_table(*driver_, news(), news() == nullptr ? 0.0 : board_.silence_s(*news()));
+}
+
+std::string KeyboardStation::why_no_robot() const {
+  if (source_.heard().size() < 2) return fmt::format("no controller is heard on {}", link_.url());
   std::string names;
   for (const auto& [name, heard] : source_.heard()) names += (names.empty() ? "" : ", ") + printable(name);
-  return {fmt::format("several robots are heard ({}): say which one with --robot", names)};
+  return fmt::format("several robots are heard ({}): say which one with --robot", names);
 }
 
 std::string KeyboardStation::last_words() const {

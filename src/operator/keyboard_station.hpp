@@ -9,6 +9,7 @@
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "operator/keyboard_driver.hpp"
+#include "operator/keyboard_text.hpp"
 #include "operator/operator_source.hpp"
 #include "operator/robot_board.hpp"
 
@@ -33,11 +34,14 @@ class KeyboardStation {
   bool gone() const noexcept { return !driver_ ? letting_go_ : driver_->gone(); }
 
   bool heard() const noexcept { return !source_.heard().empty(); }  ///< any controller, ever
-  std::vector<std::string> lines() const;
-  std::string last_words() const;  ///< at the end: how the robot was left
+  std::vector<std::string> lines() const;                           ///< for a terminal
+  DrivingTable table() const;                                       ///< for a window
+  std::string last_words() const;                                   ///< at the end: how the robot was left
 
  private:
   void find_robot();
+  const RobotNews* news() const;  // null: nothing was heard of the robot
+  std::string why_no_robot() const;
 
   io::LcmLink& link_;
   const io::Clock& clock_;

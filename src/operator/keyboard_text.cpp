@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "operator/robot_text.hpp"
 #include "operator/words.hpp"
@@ -14,15 +16,44 @@ namespace pmg::ops {
 
 namespace {
 
+constexpr std::array kOrder = {kVx, kVy, kOmega, kPitch, kRoll, kHeight};
+
+struct Row {
+  std::string label, value;
+};
+
 std::string command_row(const char* label, const double* u) {
-  return fmt::format("{:<10}{:+9.2f}{:+9.2f}{:+9.2f}{:+9.2f}{:+9.2f}{:+9.2f}", label, u[kVx], u[kVy], u[kOmega],
-                     u[kPitch], u[kRoll], u[kHeight]);
+  std::string row = fmt::format("{:<10}", label);
+  for (const Channel channel : kOrder) row += fmt::format("{:+10.2f}", u[channel]);
+  return row;
 }
 
 std::string upper_case(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); });
   return text;
+}
+
+std::vector<Row> head_rows(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+  const char* mode = news == nullptr       ? "not heard"
+                     : silence_s > kGone_s ? "no longer heard"
+                                           : mode_name(news->status.mode);
+  return {{printable(driver.robot()) + " " + upper_case(mode), printable(driver.text())}};
+}
+
+std::vector<Row> status_rows(const RobotNews& news, double silence_s) {
+  const pmg_msgs::status_t& status = news.status;
+  const std::string who = status.driving_source.empty() ? "nobody" : printable(status.driving_source);
+  const std::string age =
+      status.command_age_s < 0.0 ? "" : fmt::format(", last command {:.0f} ms old", status.command_age_s * 1e3);
+  std::vector<Row> rows = {{"limited", limits_text(news)},
+                           {"fault", status.fault.empty() ? "none" : printable(status.fault)},
+                           {"driven by", fmt::format("{}{}; heard {:.0f} ms ago", who, age, silence_s * 1e3)}};
+  if (news.info) {
+    rows.push_back(
+        {"policy", fmt::format("{}, backend {}", printable(news.info->policy), printable(news.info->backend))});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -45,27 +76,37 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
 
 std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<std::string> lines;
-  if (news == nullptr) return {printable(fmt::format("{}: {}", driver.robot(), driver.text()))};
-  const pmg_msgs::status_t& status = news->status;
-  const bool silent = silence_s > kGone_s;
-  lines.push_back(fmt::format("{}: {}   {}", printable(driver.robot()),
-                              silent ? "NOT HEARD" : upper_case(mode_name(status.mode)), printable(driver.text())));
-  lines.push_back(fmt::format("{:<10}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}", "", "forwards", "left", "turn", "bend", "lean",
-                              "height"));
-  lines.push_back(fmt::format("{:<10}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
+  for (const Row& row : head_rows(driver, news, silence_s)) lines.push_back(row.label + "   " + row.value);
+  if (news == nullptr) return lines;
+  lines.push_back(fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "forwards", "left", "turn", "bend",
+                              "lean", "height"));
+  lines.push_back(
+      fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
   lines.push_back(command_row("asked", driver.asked().u.data()));
   if (news->reference) lines.push_back(command_row("taken", news->reference->command));
-  lines.push_back(fmt::format("{:<10}{}", "limited", limits_text(*news)));
-  lines.push_back(fmt::format("{:<10}{}", "fault", status.fault.empty() ? "none" : printable(status.fault)));
-  const std::string age = status.command_age_s < 0.0 ? "" : fmt::format(", last command {:.0f} ms old", status.command_age_s * 1e3);
-  lines.push_back(fmt::format("{:<10}{}{}; heard {:.0f} ms ago", "driven by",
-                              status.driving_source.empty() ? "nobody" : printable(status.driving_source), age,
-                              silence_s * 1e3));
-  if (news->info) {
-    lines.push_back(fmt::format("{:<10}{}, backend {}", "policy", printable(news->info->policy),
-                                printable(news->info->backend)));
-  }
+  for (const Row& row : status_rows(*news, silence_s)) lines.push_back(fmt::format("{:<10}{}", row.label, row.value));
   return lines;
+}
+
+DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+  std::vector<Row> rows = head_rows(driver, news, silence_s);
+  if (news != nullptr) {
+    constexpr std::array kLabels = {"forwards", "left", "turn", "bend", "lean", "height"};
+    constexpr std::array kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      const std::size_t channel = kOrder[i];
+      const std::string taken =
+          news->reference ? fmt::format("{:+.2f} {} taken", news->reference->command[channel], kUnits[i]) : "";
+      rows.push_back({kLabels[i], fmt::format("{:+.2f} asked   {}", driver.asked().u[channel], taken)});
+    }
+    for (const Row& row : status_rows(*news, silence_s)) rows.push_back(row);
+  }
+  DrivingTable table;
+  for (const Row& row : rows) {
+    table.labels += (table.labels.empty() ? "" : "\n") + row.label;
+    table.values += (&row == rows.data() ? "" : "\n") + row.value;
+  }
+  return table;
 }
 
 std::vector<std::string> key_lines(KeyReport report, const std::string& closing) {

@@ -48,9 +48,9 @@ void KeyboardThread::let_go() {
   tell([](KeyboardStation& station) { station.let_go(); });
 }
 
-std::vector<std::string> KeyboardThread::lines() const {
+DrivingTable KeyboardThread::table() const {
   const std::lock_guard lock(mutex_);
-  return lines_;
+  return table_;
 }
 
 bool KeyboardThread::gone() const {
@@ -73,9 +73,9 @@ void KeyboardThread::run(const std::stop_token& stop) {
     }
     for (const Errand& errand : errands) errand(station_);
     station_.step(kWait_ms);
-    std::vector<std::string> lines = station_.lines();
+    DrivingTable table = station_.table();
     const std::lock_guard lock(mutex_);
-    lines_ = std::move(lines);
+    table_ = std::move(table);
     gone_ = station_.gone();
   }
 }

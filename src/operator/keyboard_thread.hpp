@@ -29,7 +29,7 @@ class KeyboardThread {
   void listen();  ///< the window looked at its keys
   void let_go();
 
-  std::vector<std::string> lines() const;
+  DrivingTable table() const;
   bool gone() const;
 
  private:
@@ -42,7 +42,7 @@ class KeyboardThread {
   KeyboardStation station_;  // the thread's
   mutable std::mutex mutex_;
   std::vector<Errand> errands_;
-  std::vector<std::string> lines_;
+  DrivingTable table_;
   bool gone_ = false;
   std::jthread thread_;
 };

@@ -21,9 +21,9 @@ namespace pmg::ops {
 /// What one controller has said.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
-  std::int64_t status_heard_ns = 0;      ///< by the source's clock
-  std::int64_t first_heard_ns = 0;       ///< likewise
-  std::optional<pmg_msgs::ack_t> ack{};  ///< newest answer to the request in hand
+  std::int64_t status_heard_ns = 0;                ///< by the source's clock
+  std::int64_t first_heard_ns = 0;                 ///< likewise
+  std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the request in hand
   std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< of a simulated robot that has one
   std::int64_t hoist_heard_ns = 0;                 ///< by the source's clock
 

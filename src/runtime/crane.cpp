@@ -14,6 +14,7 @@ void Crane::step(const CraneView& view, double dt_s) noexcept {
       return;
     case CraneState::kCatching:
       engaged_ = std::min(engaged_ + dt_s / kCatch_s, 1.0);
+      lift_m_ = std::min(lift_m_ + kRaise_m_s * dt_s, kLift_m);
       if (engaged_ == 1.0) state_ = CraneState::kLifting;
       return;
     case CraneState::kLifting:

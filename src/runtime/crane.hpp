@@ -1,5 +1,5 @@
-// Who works the hoist of a simulated robot: holds it while it is limp, sets it down once it stands, lets go when its feet
-// carry it, and takes it up again when asked to, wherever it lies.
+// Who works the hoist of a simulated robot: holds it while it is limp, sets it down once it stands, lets go when its
+// feet carry it, and takes it up again when asked to, wherever it lies.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace pmg::runtime {
 /// What the hoist does; the numbers are those of pmg_msgs::hoist_state_t.
 enum class CraneState : std::uint8_t {
   kFree = 0,       ///< straps off: the robot is on its own
-  kCatching = 1,   ///< straps are tightened where the torso is
+  kCatching = 1,   ///< straps are tightened, from where the torso is on the way up
   kLifting = 2,    ///< up, and upright
   kHolding = 3,    ///< feet clear of the ground
   kLowering = 4,   ///< down, then slack
@@ -27,20 +27,20 @@ struct CraneView {
 /// Stands for a person with a crane, who sees the true robot. For one thread; no heap.
 class Crane {
  public:
-  static constexpr double kLift_m = 0.20;         ///< feet well clear of the ground, toes pointing down included
-  static constexpr double kSlack_m = 0.15;        ///< of a rope that carries nothing: the robot may bend its knees
-  static constexpr double kLower_m_s = 0.12;      ///< about two seconds from there to the ground
-  static constexpr double kRaise_m_s = 0.25;      ///< a robot that lies is up after four seconds
-  static constexpr double kCatch_s = 1.0;         ///< from loose straps to tight ones
-  static constexpr double kLetGo_s = 0.5;         ///< back
-  static constexpr double kCarriedShare = 0.5;    ///< the feet carry when they have more than this
-  static constexpr double kCarriedFor_s = 0.5;    ///< for so long
+  static constexpr double kLift_m = 0.20;       ///< feet well clear of the ground, toes pointing down included
+  static constexpr double kSlack_m = 0.15;      ///< of a rope that carries nothing: the robot may bend its knees
+  static constexpr double kLower_m_s = 0.12;    ///< about two seconds from there to the ground
+  static constexpr double kRaise_m_s = 0.20;    ///< a robot that lies is up after five seconds
+  static constexpr double kCatch_s = 2.0;       ///< from loose straps to tight ones, on the way up
+  static constexpr double kLetGo_s = 0.5;       ///< back
+  static constexpr double kCarriedShare = 0.5;  ///< the feet carry when they have more than this
+  static constexpr double kCarriedFor_s = 0.5;  ///< for so long
 
   void step(const CraneView& view, double dt_s) noexcept;
 
   CraneState state() const noexcept { return state_; }
-  double lift_m() const noexcept { return lift_m_; }      ///< of the anchor, as sim::World::set_hoist's
-  double engaged() const noexcept { return engaged_; }    ///< likewise
+  double lift_m() const noexcept { return lift_m_; }    ///< of the anchor, as sim::World::set_hoist's
+  double engaged() const noexcept { return engaged_; }  ///< likewise
   bool carrying() const noexcept { return state_ != CraneState::kFree; }
 
  private:

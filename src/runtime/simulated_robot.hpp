@@ -56,8 +56,8 @@ class SimulatedRobot final : public hal::Hal {
  public:
   static constexpr std::size_t kTruths = 8192;  ///< sixteen seconds
 
-  /// Keeps a reference to world, which belongs to the bus thread from now on and must hang already (WorldOptions) unless
-  /// a scenario hoists. keep_truth: somebody will take it.
+  /// Keeps a reference to world, which belongs to the bus thread from now on and must hang already (WorldOptions)
+  /// unless a scenario hoists. keep_truth: somebody will take it.
   SimulatedRobot(sim::World& world, HoistedBy hoisted, bool keep_truth);
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
