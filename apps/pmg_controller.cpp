@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "bench_session.hpp"
+#include "driving_window.hpp"
 #include "io/lcm_link.hpp"
 #include "program.hpp"
 #include "runtime/comms.hpp"
@@ -57,7 +58,7 @@ struct Arguments {
   std::string name, lcm_url;
   fs::path log, motor, excitation, bench_out;
   std::string bench;
-  bool no_log = false, gantry = false, no_realtime = false, print_config = false, json = false;
+  bool no_log = false, gantry = false, viewer = false, no_realtime = false, print_config = false, json = false;
   std::uint64_t seed = 0;
   std::optional<double> duration_s;
   runtime::ControllerOptions threads;
@@ -72,13 +73,15 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--name", arguments.name, "name that messages are addressed to; the robot's own if not given");
   app.add_option("--policy", arguments.control.policy,
-                 "policy's name below the robot's policies/, or none: drives follow the reference")
-      ->capture_default_str();
+                 "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
+                 "given, and none with --bench");
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
   CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; out/NAME-TIME if not given");
   app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
-  app.add_flag("--gantry", arguments.gantry, "sil: hang the robot in a gantry; a limp robot sinks to the ground");
+  app.add_flag("--gantry", arguments.gantry,
+               "sil: hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands");
+  app.add_flag("--viewer", arguments.viewer, "sil: a window with the robot, whose keys drive it");
   app.add_option("--motor", arguments.motor,
                  "sil: motor.yaml, how the drives really are; robot.yaml's if not given, none for none");
   CLI::Option* bench = app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot once");
@@ -182,15 +185,22 @@ class Console {
 void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant variant) {
   spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", runtime::software_version(), run.robot, run.backend,
                run.bundle.substr(0, 12), run.policy);
+  if (run.policy == "none") spdlog::warn("no policy: drives follow the reference, and nothing balances the robot");
   if (variant != Variant::kPmg) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
   spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
                arguments.no_log ? " (after a fault only)" : "");
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
 }
 
+/// The simulated robot, and the window on it if there is one.
+struct Stage {
+  runtime::SimulatedRobot& robot;
+  apps::DrivingWindow* window;  // may be null
+};
+
 /// Waits until somebody or something ends the run.
-void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments, Console& console,
-               const std::atomic<bool>& bench_over) {
+void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
+               const Stage& stage, Console& console, const std::atomic<bool>& bench_over) {
   constexpr long kPoll_ms = 20;
   const auto start = std::chrono::steady_clock::now();
   const auto expired = [&] {
@@ -199,8 +209,13 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   };
   bool signalled = false;
   while (!signalled && !expired() && !bench_over && controller.failure().empty()) {
-    signalled = signals.wait_ms(kPoll_ms);
+    signalled = signals.wait_ms(stage.window == nullptr ? kPoll_ms : 1);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
+    if (stage.window == nullptr) continue;
+    stage.window->draw(stage.robot);
+    if (!stage.window->closed()) continue;
+    spdlog::info("the window was closed: velocity to zero first");
+    return stage.window->let_go();
   }
 }
 
@@ -219,13 +234,13 @@ runtime::RunInfo run_info(const Arguments& arguments, const runtime::LoadedContr
 
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
-             runtime::Comms& comms, runtime::Recorder& recorder, Console& console,
+             runtime::Comms& comms, runtime::Recorder& recorder, const Stage& stage, Console& console,
              const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
     controller.start([&] { comms.step(kCommsWait_ms); }, [&] { recorder.drain(); });
     spdlog::info("mode: passive");
-    supervise(controller, signals, arguments, console, bench_over);
+    supervise(controller, signals, arguments, stage, console, bench_over);
     failure = controller.failure();
     spdlog::info("{}: damping, then closing", failure.empty() ? "asked to end" : "can't run on");
     if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
@@ -255,15 +270,19 @@ int control(Arguments& arguments) {
     throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil", arguments.hal,
                                             arguments.hal == "can" ? "CAN" : "EtherCAT"));
   }
-  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
-  runtime::expect_shared_host(loaded.options);
-  std::optional<apps::BenchSession> bench;
-  std::optional<runtime::ExcitationRecorder> excited;
   if (!arguments.bench.empty()) {
+    if (arguments.control.policy.empty()) arguments.control.policy = "none";
     if (arguments.control.policy != "none") {
       throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
     }
     arguments.gantry = true;
+  }
+  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  arguments.control.policy = loaded.policy_name;
+  runtime::expect_shared_host(loaded.options);
+  std::optional<apps::BenchSession> bench;
+  std::optional<runtime::ExcitationRecorder> excited;
+  if (!arguments.bench.empty()) {
     bench.emplace(loaded.robot, arguments.bench, arguments.excitation, arguments.bench_out, loaded.options.dt_s);
     excited.emplace(bench->recorder());
     loaded.options.excitation = bench->plan();
@@ -280,11 +299,14 @@ int control(Arguments& arguments) {
   const EndSignals signals;
   const io::WallClock clock;
   io::LcmLink link(arguments.lcm_url);
-  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, true);
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   world_options.benched_joint = arguments.bench;
   sim::World world(loaded.robot, world_options);
-  runtime::SimulatedRobot robot(world, arguments.gantry, !arguments.no_log);
+  runtime::SimulatedRobot robot(world, arguments.gantry ? runtime::HoistedBy::kGantry : runtime::HoistedBy::kCrane,
+                                !arguments.no_log);
+  std::optional<apps::DrivingWindow> window;
+  if (arguments.viewer) window.emplace(world.mj_model(), arguments.name, arguments.lcm_url);
   const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
   const runtime::RunInfo info = run_info(arguments, loaded, controller, bench ? &*bench : nullptr);
@@ -294,6 +316,7 @@ int control(Arguments& arguments) {
   const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };
   runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock);
   comms.on_warning = warn;
+  comms.work(robot.hoist_line());
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
@@ -306,7 +329,8 @@ int control(Arguments& arguments) {
     if (excited->progress().over) bench_over = true;
   };
   Console console(loaded.robot, arguments.name);
-  const ExitCode code = run(arguments, signals, controller, comms, recorder, console, bench_over);
+  const ExitCode code =
+      run(arguments, signals, controller, comms, recorder, {robot, window ? &*window : nullptr}, console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;

@@ -11,6 +11,7 @@
 
 #include "io/lcm_link.hpp"
 #include "operator/drive.hpp"
+#include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/words.hpp"
 #include "program.hpp"
@@ -27,6 +28,7 @@ Examples:
   pmg_send stand                             the one robot that is heard
   pmg_send walk --vx 0.3 --for 5 --robot z1  climb to walk, drive 5 s, come to rest, stand
   pmg_send command --omega 0.4 --for 2       drive a robot that is in walk already
+  pmg_send lift                              a simulated robot that fell: up on its hoist; then reset, stand
 
 A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
 
@@ -57,6 +59,8 @@ constexpr Request kRequests[] = {
     {"reset", ops::Goal::kReset, 2.0, "leave a latched fault for damping, if its cause is gone"},
 };
 constexpr double kDriveTimeout_s = 10.0;
+constexpr double kHoistTimeout_s = 15.0;  // to catch a robot that lies, and lift it
+constexpr const char *kLift = "lift", *kLower = "lower";
 
 void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
   CLI::App* drive = app.add_subcommand(name, help);
@@ -75,10 +79,12 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--timeout", arguments.timeout_s,
-                 "give up after so long [s]; stop, damping, passive, reset 2, others 10")
+                 "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 15, others 10")
       ->check(CLI::PositiveNumber);
   app.add_flag("--json", arguments.json, "print the outcome as JSON");
   for (const Request& request : kRequests) app.add_subcommand(request.name, request.help)->fallthrough();
+  app.add_subcommand(kLift, "simulation: catch the robot with its hoist, lift it, keep it up")->fallthrough();
+  app.add_subcommand(kLower, "simulation: set it down and let go, if it stands")->fallthrough();
   declare_drive(app, arguments, "walk", "climb to walk, drive for a while, come to rest and stand");
   declare_drive(app, arguments, "command", "drive a robot that is in walk for a while, and come to rest");
 }
@@ -94,7 +100,7 @@ class Session {
     for (const Request& request : kRequests) {
       if (arguments_.request == request.name) return ask(request);
     }
-    return drive();
+    return arguments_.request == kLift || arguments_.request == kLower ? hoist() : drive();
   }
 
  private:
@@ -146,6 +152,18 @@ class Session {
     return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 
+  int hoist() {
+    const std::string robot = find_robot(timeout_s(kHoistTimeout_s));
+    if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
+    ops::HoistWish wish(source_, robot, arguments_.request == kLift, timeout_s(kHoistTimeout_s));
+    ops::Progress progress = ops::Progress::kPending;
+    while (progress == ops::Progress::kPending && apps::interrupt_requested == 0) {
+      link_.receive(10);
+      progress = wish.step();
+    }
+    return conclude(robot, progress, wish.text(), wish.elapsed_s());
+  }
+
   int drive() {
     const std::string robot = find_robot(timeout_s(kDriveTimeout_s));
     if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
@@ -161,13 +179,19 @@ class Session {
       show_progress(robot, drive);
     }
     const bool reached = progress == ops::Progress::kReached;
-    ops::Answer answer{.robot = robot, .progress = progress, .mode = "unknown", .text = drive.text()};
-    if (const ops::HeardRobot* heard = source_.heard(robot)) {
+    return conclude(robot, progress, reached ? fmt::format("drove for {:.1f} s", drive.driven_s()) : drive.text(),
+                    drive.driven_s());
+  }
+
+  int conclude(const std::string& robot, ops::Progress progress, const std::string& text, double elapsed_s) {
+    const bool reached = progress == ops::Progress::kReached;
+    ops::Answer answer{.robot = robot, .progress = progress, .mode = "unknown", .text = text};
+    const ops::HeardRobot* heard = source_.heard(robot);
+    if (heard != nullptr && heard->mode()) {
       answer.acknowledged = true;
       answer.mode = ops::mode_name(*heard->mode());
     }
-    if (reached) answer.text = fmt::format("drove for {:.1f} s", drive.driven_s());
-    report({answer}, reached, drive.driven_s());
+    report({answer}, reached, elapsed_s);
     return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 

@@ -3,15 +3,19 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bench_session.hpp"
 #include "hal/sil_hal.hpp"
+#include "io/lcm_link.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
+#include "runtime/comms.hpp"
 #include "runtime/control_setup.hpp"
 #include "runtime/controller_report.hpp"
 #include "runtime/film.hpp"
@@ -31,35 +35,38 @@ enum ExitCode { kOk = 0, kFellOrFault = 1, kBadInput = 2, kInterrupted = 130 };
 constexpr const char* kFooter = R"(
 Writes DIR/log.lcm (simulation time only: same binary, inputs and seed give the same bytes), DIR/timing.csv (wall times),
 DIR/summary.json, and with --video DIR/video.mp4. With --realtime the controller's threads run by the wall clock, and
-summary.json says under "punctuality" how well they kept their times.
+summary.json says under "punctuality" how well they kept their times. With --realtime and no scenario operators drive (pmg_keyboard,
+pmg_send), a hoist sets the robot down when it stands, and Ctrl-C or closing the window ends the run.
 
 With --bench one joint of the hanging robot is excited while the others hold, and DIR is a bench of that joint for
 pmg_calibrate_motor and pmg_diagnose: bench.yaml, runs.csv, runs/. The other files are as ever.
 
 Example:
   pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
+  pmg_sil --robot z1 --realtime --viewer --out out/drive
   pmg_sil --robot z1 --bench left_knee --excitation out/excitation --motor out/knee/motor.yaml --out out/knee-bench
 
-Exit codes: 0 the scenario (the bench) ran to its end, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
+Exit codes: 0 the scenario (the bench) ran to its end, or operators drove until it was ended, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
 or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
   fs::path scenario, out, export_mjcf, motor, vary, excitation;
-  std::string bench;
+  std::string bench, lcm_url;
   std::uint64_t seed = 0;
   bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
+  bool by_operators() const { return realtime && scenario.empty(); }
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
   app.add_option("--robot", arguments.control.robot, "robot's name below config/robots, or its folder")
       ->capture_default_str();
-  app.add_option("--scenario", arguments.scenario, "scenario to play (YAML)");
+  app.add_option("--scenario", arguments.scenario, "scenario to play (YAML); with --realtime it may be left out");
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
   app.add_option("--policy", arguments.control.policy,
-                 "policy's name below the robot's policies/, or none: drives follow the reference")
-      ->capture_default_str();
+                 "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
+                 "given, and none with --bench");
   app.add_option("--blend", arguments.control.blend,
                  "how clips are mixed: gain, or paper for the paper's weights to the letter")
       ->check(CLI::IsMember({"gain", "paper"}))
@@ -74,6 +81,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "of the sensor noise")->capture_default_str();
   CLI::Option* realtime = app.add_flag("--realtime", arguments.realtime,
                                        "the robot's threads and the wall clock instead of lockstep; not reproducible");
+  app.add_option("--lcm-url", arguments.lcm_url,
+                 "where operators are heard; LCM_DEFAULT_URL or this computer alone if not given")
+      ->needs(realtime)
+      ->excludes("--scenario");
   CLI::Option* video = app.add_flag("--video", arguments.video, "film the run (needs ffmpeg)")->excludes(realtime);
   CLI::Option* bench =
       app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot and write a bench of it")
@@ -112,8 +123,9 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
 }
 
 void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
-  line.show(fmt::format("{:6.1f} / {:.1f} s  {:8} {}", progress.time_s, progress.duration_s,
-                        runtime::to_string(progress.result.mode), progress.step.text));
+  const std::string of = std::isfinite(progress.duration_s) ? fmt::format(" / {:.1f}", progress.duration_s) : "";
+  line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of, runtime::to_string(progress.result.mode),
+                        progress.step.text));
 }
 
 void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
@@ -203,10 +215,40 @@ Played play_lockstep(const Stage& stage) {
   return {outcome, lockstep.timing(), nullptr};
 }
 
+/// Who speaks to the controller over the network when no scenario does.
+class Operators {
+ public:
+  /// Keeps references. Throws std::runtime_error when there is no such network, or a controller of this name on it.
+  Operators(const Stage& stage, const runtime::RunInfo& info, runtime::Controller& controller,
+            runtime::SimulatedRobot& simulated)
+      : link_(io::choose_lcm_url(stage.arguments.lcm_url)),
+        comms_(link_, controller.inbox(), controller.outbox(), stage.loaded.robot, info,
+               1.0 / stage.loaded.options.dt_s, clock_) {
+    constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
+    comms_.work(simulated.hoist_line());
+    comms_.on_warning = [](const std::string& text) { std::cerr << text << '\n'; };
+    comms_.listen_for_others(kListen_s, [] { return apps::interrupt_requested != 0; });
+    std::cerr << fmt::format("{} hears operators on {}: pmg_keyboard, pmg_send\n", info.robot, link_.url());
+  }
+  void step() {
+    constexpr int kWait_ms = 5;
+    comms_.step(kWait_ms);
+  }
+
+ private:
+  io::WallClock clock_;
+  io::LcmLink link_;
+  runtime::Comms comms_;
+};
+
 Played play_realtime(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  runtime::SimulatedRobot simulated(stage.world, stage.arguments.gantry, true);
+  runtime::SimulatedRobot simulated(stage.world,
+                                    stage.arguments.gantry           ? runtime::HoistedBy::kGantry
+                                    : stage.arguments.by_operators() ? runtime::HoistedBy::kCrane
+                                                                     : runtime::HoistedBy::kScenario,
+                                    true);
   runtime::Controller controller(robot, simulated, stage.tick);
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
   runtime::RunInfo info = run_info(stage);
@@ -217,6 +259,11 @@ Played play_realtime(const Stage& stage) {
   apps::ProgressLine progress;
   runtime::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
                            !stage.balanced_by_policy() && !stage.arguments.gantry);
+  std::optional<Operators> operators;
+  if (stage.arguments.by_operators()) {
+    operators.emplace(stage, info, controller, simulated);
+    run.operators = [&operators] { operators->step(); };
+  }
   run.interrupted = [&] {
     if (stage.view != nullptr) stage.view->draw(simulated);
     return stage.over();
@@ -243,19 +290,29 @@ runtime::Scenario bench_scenario(const apps::BenchSession& bench, double control
   return {.name = "bench of " + bench.joint().name, .steps = {stand, damping}};
 }
 
+/// Names a run that operators drive until it is ended.
+runtime::Scenario endless_scenario() {
+  runtime::ScenarioStep step;
+  step.duration_s = std::numeric_limits<double>::infinity();
+  step.text = "operators drive";
+  return {.name = "operators", .steps = {step}};
+}
+
 int simulate(Arguments arguments) {
   const bool benching = !arguments.bench.empty();
   if (benching) {
     require(arguments.excitation, "--excitation");
+    if (arguments.control.policy.empty()) arguments.control.policy = "none";
     if (arguments.control.policy != "none") {
       throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
     }
     arguments.gantry = true;
-  } else {
+  } else if (!arguments.by_operators()) {
     require(arguments.scenario, "--scenario");
   }
   // Everything that input can spoil comes first: nothing is written for bad input.
   runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  arguments.control.policy = loaded.policy_name;
   if (arguments.realtime) runtime::expect_shared_host(loaded.options);
   std::optional<apps::BenchSession> bench;
   std::optional<runtime::ExcitationRecorder> recorder;
@@ -264,14 +321,16 @@ int simulate(Arguments arguments) {
     recorder.emplace(bench->recorder());
     loaded.options.excitation = bench->plan();
   }
-  const runtime::Scenario scenario =
-      benching ? bench_scenario(*bench, loaded.options.dt_s) : runtime::load_scenario(arguments.scenario);
+  const runtime::Scenario scenario = benching                   ? bench_scenario(*bench, loaded.options.dt_s)
+                                     : arguments.by_operators() ? endless_scenario()
+                                                                : runtime::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
-  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, arguments.gantry);
+  sim::WorldOptions world_options =
+      runtime::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
   world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
     sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
@@ -317,7 +376,7 @@ int simulate(Arguments arguments) {
     report(played.outcome, summary, arguments.out);
   }
   const runtime::RunOutcome& outcome = played.outcome;
-  if (outcome.interrupted) return kInterrupted;
+  if (outcome.interrupted && !arguments.by_operators()) return kInterrupted;
   if (bench && !bench->whole(*recorder)) return kFellOrFault;
   return outcome.fell || outcome.diverged || !outcome.faults.empty() ? kFellOrFault : kOk;
 }

@@ -92,6 +92,7 @@ void expect_within_limits(const JointVector& q, const model::RobotModel& robot, 
 /// robot.yaml with soft soles and a height channel that counts stances.
 std::string rig_yaml(const model::RobotModel& robot, std::size_t stances) {
   YAML::Node yaml = YAML::LoadFile((robot.directory / "robot.yaml").string());
+  yaml.remove("policy");  // it was trained on other legs and clips
   for (const auto& leg : robot.leg_joints) {
     for (const int joint : leg)
       yaml["joints"][robot.joint_index.name(joint)]["kp_Nm_per_rad"] =

@@ -198,7 +198,8 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   robot.directory = directory;
   robot.name = reader.required<std::string>("name");
   const UrdfTree tree = read_urdf(directory / reader.required<std::string>("urdf"));
-  if (reader.has("motor")) reader.required<std::string>("motor");  // what simulations read: sim/motors_in_force.hpp
+  if (reader.has("policy")) reader.required<std::string>("policy");  // what runs by default: runtime/control_setup.hpp
+  if (reader.has("motor")) reader.required<std::string>("motor");    // what simulations read: sim/motors_in_force.hpp
   robot.urdf = tree.urdf;
   robot.tree = tree.tree;
   robot.base_inertia = tree.root_inertia;

@@ -24,7 +24,7 @@ void Drive::enter(Phase phase) {
   phase_ = phase;
   phase_since_ns_ = send_at_ns_ = source_.clock().now_ns();
   send_if_due();  // a wish for Walk finds a command that came before it
-  if (phase == Phase::kClimbing) wish_.emplace(source_, robot_, Goal::kWalk, options_.timeout_s);
+  if (phase == Phase::kClimbing) climb_.emplace(source_, robot_, Goal::kWalk, options_.timeout_s);
   if (phase == Phase::kDescending) wish_.emplace(source_, robot_, Goal::kStand, options_.timeout_s);
 }
 
@@ -48,7 +48,7 @@ Progress Drive::step() {
         enter(Phase::kDescending);
         return Progress::kPending;
       }
-      return follow_wish(Phase::kDriving);
+      return follow_climb();
     case Phase::kDriving:
       if (const std::string trouble_text = trouble(); !trouble_text.empty()) return fail(trouble_text);
       if (end_early_ || driven_s() >= options_.duration_s) {
@@ -60,15 +60,23 @@ Progress Drive::step() {
       if (in_phase_ns >= kCalm_ns) enter(options_.climb ? Phase::kDescending : Phase::kEnded);
       return Progress::kPending;
     default:
-      return follow_wish(Phase::kEnded);
+      return follow_wish();
   }
 }
 
-Progress Drive::follow_wish(Phase next) {
+Progress Drive::follow_climb() {
+  const Progress progress = climb_->step();
+  if (progress == Progress::kPending) return progress;
+  if (progress == Progress::kFailed) return fail(climb_->text());
+  enter(Phase::kDriving);
+  return Progress::kPending;
+}
+
+Progress Drive::follow_wish() {
   const Progress progress = wish_->step();
   if (progress == Progress::kPending) return progress;
   if (progress == Progress::kFailed) return fail(wish_->answers().front().text);
-  enter(next);
+  enter(Phase::kEnded);
   return Progress::kPending;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "operator/climb.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/operator_source.hpp"
 #include "pmg/command.hpp"
@@ -14,7 +15,7 @@ namespace pmg::ops {
 struct DriveOptions {
   double duration_s = 0.0;
   bool climb = false;     ///< ask for Walk first, and for Stand at the end
-  double timeout_s = 10;  ///< for each of the two
+  double timeout_s = 10;  ///< for each of the two, and for a hoist to set the robot down
 };
 
 /// Sends at 50 Hz from construction on, so that Walk finds a fresh command.
@@ -44,7 +45,8 @@ class Drive {
 
   void enter(Phase phase);
   Progress fail(const std::string& text);
-  Progress follow_wish(Phase next);
+  Progress follow_climb();
+  Progress follow_wish();
   /// What speaks against going on; empty: nothing.
   std::string trouble() const;
   void send_if_due();
@@ -57,6 +59,7 @@ class Drive {
   std::int64_t phase_since_ns_ = 0, send_at_ns_ = 0;
   double driven_s_ = 0.0;
   bool end_early_ = false;
+  std::optional<Climb> climb_;
   std::optional<ModeWish> wish_;
   std::string text_;
 };

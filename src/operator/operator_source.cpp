@@ -12,10 +12,12 @@ OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::
     : link_(link), clock_(clock) {
   command_.version = pmg_msgs::command_t::VERSION;
   mode_.version = pmg_msgs::mode_t::VERSION;
-  command_.source = mode_.source = name;
-  command_.session = mode_.session = session;
+  hoist_.version = pmg_msgs::hoist_t::VERSION;
+  command_.source = mode_.source = hoist_.source = name;
+  command_.session = mode_.session = hoist_.session = session;
   link_.subscribe("STATUS", [this](io::Bytes message) { hear_status(message); });
   link_.subscribe("ACK", [this](io::Bytes message) { hear_ack(message); });
+  link_.subscribe("HOIST_STATE", [this](io::Bytes message) { hear_hoist(message); });
 }
 
 void OperatorSource::send_command(const std::string& robot, const Command& command, double lease_s) {
@@ -46,6 +48,22 @@ void OperatorSource::repeat_request() {
   link_.publish("MODE", mode_);
 }
 
+void OperatorSource::request_hoist(const std::string& robot, bool lift) {
+  hoist_.robot = robot;
+  ++hoist_.sequence;
+  hoist_.request = lift ? pmg_msgs::hoist_t::LIFT : pmg_msgs::hoist_t::LOWER;
+  repeat_hoist();
+}
+
+void OperatorSource::repeat_hoist() {
+  hoist_.stamp_ns = clock_.now_ns();
+  link_.publish("HOIST", hoist_);
+}
+
+bool OperatorSource::hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept {
+  return hoist.source == hoist_.source && hoist.session == hoist_.session && hoist.sequence >= hoist_.sequence;
+}
+
 const HeardRobot* OperatorSource::heard(const std::string& robot) const {
   const auto found = heard_.find(robot);
   return found == heard_.end() ? nullptr : &found->second;
@@ -66,9 +84,19 @@ void OperatorSource::hear_ack(io::Bytes bytes) {
   if (robot != nullptr) robot->ack = ack;
 }
 
+void OperatorSource::hear_hoist(io::Bytes bytes) {
+  const auto hoist = io::decode_message<pmg_msgs::hoist_state_t>(bytes);
+  const auto known = hoist ? heard_.find(hoist->robot) : heard_.end();  // who says no STATUS is no controller
+  if (known == heard_.end()) return;
+  known->second.hoist = hoist;
+  known->second.hoist_heard_ns = clock_.now_ns();
+}
+
 HeardRobot* OperatorSource::place_of(const std::string& robot) {
   if (heard_.size() >= kMostRobots && !heard_.contains(robot)) return nullptr;
-  return &heard_[robot];
+  const auto [place, is_new] = heard_.try_emplace(robot);
+  if (is_new) place->second.first_heard_ns = clock_.now_ns();
+  return &place->second;
 }
 
 }  // namespace pmg::ops

@@ -11,6 +11,8 @@
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
+#include "pmg_msgs/hoist_state_t.hpp"
+#include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 
@@ -19,8 +21,11 @@ namespace pmg::ops {
 /// What one controller has said.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
-  std::int64_t status_heard_ns = 0;      ///< by the source's clock
-  std::optional<pmg_msgs::ack_t> ack{};  ///< newest answer to the request in hand
+  std::int64_t status_heard_ns = 0;                ///< by the source's clock
+  std::int64_t first_heard_ns = 0;                 ///< likewise
+  std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the request in hand
+  std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< of a simulated robot that has one
+  std::int64_t hoist_heard_ns = 0;                 ///< by the source's clock
 
   /// The newest that is known; nothing before the controller was heard.
   std::optional<std::int8_t> mode() const;
@@ -41,6 +46,12 @@ class OperatorSource {
   void request(const std::string& robot, std::int8_t mode, bool reset_fault);
   void repeat_request();
 
+  /// Likewise of a simulated robot's hoist. lift: up, and stay there; otherwise down as soon as the robot stands.
+  void request_hoist(const std::string& robot, bool lift);
+  void repeat_hoist();
+  /// That this, or a later one, was heard.
+  bool hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept;
+
   const std::map<std::string, HeardRobot>& heard() const noexcept { return heard_; }  ///< by the controllers' names
   const HeardRobot* heard(const std::string& robot) const;                            ///< null: not yet
   const std::string& name() const noexcept { return command_.source; }
@@ -50,6 +61,7 @@ class OperatorSource {
  private:
   void hear_status(io::Bytes message);
   void hear_ack(io::Bytes message);
+  void hear_hoist(io::Bytes message);
   HeardRobot* place_of(const std::string& robot);  // null: too many
 
   io::LcmLink& link_;
@@ -57,6 +69,7 @@ class OperatorSource {
   std::map<std::string, HeardRobot> heard_;
   pmg_msgs::command_t command_{};
   pmg_msgs::mode_t mode_{};
+  pmg_msgs::hoist_t hoist_{};
 };
 
 }  // namespace pmg::ops

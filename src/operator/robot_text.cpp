@@ -48,16 +48,6 @@ std::string command_text(const double (&u)[kChannels]) {
                      u[kOmega], u[kPitch], u[kRoll], u[kHeight]);
 }
 
-std::string limits_text(const RobotNews& news) {
-  const pmg_msgs::status_t& status = news.status;
-  std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
-                                 status.limited_torque);
-  if (news.reference && news.reference->command_limited) text += "; command";
-  if (status.gco_held) text += "; ground-aware optimisation held";
-  if (status.policy_held) text += "; policy held";
-  return text;
-}
-
 /// What was ignored only when there was any.
 std::string network_text(const pmg_msgs::link_t& link) {
   std::string text = fmt::format("{} accepted", link.accepted);
@@ -66,7 +56,7 @@ std::string network_text(const pmg_msgs::link_t& link) {
         std::pair{link.other_robot, "for another robot"}, std::pair{link.flooded, "too many"},
         std::pair{link.other_source, "while another drives"}, std::pair{link.out_of_order, "out of order"},
         std::pair{link.late, "late"}, std::pair{link.not_finite, "not finite"},
-        std::pair{link.no_lease, "without lease"}}) {
+        std::pair{link.no_lease, "without lease"}, std::pair{link.no_hoist, "for a hoist that isn't there"}}) {
     if (count > 0) text += fmt::format(", {} {}", count, reason);
   }
   return text;
@@ -84,6 +74,16 @@ nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
 }
 
 }  // namespace
+
+std::string limits_text(const RobotNews& news) {
+  const pmg_msgs::status_t& status = news.status;
+  std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
+                                 status.limited_torque);
+  if (news.reference && news.reference->command_limited) text += "; command";
+  if (status.gco_held) text += "; ground-aware optimisation held";
+  if (status.policy_held) text += "; policy held";
+  return text;
+}
 
 std::string one_line(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
@@ -190,7 +190,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
         {"accepted", link.accepted},         {"malformed", link.malformed}, {"other_version", link.other_version},
         {"other_robot", link.other_robot},   {"flooded", link.flooded},     {"other_source", link.other_source},
         {"out_of_order", link.out_of_order}, {"late", link.late},           {"not_finite", link.not_finite},
-        {"no_lease", link.no_lease}};
+        {"no_lease", link.no_lease},         {"no_hoist", link.no_hoist}};
   }
   return json;
 }

@@ -15,6 +15,9 @@ inline constexpr double kGone_s = 1.0;
 /// "z1     walk   gamepad  vx 0.40 ... tick 180 us": all that one line holds. No line breaks.
 std::string one_line(const RobotNews& news, double silence_s);
 
+/// What the controller limits at this moment.
+std::string limits_text(const RobotNews& news);
+
 /// One robot at full length.
 std::vector<std::string> screen(const RobotNews& news, double silence_s);
 

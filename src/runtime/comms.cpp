@@ -12,7 +12,7 @@ namespace pmg::runtime {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000;
 constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
 
 }  // namespace
@@ -26,13 +26,18 @@ Comms::Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, 
       control_rate_Hz_(control_rate_Hz),
       clock_(clock),
       gate_(inbox, run.robot, clock),
-      next_second_ns_(clock.now_ns()) {
+      hoist_gate_(run.robot),
+      next_second_ns_(clock.now_ns()),
+      next_hoist_ns_(clock.now_ns()) {
   state_.robot = reference_.robot = motor_command_.robot = timing_.robot = run_.robot;
   link_.subscribe("COMMAND", [this](io::Bytes message) {
     if (!listening_) gate_.take_command(message);
   });
   link_.subscribe("MODE", [this](io::Bytes message) {
     if (!listening_) gate_.take_mode(message);
+  });
+  link_.subscribe("HOIST", [this](io::Bytes message) {
+    if (!listening_) hoist_gate_.take(message);
   });
   link_.subscribe("STATUS", [this](io::Bytes message) { hear_status(message); });
 }
@@ -72,6 +77,7 @@ void Comms::step(int timeout_ms) {
   link_.receive(timeout_ms);
   publish_acks();
   publish_newest();
+  publish_hoist();
   if (clock_.now_ns() >= next_second_ns_) {
     next_second_ns_ = clock_.now_ns() + kSecond_ns;
     publish_each_second();
@@ -80,7 +86,7 @@ void Comms::step(int timeout_ms) {
 }
 
 void Comms::warn() {
-  const GateCounts& counts = gate_.counts();
+  const GateCounts counts = gate_.counts() + hoist_gate_.counts();
   const auto once = [&](Warning warning, bool wrong, const auto& text) {
     bool& warned = warned_[static_cast<std::size_t>(warning)];
     if (!wrong || warned) return;
@@ -111,6 +117,7 @@ void Comms::publish_acks() {
 
 void Comms::publish_newest() {
   if (!outbox_.newest.take(newest_)) return;
+  hoist_gate_.see(newest_.result);
   const int joint_count = robot_.joint_index.size();
   fill(newest_, run_, robot_, status_);
   link_.publish("STATUS", status_);
@@ -133,12 +140,20 @@ void Comms::publish_newest() {
   published_fault_ = fault;
 }
 
+void Comms::publish_hoist() {
+  const bool news = hoist_gate_.fill(hoist_state_);
+  if (!hoist_gate_.there() || (!news && clock_.now_ns() < next_hoist_ns_)) return;
+  next_hoist_ns_ = clock_.now_ns() + kHoistPeriod_ns;
+  hoist_state_.stamp_ns = clock_.now_ns();
+  link_.publish("HOIST_STATE", hoist_state_);
+}
+
 void Comms::publish_each_second() {
   const std::int64_t now_ns = clock_.now_ns();
   fill(run_, robot_, control_rate_Hz_, now_ns, info_);
   link_.publish("ROBOT_INFO", info_);
 
-  const GateCounts& gate = gate_.counts();
+  const GateCounts gate = gate_.counts() + hoist_gate_.counts();
   const IgnoredCommands& intake = newest_.result.ignored;
   counts_.stamp_ns = now_ns;
   counts_.robot = run_.robot;
@@ -152,6 +167,7 @@ void Comms::publish_each_second() {
   counts_.late = intake.late;
   counts_.not_finite = intake.not_finite;
   counts_.no_lease = intake.no_lease;
+  counts_.no_hoist = gate.no_hoist;
   link_.publish("LINK", counts_);
 }
 

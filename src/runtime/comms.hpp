@@ -12,6 +12,7 @@
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
+#include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
@@ -20,6 +21,7 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "runtime/controller_outbox.hpp"
+#include "runtime/hoist_gate.hpp"
 #include "runtime/operator_gate.hpp"
 #include "runtime/operator_inbox.hpp"
 #include "runtime/run_info.hpp"
@@ -39,6 +41,10 @@ class Comms {
   /// One line for the console when something is wrong for the first time. Called from step().
   std::function<void(const std::string&)> on_warning;
 
+  /// From now on HOIST is listened to, and HOIST_STATE told; without, both are counted as no_hoist. Keeps the pointer;
+  /// null: there is no hoist.
+  void work(HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
+
   /// Before the controller speaks: who else is on this address? Returns the other robots' names after that many seconds
   /// of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our name is heard:
   /// one line with name, session, address and what to do. Operators' messages of this time are not taken.
@@ -57,6 +63,7 @@ class Comms {
   void hear_status(io::Bytes message);
   void publish_acks();
   void publish_newest();
+  void publish_hoist();
   void publish_each_second();
   void warn();
 
@@ -67,11 +74,12 @@ class Comms {
   double control_rate_Hz_;
   const io::Clock& clock_;
   OperatorGate gate_;
+  HoistGate hoist_gate_;
   bool listening_ = false;
   std::vector<std::string> others_;
   std::int64_t impostors_heard_ = 0, impostor_session_ = 0;
   std::array<bool, 5> warned_{};  // by Warning
-  std::int64_t next_second_ns_;
+  std::int64_t next_second_ns_, next_hoist_ns_;
 
   TickRecord newest_;
   Fault published_fault_;
@@ -82,6 +90,7 @@ class Comms {
   pmg_msgs::motor_command_t motor_command_;
   pmg_msgs::timing_t timing_;
   pmg_msgs::fault_t fault_;
+  pmg_msgs::hoist_state_t hoist_state_{};
   pmg_msgs::robot_info_t info_;
   pmg_msgs::link_t counts_{};
 };

@@ -11,6 +11,7 @@
 #include "hal/bus_cycle.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/config_reader.hpp"
 #include "policy/onnx_policy.hpp"
 
 namespace pmg::runtime {
@@ -20,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Below the robot's policies/, or the file itself. Nothing for none.
-std::optional<fs::path> policy_file(const std::string& name, const model::RobotModel& robot) {
+std::optional<fs::path> policy_file(const std::string& name, const char* named_by, const model::RobotModel& robot) {
   if (name == "none") return std::nullopt;
   const fs::path file =
       fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
   if (!fs::exists(file)) {
     throw std::invalid_argument(
-        fmt::format("--policy {}: there is no {}; expected the name of a policy there, an ONNX file, or none", name,
+        fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none", named_by, name,
                     file.string()));
   }
   return file;
@@ -36,6 +37,12 @@ std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file,
   if (!file) return std::make_unique<policy::ReferencePolicy>();
   return std::make_unique<policy::OnnxPolicy>(*file, loaded.robot, model::clip_library_sha256(loaded.clips),
                                               1.0 / loaded.options.dt_s);
+}
+
+/// The one that runs unless another is asked for; none where robot.yaml names none.
+std::string robots_own_policy(const model::RobotModel& robot) {
+  model::ConfigReader reader = model::ConfigReader::from_file(robot.directory / "robot.yaml");
+  return reader.has("policy") ? reader.required<std::string>("policy") : "none";
 }
 
 Blend blend_named(const std::string& name) {
@@ -100,7 +107,9 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   loaded.options = tick_options(loaded.robot);
   loaded.options.generator.blend = blend_named(setup.blend);
-  const std::optional<fs::path> policy = policy_file(setup.policy, loaded.robot);
+  loaded.policy_name = setup.policy.empty() ? robots_own_policy(loaded.robot) : setup.policy;
+  const std::optional<fs::path> policy =
+      policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
   loaded.policy = load_policy(policy, loaded);
   loaded.variant = loaded.policy->variant();
   std::vector<fs::path> policies;
@@ -125,10 +134,10 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
 nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded) {
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
-                                 {"policy", setup.policy},
+                                 {"policy", loaded.policy_name},
                                  {"blend", setup.blend},
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
-  if (setup.policy != "none") json["variant"] = to_string(loaded.variant);
+  if (loaded.policy_name != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));
   return json;
 }

@@ -17,8 +17,8 @@ namespace pmg::runtime {
 struct ControlSetup {
   std::string robot = "z1";     ///< name below config/robots, or a folder
   std::filesystem::path clips;  ///< empty: the robot's own
-  std::string policy = "none";  ///< name below the robot's policies/, or none: drives follow the reference
-  std::string blend = "gain";   ///< how clips are mixed: gain or paper
+  std::string policy;  ///< name below the robot's policies/, or none: drives follow the reference; empty: robot.yaml's
+  std::string blend = "gain";  ///< how clips are mixed: gain or paper
 };
 
 /// What a setup names, read from its files and checked. The tick refers to nothing of it but robot.
@@ -26,6 +26,7 @@ struct LoadedControl {
   model::RobotModel robot;
   std::filesystem::path clips;
   ClipLibrary library;
+  std::string policy_name;  ///< as ControlSetup's, and never empty
   std::unique_ptr<policy::Policy> policy;
   Variant variant = Variant::kPmg;  ///< the policy's
   TickOptions options;

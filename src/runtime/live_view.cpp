@@ -46,7 +46,7 @@ void LiveView::draw(SimulatedRobot& robot) {
     const std::lock_guard lock(mutex_);
     noted = noted_;
   }
-  if (pose_.count > 0) viewer_.show({pose_.qpos.data(), pose_.count}, noted);
+  if (pose_.count > 0) viewer_.show({pose_.qpos.data(), pose_.count}, noted, pose_.rope);
 }
 
 std::string LiveView::text(const RunProgress& progress) const {

@@ -18,6 +18,11 @@ struct GateCounts {
   std::int64_t other_version = 0;
   std::int64_t other_robot = 0;
   std::int64_t flooded = 0;
+  std::int64_t no_hoist = 0;
+  friend GateCounts operator+(const GateCounts& a, const GateCounts& b) noexcept {
+    return {a.malformed + b.malformed, a.other_version + b.other_version, a.other_robot + b.other_robot,
+            a.flooded + b.flooded, a.no_hoist + b.no_hoist};
+  }
   friend bool operator==(const GateCounts&, const GateCounts&) = default;
 };
 

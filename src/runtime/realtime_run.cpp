@@ -1,5 +1,6 @@
 #include "runtime/realtime_run.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +11,7 @@ namespace pmg::runtime {
 namespace {
 constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
 constexpr std::chrono::milliseconds kPoll{20};
+constexpr double kReserved_s = 600.0;  // of timing, at most; a run may go on for ever
 }  // namespace
 
 RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, Controller& controller,
@@ -22,11 +24,12 @@ RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, 
       player_(scenario),
       measure_(model.standing_height_m),
       bus_cycles_(controller.outbox()) {
-  timing_.reserve(static_cast<std::size_t>(std::ceil(scenario.duration_s() / kTickPeriod_s)) + 1);
+  timing_.reserve(static_cast<std::size_t>(std::ceil(std::min(scenario.duration_s(), kReserved_s) / kTickPeriod_s)) +
+                  1);
 }
 
 RunOutcome RealtimeRun::run() {
-  controller_.start([this] { speak(); }, [this] { record(); });
+  controller_.start([this] { operators ? operators() : speak(); }, [this] { record(); });
   bool ended_early = false;
   while (!spoken_.load() && controller_.failure().empty() && !robot_.diverged() && !ended_early) {
     std::this_thread::sleep_for(kPoll);

@@ -1,4 +1,5 @@
-// A scenario played to the threaded controller of a simulated robot, as an operator would, by the wall clock.
+// A scenario played to the threaded controller of a simulated robot, as an operator would, by the wall clock; or
+// operators themselves.
 #pragma once
 
 #include <atomic>
@@ -24,6 +25,8 @@ class RealtimeRun {
 
   /// Called after every tick, in the recorder's thread.
   std::function<void(const RunProgress&)> after_tick;
+  /// What the operators' thread does again and again instead of playing the scenario, which then only names the run.
+  std::function<void()> operators;
   /// Asked some fifty times a second: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 

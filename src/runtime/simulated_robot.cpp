@@ -1,6 +1,7 @@
 #include "runtime/simulated_robot.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hal/bus_cycle.hpp"
 
@@ -26,11 +27,16 @@ void expect_shared_host(TickOptions& options) {
   options.supervisor.fault_limits.overrun_ticks = 20;
 }
 
-SimulatedRobot::SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth)
-    : world_(world), bus_(world), always_hoisted_(always_hoisted), keep_truth_(keep_truth) {}
+SimulatedRobot::SimulatedRobot(sim::World& world, HoistedBy hoisted, bool keep_truth)
+    : world_(world),
+      bus_(world),
+      hoisted_(hoisted),
+      keep_truth_(keep_truth),
+      weight_N_(world.mj_model()->body_subtreemass[0] * std::abs(world.mj_model()->opt.gravity[2])) {}
 
 hal::BusStatus SimulatedRobot::exchange(const model::JointCommand& command, model::RobotState& state) noexcept {
-  if (!always_hoisted_) move_gantry();
+  if (hoisted_ == HoistedBy::kScenario) move_gantry();
+  if (hoisted_ == HoistedBy::kCrane) work_crane();
   const hal::BusStatus status = bus_.exchange(command, state);
   if (status != hal::BusStatus::kOk) {
     diverged_.store(true, std::memory_order_release);
@@ -39,7 +45,7 @@ hal::BusStatus SimulatedRobot::exchange(const model::JointCommand& command, mode
   if (keep_truth_) {
     truth_.bus_sample = state.bus_sample;
     truth_.truth = world_.truth();
-    truth_.hoisted = always_hoisted_ || hoist_.carrying();
+    truth_.hoisted = carried();
     truths_.push(truth_);  // one that doesn't fit is missing in the log
   }
   if (cycles_++ % kCyclesPerPose == 0) show();
@@ -57,10 +63,34 @@ void SimulatedRobot::move_gantry() noexcept {
   world_.set_hoist(hoist_.lift_m(), hoist_.engaged());
 }
 
+void SimulatedRobot::work_crane() noexcept {
+  const std::array<double, 2>& feet_N = world_.foot_force_N();
+  crane_.step({.stands = hoist_line_.stands(),
+               .stays_up = hoist_line_.stays_up(),
+               .carried_share = (feet_N[0] + feet_N[1]) / weight_N_,
+               .torso_height_m = world_.torso_height_m()},
+              kBusPeriod_s);
+  world_.set_hoist(crane_.lift_m(), crane_.engaged());
+  hoist_line_.show(crane_.state());
+}
+
+bool SimulatedRobot::carried() const noexcept {
+  switch (hoisted_) {
+    case HoistedBy::kScenario:
+      return hoist_.carrying();
+    case HoistedBy::kGantry:
+      return true;
+    case HoistedBy::kCrane:
+      return crane_.carrying();
+  }
+  return false;
+}
+
 void SimulatedRobot::show() noexcept {
   pose_.time_s = world_.time_s();
   pose_.count = std::min(static_cast<std::size_t>(world_.mj_model()->nq), PoseSample::kMaxPositions);
   std::copy_n(world_.mj_data()->qpos, pose_.count, pose_.qpos.begin());
+  pose_.rope = world_.gantry_rope();
   poses_.put(pose_);
 }
 

@@ -5,11 +5,14 @@
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
+#include <optional>
 
 #include "hal/sil_hal.hpp"
 #include "io/mailbox.hpp"
 #include "pmg/types.hpp"
+#include "runtime/crane.hpp"
 #include "runtime/hoist.hpp"
+#include "runtime/hoist_line.hpp"
 #include "runtime/tick.hpp"
 #include "sim/world.hpp"
 
@@ -22,12 +25,20 @@ struct TruthSample {
   bool hoisted = false;  ///< the gantry carries the robot
 };
 
+/// Who works the gantry.
+enum class HoistedBy {
+  kScenario,  ///< support() says what it does
+  kGantry,    ///< nobody: the robot began on it and stays there
+  kCrane,     ///< somebody beside the robot: it begins on the hoist and is set down when it stands (HoistLine)
+};
+
 /// MuJoCo's generalised positions, for pictures.
 struct PoseSample {
   static constexpr std::size_t kMaxPositions = 7 + kMaxJoints;  ///< a free base and the joints
   double time_s = 0.0;
   std::size_t count = 0;
   std::array<double, kMaxPositions> qpos{};
+  std::optional<sim::Rope> rope{};  ///< while the gantry is engaged
 };
 
 /// Sensor noise of every simulated robot. Assumed: what consumer-grade IMUs and 14-bit encoders show; no data sheet of
@@ -45,13 +56,14 @@ class SimulatedRobot final : public hal::Hal {
  public:
   static constexpr std::size_t kTruths = 8192;  ///< sixteen seconds
 
-  /// Keeps a reference to world, which belongs to the bus thread from now on. always_hoisted: it began on the gantry
-  /// and stays there. keep_truth: somebody will take it.
-  SimulatedRobot(sim::World& world, bool always_hoisted, bool keep_truth);
+  /// Keeps a reference to world, which belongs to the bus thread from now on and must hang already (WorldOptions)
+  /// unless a scenario hoists. keep_truth: somebody will take it.
+  SimulatedRobot(sim::World& world, HoistedBy hoisted, bool keep_truth);
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
 
   void support(Support by) noexcept { support_.store(by, std::memory_order_relaxed); }  ///< by the gantry; any thread
+  HoistLine* hoist_line() noexcept { return hoisted_ == HoistedBy::kCrane ? &hoist_line_ : nullptr; }
   /// The truth of this bus cycle or, when it was dropped, nothing; older ones are given up. One reader.
   const TruthSample* take_truth(std::uint64_t bus_sample) noexcept;
   bool take(PoseSample& pose) noexcept { return poses_.take(pose); }  ///< one reader
@@ -59,12 +71,18 @@ class SimulatedRobot final : public hal::Hal {
 
  private:
   void move_gantry() noexcept;
+  void work_crane() noexcept;
+  bool carried() const noexcept;  // by the gantry
   void show() noexcept;
 
   sim::World& world_;
   hal::SilHal bus_;
-  const bool always_hoisted_, keep_truth_;
+  const HoistedBy hoisted_;
+  const bool keep_truth_;
+  const double weight_N_;
   Hoist hoist_;
+  Crane crane_;
+  HoistLine hoist_line_;
   TruthSample truth_;  // the bus thread's
   PoseSample pose_;
   std::int64_t cycles_ = 0;

@@ -121,6 +121,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
   if (result_.mode != Mode::kStand && result_.mode != Mode::kWalk) release(input.state);
+  result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
     result_.excitation = excitation_->progress();

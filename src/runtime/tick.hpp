@@ -69,6 +69,7 @@ struct TickResult {
   Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
   gco::Result optimised;          ///< likewise; its command is what the policy observes
   ExcitationProgress excitation;  ///< what the command belongs to
+  bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
   LimitReport limited;
   IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them

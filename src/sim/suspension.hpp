@@ -22,6 +22,7 @@ class Suspension {
   /// Adds the suspension's force and torque on the torso to mjData.xfrc_applied.
   void apply(const mjModel* model, mjData* data, int torso_body) noexcept;
 
+  double ground_height_m() const { return ground_height_m_; }  ///< of set_ground_place()
   bool engaged() const { return engaged_ > 0.0; }
   const Eigen::Vector3d& anchor_W() const { return anchor_W_; }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/scene.hpp"
 
@@ -22,7 +23,7 @@ void keep_complaint(int /*code*/, const char* description) { complaint() = descr
 
 [[noreturn]] void refuse() {
   throw std::runtime_error("no window can be opened: " + (complaint().empty() ? "no OpenGL" : complaint()) +
-                           "; a viewer needs a desktop (or use --video)");
+                           "; a viewer needs a desktop (without one: pmg_sil --video, pmg_keyboard)");
 }
 
 class Window {
@@ -56,6 +57,33 @@ class Window {
   GLFWwindow* window_ = nullptr;
 };
 
+/// As ViewerKey's.
+std::string key_name(int key, int scancode) {
+  switch (key) {
+    case GLFW_KEY_UP:
+      return "up";
+    case GLFW_KEY_DOWN:
+      return "down";
+    case GLFW_KEY_LEFT:
+      return "left";
+    case GLFW_KEY_RIGHT:
+      return "right";
+    case GLFW_KEY_ESCAPE:
+      return "escape";
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+      return "enter";
+    case GLFW_KEY_SPACE:
+      return "space";
+    case GLFW_KEY_BACKSPACE:
+      return "backspace";
+    default:
+      break;
+  }
+  const char* label = glfwGetKeyName(key, scancode);  // by the keyboard's layout
+  return label == nullptr ? "" : label;
+}
+
 struct FreeData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
@@ -64,7 +92,7 @@ struct FreeData {
 
 struct Viewer::Impl {
   Impl(const mjModel* mj_model, const ViewerOptions& options)
-      : model(mj_model), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
+      : model(mj_model), on_key(options.on_key), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
     mjr_defaultContext(&context);
     mjr_makeContext(model, &context, mjFONTSCALE_150);
     mjr_setBuffer(mjFB_WINDOW, &context);
@@ -73,7 +101,8 @@ struct Viewer::Impl {
     camera.azimuth = 216.0;  // from the robot's front and left, as in films
     camera.elevation = -9.0;
     glfwSetWindowUserPointer(window.get(), this);
-    glfwSetKeyCallback(window.get(), on_key);
+    glfwSetKeyCallback(window.get(), take_key);
+    glfwSetWindowFocusCallback(window.get(), take_focus);
     glfwSetScrollCallback(window.get(), on_scroll);
     glfwSetCursorPosCallback(window.get(), on_move);
   }
@@ -83,9 +112,23 @@ struct Viewer::Impl {
 
   static Impl& of(GLFWwindow* handle) { return *static_cast<Impl*>(glfwGetWindowUserPointer(handle)); }
 
-  static void on_key(GLFWwindow* handle, int key, int /*scancode*/, int action, int /*modifiers*/) {
+  static void take_key(GLFWwindow* handle, int key, int scancode, int action, int modifiers) {
+    if (const Impl& viewer = of(handle); viewer.on_key) {
+      using What = ViewerKey::What;
+      const What what = action == GLFW_PRESS    ? What::kPressed
+                        : action == GLFW_REPEAT ? What::kRepeats
+                                                : What::kReleased;
+      const bool shift_key = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT;
+      const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+      if (!shift_key) viewer.on_key({.what = what, .name = key_name(key, scancode), .shift = shift});
+      return;
+    }
     if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q))
       glfwSetWindowShouldClose(handle, GLFW_TRUE);
+  }
+  static void take_focus(GLFWwindow* handle, int focused) {
+    const Impl& viewer = of(handle);
+    if (focused == GLFW_FALSE && viewer.on_key) viewer.on_key({.what = ViewerKey::What::kUnheard, .name = ""});
   }
   static void on_scroll(GLFWwindow* handle, double /*x*/, double y) {
     constexpr double kPerNotch = -0.05;
@@ -121,6 +164,8 @@ struct Viewer::Impl {
   }
 
   const mjModel* model;
+  std::function<void(const ViewerKey&)> on_key;
+  ViewerPanel panel;
   Window window;  // before everything that lives in its OpenGL context
   std::unique_ptr<mjData, FreeData> data;
   Scene scene;
@@ -147,9 +192,17 @@ void Viewer::show(std::span<const double> qpos, const std::string& text, const s
   glfwGetFramebufferSize(v.window.get(), &v.viewport.width, &v.viewport.height);
   mjr_render(v.viewport, &v.scene.update(v.data.get(), v.camera, rope), &v.context);
   if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, v.viewport, text.c_str(), nullptr, &v.context);
+  const auto overlay = [&v](int corner, const std::string& left, const std::string& right) {
+    if (left.empty()) return;
+    mjr_overlay(mjFONT_NORMAL, corner, v.viewport, left.c_str(), right.empty() ? nullptr : right.c_str(), &v.context);
+  };
+  overlay(mjGRID_TOPLEFT, v.panel.labels, v.panel.values);
+  overlay(mjGRID_BOTTOMLEFT, v.panel.bottom, "");
   glfwSwapBuffers(v.window.get());
   glfwPollEvents();
 }
+
+void Viewer::set_panel(ViewerPanel panel) { impl_->panel = std::move(panel); }
 
 bool Viewer::closed() const { return glfwWindowShouldClose(impl_->window.get()) == GLFW_TRUE; }
 

@@ -295,6 +295,12 @@ double World::time_s() const noexcept { return static_cast<double>(impl_->steps)
 
 void World::set_hoist(double lift_m, double engaged) noexcept { impl_->suspension.set(lift_m, engaged); }
 
+double World::torso_height_m() const noexcept {
+  return data_->xipos[3 * impl_->torso_body + 2] - impl_->suspension.ground_height_m();
+}
+
+const std::array<double, 2>& World::foot_force_N() const noexcept { return impl_->foot_force_N; }
+
 std::optional<Rope> World::gantry_rope() const {
   if (!impl_->suspension.engaged()) return std::nullopt;
   Rope rope;

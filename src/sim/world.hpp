@@ -75,6 +75,11 @@ class World {
   /// taken from the torso when it is engaged from 0. Takes effect at the next step, so the caller ramps it.
   void set_hoist(double lift_m, double engaged) noexcept;
 
+  /// Of the torso's centre of mass above its place in the standing posture on the ground [m]; the anchor's lift_m at
+  /// which the gantry, engaged there, neither pulls nor hangs through.
+  double torso_height_m() const noexcept;
+  const std::array<double, 2>& foot_force_N() const noexcept;  ///< as truth()'s
+
   std::optional<Rope> gantry_rope() const;  ///< nothing while the gantry is not engaged
 
   /// A force on the torso link's centre of mass, in the world frame [N], until it is set again or reset.

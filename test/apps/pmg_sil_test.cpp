@@ -77,7 +77,7 @@ TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
   EXPECT_EQ(summary, nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json")));
   EXPECT_EQ(summary["fell"], false);
   EXPECT_EQ(summary["robot"], "z1");
-  EXPECT_EQ(summary["policy"], "none");
+  EXPECT_EQ(summary["policy"], "pmg") << "robot.yaml names it";
   EXPECT_TRUE(summary["faults"].empty());
   EXPECT_NEAR(summary["duration_s"].get<double>(), 5.0, 1e-9);
   EXPECT_GT(summary["realtime_factor"].get<double>(), 0.0);

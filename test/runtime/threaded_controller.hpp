@@ -105,7 +105,7 @@ struct ThreadedRobot {
   explicit ThreadedRobot(const model::RobotModel& model, const runtime::ControllerOptions& options = {},
                          std::unique_ptr<policy::Policy> walker = nullptr)
       : world(model, runtime::world_with_noise(1, true)),
-        robot(world, true, true),
+        robot(world, runtime::HoistedBy::kGantry, true),
         bus(robot),
         policy(new SwitchablePolicy(std::move(walker))),
         tick(model, clips(model), std::unique_ptr<policy::Policy>(policy), clock, tick_options(model)),

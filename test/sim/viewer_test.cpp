@@ -6,9 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <link.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
@@ -16,49 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "display.hpp"
 #include "robots.hpp"
 #include "sim/world.hpp"
 
 namespace pmg {
 namespace {
-
-/// A display for this process, or none. Xvfb writes its number once it is ready.
-class Display {
- public:
-  Display() {
-    if (there()) return;
-    std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) return;
-    xvfb_ = fork();
-    if (xvfb_ == 0) {
-      close(ends[0]);
-      if (std::freopen("/dev/null", "w", stderr) == nullptr) _exit(126);
-      execlp("Xvfb", "Xvfb", "-displayfd", std::to_string(ends[1]).c_str(), "-screen", "0", "1280x1024x24", nullptr);
-      _exit(127);
-    }
-    close(ends[1]);
-    std::string number;
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
-    close(ends[0]);
-    if (!number.empty()) setenv("DISPLAY", (":" + number).c_str(), 1);
-  }
-  ~Display() {
-    if (xvfb_ <= 0) return;
-    kill(xvfb_, SIGTERM);
-    waitpid(xvfb_, nullptr, 0);
-    unsetenv("DISPLAY");
-  }
-  Display(const Display&) = delete;
-  Display& operator=(const Display&) = delete;
-
-  static bool there() {
-    const char* display = std::getenv("DISPLAY");
-    return display != nullptr && *display != '\0';
-  }
-
- private:
-  pid_t xvfb_ = 0;
-};
 
 std::span<const double> positions(sim::World& world) {
   return {world.mj_data()->qpos, static_cast<std::size_t>(world.mj_model()->nq)};
@@ -82,8 +42,8 @@ void keep_loaded_libraries() {
 }
 
 TEST(Viewer, ShowsTheRobotInAWindow) {
-  const Display display;
-  if (!Display::there()) GTEST_SKIP() << "NOT TESTED: no display, and no Xvfb (package xvfb) to make one";
+  const test::Display display;
+  if (!test::Display::there()) GTEST_SKIP() << "NOT TESTED: no display, and no Xvfb (package xvfb) to make one";
   sim::World world(z1(), {});
   sim::Viewer viewer(world.mj_model(), {.width = 320, .height = 240, .title = "test"});
   keep_loaded_libraries();
@@ -102,7 +62,7 @@ TEST(Viewer, ShowsTheRobotInAWindow) {
 }
 
 TEST(Viewer, SaysInOneLineThatThereIsNoDisplay) {
-  if (Display::there()) GTEST_SKIP() << "there is a display";
+  if (test::Display::there()) GTEST_SKIP() << "there is a display";
   unsetenv("WAYLAND_DISPLAY");
   sim::World world(z1(), {});
   std::string message;

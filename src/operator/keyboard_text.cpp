@@ -1,0 +1,127 @@
+#include "operator/keyboard_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "operator/robot_text.hpp"
+#include "operator/words.hpp"
+
+namespace pmg::ops {
+
+namespace {
+
+constexpr std::array kOrder = {kVx, kVy, kOmega, kPitch, kRoll, kHeight};
+
+struct Row {
+  std::string label, value;
+};
+
+std::string command_row(const char* label, const double* u) {
+  std::string row = fmt::format("{:<10}", label);
+  for (const Channel channel : kOrder) row += fmt::format("{:+10.2f}", u[channel]);
+  return row;
+}
+
+std::string upper_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); });
+  return text;
+}
+
+std::vector<Row> head_rows(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+  const char* mode = news == nullptr       ? "not heard"
+                     : silence_s > kGone_s ? "no longer heard"
+                                           : mode_name(news->status.mode);
+  return {{printable(driver.robot()) + " " + upper_case(mode), printable(driver.text())}};
+}
+
+std::vector<Row> status_rows(const RobotNews& news, double silence_s) {
+  const pmg_msgs::status_t& status = news.status;
+  const std::string who = status.driving_source.empty() ? "nobody" : printable(status.driving_source);
+  const std::string age =
+      status.command_age_s < 0.0 ? "" : fmt::format(", last command {:.0f} ms old", status.command_age_s * 1e3);
+  std::vector<Row> rows = {{"limited", limits_text(news)},
+                           {"fault", status.fault.empty() ? "none" : printable(status.fault)},
+                           {"driven by", fmt::format("{}{}; heard {:.0f} ms ago", who, age, silence_s * 1e3)}};
+  if (news.info) {
+    rows.push_back(
+        {"policy", fmt::format("{}, backend {}", printable(news.info->policy), printable(news.info->backend))});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) {
+  const auto options = nlohmann::json::parse(info.options, nullptr, false);
+  if (!options.is_object() || !options.contains("command")) return std::nullopt;
+  CommandLimits limits;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    for (const auto& [end, values] : {std::pair{"lower", &limits.lower}, std::pair{"upper", &limits.upper}}) {
+      const nlohmann::json::json_pointer place(fmt::format("/command/{}/{}", end, kChannelNames[i]));
+      if (!options.contains(place) || !options[place].is_number()) return std::nullopt;
+      (*values)[i] = options[place].get<double>();
+    }
+    // Zero is always allowed: what a key that is let go asks for.
+    if (!(limits.lower[i] <= 0.0 && limits.upper[i] >= 0.0)) return std::nullopt;
+  }
+  return limits;
+}
+
+std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+  std::vector<std::string> lines;
+  for (const Row& row : head_rows(driver, news, silence_s)) lines.push_back(row.label + "   " + row.value);
+  if (news == nullptr) return lines;
+  lines.push_back(fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "forwards", "left", "turn", "bend",
+                              "lean", "height"));
+  lines.push_back(
+      fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
+  lines.push_back(command_row("asked", driver.asked().u.data()));
+  if (news->reference) lines.push_back(command_row("taken", news->reference->command));
+  for (const Row& row : status_rows(*news, silence_s)) lines.push_back(fmt::format("{:<10}{}", row.label, row.value));
+  return lines;
+}
+
+DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+  std::vector<Row> rows = head_rows(driver, news, silence_s);
+  if (news != nullptr) {
+    constexpr std::array kLabels = {"forwards", "left", "turn", "bend", "lean", "height"};
+    constexpr std::array kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      const std::size_t channel = kOrder[i];
+      const std::string taken =
+          news->reference ? fmt::format("{:+.2f} {} taken", news->reference->command[channel], kUnits[i]) : "";
+      rows.push_back({kLabels[i], fmt::format("{:+.2f} asked   {}", driver.asked().u[channel], taken)});
+    }
+    for (const Row& row : status_rows(*news, silence_s)) rows.push_back(row);
+  }
+  DrivingTable table;
+  for (const Row& row : rows) {
+    table.labels += (table.labels.empty() ? "" : "\n") + row.label;
+    table.values += (&row == rows.data() ? "" : "\n") + row.value;
+  }
+  return table;
+}
+
+std::vector<std::string> key_lines(KeyReport report, const std::string& closing) {
+  std::vector<std::string> lines = {
+      "W S   forwards, backwards (or arrows)     I K   rise, squat",
+      "A D   turn left, right (or arrows)        O U   bend forwards, back",
+      "Q E   step to the left, right             J L   lean left, right",
+      "Shift faster      Space  velocity to zero N     upright again",
+      "Esc   DAMPS AT ONCE (so does Backspace)   Enter stand (after a stop, too)",
+      "R     reset a fault                       H G   hoist: lift, set down",
+  };
+  lines.push_back(report == KeyReport::kPressAndRelease
+                      ? "A key that is let go brings velocity to zero, then Stand. " + closing
+                      : "Each press is a step; a second without any key brings velocity to zero. " + closing);
+  return lines;
+}
+
+}  // namespace pmg::ops

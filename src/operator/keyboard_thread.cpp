@@ -1,0 +1,83 @@
+#include "operator/keyboard_thread.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace pmg::ops {
+
+namespace {
+
+constexpr int kWait_ms = 5;
+
+/// Larger at every start.
+std::int64_t session_number() {
+  using std::chrono::system_clock;
+  return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+KeyboardThread::KeyboardThread(const std::string& url, const std::string& robot)
+    : link_(url),
+      station_(link_, robot, KeyReport::kPressAndRelease, session_number(), clock_),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+KeyboardThread::~KeyboardThread() = default;
+
+void KeyboardThread::press(const std::string& key, bool shift) {
+  tell([key, shift](KeyboardStation& station) { station.press(key, shift); });
+}
+
+void KeyboardThread::repeat(const std::string& key, bool shift) {
+  tell([key, shift](KeyboardStation& station) { station.repeat(key, shift); });
+}
+
+void KeyboardThread::release(const std::string& key) {
+  tell([key](KeyboardStation& station) { station.release(key); });
+}
+
+void KeyboardThread::release_all() {
+  tell([](KeyboardStation& station) { station.release_all(); });
+}
+
+void KeyboardThread::listen() {
+  tell([](KeyboardStation& station) { station.listen(); });
+}
+
+void KeyboardThread::let_go() {
+  tell([](KeyboardStation& station) { station.let_go(); });
+}
+
+DrivingTable KeyboardThread::table() const {
+  const std::lock_guard lock(mutex_);
+  return table_;
+}
+
+bool KeyboardThread::gone() const {
+  const std::lock_guard lock(mutex_);
+  return gone_;
+}
+
+void KeyboardThread::tell(Errand errand) {
+  const std::lock_guard lock(mutex_);
+  errands_.push_back(std::move(errand));
+}
+
+void KeyboardThread::run(const std::stop_token& stop) {
+  std::vector<Errand> errands;
+  while (!stop.stop_requested()) {
+    errands.clear();
+    {
+      const std::lock_guard lock(mutex_);
+      errands.swap(errands_);
+    }
+    for (const Errand& errand : errands) errand(station_);
+    station_.step(kWait_ms);
+    DrivingTable table = station_.table();
+    const std::lock_guard lock(mutex_);
+    table_ = std::move(table);
+    gone_ = station_.gone();
+  }
+}
+
+}  // namespace pmg::ops

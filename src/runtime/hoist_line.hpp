@@ -1,0 +1,35 @@
+// Between whoever hears operators and a simulated robot's hoist: a handful of flags.
+#pragma once
+
+#include <atomic>
+
+#include "runtime/crane.hpp"
+#include "runtime/mode.hpp"
+
+namespace pmg::runtime {
+
+/// Wait-free. One thread tells, the bus thread reads and shows.
+class HoistLine {
+ public:
+  /// Up, and stay there; or down as soon as the robot stands.
+  void ask(bool up) noexcept { stays_up_.store(up, std::memory_order_relaxed); }
+  /// The controller's newest tick. Standing up anew ends a wish to stay up; entering: the ramp into Stand isn't over.
+  void see(Mode mode, bool entering) noexcept {
+    const bool upright = mode == Mode::kStand || mode == Mode::kWalk;
+    if (upright && !upright_) ask(false);
+    upright_ = upright;
+    stands_.store(upright && !entering, std::memory_order_relaxed);
+  }
+  CraneState state() const noexcept { return state_.load(std::memory_order_relaxed); }
+
+  bool stays_up() const noexcept { return stays_up_.load(std::memory_order_relaxed); }
+  bool stands() const noexcept { return stands_.load(std::memory_order_relaxed); }
+  void show(CraneState state) noexcept { state_.store(state, std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> stays_up_{false}, stands_{false};
+  std::atomic<CraneState> state_{CraneState::kHolding};
+  bool upright_ = false;  // the telling thread's
+};
+
+}  // namespace pmg::runtime

@@ -1,0 +1,338 @@
+// A robot driven by keys, over the network and back: from limp to walking and to rest, and what never happens.
+#include "operator/keyboard_driver.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "networked_robot.hpp"
+#include "operator/drive.hpp"
+#include "operator/keyboard_station.hpp"
+
+namespace pmg::ops {
+namespace {
+
+using runtime::CraneState;
+using runtime::Mode;
+using testing::HasSubstr;
+
+constexpr double kStep_s = 0.01;
+
+class KeyboardTest : public testing::Test {
+ protected:
+  explicit KeyboardTest(KeyReport report = KeyReport::kPressAndRelease) : driver_(mine_, "biped", report) {
+    network_.link.subscribe("MODE", [this](io::Bytes bytes) {
+      if (const auto request = io::decode_message<pmg_msgs::mode_t>(bytes)) requests_.push_back(*request);
+    });
+    driver_.set_limits(robot_.robot.command_limits);
+    run(0.5);
+  }
+  void step() {
+    network_.advance();
+    driver_.listen();
+    driver_.step();
+  }
+  void run(double seconds) {
+    for (; seconds > 1e-9; seconds -= kStep_s) step();
+  }
+  /// Seconds until it is so; more than at_most_s: it never was.
+  template <typename Condition>
+  double until(Condition condition, double at_most_s = 10.0) {
+    double elapsed_s = 0.0;
+    while (!condition() && elapsed_s <= at_most_s) {
+      step();
+      elapsed_s += kStep_s;
+    }
+    return elapsed_s;
+  }
+  Mode mode() const { return robot_.result().mode; }
+  double vx() const { return robot_.result().reference.command[kVx]; }
+  void walk() {
+    driver_.press(Key::kForwards, false);
+    EXPECT_LT(until([&] { return mode() == Mode::kWalk && vx() > 0.1; }), 10.0) << driver_.text();
+  }
+  void stop_by_other() {
+    const ModeWish stop(other_, "biped", Goal::kStop, 2.0);
+    run(0.2);
+    ASSERT_EQ(mode(), Mode::kDamping);
+  }
+  void expect_never_up(double seconds) {
+    for (; seconds > 0.0; seconds -= kStep_s) {
+      step();
+      ASSERT_LE(mode(), Mode::kDamping) << driver_.text();
+    }
+  }
+
+  test::Network network_;
+  test::NetworkedRobot& robot_ = network_.add_robot("biped");
+  OperatorSource mine_{network_.link, "keyboard.1", 1, network_.clock};
+  OperatorSource other_{network_.link, "pmg_send.2", 1, network_.clock};
+  KeyboardDriver driver_;
+  std::vector<pmg_msgs::mode_t> requests_;
+};
+
+class TerminalKeyboardTest : public KeyboardTest {
+ protected:
+  TerminalKeyboardTest() : KeyboardTest(KeyReport::kPressOnly) {}
+};
+
+TEST_F(KeyboardTest, OneHeldKeyTakesALimpRobotToWalking) {
+  EXPECT_EQ(mode(), Mode::kPassive);
+  EXPECT_THAT(driver_.text(), HasSubstr("makes it stand up"));
+  walk();
+  EXPECT_EQ(robot_.result().driving, runtime::Source::make("keyboard.1", 1));
+}
+
+TEST_F(KeyboardTest, AKeyThatIsLetGoBringsVelocityToZeroWithinHalfASecondThenStandAndNeverDamps) {
+  for (const bool loses_keyboard : {false, true}) {
+    walk();
+    run(1.0);
+    if (loses_keyboard) {
+      driver_.release_all();
+    } else {
+      driver_.release(Key::kForwards);
+    }
+    const double zero_s = until([&] { return vx() == 0.0; });
+    EXPECT_LE(zero_s, 0.5 + 0.03) << "the generator's 0.5 s, and a message's way";
+    EXPECT_LE(zero_s + until([&] { return mode() == Mode::kStand; }), 1.0);
+    run(2.0);
+    EXPECT_EQ(mode(), Mode::kStand);
+    EXPECT_EQ(robot_.result().driving, runtime::Source{}) << "an idle keyboard is in nobody's way";
+  }
+  for (const auto& request : requests_) EXPECT_GE(request.mode, pmg_msgs::mode_t::STAND);
+}
+
+TEST_F(KeyboardTest, PressedAgainWhileItComesToRestItGoesOn) {
+  walk();
+  for (int k = 0; k < 5; ++k) {
+    driver_.release(Key::kForwards);
+    run(0.13 * (k + 1));
+    driver_.press(Key::kForwards, false);
+    run(0.3);
+    EXPECT_LT(until([&] { return mode() == Mode::kWalk && vx() > 0.1; }), 2.0);
+  }
+}
+
+TEST_F(KeyboardTest, APostureIsHeldWithoutAnyKeyAndGivenUpByOne) {
+  driver_.press(Key::kSquat, false);
+  driver_.release(Key::kSquat);
+  EXPECT_LT(until([&] { return robot_.result().reference.command[kHeight] < -0.019; }), 10.0);
+  run(5.0);
+  EXPECT_EQ(mode(), Mode::kWalk) << "postures are of Walk";
+  driver_.press(Key::kUpright, false);
+  EXPECT_LT(until([&] { return mode() == Mode::kStand; }), 3.0);
+}
+
+TEST_F(KeyboardTest, EscapeDampsAtOnceInEveryState) {
+  for (const double after_s : {0.0, 0.05, 0.4, 3.0}) {
+    driver_.press(Key::kStand, false);
+    run(2.0);
+    driver_.press(Key::kForwards, false);
+    run(after_s);
+    driver_.press(Key::kDamp, false);
+    EXPECT_LE(until([&] { return mode() == Mode::kDamping; }), 0.02) << "a tick, and the way";
+    driver_.release(Key::kForwards);
+    run(1.0);
+    EXPECT_EQ(mode(), Mode::kDamping);
+  }
+}
+
+TEST_F(KeyboardTest, AfterAStopKeysThatMoveDoNothingUntilItIsToldToStand) {
+  walk();
+  stop_by_other();
+  for (int k = 0; k < 5; ++k) {
+    driver_.repeat(Key::kForwards, false);
+    expect_never_up(0.1);
+    driver_.press(Key::kForwards, false);
+    expect_never_up(0.2);
+  }
+  EXPECT_THAT(driver_.text(), HasSubstr("somebody stopped it"));
+  EXPECT_THAT(driver_.text(), HasSubstr("Enter"));
+  driver_.press(Key::kStand, false);
+  EXPECT_LT(until([&] { return mode() == Mode::kStand; }), 5.0);
+  run(1.0);
+  EXPECT_EQ(mode(), Mode::kStand) << "the keys pressed before are forgotten";
+}
+
+TEST_F(KeyboardTest, AStopWhileItClimbsIsNotOverruled) {
+  driver_.press(Key::kForwards, false);
+  run(0.4);
+  stop_by_other();
+  expect_never_up(5.0);
+}
+
+TEST_F(KeyboardTest, ARobotThatWasFoundBrakingIsLeftSo) {
+  const ModeWish stop(other_, "biped", Goal::kDamping, 2.0);
+  for (int k = 0; k < 10; ++k) network_.advance();
+  OperatorSource fresh(network_.link, "keyboard.3", 1, network_.clock);
+  KeyboardDriver newcomer(fresh, "biped", KeyReport::kPressAndRelease);
+  newcomer.set_limits(robot_.robot.command_limits);
+  for (int k = 0; k < 300; ++k) {
+    network_.advance();
+    newcomer.listen();
+    if (k == 50) newcomer.press(Key::kForwards, false);
+    newcomer.step();
+    ASSERT_EQ(mode(), Mode::kDamping) << newcomer.text();
+  }
+}
+
+TEST_F(KeyboardTest, AFaultIsSaidAndResetByItsKeyAlone) {
+  walk();
+  robot_.policy->how = test::BreakablePolicy::Break::kNan;
+  run(0.1);
+  ASSERT_EQ(mode(), Mode::kFault);
+  EXPECT_THAT(driver_.text(), HasSubstr("fault: "));
+  robot_.policy->how = test::BreakablePolicy::Break::kNone;
+  driver_.press(Key::kStand, false);
+  run(1.0);
+  EXPECT_EQ(mode(), Mode::kFault);
+  driver_.press(Key::kReset, false);
+  run(0.3);
+  EXPECT_EQ(mode(), Mode::kDamping);
+  driver_.press(Key::kForwards, false);
+  expect_never_up(0.5);
+  driver_.press(Key::kStand, false);
+  EXPECT_LT(until([&] { return mode() == Mode::kStand; }), 5.0);
+}
+
+TEST_F(KeyboardTest, WhileAnotherDrivesItWaitsAndSaysSo) {
+  Drive drive(other_, "biped", Command{{0.3}}, {.duration_s = 100.0, .climb = true});
+  while (!drive.driving()) {
+    step();
+    drive.step();
+  }
+  driver_.press(Key::kForwards, false);
+  for (int k = 0; k < 200; ++k) {
+    step();
+    drive.step();
+  }
+  EXPECT_THAT(driver_.text(), HasSubstr("another source drives: pmg_send.2"));
+  EXPECT_EQ(robot_.result().driving, runtime::Source::make("pmg_send.2", 1));
+}
+
+TEST_F(KeyboardTest, AControllerThatFallsSilentIsSaidAndNotFollowed) {
+  walk();
+  network_.control_alive = false;
+  run(1.0);
+  EXPECT_THAT(driver_.text(), HasSubstr("no longer heard"));
+  network_.control_alive = true;
+  run(3.0);
+  EXPECT_NE(mode(), Mode::kWalk) << "the key must be pressed anew";
+}
+
+TEST_F(KeyboardTest, LettingGoBringsItToRestAndFreesItForOthers) {
+  walk();
+  driver_.let_go();
+  driver_.press(Key::kForwards, false);
+  EXPECT_LT(until([&] { return driver_.gone(); }), 2.0);
+  EXPECT_EQ(mode(), Mode::kStand);
+  step();
+  EXPECT_EQ(robot_.result().driving, runtime::Source{});
+}
+
+TEST_F(KeyboardTest, OnAHoistItStandsIsSetDownAndOnlyThenWalks) {
+  runtime::HoistLine hoist;
+  robot_.comms.work(&hoist);
+  run(0.3);
+  driver_.press(Key::kForwards, false);
+  until([&] { return mode() == Mode::kStand; });
+  run(3.0);
+  EXPECT_EQ(mode(), Mode::kStand) << "not in the air";
+  EXPECT_TRUE(hoist.stands()) << "the ramp is over";
+  hoist.show(CraneState::kLowering);
+  run(0.3);
+  EXPECT_EQ(mode(), Mode::kStand);
+  EXPECT_THAT(driver_.text(), HasSubstr("sets the robot down"));
+  hoist.show(CraneState::kFree);
+  EXPECT_LT(until([&] { return mode() == Mode::kWalk; }), 0.5);
+}
+
+TEST_F(KeyboardTest, ALiftedRobotStaysUpUntilItIsSetDownOrStandsUpAnew) {
+  runtime::HoistLine hoist;
+  hoist.show(CraneState::kFree);
+  robot_.comms.work(&hoist);
+  walk();
+  driver_.press(Key::kLift, false);
+  until([&] { return hoist.stays_up(); }, 1.0);
+  ASSERT_TRUE(hoist.stays_up());
+  EXPECT_LT(until([&] { return vx() == 0.0; }), 0.6) << "it doesn't walk in the air";
+  hoist.show(CraneState::kHolding);
+  run(2.0);
+  driver_.press(Key::kForwards, false);
+  run(1.5);
+  EXPECT_EQ(mode(), Mode::kStand);
+  EXPECT_THAT(driver_.text(), HasSubstr("until it is set down"));
+  driver_.press(Key::kDamp, false);
+  run(0.5);
+  EXPECT_TRUE(hoist.stays_up());
+  driver_.press(Key::kStand, false);
+  run(1.0);
+  EXPECT_FALSE(hoist.stays_up());
+}
+
+TEST_F(TerminalKeyboardTest, PressesWalkAndASecondWithoutOneStops) {
+  driver_.press(Key::kForwards, false);
+  until([&] { return mode() == Mode::kWalk; });
+  for (int k = 0; k < 10; ++k) {
+    driver_.press(Key::kForwards, false);
+    run(0.2);
+  }
+  EXPECT_NEAR(vx(), 0.2, 1e-9) << "half of the range";
+  run(0.8 + 0.5 + 0.05);
+  EXPECT_EQ(vx(), 0.0) << "a second after the last press at most, and the ramp";
+  EXPECT_EQ(mode(), Mode::kWalk) << "ready for the next press";
+}
+
+TEST_F(TerminalKeyboardTest, AHeldKeyThatRepeatsLikePressesDoesNotRaiseAStoppedRobot) {
+  driver_.press(Key::kForwards, false);
+  until([&] { return mode() == Mode::kWalk; });
+  stop_by_other();
+  for (int k = 0; k < 100; ++k) {
+    driver_.press(Key::kForwards, false);
+    expect_never_up(0.03);
+  }
+}
+
+TEST_F(TerminalKeyboardTest, ANewControllerOfTheSameNameIsNotRaisedByAKeyThatRepeats) {
+  driver_.press(Key::kForwards, false);
+  until([&] { return mode() == Mode::kWalk; });
+  pmg_msgs::status_t status{};
+  status.robot = "biped";
+  status.session = 99;  // limp, as after its start
+  network_.link.publish("STATUS", status);
+  network_.link.receive(0);
+  driver_.press(Key::kForwards, false);
+  driver_.step();
+  EXPECT_THAT(driver_.text(), HasSubstr("started anew"));
+}
+
+TEST(KeyboardStation, WithoutAControllerThatIsSaidAndEscapeStopsWhoeverComes) {
+  test::Network network;
+  KeyboardStation station(network.link, "", KeyReport::kPressOnly, 1, network.clock);
+  station.step(0);
+  EXPECT_THAT(station.lines().front(), HasSubstr("no controller is heard on memq://"));
+  test::NetworkedRobot& robot = network.add_robot("biped");
+  OperatorSource other(network.link, "other", 1, network.clock);
+  for (int k = 0; k < 5; ++k) network.advance();
+  ModeWish stand(other, "biped", Goal::kStand, 5.0);
+  ASSERT_EQ(network.finish(stand), Progress::kReached);
+  station.press("escape", false);
+  for (int k = 0; k < 3; ++k) network.advance();
+  EXPECT_EQ(robot.result().mode, Mode::kDamping);
+}
+
+TEST(KeyboardStation, OfSeveralRobotsItDrivesNoneThatIsNotNamed) {
+  test::Network network;
+  network.add_robot("first");
+  network.add_robot("second");
+  KeyboardStation station(network.link, "", KeyReport::kPressOnly, 1, network.clock);
+  for (int k = 0; k < 50; ++k) {
+    network.advance();
+    station.step(0);
+  }
+  EXPECT_THAT(station.lines().front(), HasSubstr("several robots are heard (first, second)"));
+}
+
+}  // namespace
+}  // namespace pmg::ops
