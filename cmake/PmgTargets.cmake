@@ -34,7 +34,7 @@ endfunction()
 function(pmg_add_app name)
   cmake_parse_arguments(APP "" "" "LINK" ${ARGN})
   add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} PRIVATE ${APP_LINK} pmg_warnings)
+  target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
 endfunction()
 
 # pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry a TEST, run from the source root.
