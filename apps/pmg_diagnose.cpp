@@ -16,6 +16,7 @@
 #include "diagnosis/report.hpp"
 #include "diagnosis/signature.hpp"
 #include "io/whole_file.hpp"
+#include "model/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
@@ -81,8 +82,8 @@ sim::ActuatorParameters given_model(Arguments& arguments) {
   if (joint != joints.end()) return joint->second;
   std::vector<std::string> names;
   for (const auto& [name, actuator] : joints) names.push_back(name);
-  throw std::invalid_argument(fmt::format("{}: no joint '{}'; expected --joint with one of {}",
-                                          arguments.model.string(), arguments.joint, fmt::join(names, ", ")));
+  throw std::invalid_argument(fmt::format("{}: no joint '{}' for --joint; {}", arguments.model.string(),
+                                          arguments.joint, model::expected_name(arguments.joint, names)));
 }
 
 std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib::Bench& bench) {

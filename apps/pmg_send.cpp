@@ -30,7 +30,8 @@ Examples:
   pmg_send walk --vx 0.3 --for 5 --robot z1  climb to walk, drive 5 s, come to rest, stand
   pmg_send command --omega 0.4 --for 2       drive a robot that is in walk already
 
-A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
+A command that the robot can't follow as it was asked is told, with what the controller made of it and why. After another
+source's crash the end of its lease is waited for. A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
 
 Exit codes: 0 acknowledged and the mode reached, 1 refused, or not acknowledged or not reached in time, 2 bad input or no
 network, 130 interrupted (a robot that was driven is brought to rest first).)";

@@ -77,13 +77,14 @@ std::string unknown_word(const CLI::App& app, const std::vector<const CLI::App*>
   std::vector<std::string> words = app.remaining(true);
   std::erase(words, "--");
   if (words.empty()) return "";
-  const auto option = std::ranges::find_if(words, [](const std::string& word) { return word.starts_with('-'); });
-  if (option != words.end()) return unknown_option(chain, *option);
+  const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
   const std::vector<std::string> commands = names_of(commands_of(*chain.back()));
-  if (commands.empty()) {
-    return fmt::format("'{}' is one argument too many ({} --help shows an example)", words.front(), name_of(chain));
+  if (!commands.empty() && !is_option(words.front())) {
+    return fmt::format("{}: unknown command; {}", words.front(), model::expected_name(words.front(), commands));
   }
-  return fmt::format("{}: unknown command; {}", words.front(), model::expected_name(words.front(), commands));
+  const auto option = std::ranges::find_if(words, is_option);
+  if (option != words.end()) return unknown_option(chain, *option);
+  return fmt::format("'{}' is one argument too many ({} --help shows an example)", words.front(), name_of(chain));
 }
 
 std::string missing(const std::vector<const CLI::App*>& chain, const CLI::ParseError& error) {

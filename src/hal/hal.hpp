@@ -1,5 +1,4 @@
-// One interface for several backends. sil (MuJoCo) is the one that exists; can (SocketCAN) and ethercat (SOEM) are to
-// come.
+// One interface for several backends. sil (MuJoCo) is the one that exists; can (SocketCAN) and ethercat are to come.
 #pragma once
 
 #include "model/robot_io.hpp"

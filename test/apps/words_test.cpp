@@ -110,7 +110,7 @@ TEST_F(Words, AnOptionOfAnotherCommandIsSaidToBeOne) {
 
 TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
   expect_line("pmg_log inof out", "pmg_log: inof: unknown command; did you mean info?");
-  expect_line("pmg_send wlak --vx 1", "pmg_send: --vx: is an option of pmg_send walk");
+  expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
   expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
   expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert");
   expect_line(
