@@ -59,11 +59,11 @@ std::filesystem::path nearest_file(const std::filesystem::path& file) {
   std::vector<std::string> names;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == file.extension()) names.push_back(entry->path().filename().string());
+    if (entry->path().extension() == file.extension()) names.push_back(entry->path().stem().string());
   }
   std::ranges::sort(names);  // a folder has no order
-  const std::string nearest = nearest_name(file.filename().string(), names);
-  return nearest.empty() ? "" : file.parent_path() / nearest;
+  const std::string nearest = nearest_name(file.stem().string(), names);
+  return nearest.empty() ? "" : file.parent_path() / (nearest + file.extension().string());
 }
 
 std::string expected_name(std::string_view name, const std::vector<std::string>& names) {

@@ -53,6 +53,7 @@ TEST(NearestFile, LooksInTheSameFolderAtTheSameEnding) {
   std::ofstream(folder / "tuor.txt") << "x";
   EXPECT_EQ(nearest_file(folder / "tuor.yaml"), folder / "tour.yaml");
   EXPECT_EQ(nearest_file(folder / "stand.yaml"), "");
+  EXPECT_EQ(nearest_file(folder / "walk.yaml"), "") << "an ending in common is nothing in common";
   EXPECT_EQ(nearest_file(folder / "absent" / "tour.yaml"), "");
   std::filesystem::remove_all(folder);
 }
