@@ -12,7 +12,7 @@ namespace pmg::ops {
 
 namespace {
 
-constexpr double kSame = 1e-4;  ///< m/s, rad/s, rad or m: far below what anybody asks for
+constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the slowest ramp
 constexpr std::array<const char*, kChannels> kNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
 constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
 
@@ -30,14 +30,31 @@ std::optional<std::pair<double, double>> range_of(const RobotNews& news, std::si
   return std::pair{*lower, *upper};
 }
 
-std::string why(const RobotNews& news, std::size_t channel, double asked, double realised) {
-  const auto range = range_of(news, channel);
-  if (!range || (asked >= range->first - kSame && asked <= range->second + kSame)) {
-    return "all of it together is more than the clips and the joints' ranges allow";
+/// To what a person reads of it: a hundredth, and a thousandth near zero.
+bool alike(double a, double b) { return std::abs(a - b) <= 0.01 * std::max({std::abs(a), std::abs(b), 0.1}); }
+
+/// "limited: vx 50 -> 0.8 m/s (range -0.5 to 0.8)", and whether the ranges alone explain it.
+std::string words(const Command& asked, const RobotNews& news, bool settled) {
+  std::string text;
+  int channels = 0;
+  bool by_ranges = true;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const double wanted = asked.u[i], realised = news.reference->command[i];
+    if (wanted == 0.0 || alike(wanted, realised)) continue;
+    ++channels;
+    text += fmt::format("{}{} {:.3g} -> {:.3g} {}{}", text.empty() ? "limited: " : "; ", kNames[i], wanted, realised,
+                        kUnits[i], settled ? "" : " so far");
+    const auto range = range_of(news, i);
+    const bool outside = range && (wanted < range->first || wanted > range->second);
+    if (outside) text += fmt::format(" (range {:.3g} to {:.3g})", range->first, range->second);
+    const double allowed = outside ? std::clamp(wanted, range->first, range->second) : wanted;
+    by_ranges = by_ranges && (!settled || alike(realised, allowed));
   }
-  const std::string text = fmt::format("its range is {:.3g} to {:.3g}", range->first, range->second);
-  const bool all_of_it = std::abs(realised - std::clamp(asked, range->first, range->second)) < kSame;
-  return all_of_it ? text : text + ", and all of it together is more than the clips and the joints' ranges allow";
+  if (channels > 0 && !by_ranges) {
+    text += fmt::format("; {} more than the clips and the joints' ranges allow",
+                        channels > 1 ? "together they are" : "it is");
+  }
+  return text;
 }
 
 }  // namespace
@@ -48,7 +65,7 @@ std::string TakenCommand::step(const RobotNews& news, std::int64_t now_ns, bool 
   if (!std::equal(asked_.u.begin(), asked_.u.end(), std::begin(reference.user))) return "";
   const bool still =
       still_since_ns_ >= 0 && std::equal(realised_.begin(), realised_.end(), std::begin(reference.command),
-                                         [](double before, double now) { return std::abs(before - now) < kSame; });
+                                         [](double before, double now) { return std::abs(before - now) < kStill; });
   if (!still) {
     still_since_ns_ = now_ns;
     std::copy_n(std::begin(reference.command), kChannels, realised_.begin());
@@ -56,15 +73,7 @@ std::string TakenCommand::step(const RobotNews& news, std::int64_t now_ns, bool 
   const bool settled = now_ns - still_since_ns_ >= kSettled_ns && news.info;
   if (!settled && !last) return "";
   told_ = true;
-  std::string text;
-  for (std::size_t i = 0; i < kChannels; ++i) {
-    if (std::abs(asked_.u[i] - reference.command[i]) < kSame) continue;
-    if (!settled && std::abs(asked_.u[i]) < kSame) continue;
-    text += fmt::format("{}{} {:.3g} {} is {} {:.3g} ({})", text.empty() ? "" : "; ", kNames[i], asked_.u[i], kUnits[i],
-                        settled ? "driven as" : "limited, and has come to", reference.command[i],
-                        why(news, i, asked_.u[i], reference.command[i]));
-  }
-  return text;
+  return words(asked_, news, settled);
 }
 
 }  // namespace pmg::ops

@@ -61,9 +61,10 @@ TEST_F(TakenCommandTest, BeyondTheRangeTheRangeAndWhatIsDrivenAreSaidOnce) {
   const double most = robot_.robot.command_limits.upper[kVx];
   const auto lines = told(Command{{50.0}}, 5.0);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], StartsWith(fmt::format("vx 50 m/s is driven as {:.3g} (its range is ", most)));
+  EXPECT_THAT(lines[0], StartsWith(fmt::format("limited: vx 50 -> {:.3g} m/s (range ", most)));
   EXPECT_THAT(lines[0], HasSubstr(fmt::format(" to {:.3g})", most)));
   EXPECT_THAT(lines[0], Not(HasSubstr("vy")));
+  EXPECT_THAT(lines[0], Not(HasSubstr("more than the clips"))) << "the range explains it";
 }
 
 TEST_F(TakenCommandTest, TogetherTooMuchIsSaidOfEachChannel) {
@@ -73,7 +74,18 @@ TEST_F(TakenCommandTest, TogetherTooMuchIsSaidOfEachChannel) {
   asked[kOmega] = limits.upper[kOmega];
   const auto lines = told(asked, 5.0);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], AllOf(HasSubstr("vx "), HasSubstr("omega "), HasSubstr("all of it together")));
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("vx "), HasSubstr("omega "), HasSubstr("; together they are more than the clips")));
+}
+
+TEST_F(TakenCommandTest, AChannelThatWasNotAskedForIsNotMentioned) {
+  Command asked;
+  asked[kVx] = 0.9 * robot_.robot.command_limits.upper[kVx];
+  asked[kOmega] = 0.9 * robot_.robot.command_limits.upper[kOmega];
+  const auto lines = told(asked, 5.0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], Not(HasSubstr("vy")));
+  EXPECT_THAT(lines[0], Not(HasSubstr("(range"))) << "each is within its own";
 }
 
 TEST_F(TakenCommandTest, WhatIsTakenAsAskedIsNotMentioned) {
@@ -83,7 +95,7 @@ TEST_F(TakenCommandTest, WhatIsTakenAsAskedIsNotMentioned) {
 TEST_F(TakenCommandTest, AShortDriveIsToldTooAtItsEnd) {
   const auto lines = told(Command{{50.0}}, 0.1);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], StartsWith("vx 50 m/s is limited, and has come to "));
+  EXPECT_THAT(lines[0], AllOf(StartsWith("limited: vx 50 -> 0."), HasSubstr(" m/s so far (range ")));
 }
 
 }  // namespace
