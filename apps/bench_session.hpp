@@ -11,6 +11,7 @@
 
 #include "calib/bench_writer.hpp"
 #include "calib/excitation.hpp"
+#include "model/nearest_name.hpp"
 #include "runtime/excitation_recorder.hpp"
 #include "runtime/tick.hpp"
 #include "sim/joint_load.hpp"
@@ -21,7 +22,10 @@ namespace pmg::apps {
 inline runtime::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,
                                                const calib::Excitation& excitation) {
   const auto index = robot.joint_index.find(joint);
-  if (!index) throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint", joint, robot.name));
+  if (!index) {
+    throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint; {}", joint, robot.name,
+                                            model::expected_name(joint, robot.joint_index.names())));
+  }
   runtime::ExcitationPlan plan;
   plan.joint = *index;
   for (const calib::ExcitationRow& row : excitation.rows) {

@@ -11,7 +11,9 @@
 
 #include "calib/csv_table.hpp"
 #include "calib/excitation.hpp"
+#include "model/nearest_name.hpp"
 #include "model/robot_model.hpp"
+#include "option_checks.hpp"
 
 namespace pmg::apps {
 
@@ -24,13 +26,19 @@ class ExcitationCommand {
     needing(app.add_option("--robot", robot_, "limits and gains of --joint come from this robot"));
     needing(app.add_option("--angle", angle_, "LOWER:UPPER [rad]; with --robot, within its range if not given"));
     needing(app.add_option("--speed", speed_rad_s_, "of smooth segments [rad/s]; with --robot, a third of the joint's"))
-        ->check(CLI::PositiveNumber);
+        ->check(apps::positive());
     needing(app.add_option("--gains", gains_,
                            "KP,KD pairs [Nm/rad, Nm s/rad]; with --robot, its own, half its kp, half "
                            "of both"));
-    needing(app.add_option("--rate", limits_.rate_hz, "commands a second"))->capture_default_str();
-    needing(app.add_option("--seconds", limits_.seconds, "of one trajectory"))->capture_default_str();
-    needing(app.add_option("--repeats", repeats_, "of the whole"))->check(CLI::Range(1, 100))->capture_default_str();
+    needing(app.add_option("--rate", limits_.rate_hz, "commands a second"))
+        ->check(apps::positive())
+        ->capture_default_str();
+    needing(app.add_option("--seconds", limits_.seconds, "of one trajectory"))
+        ->check(apps::positive())
+        ->capture_default_str();
+    needing(app.add_option("--repeats", repeats_, "of the whole"))
+        ->check(apps::in_range(1, 100))
+        ->capture_default_str();
   }
 
   bool wanted() const { return wanted_; }
@@ -66,7 +74,9 @@ class ExcitationCommand {
                   std::vector<calib::ExcitationGains>& gains) const {
     const model::RobotModel robot = model::load_robot(model::find_robot(robot_));
     const auto index = robot.joint_index.find(name);
-    if (!index) throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint", name, robot.name));
+    if (!index)
+      throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint; {}", name, robot.name,
+                                              model::expected_name(name, robot.joint_index.names())));
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(*index)];
     const double nearer_rad = std::min(joint.stand_rad - joint.lower_rad, joint.upper_rad - joint.stand_rad);
     const double reach_rad = std::min(0.5, 0.5 * nearer_rad);

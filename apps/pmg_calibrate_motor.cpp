@@ -12,6 +12,7 @@
 #include "calib/fit_results.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "sim/motor_file.hpp"
@@ -63,14 +64,14 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--set", arguments.fixed, "NAME=VALUE: what is known of the model, or where the search begins");
   app.add_option("--range", arguments.ranges, "NAME=LOWER:UPPER: where a parameter is looked for");
   app.add_option("--optimizer", arguments.method, "of the starts; the result is polished by BOBYQA and SBPLX")
-      ->check(CLI::IsMember({"bobyqa", "sbplx", "crs2", "cmaes"}))
+      ->check(apps::one_of({"bobyqa", "sbplx", "crs2", "cmaes"}))
       ->capture_default_str();
-  app.add_option("--starts", arguments.starts, "how many")->check(CLI::Range(1U, 1000U))->capture_default_str();
+  app.add_option("--starts", arguments.starts, "how many")->check(apps::in_range(1, 1000))->capture_default_str();
   app.add_option("--seed", arguments.seed, "of starts and random searches")->capture_default_str();
-  app.add_option("--threads", arguments.threads, "at most")->check(CLI::Range(1U, 256U));
+  app.add_option("--threads", arguments.threads, "at most")->check(apps::in_range(1, 256));
   app.add_option("--step", arguments.step_s,
                  "of the simulation [s]; the SIL's, or a quarter of the recording's, if not given")
-      ->check(CLI::Range(1e-5, 0.01));
+      ->check(apps::in_range(1e-5, 0.01));
   app.add_option("--joint", arguments.joint, "its name in motor.yaml; bench.yaml's or the bench folder's if not given");
   arguments.excitation.declare(app);
   app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
@@ -271,7 +272,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM}, "intervals and report of the best that was found");
     return calibrate(arguments);
   });
 }

@@ -9,6 +9,7 @@
 #include "calib/zero_results.hpp"
 #include "calib/zero_stances.hpp"
 #include "io/whole_file.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 
@@ -49,20 +50,20 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "write a robot folder and scenario.yaml for taking logs, and exit");
   app.add_option("--motor", arguments.motor, "motor.yaml whose other numbers zero.yaml shall keep");
   app.add_option("--tau", arguments.options.tau_rad, "largest misalignment of the IMU in a pose that counts [rad]")
-      ->check(CLI::PositiveNumber)
+      ->check(apps::positive())
       ->capture_default_str();
   app.add_option("--alpha", arguments.options.alpha, "damping of the update, in (0, 1]")
-      ->check(CLI::Range(1e-3, 1.0))
+      ->check(apps::in_range(1e-3, 1.0))
       ->capture_default_str();
   app.add_option("--epsilon", arguments.options.epsilon_rad, "largest update of a converged zero point [rad]")
-      ->check(CLI::PositiveNumber)
+      ->check(apps::positive())
       ->capture_default_str();
   app.add_option("-M,--iterations", arguments.options.M, "consecutive iterations that updates must stay below epsilon")
-      ->check(CLI::Range(1, 1000))
+      ->check(apps::in_range(1, 1000))
       ->capture_default_str();
   app.add_option("--imu-mounting", arguments.options.imu_mounting_rad,
                  "how well the IMU's attitude against robot.yaml is known, one standard deviation [rad]")
-      ->check(CLI::PositiveNumber)
+      ->check(apps::positive())
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "print zero.json on stdout instead of the short report");
 }
@@ -122,7 +123,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM});
     return arguments.stances.empty() ? calibrate(arguments) : make_stances(arguments);
   });
 }

@@ -62,7 +62,7 @@ void require_writable(const std::filesystem::path& directory) {
 }
 
 /// From the clips as they are read back, so that it belongs to the files. Interrupted, the old one stays.
-int write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips) {
+void write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips) {
   apps::ProgressLine progress;
   const CommandInverse inverse =
       gco::make_command_inverse(robot, model::load_clip_library(clips, robot), [&progress](double share) {
@@ -71,14 +71,44 @@ int write_inverse(const model::RobotModel& robot, const std::filesystem::path& c
       });
   progress.clear();
   model::write_command_inverse(clips, inverse);
-  return 0;
 }
+
+/// A folder inside the library's, in which a new one is made and from which it moves when it is whole: an interruption
+/// leaves the old clips with the inverse that belongs to them.
+class UnfinishedLibrary {
+ public:
+  explicit UnfinishedLibrary(const std::filesystem::path& library)
+      : library_(library), made_(!std::filesystem::exists(library)), folder_(library / ".unfinished") {
+    std::filesystem::remove_all(folder_);  // of a run that was killed
+    std::filesystem::create_directories(folder_);
+  }
+  ~UnfinishedLibrary() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+    if (made_) std::filesystem::remove(library_, ignored);  // if it is still empty
+  }
+  UnfinishedLibrary(const UnfinishedLibrary&) = delete;
+  UnfinishedLibrary& operator=(const UnfinishedLibrary&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+  void finish() const {
+    for (const std::filesystem::path& file : model::clip_library_files(folder_)) {
+      std::filesystem::rename(file, library_ / file.filename());
+    }
+  }
+
+ private:
+  std::filesystem::path library_;
+  bool made_;
+  std::filesystem::path folder_;
+};
 
 int invert(const std::string& robot_name, const std::filesystem::path& clips) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
   require_writable(directory);
-  return write_inverse(robot, directory);
+  write_inverse(robot, directory);
+  return 0;
 }
 
 int synth(const std::string& robot_name, const std::filesystem::path& out) {
@@ -92,9 +122,11 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
     progress.show("making " + clip);
   });
   progress.clear();
-  std::filesystem::create_directories(out);
-  write_library(out, library, robot);
-  return write_inverse(robot, out);
+  const UnfinishedLibrary unfinished(out);
+  write_library(unfinished.folder(), library, robot);
+  write_inverse(robot, unfinished.folder());
+  unfinished.finish();
+  return 0;
 }
 
 struct ShowOptions {
@@ -184,7 +216,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Example: pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show --robot z1\n"
-      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 130 interrupted (nothing is written).");
+      "Exit codes: 0 ok, 1 a check failed, 2 bad input, 130 interrupted (nothing is written: the old clips stay "
+      "whole).");
   std::string robot = "z1";
   std::filesystem::path out;
   CLI::App* synth_command = app.add_subcommand("synth", "Make a clip library from published gait figures");
@@ -203,7 +236,7 @@ int main(int argc, char** argv) {
   invert_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
   invert_command->add_option("--clips", inverse_clips, "directory of the clips; the robot's own if left out");
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM}, "leaving the old clips as they were");
     try {
       if (invert_command->parsed()) return invert(robot, inverse_clips);
       return synth_command->parsed() ? synth(robot, out) : show(options);

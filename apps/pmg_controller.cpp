@@ -16,6 +16,7 @@
 #include "bench_session.hpp"
 #include "driving_window.hpp"
 #include "io/lcm_link.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "runtime/comms.hpp"
 #include "runtime/control_setup.hpp"
@@ -66,9 +67,11 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
-  app.add_option("--hal", arguments.hal, "the drives: sil (MuJoCo), can or ethercat")
+  app.add_option("--hal", arguments.hal,
+                 "the drives: sil, MuJoCo in their place, is the one backend of this build; can and ethercat are not "
+                 "in it")
       ->required()
-      ->check(CLI::IsMember({"sil", "can", "ethercat"}));
+      ->check(apps::one_of({"sil", "can", "ethercat"}));
   app.add_option("--robot", arguments.control.robot, "robot's name below config/robots, or its folder")
       ->capture_default_str();
   app.add_option("--name", arguments.name, "name that messages are addressed to; the robot's own if not given");
@@ -93,19 +96,19 @@ void declare(CLI::App& app, Arguments& arguments) {
   bench->needs(excitation)->needs(bench_out);
   app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
   app.add_option("--bus-cpu", arguments.threads.bus.cpu, "the one CPU of the bus thread; -1: any")
-      ->check(CLI::Range(-1, 4095))
+      ->check(apps::in_range(-1, 4095))
       ->capture_default_str();
   app.add_option("--control-cpu", arguments.threads.control.cpu, "the one CPU of the control thread; -1: any")
-      ->check(CLI::Range(-1, 4095))
+      ->check(apps::in_range(-1, 4095))
       ->capture_default_str();
   app.add_option("--bus-priority", arguments.threads.bus.priority, "SCHED_FIFO priority of the bus thread")
-      ->check(CLI::Range(1, 99))
+      ->check(apps::in_range(1, 99))
       ->capture_default_str();
   app.add_option("--control-priority", arguments.threads.control.priority, "SCHED_FIFO priority of the control thread")
-      ->check(CLI::Range(1, 99))
+      ->check(apps::in_range(1, 99))
       ->capture_default_str();
   app.add_flag("--no-realtime", arguments.no_realtime, "ordinary scheduling: for trying things out, not for a robot");
-  app.add_option("--duration", arguments.duration_s, "end after so many seconds")->check(CLI::PositiveNumber);
+  app.add_option("--duration", arguments.duration_s, "end after so many seconds")->check(apps::positive());
   app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
   app.add_flag("--json", arguments.json, "print how the run went as JSON on stdout at the end");
 }
@@ -267,8 +270,8 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
 
 int control(Arguments& arguments) {
   if (arguments.hal != "sil") {
-    throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil", arguments.hal,
-                                            arguments.hal == "can" ? "CAN" : "EtherCAT"));
+    throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil, the one that it has",
+                                            arguments.hal, arguments.hal == "can" ? "CAN" : "EtherCAT"));
   }
   if (!arguments.bench.empty()) {
     if (arguments.control.policy.empty()) arguments.control.policy = "none";
@@ -343,9 +346,10 @@ int main(int argc, char** argv) {
   CLI::App app("The controller on its own host: real-time threads, operators over LCM.", "pmg_controller");
   Arguments arguments;
   declare(app, arguments);
-  return apps::run_program(app, argc, argv, [&]() -> int {
+  const auto body = [&]() -> int {
     spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
     return control(arguments);
-  });
+  };
+  return apps::run_program(app, argc, argv, body, [&] { return runtime::told_bundle(arguments.control); });
 }

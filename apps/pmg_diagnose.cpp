@@ -16,6 +16,8 @@
 #include "diagnosis/report.hpp"
 #include "diagnosis/signature.hpp"
 #include "io/whole_file.hpp"
+#include "model/nearest_name.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "robot_diagnosis.hpp"
@@ -66,9 +68,9 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "rows of runs.csv to diagnose, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
   app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
   app.add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
-  app.add_option("--threads", arguments.threads, "at most")->check(CLI::Range(1U, 256U));
+  app.add_option("--threads", arguments.threads, "at most")->check(apps::in_range(1, 256));
   app.add_option("--step", arguments.step_s, "of the simulation [s]; chosen if not given")
-      ->check(CLI::Range(1e-5, 0.01));
+      ->check(apps::in_range(1e-5, 0.01));
   app.add_flag("--json", arguments.json, "print diagnosis.json on stdout instead of the short report");
 }
 
@@ -80,8 +82,8 @@ sim::ActuatorParameters given_model(Arguments& arguments) {
   if (joint != joints.end()) return joint->second;
   std::vector<std::string> names;
   for (const auto& [name, actuator] : joints) names.push_back(name);
-  throw std::invalid_argument(fmt::format("{}: no joint '{}'; expected --joint with one of {}",
-                                          arguments.model.string(), arguments.joint, fmt::join(names, ", ")));
+  throw std::invalid_argument(fmt::format("{}: no joint '{}' for --joint; {}", arguments.model.string(),
+                                          arguments.joint, model::expected_name(arguments.joint, names)));
 }
 
 std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib::Bench& bench) {
@@ -133,7 +135,7 @@ int diagnose_robot(const Arguments& arguments) {
   };
   if (!arguments.record.empty())
     return apps::record_robot(arguments.robot, arguments.record, arguments.seed, showing("excitation")) ? kOk
-                                                                                                      : kInterrupted;
+                                                                                                        : kInterrupted;
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
   return apps::diagnose_robot_logs({.robot = arguments.robot,
@@ -197,7 +199,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM}, "the verdict of what was done until now, and its report");
     return arguments.robot.empty() ? diagnose(arguments) : diagnose_robot(arguments);
   });
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "evaluation/gait.hpp"
@@ -14,9 +15,11 @@
 #include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
 #include "evaluation/table2.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/summary.hpp"
+#include "sim/video_writer.hpp"
 
 namespace {
 
@@ -37,8 +40,8 @@ Examples:
   pmg_eval robust --seeds 20 --out out/robust
   pmg_eval gait --out out/gait
 
-Exit codes: 0 done and every limit reached, 1 done and a limit missed, 2 bad input or output, 130 interrupted (what was
-done until then is written and marked incomplete).)";
+Exit codes: 0 done and every limit reached, 1 done and a limit missed, 2 bad input or output (a film that fails leaves the rest
+whole), 130 interrupted (what was done until then is written and marked incomplete).)";
 
 struct Arguments {
   std::string robot = "z1";
@@ -62,7 +65,7 @@ void declare_common(CLI::App& command, Arguments& arguments) {
           ->capture_default_str();
   command.add_flag("--nominal", arguments.nominal, "robots as the model says; seeds differ in sensor noise alone")
       ->excludes(variation);
-  command.add_option("--jobs", arguments.jobs, "runs at once")->check(CLI::Range(1, 1024))->capture_default_str();
+  command.add_option("--jobs", arguments.jobs, "runs at once")->check(apps::in_range(1, 1024))->capture_default_str();
   command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
   command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
 }
@@ -77,7 +80,7 @@ void declare_policy(CLI::App& command, Arguments& arguments) {
 void declare_seeds(CLI::App& command, Arguments& arguments, const char* scenario) {
   command.add_option("--scenario", arguments.scenario, "commands (YAML)")->default_str(scenario);
   command.add_option("--seeds", arguments.seeds, "simulated robots")
-      ->check(CLI::Range(1, 100000))
+      ->check(apps::in_range(1, 100000))
       ->capture_default_str();
 }
 
@@ -156,12 +159,24 @@ int hand_over(const Arguments& arguments, const Result& result, bool complete, b
   return reached ? kOk : kMissed;
 }
 
-void make_films(const Arguments& arguments, evaluation::Table1& table) {
+/// What went wrong with films, a line each. The table's films are those that can be watched.
+std::vector<std::string> make_films(const Arguments& arguments, evaluation::Table1& table) {
   const Watch watch(arguments);
+  std::vector<std::optional<std::string>> failures(table.cases.size());  // nothing: not begun
   evaluation::for_each_piece(table.cases.size(), watch.supervision(), [&](std::size_t c) {
-    film_case(table.cases[c], table.scenario, arguments.out / (table.cases[c].name + ".mp4"), watch.supervision());
+    failures[c] =
+        film_case(table.cases[c], table.scenario, arguments.out / (table.cases[c].name + ".mp4"), watch.supervision());
   });
-  for (const evaluation::Case& c : table.cases) table.films.push_back(c.name + ".mp4");
+  std::vector<std::string> lines;
+  for (std::size_t c = 0; c < failures.size(); ++c) {
+    if (!failures[c]) continue;
+    if (failures[c]->empty()) {
+      table.films.push_back(table.cases[c].name + ".mp4");
+    } else {
+      lines.push_back(*failures[c]);
+    }
+  }
+  return lines;
 }
 
 int table1(const Arguments& arguments) {
@@ -176,12 +191,17 @@ int table1(const Arguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
   for (int seed = 1; seed <= table.seeds; ++seed)
     table.plants.push_back(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed)));
+  if (arguments.video) sim::expect_ffmpeg();
   fs::create_directories(arguments.out);
   table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());
-  if (arguments.video && table.campaign.complete) make_films(arguments, table);
+  std::vector<std::string> failures;
+  if (arguments.video && table.campaign.complete) failures = make_films(arguments, table);
   evaluate(table);
-  return hand_over(arguments, table, table.campaign.complete, table.all_reached());
+  const int code = hand_over(arguments, table, table.campaign.complete, table.all_reached());
+  for (const std::string& failure : failures) std::cerr << "pmg_eval: " << failure << '\n';
+  if (apps::interrupt_requested != 0) return kInterrupted;
+  return failures.empty() ? code : static_cast<int>(kBadInput);
 }
 
 int table2(const Arguments& arguments) {
@@ -261,7 +281,7 @@ int main(int argc, char** argv) {
   table2_command->add_option("--plants", arguments.plants, "what the robots' actuators are drawn from (YAML)")
       ->capture_default_str();
   table2_command->add_option("--jobs", arguments.jobs, "runs at once")
-      ->check(CLI::Range(1, 1024))
+      ->check(apps::in_range(1, 1024))
       ->capture_default_str();
   table2_command->add_option("--out", arguments.out, "folder for the results; made if absent")->required();
   table2_command->add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
@@ -270,12 +290,12 @@ int main(int argc, char** argv) {
   declare_policy(*push_command, arguments);
   push_command->add_option("--strengths", arguments.strengths_N_s, "impulses [N s], separated by commas")
       ->delimiter(',')
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(apps::in_range(0.0, 1000.0))
       ->default_str("0,10,20,30,35,40,50");
   push_command
       ->add_option("--trials", arguments.trials,
                    "pushes of each strength; 16 are every direction, standing and walking")
-      ->check(CLI::Range(1, 100000))
+      ->check(apps::in_range(1, 100000))
       ->capture_default_str();
   CLI::App* robust_command = app.add_subcommand("robust", "The tour with payload, little and much friction, and delay");
   declare_common(*robust_command, arguments);
@@ -287,10 +307,10 @@ int main(int argc, char** argv) {
   gait_command->add_option("--norms", arguments.norms,
                            "CSV of published means (docs/evaluation.md); a built-in set if not given");
   gait_command->add_option("--speed", arguments.speed_m_s, "forward [m/s]")
-      ->check(CLI::PositiveNumber)
+      ->check(apps::positive())
       ->capture_default_str();
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM}, "ending the runs under way, then the report of what is complete");
     const bool compares = table1_command->parsed();
     if (arguments.policies.empty()) arguments.policies = {"pmg"};
     if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};

@@ -12,6 +12,7 @@
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
 #include "logs/replay.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 
@@ -106,7 +107,7 @@ void print_export(const Arguments& arguments, const fs::path& into, const logs::
 int export_log(const Arguments& arguments) {
   if (arguments.csv.empty() && arguments.mcap.empty())
     throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
-  apps::notice({SIGINT});
+  apps::notice({SIGINT, SIGTERM}, "closing the files that were begun");
   apps::ProgressLine line;
   const auto progress = [&line](double time_s) {
     line.show(fmt::format("{:8.1f} s exported", time_s));
@@ -186,7 +187,7 @@ int main(int argc, char** argv) {
   replay_command
       ->add_option("--tolerance", arguments.tolerance,
                    "differences up to this pass: for a log of another compiler or mathematics library")
-      ->check(CLI::NonNegativeNumber)
+      ->check(apps::non_negative())
       ->each([&](const std::string&) { arguments.tolerant = true; });
   return apps::run_program(app, argc, argv, [&]() -> int {
     if (info_command->parsed()) return info(arguments);

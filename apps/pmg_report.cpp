@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", arguments.out, "file for the page")->capture_default_str();
   app.add_flag("--json", arguments.json, "print the runs' figures on stdout as JSON instead of one line each");
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
+    apps::notice({SIGINT, SIGTERM}, "drawing what was read until now");
     return report(arguments);
   });
 }

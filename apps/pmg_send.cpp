@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,7 +12,10 @@
 #include "operator/drive.hpp"
 #include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
+#include "operator/robot_board.hpp"
+#include "operator/taken_command.hpp"
 #include "operator/words.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 
 namespace {
@@ -30,7 +32,8 @@ Examples:
   pmg_send command --omega 0.4 --for 2       drive a robot that is in walk already
   pmg_send lift                              a simulated robot that fell: up on its hoist; then reset, stand
 
-A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
+A command that the robot can't follow as it was asked is told, with what the controller made of it and why. After another
+source's crash the end of its lease is waited for. A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
 
 Exit codes: 0 acknowledged and the mode reached, 1 refused, or not acknowledged or not reached in time, 2 bad input or no
 network, 130 interrupted (a robot that was driven is brought to rest first).)";
@@ -65,11 +68,13 @@ constexpr const char *kLift = "lift", *kLower = "lower";
 void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
   CLI::App* drive = app.add_subcommand(name, help);
   drive->fallthrough();
-  drive->add_option("--for", arguments.duration_s, "how long [s]")->required()->check(CLI::PositiveNumber);
+  drive->add_option("--for", arguments.duration_s, "how long [s]")->required()->check(apps::positive());
   constexpr const char* kOptions[] = {"--vx", "--vy", "--omega", "--pitch", "--roll", "--height"};
   constexpr const char* kHelp[] = {"forward [m/s]",       "to the left [m/s]",        "turning left [rad/s]",
                                    "torso forward [rad]", "torso to the right [rad]", "above standing [m]"};
-  for (std::size_t i = 0; i < kChannels; ++i) drive->add_option(kOptions[i], arguments.command.u[i], kHelp[i]);
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    drive->add_option(kOptions[i], arguments.command.u[i], kHelp[i])->check(apps::finite());
+  }
 }
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -80,7 +85,7 @@ void declare(CLI::App& app, Arguments& arguments) {
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--timeout", arguments.timeout_s,
                  "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 15, others 10")
-      ->check(CLI::PositiveNumber);
+      ->check(apps::positive());
   app.add_flag("--json", arguments.json, "print the outcome as JSON");
   for (const Request& request : kRequests) app.add_subcommand(request.name, request.help)->fallthrough();
   app.add_subcommand(kLift, "simulation: catch the robot with its hoist, lift it, keep it up")->fallthrough();
@@ -94,7 +99,9 @@ class Session {
   explicit Session(const Arguments& arguments)
       : arguments_(arguments),
         link_(io::choose_lcm_url(arguments.lcm_url)),
-        source_(link_, fmt::format("pmg_send.{}", getpid()), session_number(), clock_) {}
+        source_(link_, fmt::format("pmg_send.{}", getpid()), session_number(), clock_),
+        board_(link_, clock_),
+        taken_(arguments.command) {}
 
   int run() {
     for (const Request& request : kRequests) {
@@ -141,6 +148,7 @@ class Session {
     while (progress == ops::Progress::kPending && apps::interrupt_requested == 0) {
       link_.receive(10);
       progress = wish.step();
+      say_whose_lease(robot, wish.waits_for());
     }
     std::vector<ops::Answer> answers = wish.answers();
     if (answers.empty()) {
@@ -175,7 +183,10 @@ class Session {
     while (progress == ops::Progress::kPending) {
       link_.receive(5);
       if (apps::interrupt_requested != 0) drive.end_early();
+      const bool driving = drive.driving();
       progress = drive.step();
+      say_whose_lease(robot, drive.waits_for());
+      if (driving) say_what_is_taken(robot, !drive.driving());
       show_progress(robot, drive);
     }
     const bool reached = progress == ops::Progress::kReached;
@@ -195,6 +206,25 @@ class Session {
     return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 
+  /// Once: why nothing happens yet.
+  void say_whose_lease(const std::string& robot, const std::string& source) {
+    if (source.empty() || waiting_said_) return;
+    waiting_said_ = true;
+    std::cerr << ops::printable(fmt::format(
+                     "{}: {} drove and fell silent without letting go; waiting until its lease is over", robot, source))
+              << '\n';
+  }
+
+  /// Once, when the controller can't follow the command as it was asked.
+  void say_what_is_taken(const std::string& robot, bool last) {
+    const auto news = board_.robots().find(robot);
+    if (news == board_.robots().end()) return;
+    const std::string text = taken_.step(news->second, clock_.now_ns(), last);
+    if (text.empty()) return;
+    limited_ = text;
+    std::cerr << ops::printable(fmt::format("{}: {}", robot, text)) << '\n';
+  }
+
   /// Once a second, when somebody watches.
   void show_progress(const std::string& robot, const ops::Drive& drive) {
     const auto second = static_cast<int>(drive.driven_s());
@@ -210,6 +240,7 @@ class Session {
                                   {"elapsed_s", elapsed_s},
                                   {"lcm_url", link_.url()},
                                   {"robots", nlohmann::json::array()}};
+      if (!limited_.empty()) json["limited"] = limited_;
       for (const ops::Answer& answer : answers) {
         if (answer.robot.empty()) {
           json["text"] = answer.text;
@@ -239,6 +270,10 @@ class Session {
   io::WallClock clock_;
   io::LcmLink link_;
   ops::OperatorSource source_;
+  ops::RobotBoard board_;
+  ops::TakenCommand taken_;
+  std::string limited_;  ///< what the controller made of a command that it can't follow; empty: nothing
+  bool waiting_said_ = false;
   int shown_second_ = -1;
 };
 
@@ -250,10 +285,7 @@ int main(int argc, char** argv) {
   declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
     arguments.request = app.get_subcommands().front()->get_name();
-    apps::notice({SIGINT, SIGTERM});
-    for (const double value : arguments.command.u) {
-      if (!std::isfinite(value)) throw std::invalid_argument("a command's values must be finite numbers");
-    }
+    apps::notice({SIGINT, SIGTERM}, "bringing the robot to rest");
     return Session(arguments).run();
   });
 }

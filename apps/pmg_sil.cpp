@@ -13,6 +13,7 @@
 #include "bench_session.hpp"
 #include "hal/sil_hal.hpp"
 #include "io/lcm_link.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/comms.hpp"
@@ -24,6 +25,7 @@
 #include "runtime/realtime_run.hpp"
 #include "runtime/summary.hpp"
 #include "sim/motors_in_force.hpp"
+#include "sim/video_writer.hpp"
 
 namespace {
 
@@ -46,8 +48,8 @@ Example:
   pmg_sil --robot z1 --realtime --viewer --out out/drive
   pmg_sil --robot z1 --bench left_knee --excitation out/excitation --motor out/knee/motor.yaml --out out/knee-bench
 
-Exit codes: 0 the scenario (the bench) ran to its end, or operators drove until it was ended, 1 the robot fell or a fault latched, 2 bad input or output, 130 interrupted
-or the viewer's window closed (what was done until then is kept).)";
+Exit codes: 0 the scenario (the bench) ran to its end, or operators drove until it was ended, 1 the robot fell or a fault latched, 2 bad input or
+output (a film that fails leaves the other results whole), 130 interrupted or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
   runtime::ControlSetup control;
@@ -69,7 +71,7 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "given, and none with --bench");
   app.add_option("--blend", arguments.control.blend,
                  "how clips are mixed: gain, or paper for the paper's weights to the letter")
-      ->check(CLI::IsMember({"gain", "paper"}))
+      ->check(apps::one_of({"gain", "paper"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option(
@@ -131,9 +133,10 @@ void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
 void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
   const runtime::TrackingSummary& tracking = outcome.tracking;
   std::cout
-      << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}\n",
+      << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}{}\n",
                      summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
-                     summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall")
+                     summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall",
+                     outcome.interrupted ? ", interrupted" : "")
       << fmt::format(
              "tracking over {:.1f} s: velocity {:.3f} m/s, yaw {:.3f} rad/s, pitch {:.3f} rad, roll {:.3f} rad, "
              "height {:.3f} m\n",
@@ -163,6 +166,7 @@ struct Played {
   runtime::RunOutcome outcome;
   runtime::StageTiming timing;
   nlohmann::ordered_json realtime;  // null in lockstep
+  std::string film_failure;         // empty: none, or no film
 };
 
 /// What both ways of playing need.
@@ -205,14 +209,24 @@ Played play_lockstep(const Stage& stage) {
     lockstep.after_record = [&stage](const runtime::TickRecord& record) { stage.excitation->add(record); };
   }
   lockstep.after_tick = [&](const runtime::RunProgress& now) {
-    if (film) film->after_tick(now);
+    if (film) {
+      const bool rolling = film->failure().empty();
+      film->after_tick(now);
+      if (rolling && !film->failure().empty()) {
+        progress.clear();
+        std::cerr << fmt::format("pmg_sil: {}; the run goes on without a film\n", film->failure());
+      }
+    }
     if (stage.view != nullptr) stage.view->after_tick(now);
     show(progress, now);
   };
   const runtime::RunOutcome outcome = lockstep.run();
   progress.clear();
-  if (film) film->close();
-  return {outcome, lockstep.timing(), nullptr};
+  if (film && film->failure().empty()) {
+    film->close();
+    if (!film->failure().empty()) std::cerr << fmt::format("pmg_sil: {}\n", film->failure());
+  }
+  return {outcome, lockstep.timing(), nullptr, film ? film->failure() : ""};
 }
 
 /// Who speaks to the controller over the network when no scenario does.
@@ -274,7 +288,7 @@ Played play_realtime(const Stage& stage) {
   };
   const runtime::RunOutcome outcome = run.run();
   progress.clear();
-  return {outcome, run.timing(), runtime::punctuality_json(controller)};
+  return {outcome, run.timing(), runtime::punctuality_json(controller), ""};
 }
 
 /// Stands for as long as the excitation takes, then damps.
@@ -339,6 +353,7 @@ int simulate(Arguments arguments) {
   sim::World world(loaded.robot, world_options);
   std::optional<runtime::LiveView> view;
   if (arguments.viewer) view.emplace(world, loaded.robot);
+  if (arguments.video) sim::expect_ffmpeg();
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
   if (loaded.variant != Variant::kPmg) {
@@ -367,6 +382,7 @@ int simulate(Arguments arguments) {
                             played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   if (bench) summary["bench"] = bench->write(*recorder);
+  if (!played.film_failure.empty()) summary["film_failure"] = played.film_failure;
   runtime::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';
@@ -377,6 +393,7 @@ int simulate(Arguments arguments) {
   }
   const runtime::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted && !arguments.by_operators()) return kInterrupted;
+  if (!played.film_failure.empty()) return kBadInput;
   if (bench && !bench->whole(*recorder)) return kFellOrFault;
   return outcome.fell || outcome.diverged || !outcome.faults.empty() ? kFellOrFault : kOk;
 }
@@ -399,8 +416,10 @@ int main(int argc, char** argv) {
       "pmg_sil");
   Arguments arguments;
   declare(app, arguments);
-  return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT});
-    return arguments.export_mjcf.empty() ? simulate(arguments) : export_mjcf(arguments);
-  });
+  const auto body = [&]() -> int {
+    if (!arguments.export_mjcf.empty()) return export_mjcf(arguments);
+    apps::notice({SIGINT, SIGTERM}, "closing film and log, then the summary");
+    return simulate(arguments);
+  };
+  return apps::run_program(app, argc, argv, body, [&] { return runtime::told_bundle(arguments.control); });
 }

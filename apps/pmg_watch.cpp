@@ -15,6 +15,7 @@
 #include "io/lcm_link.hpp"
 #include "operator/robot_board.hpp"
 #include "operator/robot_text.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 
 namespace {
@@ -157,7 +158,7 @@ int main(int argc, char** argv) {
   app.add_flag("--once", arguments.once, "print one status and end");
   app.add_option("--timeout", arguments.timeout_s, "with --once: wait so long [s]")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(apps::positive());
   app.add_flag("--json", arguments.json, "print JSON, an object a line");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM});

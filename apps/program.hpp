@@ -1,39 +1,26 @@
-// How every program here begins and ends: command line, interruption, one line for whatever is wrong.
+// How every program here begins and ends: command line, --version, interruption, one line for whatever is wrong.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <exception>
+#include <functional>
 #include <initializer_list>
-#include <iostream>
+#include <string>
 
 namespace pmg::apps {
 
 inline volatile std::sig_atomic_t interrupt_requested = 0;
 
-/// From now on these signals only set interrupt_requested.
-inline void notice(std::initializer_list<int> signals) {
-  for (const int signal : signals) {
-    std::signal(signal, [](int /*signal*/) { interrupt_requested = 1; });
-  }
-}
+/// From now on these signals only set interrupt_requested. SIGHUP does the same unless it is ignored (nohup). A program
+/// that is not done a second later says on stderr what it is doing, and that the signal once more ends it at once.
+/// finishing: as in "closing the film"; must live as long as the program.
+void notice(std::initializer_list<int> signals, const char* finishing = "writing what was done until now");
 
-/// Parses, then runs the body, whose exit code it returns; 0 after --help, 2 and a line on stderr when the command line
-/// is wrong or the body throws.
-template <typename Body>
-int run_program(CLI::App& app, int argc, char** argv, Body&& body) {
-  constexpr int kBadInput = 2;
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  try {
-    return body();
-  } catch (const std::exception& error) {
-    std::cerr << app.get_name() << ": " << error.what() << '\n';
-    return kBadInput;
-  }
-}
+/// Adds --version, parses, then runs the body, whose exit code it returns; 0 after --help and --version, 2 and a line
+/// on stderr when the command line is wrong or the body throws. Until the body calls notice(), SIGINT, SIGTERM and
+/// SIGHUP end the program at once with 130: there is nothing to keep. bundle: what the program would run on as it was
+/// called (model::Bundle), told by --version when --robot is given; may be empty and may throw.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body,
+                const std::function<std::string()>& bundle = {});
 
 }  // namespace pmg::apps

@@ -38,7 +38,7 @@ add_custom_target(programs)
 function(pmg_add_app name)
   cmake_parse_arguments(APP "" "" "LINK" ${ARGN})
   add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} PRIVATE ${APP_LINK} pmg_warnings)
+  target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
   add_dependencies(programs ${name})
 endfunction()
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calib/parallel.hpp"
+#include "model/nearest_name.hpp"
 
 namespace pmg::calib {
 
@@ -103,8 +104,13 @@ std::vector<std::string> effect_parameters(const std::string& word) {
   for (const Effect& effect : effects()) {
     if (word == effect.word) return effect.parameters;
   }
+  std::vector<std::string> known = effect_words();
   for (const sim::ActuatorParameter& p : sim::actuator_parameters()) {
     if (word == p.name) return {word};
+    known.emplace_back(p.name);
+  }
+  if (const std::string nearest = model::nearest_name(word, known); !nearest.empty()) {
+    throw std::invalid_argument(fmt::format("'{}' isn't an effect; did you mean {}?", word, nearest));
   }
   throw std::invalid_argument(fmt::format("'{}' isn't an effect; expected one of {}, or a parameter of motor.yaml",
                                           word, fmt::join(effect_words(), ", ")));

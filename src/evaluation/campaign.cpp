@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "runtime/film.hpp"
 #include "runtime/simulated_robot.hpp"
@@ -64,18 +65,23 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenari
   return campaign;
 }
 
-void film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
-               const Supervision& supervision) {
+std::string film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+                      const Supervision& supervision) {
   const model::RobotModel robot = model::load_robot(model::find_robot(filmed.candidate.control.robot));
   std::optional<runtime::Film> film;
   const auto shoot = [&](const runtime::RunProgress& now, sim::World& world) {
     if (!film) film.emplace(world, file);
     film->after_tick(now);
-    return true;
+    return film->failure().empty();
   };
-  run_trial(filmed.candidate, scenario, filmed.plants.of(robot, 1),
-            {.gantry = false, .interrupted = supervision.interrupted, .observer = shoot});
+  try {
+    run_trial(filmed.candidate, scenario, filmed.plants.of(robot, 1),
+              {.gantry = false, .interrupted = supervision.interrupted, .observer = shoot});
+  } catch (const std::runtime_error& error) {  // no OSMesa
+    return error.what();
+  }
   if (film) film->close();
+  return film ? film->failure() : "";
 }
 
 CaseSummary summarise(const std::vector<TrialResult>& runs) {

@@ -46,9 +46,10 @@ struct CampaignRuns {
 CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenario& scenario, int seeds, bool gantry,
                           const Supervision& supervision);
 
-/// Films a case's first seed. Throws std::runtime_error without ffmpeg or OSMesa.
-void film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
-               const Supervision& supervision);
+/// Films a case's first seed, as far as the supervision lets it. Returns what went wrong with the film, one line;
+/// empty: nothing.
+std::string film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+                      const Supervision& supervision);
 
 /// Of the complete trials of one case.
 struct CaseSummary {

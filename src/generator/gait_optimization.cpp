@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -222,6 +223,29 @@ LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& tabl
   return out;
 }
 
+/// Ends the solver when progress throws; Ceres itself is left without an exception in flight.
+class StopOnThrow : public ceres::IterationCallback {
+ public:
+  explicit StopOnThrow(const std::function<void()>& progress) : progress_(progress) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    try {
+      if (progress_) progress_();
+    } catch (...) {
+      thrown_ = std::current_exception();
+      return ceres::SOLVER_ABORT;
+    }
+    return ceres::SOLVER_CONTINUE;
+  }
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  const std::function<void()>& progress_;
+  std::exception_ptr thrown_;
+};
+
 }  // namespace
 
 RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles) {
@@ -298,11 +322,12 @@ PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, 
       upper_(legs.upper[foot].array() - kLimitMargin_rad),
       limit_weight_(task.weights.limit / std::sqrt(static_cast<double>(kClipSamples))) {}
 
-GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const std::function<void()>& progress) {
   KnotTable table(task.symmetric);
   start_from_reference(legs, task, table);
   std::vector<VelocityTarget> targets(task.scenarios.size());
   GaitSolution solution;
+  StopOnThrow stop(progress);
   for (int round = 0; round < kRounds; ++round) {
     ceres::Problem problem;
     add_residuals(legs, task, targets, table, problem);
@@ -312,8 +337,10 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task) {
     options.function_tolerance = 1e-5;
     options.num_threads = 1;  // the same bytes every time
     options.logging_type = ceres::SILENT;
+    options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
+    stop.rethrow();
     solution.cost = summary.final_cost;
     solution.iterations += static_cast<int>(summary.iterations.size());
     solution.legs = sample_legs(legs, task.symmetric, table);

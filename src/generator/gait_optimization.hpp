@@ -2,6 +2,8 @@
 // every gain at which the generator blends it with standing.
 #pragma once
 
+#include <functional>
+
 #include "generator/gait_task.hpp"
 #include "generator/leg_geometry.hpp"
 #include "pmg/types.hpp"
@@ -26,7 +28,7 @@ struct GaitSolution {
 
 /// The generator blends in joint space: q = q_stand + g (q_clip - q_stand) + addition. Unknown are the knots of a
 /// periodic cubic spline of each leg joint's deviation from stand; see gait_residuals.hpp for what is asked of it.
-/// Deterministic.
-GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task);
+/// Deterministic. progress is called after every iteration, many times a second, and may throw to stop.
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const std::function<void()>& progress = {});
 
 }  // namespace pmg::generator

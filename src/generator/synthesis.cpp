@@ -231,30 +231,27 @@ ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 
-  progress("forward");
+  const auto during = [&progress](const char* clip) { return [&progress, clip] { progress(clip); }; };
   const GaitTask forward = forward_task(making);
-  const LegTrajectory forward_legs = optimize_gait(making.legs, forward).legs;
+  const LegTrajectory forward_legs = optimize_gait(making.legs, forward, during("forward")).legs;
   library.positive[kVx] =
       assemble(making, forward, forward_legs,
                {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
 
-  progress("backward");
   const GaitTask backward = backward_task(making, forward_legs, forward);
-  const LegTrajectory backward_legs = optimize_gait(making.legs, backward).legs;
+  const LegTrajectory backward_legs = optimize_gait(making.legs, backward, during("backward")).legs;
   library.negative[kVx] =
       assemble(making, backward, backward_legs,
                {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
 
-  progress("lateral");
   GaitTask lateral = lateral_task(making);
   lateral.scenarios.push_back({0.53, 3.0, clip_addition(making, forward_legs, forward, 0.47, lateral.period_s)});
-  const LegTrajectory lateral_legs = optimize_gait(making.legs, lateral).legs;
+  const LegTrajectory lateral_legs = optimize_gait(making.legs, lateral, during("lateral")).legs;
   library.positive[kVy] = assemble(making, lateral, lateral_legs, {.pelvis_tilt_rad = 2.0 * kDegree});
 
-  progress("turn");
   GaitTask turn = turn_task(making);
   turn.scenarios.push_back({0.45, 4.0, clip_addition(making, forward_legs, forward, 0.55, turn.period_s)});
-  const LegTrajectory turn_legs = optimize_gait(making.legs, turn).legs;
+  const LegTrajectory turn_legs = optimize_gait(making.legs, turn, during("turn")).legs;
   library.positive[kOmega] =
       assemble(making, turn, turn_legs, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
   return library;

@@ -9,7 +9,7 @@
 
 namespace pmg::generator {
 
-/// progress is told the name of each clip before it is made, and may throw to stop.
+/// progress is told the name of the clip that is being made, many times a second, and may throw to stop.
 ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(const std::string&)>& progress);
 
 /// Where a clip's numbers come from, one line for its YAML.

@@ -1,4 +1,4 @@
-// One interface, several backends: sil (MuJoCo), can (SocketCAN), ethercat (SOEM).
+// One interface for several backends. sil (MuJoCo) is the one that exists; can (SocketCAN) and ethercat are to come.
 #pragma once
 
 #include "model/robot_io.hpp"

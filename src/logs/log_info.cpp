@@ -73,6 +73,7 @@ class Summariser {
     first_ns_ = stamp_ns;
     next_tick_.reset();
     mode_.reset();
+    driver_.clear();
     told_faults_.clear();
     timings_ns_ = {};
   }
@@ -111,7 +112,11 @@ class Summariser {
 
   void take_status(const io::LogReader& event) {
     const auto status = event.decode<pmg_msgs::status_t>();
-    if (!status || mode_ == status->mode) return;
+    if (!status) return;
+    if (!driver_.empty()) run_->driven_s[driver_] += static_cast<double>(event.stamp_ns() - status_ns_) * 1e-9;
+    driver_ = status->driving_source;
+    status_ns_ = event.stamp_ns();
+    if (mode_ == status->mode) return;
     mode_ = status->mode;
     run_->modes.push_back({seconds(event.stamp_ns()), mode_name(status->mode)});
   }
@@ -139,6 +144,8 @@ class Summariser {
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::optional<std::int64_t> next_tick_;
   std::optional<std::int8_t> mode_;
+  std::string driver_;  // as of status_ns_; empty: nobody
+  std::int64_t status_ns_ = 0;
   std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;
   std::array<std::vector<std::int64_t>, kTimings.size()> timings_ns_;
 };
@@ -184,6 +191,7 @@ nlohmann::ordered_json run_json(const RunSummary& run) {
   json["messages"] = run.messages;
   json["modes"] = at_json(run.modes);
   json["faults"] = at_json(run.faults);
+  json["driven_s"] = run.driven_s;
   json["timing_us"] = nlohmann::ordered_json::object();
   for (const TimingSpread& timing : run.timing) {
     json["timing_us"][timing.name] = {
@@ -192,18 +200,31 @@ nlohmann::ordered_json run_json(const RunSummary& run) {
   return json;
 }
 
+/// Who ran what; the hashes are hashes_text's.
 std::string info_text(const pmg_msgs::robot_info_t& info) {
   std::string text = fmt::format("robot      {} (model {}), backend {}, policy {}\n", info.robot, info.model,
                                  info.backend, info.policy);
   text += fmt::format("software   {}\n", info.software);
   if (info.session != 0) text += fmt::format("started    {}\n", utc(info.session));
+  for (const std::string& refused : info.refused) text += fmt::format("refused    {}\n", refused);
+  return text;
+}
+
+std::string hashes_text(const pmg_msgs::robot_info_t& info) {
+  std::string text = info.options.empty() ? "" : fmt::format("options    {}\n", info.options);
   text += fmt::format("bundle     {}\n", info.bundle.empty() ? "not stamped" : info.bundle);
   for (std::size_t i = 0; i < info.bundle_file.size(); ++i) {
     text += fmt::format("           {}  {}\n", info.bundle_sha256[i], info.bundle_file[i]);
   }
-  for (const std::string& refused : info.refused) text += fmt::format("refused    {}\n", refused);
-  if (!info.options.empty()) text += fmt::format("options    {}\n", info.options);
   return text;
+}
+
+std::string drivers_text(const RunSummary& run) {
+  std::string text;
+  for (const auto& [source, driven_s] : run.driven_s) {
+    text += fmt::format("{:<10} {:9.2f} s  {}\n", text.empty() ? "driven by" : "", driven_s, source);
+  }
+  return text.empty() ? "driven by  nobody\n" : text;
 }
 
 std::string timeline(const char* title, const std::vector<RunSummary::At>& events) {
@@ -215,16 +236,18 @@ std::string timeline(const char* title, const std::vector<RunSummary::At>& event
 }
 
 std::string run_text(const RunSummary& run) {
-  std::string text = run.info ? info_text(*run.info) : "robot      not told: no ROBOT_INFO in this log\n";
+  std::string text =
+      fmt::format("duration   {:.2f} s, {} ticks{}\n", run.duration_s, run.ticks,
+                  run.from_the_start ? ", from the controller's first" : ", not from the controller's start");
+  text += timeline("faults", run.faults);
+  text += drivers_text(run);
+  text += timeline("modes", run.modes);
+  text += fmt::format("lost       {} ticks not in the log, {} ticks and {} bus cycles skipped by the controller\n",
+                      run.lost_ticks, run.missed_ticks, run.missed_bus_cycles);
+  text += run.info ? info_text(*run.info) : "robot      not told: no ROBOT_INFO in this log\n";
   for (const auto& file : run.files) {
     text += fmt::format("{:<10} {}\n", &file == &run.files.front() ? "files" : "", file.string());
   }
-  text += fmt::format("duration   {:.2f} s, {} ticks{}\n", run.duration_s, run.ticks,
-                      run.from_the_start ? ", from the controller's first" : ", not from the controller's start");
-  text += fmt::format("lost       {} ticks not in the log, {} ticks and {} bus cycles skipped by the controller\n",
-                      run.lost_ticks, run.missed_ticks, run.missed_bus_cycles);
-  text += timeline("modes", run.modes);
-  text += timeline("faults", run.faults);
   std::string messages;
   for (const auto& [channel, count] : run.messages) {
     messages += fmt::format("{:<10} {:>9}  {}\n", messages.empty() ? "messages" : "", count, channel);
@@ -237,6 +260,7 @@ std::string run_text(const RunSummary& run) {
                           timing.p99_us, timing.p999_us, timing.max_us);
     }
   }
+  if (run.info) text += hashes_text(*run.info);
   return text;
 }
 

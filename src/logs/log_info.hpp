@@ -34,6 +34,7 @@ struct RunSummary {
   std::map<std::string, std::int64_t> messages;  ///< by channel
   std::vector<At> modes;                         ///< each when it began
   std::vector<At> faults;
+  std::map<std::string, double> driven_s;  ///< by source: for how long the controller followed it
   std::int64_t ticks = 0, lost_ticks = 0, missed_ticks = 0, missed_bus_cycles = 0;
   std::vector<TimingSpread> timing;  ///< empty in lockstep
 };

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/nearest_name.hpp"
+
 namespace pmg::model {
 namespace {
 
@@ -60,7 +62,12 @@ ConfigReader ConfigReader::from_file(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf())) {
-    raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a YAML file");
+    const int error = errno;
+    const std::filesystem::path meant = error == ENOENT ? nearest_file(file) : "";
+    if (!meant.empty()) {
+      throw ConfigError(fmt::format("{}: there is no such file; did you mean {}?", file.string(), meant.string()));
+    }
+    raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(error)), "a YAML file");
   }
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text.str());
@@ -139,13 +146,15 @@ std::string ConfigReader::one_of(const std::string& key, const std::vector<std::
   for (const std::string& known : choices) {
     if (choice == known) return choice;
   }
-  fail(key, fmt::format("is '{}'", choice), fmt::format("one of {}", fmt::join(choices, ", ")));
+  fail(key, fmt::format("is '{}'; {}", choice, expected_name(choice, choices)), "");
 }
 
 void ConfigReader::finish() const {
   for (const std::string& key : order_) {
     const Entry& entry = entries_.at(key);
     if (entry.asked) continue;
+    const std::string nearest = nearest_name(key, known_);
+    if (!nearest.empty()) raise(entry.key_place, path(key), fmt::format("is unknown; did you mean {}?", nearest), "");
     raise(entry.key_place, path(key), "is unknown",
           known_.empty() ? "no such key" : fmt::format("nothing besides {}", fmt::join(known_, ", ")));
   }

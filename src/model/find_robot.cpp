@@ -1,9 +1,9 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "model/config_error.hpp"
+#include "model/nearest_name.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::model {
@@ -33,8 +33,7 @@ std::filesystem::path find_robot(const std::string& name) {
     }
   }
   std::sort(known.begin(), known.end());
-  raise({name}, "robot", "is neither known nor a directory",
-        fmt::format("one of {}, or a robot's directory", fmt::join(known, ", ")));
+  throw ConfigError(fmt::format("robot '{}' is neither known nor a folder; {}", name, expected_name(name, known)));
 }
 
 }  // namespace pmg::model

@@ -22,6 +22,8 @@ class Climb {
   /// To be called after every link.receive().
   Progress step();
   const std::string& text() const noexcept { return text_; }  ///< for people: what it waits for, or why it failed
+  /// The source whose lease is waited for: it drove, fell silent and did not let go. Empty: none.
+  std::string waits_for() const { return wish_ ? wish_->waits_for() : std::string(); }
 
  private:
   enum class Part { kLooking, kStanding, kSetDown, kLast, kFailed };

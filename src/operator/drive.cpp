@@ -16,8 +16,12 @@ constexpr std::int64_t kSilent_ns = 500'000'000;
 }  // namespace
 
 Drive::Drive(OperatorSource& source, std::string robot, const Command& command, const DriveOptions& options)
-    : source_(source), robot_(std::move(robot)), command_(command), options_(options) {
-  enter(options.climb ? Phase::kClimbing : Phase::kDriving);
+    : source_(source),
+      robot_(std::move(robot)),
+      command_(command),
+      options_(options),
+      begin_ns_(source.clock().now_ns()) {
+  enter(options.climb ? Phase::kClimbing : Phase::kClaiming);
 }
 
 void Drive::enter(Phase phase) {
@@ -49,6 +53,8 @@ Progress Drive::step() {
         return Progress::kPending;
       }
       return follow_climb();
+    case Phase::kClaiming:
+      return claim();
     case Phase::kDriving:
       if (const std::string trouble_text = trouble(); !trouble_text.empty()) return fail(trouble_text);
       if (end_early_ || driven_s() >= options_.duration_s) {
@@ -70,6 +76,31 @@ Progress Drive::follow_climb() {
   if (progress == Progress::kFailed) return fail(climb_->text());
   enter(Phase::kDriving);
   return Progress::kPending;
+}
+
+std::string Drive::waits_for() const {
+  if (phase_ == Phase::kClimbing) return climb_->waits_for();
+  const HeardRobot* heard = phase_ == Phase::kClaiming ? source_.heard(robot_) : nullptr;
+  return heard == nullptr ? "" : heard->silent_driver(source_.name());
+}
+
+Progress Drive::claim() {
+  if (end_early_) {
+    enter(Phase::kEnded);
+    return Progress::kPending;
+  }
+  const HeardRobot* heard = source_.heard(robot_);
+  if (heard != nullptr && heard->status && heard->status->driving_source == source_.name()) {
+    enter(Phase::kDriving);
+    return Progress::kPending;
+  }
+  const std::int64_t now_ns = source_.clock().now_ns();
+  if (!waits_for().empty() && static_cast<double>(now_ns - begin_ns_) * 1e-9 < options_.timeout_s) {
+    phase_since_ns_ = now_ns;  // once the lease is over the controller gets its time to show this source as driving
+    return Progress::kPending;
+  }
+  const std::string trouble_text = trouble();
+  return trouble_text.empty() ? Progress::kPending : fail(trouble_text);
 }
 
 Progress Drive::follow_wish() {

@@ -15,7 +15,7 @@ namespace pmg::ops {
 struct DriveOptions {
   double duration_s = 0.0;
   bool climb = false;     ///< ask for Walk first, and for Stand at the end
-  double timeout_s = 10;  ///< for each of the two, and for a hoist to set the robot down
+  double timeout_s = 10;  ///< for each of the two, for a hoist to set the robot down, for a crashed source's lease to end
 };
 
 /// Sends at 50 Hz from construction on, so that Walk finds a fresh command.
@@ -39,14 +39,18 @@ class Drive {
   const std::string& text() const noexcept { return text_; }  ///< why it failed, in words
   bool driving() const noexcept { return phase_ == Phase::kDriving; }
   double driven_s() const;
+  /// The source whose lease is waited for: it drove, fell silent and did not let go. Empty: none.
+  std::string waits_for() const;
 
  private:
-  enum class Phase { kClimbing, kDriving, kCalming, kDescending, kEnded };
+  /// Claiming: nothing is climbed, and commands of zero are sent until the controller shows this source as driving.
+  enum class Phase { kClimbing, kClaiming, kDriving, kCalming, kDescending, kEnded };
 
   void enter(Phase phase);
   Progress fail(const std::string& text);
   Progress follow_climb();
   Progress follow_wish();
+  Progress claim();
   /// What speaks against going on; empty: nothing.
   std::string trouble() const;
   void send_if_due();
@@ -56,7 +60,7 @@ class Drive {
   Command command_;
   DriveOptions options_;
   Phase phase_ = Phase::kDriving;
-  std::int64_t phase_since_ns_ = 0, send_at_ns_ = 0;
+  std::int64_t begin_ns_, phase_since_ns_ = 0, send_at_ns_ = 0;
   double driven_s_ = 0.0;
   bool end_early_ = false;
   std::optional<Climb> climb_;

@@ -41,6 +41,13 @@ std::string fault_words(const HeardRobot& heard) {
   return heard.status && !heard.status->fault.empty() ? heard.status->fault : "a fault is latched";
 }
 
+bool refused(const HeardRobot& heard) { return heard.ack && heard.ack->verdict == pmg_msgs::ack_t::NOT_YOURS; }
+
+bool lease_is_over(const HeardRobot& heard, const std::string& me) {
+  return heard.status && heard.status->stamp_ns >= heard.ack->stamp_ns &&
+         (heard.status->driving_source.empty() || heard.status->driving_source == me);
+}
+
 }  // namespace
 
 ModeWish::ModeWish(OperatorSource& source, std::string robot, Goal goal, double timeout_s)
@@ -55,7 +62,29 @@ ModeWish::ModeWish(OperatorSource& source, std::string robot, Goal goal, double 
 
 double ModeWish::elapsed_s() const { return static_cast<double>(source_.clock().now_ns() - begin_ns_) * 1e-9; }
 
+std::string ModeWish::waits_for() const {
+  const HeardRobot* heard = robot_.empty() ? nullptr : source_.heard(robot_);
+  return heard != nullptr && refused(*heard) ? heard->silent_driver(source_.name()) : "";
+}
+
+bool ModeWish::final(const HeardRobot& heard) const {
+  if (!refused(heard) || !heard.status) return true;
+  if (lease_is_over(heard, source_.name()) || !heard.silent_driver(source_.name()).empty()) return false;
+  return refused_ns_ >= 0 && source_.clock().now_ns() - refused_ns_ >= kDoubt_ns;
+}
+
+void ModeWish::ask_again_after_lease() {
+  const HeardRobot* heard = robot_.empty() ? nullptr : source_.heard(robot_);
+  if (heard == nullptr || !refused(*heard)) return;
+  const std::int64_t now_ns = source_.clock().now_ns();
+  if (refused_ns_ < 0) refused_ns_ = now_ns;
+  if (!lease_is_over(*heard, source_.name()) || now_ns < repeat_at_ns_) return;
+  repeat_at_ns_ = now_ns + kRepeat_ns;
+  source_.request(robot_, requested_mode(goal_), goal_ == Goal::kReset);
+}
+
 Progress ModeWish::step() {
+  ask_again_after_lease();
   const std::vector<Answer> all = answers();
   const auto every = [&](auto condition) { return std::ranges::all_of(all, condition); };
   const bool gathered = !robot_.empty() || source_.clock().now_ns() - begin_ns_ >= kGather_ns;
@@ -98,7 +127,7 @@ Answer ModeWish::judge(const std::string& robot) const {
   if (heard->ack->verdict == pmg_msgs::ack_t::NOT_YOURS && heard->status) {
     answer.text += fmt::format(": {} (only a stop is taken from others)", heard->status->driving_source);
   }
-  answer.progress = Progress::kFailed;
+  if (final(*heard)) answer.progress = Progress::kFailed;
   return answer;
 }
 

@@ -34,19 +34,27 @@ class ModeWish {
   static constexpr std::int64_t kRepeat_ns = 50'000'000;
   /// Controllers speak 100 times a second: those that were not heard in this time are not there.
   static constexpr std::int64_t kGather_ns = 200'000'000;
+  /// After a refusal: until it shows whether the source that drives still sends (HeardRobot::silent_driver).
+  static constexpr std::int64_t kDoubt_ns = 300'000'000;
 
   /// Keeps a reference, and asks for the first time. robot: empty for every robot on this address, for kStop alone.
   ModeWish(OperatorSource& source, std::string robot, Goal goal, double timeout_s);
 
-  /// Asks again when it is due, and judges what was heard. To be called after every link.receive().
+  /// Asks again when it is due, and judges what was heard. To be called after every link.receive(). Refused because of
+  /// a source that has crashed, it waits for the end of that one's lease and asks again.
   Progress step();
 
   /// One for each robot that this concerns, heard or not.
   std::vector<Answer> answers() const;
   double elapsed_s() const;
+  /// The source whose lease is waited for: it drove, fell silent and did not let go. Empty: none.
+  std::string waits_for() const;
 
  private:
   Answer judge(const std::string& robot) const;
+  /// Whether a refusal is the last word: somebody drives, and goes on sending.
+  bool final(const HeardRobot& heard) const;
+  void ask_again_after_lease();
   Answer judge_taken(Answer answer, const HeardRobot& heard) const;
 
   OperatorSource& source_;
@@ -54,6 +62,7 @@ class ModeWish {
   Goal goal_;
   double timeout_s_;
   std::int64_t begin_ns_, repeat_at_ns_;
+  std::int64_t refused_ns_ = -1;  ///< the first time; -1: never
 };
 
 }  // namespace pmg::ops

@@ -8,6 +8,12 @@ std::optional<std::int8_t> HeardRobot::mode() const {
   return std::nullopt;
 }
 
+std::string HeardRobot::silent_driver(const std::string& me) const {
+  constexpr double kSilent_s = 0.2;  // who drives sends oftener: the controller takes older commands for stale
+  const bool another = status && !status->driving_source.empty() && status->driving_source != me;
+  return another && status->command_age_s > kSilent_s ? status->driving_source : "";
+}
+
 OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock)
     : link_(link), clock_(clock) {
   command_.version = pmg_msgs::command_t::VERSION;

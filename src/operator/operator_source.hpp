@@ -29,6 +29,9 @@ struct HeardRobot {
 
   /// The newest that is known; nothing before the controller was heard.
   std::optional<std::int8_t> mode() const;
+  /// The source that drives, if it isn't this one and has sent nothing for so long that it must have ended without
+  /// letting go: its lease will be over soon. Empty: there is none.
+  std::string silent_driver(const std::string& me) const;
 };
 
 /// For one thread. Hears only while somebody calls link.receive().

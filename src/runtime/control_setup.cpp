@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/config_reader.hpp"
+#include "model/nearest_name.hpp"
 #include "policy/onnx_policy.hpp"
 
 namespace pmg::runtime {
@@ -20,15 +22,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What --policy may name of this robot, in order.
+std::vector<std::string> policy_names(const model::RobotModel& robot) {
+  std::vector<std::string> names{"none"};
+  std::error_code error;
+  for (fs::directory_iterator entry(robot.directory / "policies", error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".onnx") names.push_back(entry->path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
 /// Below the robot's policies/, or the file itself. Nothing for none.
 std::optional<fs::path> policy_file(const std::string& name, const char* named_by, const model::RobotModel& robot) {
   if (name == "none") return std::nullopt;
   const fs::path file =
       fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
   if (!fs::exists(file)) {
+    const std::string meant = model::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
-        fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none", named_by, name,
-                    file.string()));
+        meant.empty()
+            ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none", named_by,
+                          name, file.string())
+            : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
   }
   return file;
 }
@@ -118,6 +135,10 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.bundle = std::move(bundle.sha256);
   loaded.files = std::move(bundle.files);
   return loaded;
+}
+
+std::string told_bundle(const ControlSetup& setup) {
+  return fmt::format("{} (robot {}, policy {})", load_control(setup).bundle, setup.robot, setup.policy);
 }
 
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch) {

@@ -37,6 +37,9 @@ struct LoadedControl {
 /// Throws model::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);
 
+/// For --version: the bundle that such a setup runs on, and what it is of. Throws as load_control does.
+std::string told_bundle(const ControlSetup& setup);
+
 /// Takes the policy out of loaded. Keeps a reference to the stopwatch.
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 namespace pmg::runtime {
 
 Film::Film(sim::World& world, const std::filesystem::path& file)
@@ -10,12 +12,26 @@ Film::Film(sim::World& world, const std::filesystem::path& file)
       writer_(file, renderer_.width(), renderer_.height(), kFramesPerSecond) {}
 
 void Film::after_tick(const RunProgress& progress) {
-  if (++ticks_ % kTicksPerFrame != 0) return;
+  if (!failure_.empty() || ++ticks_ % kTicksPerFrame != 0) return;
+  try {
+    shoot(progress);
+  } catch (const std::runtime_error& error) {
+    failure_ = error.what();
+  }
+}
+
+void Film::shoot(const RunProgress& progress) {
   const std::string text =
       fmt::format("{:6.1f} s  {}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text);
   writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
 }
 
-void Film::close() { writer_.close(); }
+void Film::close() {
+  try {
+    writer_.close();
+  } catch (const std::runtime_error& error) {
+    failure_ = error.what();
+  }
+}
 
 }  // namespace pmg::runtime

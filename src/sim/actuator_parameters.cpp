@@ -3,6 +3,9 @@
 #include <array>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "model/nearest_name.hpp"
 
 namespace pmg::sim {
 
@@ -63,12 +66,13 @@ constexpr std::array kParameters = {
 std::span<const ActuatorParameter> actuator_parameters() { return kParameters; }
 
 const ActuatorParameter& actuator_parameter(std::string_view name) {
-  std::string names;
+  std::vector<std::string> names;
   for (const ActuatorParameter& parameter : kParameters) {
     if (parameter.name == name) return parameter;
-    names += std::string(names.empty() ? "" : ", ") + std::string(parameter.name);
+    names.emplace_back(parameter.name);
   }
-  throw std::invalid_argument("no actuator parameter is called '" + std::string(name) + "'; expected one of " + names);
+  throw std::invalid_argument("no actuator parameter is called '" + std::string(name) + "'; " +
+                              model::expected_name(name, names));
 }
 
 }  // namespace pmg::sim

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "model/config_reader.hpp"
+#include "model/nearest_name.hpp"
 #include "sim/actuator_model.hpp"
 
 namespace pmg::sim {
@@ -63,7 +64,10 @@ ActuatorsByJoint read_motor_file(const std::filesystem::path& file, const model:
   for (const auto& [name, parameters] : actuators) {
     if (joints.find(name)) continue;
     model::ConfigReader reader = model::ConfigReader::from_file(file);
-    reader.map("joints").fail(name, "isn't a joint of this robot", "names of robot.yaml's `joints`");
+    const std::string nearest = model::nearest_name(name, joints.names());
+    reader.map("joints").fail(
+        name, "isn't a joint of this robot" + (nearest.empty() ? "" : "; did you mean " + nearest + "?"),
+        nearest.empty() ? "names of robot.yaml's `joints`" : "");
   }
   return actuators;
 }

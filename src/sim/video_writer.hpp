@@ -9,6 +9,9 @@
 
 namespace pmg::sim {
 
+/// Throws std::runtime_error when there is no ffmpeg that runs: to be said before hours of work, not after.
+void expect_ffmpeg();
+
 class VideoWriter {
  public:
   /// Throws std::runtime_error when there is no ffmpeg. path's ending chooses the container (mp4).
@@ -17,7 +20,8 @@ class VideoWriter {
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  /// width * height RGB triples, from the top left. Throws std::runtime_error when ffmpeg has given up.
+  /// width * height RGB triples, from the top left. Throws std::runtime_error, with ffmpeg's last line, when ffmpeg has
+  /// given up; nothing can be written after that.
   void write(std::span<const std::uint8_t> rgb);
   /// Waits for ffmpeg to finish the file. Throws std::runtime_error when it reports failure.
   void close();
@@ -27,6 +31,10 @@ class VideoWriter {
   std::size_t frame_bytes_;
   pid_t ffmpeg_ = -1;
   int socket_ = -1;
+  int words_ = -1;  ///< what ffmpeg says, a file in memory
+
+  int end();  ///< ffmpeg's exit status
+  [[noreturn]] void give_up(const char* what);
 };
 
 }  // namespace pmg::sim

@@ -135,11 +135,11 @@ TEST_F(OperatorApps, HelpHasAnExampleAndTheExitCodes) {
 
 TEST_F(OperatorApps, BadInputIsRefused) {
   for (const auto& [command, complaint] : {
-           std::pair{"pmg_send", "subcommand"},
-           std::pair{"pmg_send fly", "subcommand"},
-           std::pair{"pmg_send walk --vx 0.3", "--for is required"},
+           std::pair{"pmg_send", "a command is missing"},
+           std::pair{"pmg_send fly", "fly: unknown command"},
+           std::pair{"pmg_send walk --vx 0.3", "--for is missing"},
            std::pair{"pmg_send walk --vx fast --for 1", "--vx"},
-           std::pair{"pmg_send walk --vx nan --for 1", "must be finite"},
+           std::pair{"pmg_send walk --vx nan --for 1", "'nan' isn't a finite number"},
            std::pair{"pmg_send walk --for -1", "--for"},
            std::pair{"pmg_send stop --timeout 0", "--timeout"},
            std::pair{"pmg_send stop --lcm-url udpm://10.0.0.1:7667", "expected a multicast group"},

@@ -54,7 +54,14 @@ TEST_F(LogInfo, SaysWhoRanWhatAndWhatHappened) {
   for (const char* part : {"biped-7", "policy none", "clips/forward.csv", "walk", "temperature", "260 ticks"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
+  EXPECT_EQ(text.find("duration"), 0u) << "what happened comes first";
+  const auto place = [&](const char* part) { return text.find(part); };
+  EXPECT_LT(place("\nfaults"), place("\ndriven by"));
+  EXPECT_LT(place("\ndriven by"), place("\nrobot"));
+  EXPECT_LT(place("\nmessages"), place("\nbundle")) << "hashes come last";
+  EXPECT_EQ(text.find("\n", place("\nbundle") + 1), text.find("\n", place(run.info->bundle.c_str())));
   const auto json = to_json(summary)["runs"][0];
+  EXPECT_GT(json["driven_s"].size(), 0u) << "somebody drove";
   EXPECT_EQ(json["bundle_files"].size(), run.info->bundle_file.size());
   EXPECT_EQ(json["options"]["blend"], "gain") << "the configuration as JSON, not as text";
   EXPECT_EQ(json["modes"].size(), 8u);

@@ -177,10 +177,10 @@ TEST_F(RefusedClips, TenSecondsInTotal) {
   expect("turn.yaml", line, "period_s", "expected less than 10 s in total");
 }
 TEST_F(RefusedClips, WrongKind) {
-  expect_changed("turn.yaml", "kind: dynamic", "kind: static", "kind", "expected one of dynamic");
+  expect_changed("turn.yaml", "kind: dynamic", "kind: static", "kind", "expected dynamic");
 }
 TEST_F(RefusedClips, WrongChannel) {
-  expect_changed("bend.yaml", "channel: pitch_rad", "channel: roll_rad", "channel", "expected one of pitch_rad");
+  expect_changed("bend.yaml", "channel: pitch_rad", "channel: roll_rad", "channel", "expected pitch_rad");
 }
 TEST_F(RefusedClips, MissingClip) {
   std::filesystem::remove(copy_.file("clips/turn.yaml"));

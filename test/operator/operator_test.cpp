@@ -167,6 +167,55 @@ TEST_F(OperatorTest, OthersMayNotTakeOverWhileSomebodyDrives) {
   EXPECT_EQ(second.text(), "another source drives: gamepad");
 }
 
+TEST_F(OperatorTest, AfterAnothersCrashAWalkWaitsForTheEndOfItsLeaseAndSaysSo) {
+  other_drives();  // and is gone, without letting go: nobody calls its step() any more
+  Drive drive(mine_, "biped", forward(-0.2), {.duration_s = 1.0, .climb = true});
+  std::string waited_for;
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    progress = step(drive);
+    if (waited_for.empty()) waited_for = drive.waits_for();
+  }
+  EXPECT_EQ(progress, Progress::kReached) << drive.text();
+  EXPECT_EQ(waited_for, "gamepad");
+  EXPECT_NEAR(drive.driven_s(), 1.0, 0.011);
+}
+
+TEST_F(OperatorTest, AfterAnothersCrashACommandWaitsForTheEndOfItsLeaseAndSaysSo) {
+  other_drives();
+  Drive drive(mine_, "biped", forward(-0.2), {.duration_s = 0.2});
+  std::string waited_for;
+  while (drive.step() == Progress::kPending && !drive.driving()) {
+    network_.advance();
+    if (waited_for.empty()) waited_for = drive.waits_for();
+  }
+  EXPECT_TRUE(drive.driving()) << drive.text();
+  EXPECT_EQ(waited_for, "gamepad");
+  EXPECT_STREQ(robot_.result().driving.name.data(), "pmg_send.1");
+}
+
+TEST_F(OperatorTest, AModeIsReachedAfterAnothersCrash) {
+  other_drives();
+  EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kStand);
+  EXPECT_LT(elapsed_s_, 2.0) << "a lease of half a second, and the way down";
+}
+
+TEST_F(OperatorTest, TheWaitForALeaseIsBounded) {
+  // A source that sends every 0.4 s keeps its lease and looks like one that has crashed.
+  const auto crashed = other_drives();
+  ModeWish wish(mine_, "biped", Goal::kStand, 1.0);
+  Progress progress = Progress::kPending;
+  for (int k = 0; progress == Progress::kPending && k < 500; ++k) {
+    if (k % 40 == 0) other_.send_command("biped", forward(0.3), 0.5);
+    network_.advance();
+    progress = wish.step();
+  }
+  EXPECT_EQ(progress, Progress::kFailed);
+  EXPECT_LE(wish.elapsed_s(), 1.02);
+  EXPECT_THAT(wish.answers()[0].text, HasSubstr("another source drives: gamepad"));
+}
+
 TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
   Drive drive(mine_, "biped", forward(0.3), {.duration_s = 2.0, .climb = true});
   double fastest = 0.0;

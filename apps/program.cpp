@@ -1,0 +1,91 @@
+#include "program.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+#include "software_version.hpp"
+#include "usage.hpp"
+
+namespace pmg::apps {
+
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kInterrupted = 130;
+constexpr unsigned kPatience_s = 1;  ///< what takes longer after Ctrl-C is said
+
+std::string program_name;    // NOLINT: signal handlers reach nothing else
+std::string finishing_line;  // NOLINT
+
+void end_at_once(int /*signal*/) { _exit(kInterrupted); }
+
+void keep_in_mind(int /*signal*/) {
+  if (interrupt_requested == 0) alarm(kPatience_s);
+  interrupt_requested = 1;
+}
+
+/// The program is still at work. From here on the user may end it the hard way; not before, because one Ctrl-C can
+/// reach a program twice (timeout, for one, signals its child and then the group).
+void say_what_goes_on(int /*signal*/) {
+  const ssize_t written = write(STDERR_FILENO, finishing_line.data(), finishing_line.size());
+  static_cast<void>(written);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, end_at_once);
+}
+
+/// A hang-up that is ignored already stays so: nohup.
+void handle(int signal, void (*handler)(int)) {
+  const auto before = std::signal(signal, handler);
+  if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
+std::string version(const CLI::App& app, const std::function<std::string()>& bundle) {
+  std::string text = fmt::format("{} {}", app.get_name(), PMG_SOFTWARE_VERSION);
+  if (bundle && app.count("--robot") > 0) text += fmt::format("\nbundle {}", bundle());
+  return text;
+}
+
+int parse_and_run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::cerr << usage_error(app, error) << '\n';
+    return kBadInput;
+  }
+  return body();
+}
+
+}  // namespace
+
+void notice(std::initializer_list<int> signals, const char* finishing) {
+  finishing_line = fmt::format("{}{}: interrupted; {} (Ctrl-C again ends at once and loses that)\n",
+                               isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", program_name, finishing);
+  std::signal(SIGALRM, say_what_goes_on);
+  for (const int signal : signals) handle(signal, keep_in_mind);
+  handle(SIGHUP, keep_in_mind);
+}
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body,
+                const std::function<std::string()>& bundle) {
+  program_name = app.get_name();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, end_at_once);
+  app.set_version_flag(
+      "--version", [&] { return version(app, bundle); },
+      bundle ? "print version and revision, with --robot the bundle too, and exit"
+             : "print version and revision, and exit");  // last: --robot is known when it is called
+  try {
+    return parse_and_run(app, argc, argv, body);
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << fmt::format("{}: {}: cannot be read or written ({})\n", program_name, error.path1().string(),
+                             error.code().message());
+  } catch (const std::exception& error) {
+    std::cerr << program_name << ": " << error.what() << '\n';
+  }
+  return kBadInput;
+}
+
+}  // namespace pmg::apps

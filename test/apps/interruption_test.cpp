@@ -1,0 +1,189 @@
+// Ctrl-C in the middle of long work, as a user types it: what was done is kept and can be read back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/running_program.hpp"
+#include "apps/terminal_program.hpp"
+#include "io/log_reader.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kInterrupted = 130;
+constexpr double kPromised_s = 1.0;  ///< from Ctrl-C to the end, on a processor of its own
+
+class Interruption : public testing::Test {
+ protected:
+  Interruption() { fs::create_directories(folder_); }
+  ~Interruption() override { fs::remove_all(folder_); }
+
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  std::string scenario(double seconds) const {
+    std::ofstream(folder_ / "scenario.yaml")
+        << "name: long\nsteps:\n  - {for_s: " << seconds << ", text: stand still, mode: stand}\n";
+    return at("scenario.yaml");
+  }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(test::text_of(folder_ / name)); }
+  /// As a player would decode it; -1 when it isn't playable.
+  int frames(const std::string& film) const {
+    const std::string command = "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 '" +
+                                at(film) + "' > '" + at("frames") + "' 2>&1";
+    if (std::system(command.c_str()) != 0) return -1;
+    return std::atoi(test::text_of(folder_ / "frames").c_str());
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      ("interruption " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(Interruption, AFilmUntilCtrlCIsWholeAndTheRunIsKept) {
+  test::TerminalProgram sil(
+      "pmg_sil", {"--policy", "none", "--scenario", scenario(600.0), "--out", at("run"), "--video"}, folder_);
+  const fs::path log = folder_ / "run" / "log.lcm";
+  // Half a megabyte is about a second: more frames than the encoder holds back.
+  ASSERT_TRUE(sil.until([&] { return fs::exists(log) && fs::file_size(log) > 500'000; })) << sil.shown();
+  const test::Ended ended = sil.interrupt();
+  EXPECT_EQ(ended.exit_code, kInterrupted) << sil.shown();
+  const auto summary = json("run/summary.json");
+  EXPECT_EQ(summary["interrupted"], true);
+  EXPECT_FALSE(summary.contains("film_failure")) << summary["film_failure"];
+  const double duration_s = summary["duration_s"].get<double>();
+  EXPECT_LT(duration_s, 600.0);
+  EXPECT_EQ(frames("run/video.mp4"), static_cast<int>(std::floor(duration_s * 25.0 + 1e-6)))
+      << "25 a second, to the last";
+  int ticks = 0;
+  io::LogReader reader(log);
+  while (reader.next()) ticks += reader.channel() == "TICK" ? 1 : 0;
+  EXPECT_EQ(ticks, static_cast<int>(std::lround(duration_s * 100.0)));
+}
+
+/// A program in long work, and what its terminal shows then.
+struct LongWork {
+  const char* name;
+  const char* program;
+  std::vector<std::string> arguments;
+  const char* shows;
+  int signal = SIGINT;
+};
+
+class LongWorkTest : public Interruption, public testing::WithParamInterface<LongWork> {};
+
+TEST_P(LongWorkTest, EndsWithinASecond) {
+  std::vector<std::string> arguments = GetParam().arguments;
+  for (std::string& argument : arguments) {
+    if (argument == "OUT") argument = at("out");
+  }
+  test::TerminalProgram program(GetParam().program, arguments, folder_);
+  ASSERT_TRUE(program.shows(GetParam().shows)) << program.shown();
+  const test::Ended ended = program.interrupt(GetParam().signal);
+  EXPECT_EQ(ended.exit_code, kInterrupted) << program.shown();
+  EXPECT_LT(ended.cpu_after_s, kPromised_s);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, LongWorkTest,
+    testing::Values(LongWork{"SilOnSigterm",
+                             "pmg_sil",
+                             {"--policy", "none", "--scenario", "config/scenarios/tour.yaml", "--out", "OUT"},
+                             "/ ",
+                             SIGTERM},
+                    LongWork{"ClipsSynth", "pmg_clips", {"synth", "--out", "OUT"}, "making forward"},
+                    LongWork{"ClipsSynthOnSigterm", "pmg_clips", {"synth", "--out", "OUT"}, "making forward", SIGTERM},
+                    LongWork{"EvalPushOnSigterm",
+                             "pmg_eval",
+                             {"push", "--strengths", "0", "--trials", "400", "--jobs", "1", "--out", "OUT"},
+                             "s left",
+                             SIGTERM},
+                    LongWork{"DiagnoseRecord", "pmg_diagnose", {"--robot", "z1", "--record", "OUT"}, "excitation"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(Interruption, ClipsThatWereThereStayWhole) {
+  fs::copy("config/robots/z1/clips", folder_ / "clips");
+  const auto contents = [&] {
+    std::string all;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder_ / "clips")) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) all += file.filename().string() + "\n" + test::text_of(file);
+    return all;
+  };
+  const std::string before = contents();
+  test::TerminalProgram clips("pmg_clips", {"synth", "--out", at("clips")}, folder_);
+  ASSERT_TRUE(clips.shows("making forward"));
+  EXPECT_EQ(clips.interrupt().exit_code, kInterrupted);
+  EXPECT_EQ(contents(), before);
+
+  test::TerminalProgram invert("pmg_clips", {"invert", "--clips", at("clips")}, folder_);
+  ASSERT_TRUE(invert.shows("inverting"));
+  EXPECT_EQ(invert.interrupt().exit_code, kInterrupted);
+  EXPECT_EQ(contents(), before);
+}
+
+TEST_F(Interruption, AnEvaluationKeepsWhatIsComplete) {
+  test::TerminalProgram eval(
+      "pmg_eval", {"push", "--strengths", "0", "--trials", "400", "--jobs", "1", "--out", at("push")}, folder_);
+  ASSERT_TRUE(eval.shows("s left"));  // the first trial is over
+  const test::Ended ended = eval.interrupt();
+  EXPECT_EQ(ended.exit_code, kInterrupted) << eval.shown();
+  EXPECT_LT(ended.cpu_after_s, kPromised_s);
+  EXPECT_TRUE(fs::exists(folder_ / "push" / "report.html"));
+  EXPECT_EQ(json("push/push.json")["complete"], false);
+}
+
+/// A program of this name, found before the real one.
+class FilmTrouble : public Interruption {
+ protected:
+  /// pmg_sil for two seconds of standing, with this shell script for ffmpeg; empty: none at all.
+  int film(const std::string& script) {
+    const fs::path programs = folder_ / "programs";
+    fs::create_directories(programs);
+    if (!script.empty()) {
+      std::ofstream(programs / "ffmpeg") << "#!/bin/sh\n" << script;
+      fs::permissions(programs / "ffmpeg", fs::perms::owner_all);
+    }
+    const std::string command = "PATH='" + programs.string() + "' '" + PMG_BIN_DIR +
+                                "/pmg_sil' --policy none --scenario '" + scenario(2.0) + "' --video --out '" +
+                                at("run") + "' > '" + at("out") + "' 2> '" + at("err") + "'";
+    const int status = std::system(command.c_str());
+    err_ = test::text_of(folder_ / "err");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string err_;
+};
+
+TEST_F(FilmTrouble, WithoutFfmpegThatIsSaidBeforeAnythingIsWritten) {
+  fs::create_directories(folder_ / "run");
+  std::ofstream(folder_ / "run" / "log.lcm") << "of an earlier run";
+  EXPECT_EQ(film(""), 2);
+  EXPECT_THAT(err_, AllOf(HasSubstr("pmg_sil: video: ffmpeg doesn't start"), HasSubstr("install ffmpeg")));
+  EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
+  EXPECT_EQ(test::text_of(folder_ / "run" / "log.lcm"), "of an earlier run");
+}
+
+TEST_F(FilmTrouble, AnFfmpegThatDiesCostsTheFilmAlone) {
+  EXPECT_EQ(film("case \"$*\" in *-version*) exit 0;; esac\necho 'No space left on device' >&2\nexit 1\n"), 2);
+  EXPECT_THAT(err_, AllOf(HasSubstr("pmg_sil: video: ffmpeg stopped while writing"), HasSubstr("video.mp4"),
+                          HasSubstr("(No space left on device)"), HasSubstr("the run goes on without a film")));
+  EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
+  const auto summary = json("run/summary.json");
+  EXPECT_NEAR(summary["duration_s"].get<double>(), 2.0, 1e-9) << "to its end";
+  EXPECT_THAT(summary["film_failure"].get<std::string>(), HasSubstr("No space left"));
+  EXPECT_EQ(summary["fell"], false);
+}
+
+}  // namespace
+}  // namespace pmg

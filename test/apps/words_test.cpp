@@ -1,0 +1,172 @@
+// What every program says of itself and of a command line that is wrong: one line with the program, the word, and what
+// was probably meant.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/running_program.hpp"
+
+namespace pmg {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::StartsWith;
+
+struct Finished {
+  int exit_code;
+  std::string out, err;
+};
+
+class Words : public testing::Test {
+ protected:
+  Words() { fs::create_directories(folder_); }
+  ~Words() override { fs::remove_all(folder_); }
+
+  /// Arguments separated by blanks.
+  Finished run(const std::string& line) const {
+    std::istringstream words(line);
+    std::string program, word;
+    words >> program;
+    std::vector<std::string> arguments;
+    while (words >> word) arguments.push_back(word);
+    test::RunningProgram running(program, arguments, folder_);
+    const int exit_code = running.wait();
+    return {exit_code, running.out(), running.err()};
+  }
+  /// Refused with exactly this line, and nothing on stdout.
+  void expect_line(const std::string& command, const std::string& line) const {
+    const Finished refused = run(command);
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    EXPECT_EQ(refused.err, line + "\n") << command;
+    EXPECT_EQ(refused.out, "") << command;
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) /
+                           ("words " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+const std::vector<std::string> kPrograms = {
+    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips", "pmg_controller", "pmg_diagnose", "pmg_eval", "pmg_log",
+    "pmg_report",          "pmg_send",           "pmg_sil",   "pmg_watch"};
+
+TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
+  for (const std::string& program : kPrograms) {
+    const Finished version = run(program + " --version");
+    EXPECT_EQ(version.exit_code, 0) << program;
+    EXPECT_THAT(version.out, MatchesRegex(program + " [0-9]+\\.[0-9]+\\.[0-9]+(\\+[0-9a-f]+(-dirty)?)?\n"));
+    EXPECT_EQ(version.err, "");
+  }
+}
+
+TEST_F(Words, WhoRunsARobotTellsItsBundleToo) {
+  const Finished none = run("pmg_sil --version --robot z1 --policy none"),
+                 policy = run("pmg_sil --version --robot z1 --policy pmg");
+  EXPECT_THAT(none.out, HasSubstr("\nbundle "));
+  EXPECT_TRUE(std::regex_search(none.out, std::regex("bundle [0-9a-f]{64} "))) << none.out;
+  EXPECT_NE(none.out, policy.out) << "the policy is a part of what runs";
+  EXPECT_EQ(run("pmg_controller --robot z1 --policy none --version").out.substr(15), none.out.substr(8));
+  expect_line("pmg_sil --version --robot z2", "pmg_sil: robot 'z2' is neither known nor a folder; did you mean z1?");
+}
+
+TEST_F(Words, EveryHelpHasAnExampleAndItsExitCodesAndNoRangeOfThreeHundredDigits) {
+  for (const std::string& program : kPrograms) {
+    const Finished help = run(program + " --help");
+    EXPECT_EQ(help.exit_code, 0) << program;
+    EXPECT_THAT(help.out, HasSubstr("Example")) << program;
+    EXPECT_THAT(help.out, HasSubstr("Exit codes: 0")) << program;
+    EXPECT_THAT(help.out, HasSubstr("--version")) << program;
+    EXPECT_THAT(help.out, Not(HasSubstr("e+308"))) << program;
+    EXPECT_THAT(help.out, Not(HasSubstr("e-308"))) << program;
+  }
+}
+
+TEST_F(Words, AMistypedOptionIsNamedBesideTheOneThatWasMeant) {
+  for (const std::string& program : kPrograms) {
+    const Finished refused = run(program + " --versoin");
+    EXPECT_EQ(refused.exit_code, 2) << program;
+    EXPECT_EQ(refused.err, program + ": --versoin: unknown option; did you mean --version?\n");
+  }
+  expect_line("pmg_sil --polcy pmg", "pmg_sil: --polcy: unknown option; did you mean --policy?");
+  expect_line("pmg_sil --scenario=x.yaml --Out=x --sede 3", "pmg_sil: --Out: unknown option; did you mean --out?");
+  expect_line("pmg_calibrate_motor bench --ou x", "pmg_calibrate_motor: --ou: unknown option; did you mean --out?");
+  expect_line("pmg_sil --frobnicate", "pmg_sil: --frobnicate: unknown option (pmg_sil --help lists all)");
+  expect_line("pmg_eval push --trails 3 --out x", "pmg_eval push: --trails: unknown option; did you mean --trials?");
+}
+
+TEST_F(Words, AnOptionOfAnotherCommandIsSaidToBeOne) {
+  expect_line("pmg_log info x --csv y", "pmg_log info: --csv: is an option of pmg_log export");
+  expect_line("pmg_clips --out x synth", "pmg_clips synth: --out: belongs after synth");
+}
+
+TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
+  expect_line("pmg_log inof out", "pmg_log: inof: unknown command; did you mean info?");
+  expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
+  expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
+  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert");
+  expect_line(
+      "pmg_clips",
+      "pmg_clips: a command is missing; expected one of synth, show, invert (pmg_clips --help shows an example)");
+}
+
+TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
+  expect_line("pmg_clips synth",
+              "pmg_clips synth: --out is missing: directory for the clips (pmg_clips synth --help shows an example)");
+  expect_line("pmg_clips show again",
+              "pmg_clips show: 'again' is one argument too many (pmg_clips show --help shows an example)");
+  expect_line("pmg_sil --robot", "pmg_sil: --robot: its value is missing");
+  expect_line("pmg_sil --seed 1 --seed 2", "pmg_sil: --seed: is given more than once; expected it once");
+  expect_line("pmg_sil --video --realtime", "pmg_sil: --video can't be given together with --realtime");
+  expect_line("pmg_sil --excitation x", "pmg_sil: --excitation needs --bench");
+}
+
+TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
+  for (const char* value : {"-1", "0", "nan", "inf", "1e999", "long", "1s"}) {
+    expect_line(std::string("pmg_send walk --for ") + value,
+                std::string("pmg_send walk: --for: '") + value + "' isn't a number above 0");
+  }
+  for (const char* value : {"nan", "inf", "fast"}) {
+    expect_line(std::string("pmg_send walk --for 1 --vx ") + value,
+                std::string("pmg_send walk: --vx: '") + value + "' isn't a finite number");
+  }
+  expect_line("pmg_controller --hal sil --duration nan", "pmg_controller: --duration: 'nan' isn't a number above 0");
+  expect_line("pmg_eval gait --out x --jobs 0", "pmg_eval gait: --jobs: '0' isn't a number from 1 to 1024");
+  expect_line("pmg_diagnose --step 1", "pmg_diagnose: --step: '1' isn't a number from 1e-05 to 0.01");
+  expect_line("pmg_sil --seed many", "pmg_sil: --seed: 'many' isn't a whole number of at least 0");
+  expect_line("pmg_sil --blend papre", "pmg_sil: --blend: 'papre' isn't known; did you mean paper?");
+  expect_line("pmg_sil --blend both", "pmg_sil: --blend: 'both' isn't known; expected one of gain, paper");
+}
+
+TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
+  const std::string stand = " --scenario config/scenarios/stand.yaml --out " + (folder_ / "out").string();
+  expect_line("pmg_sil --policy none --robot Z1" + stand,
+              "pmg_sil: robot 'Z1' is neither known nor a folder; did you mean z1?");
+  EXPECT_THAT(run("pmg_sil --policy pgm" + stand).err, HasSubstr("did you mean pmg?"));
+  expect_line("pmg_sil --policy none --scenario config/scenarios/tuor.yaml --out x",
+              "pmg_sil: config/scenarios/tuor.yaml: there is no such file; did you mean config/scenarios/tour.yaml?");
+  expect_line("pmg_calibrate_motor --make-excitation --robot z1 --joint left_kne --out " + (folder_ / "out").string(),
+              "pmg_calibrate_motor: --joint left_kne: z1 has no such joint; did you mean left_knee?");
+  std::ofstream(folder_ / "s.yaml") << "name: x\nsteps:\n  - {for_s: 1, txt: a}\n";
+  EXPECT_THAT(run("pmg_sil --policy none --scenario " + (folder_ / "s.yaml").string() + " --out x").err,
+              HasSubstr("s.yaml:3:"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {
+  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("the one backend of this build"));
+  expect_line("pmg_controller --hal can",
+              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+  expect_line("pmg_controller --hal sli", "pmg_controller: --hal: 'sli' isn't known; did you mean sil?");
+}
+
+}  // namespace
+}  // namespace pmg

@@ -1,0 +1,62 @@
+// Which name somebody meant.
+#include "model/nearest_name.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace pmg::model {
+namespace {
+
+TEST(EditDistance, CountsLettersInsertedLeftOutReplacedAndSwapped) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("abc", ""), 3u);
+  EXPECT_EQ(edit_distance("info", "info"), 0u);
+  EXPECT_EQ(edit_distance("inof", "info"), 1u) << "neighbours swapped";
+  EXPECT_EQ(edit_distance("polcy", "policy"), 1u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("ca", "abc"), 3u) << "the restricted distance: a swapped pair is not edited again";
+  EXPECT_EQ(edit_distance("Z1", "z1"), 0u);
+}
+
+TEST(NearestName, IsTheOneWithTheFewestEdits) {
+  const std::vector<std::string> joints = {"left_knee", "right_knee", "left_hip_yaw", "waist_yaw"};
+  EXPECT_EQ(nearest_name("left_kne", joints), "left_knee");
+  EXPECT_EQ(nearest_name("lfet_knee", joints), "left_knee");
+  EXPECT_EQ(nearest_name("rigth_knee", joints), "right_knee");
+  EXPECT_EQ(nearest_name("WAIST_YAW", joints), "waist_yaw");
+}
+
+TEST(NearestName, IsNoneWhenNothingIsNear) {
+  EXPECT_EQ(nearest_name("elbow", {"left_knee", "waist_yaw"}), "");
+  EXPECT_EQ(nearest_name("", {"a", "b"}), "");
+  EXPECT_EQ(nearest_name("a", {"b"}), "") << "every letter replaced is another name";
+  EXPECT_EQ(nearest_name("x", {}), "");
+}
+
+TEST(NearestName, ABeginningOfOneNameAloneIsNear) {
+  EXPECT_EQ(nearest_name("calib", {"calibration", "clips"}), "calibration");
+  EXPECT_EQ(nearest_name("left", {"left_knee", "left_ankle_pitch"}), "");
+}
+
+TEST(ExpectedName, SaysWhatIsThereWhenNothingIsNear) {
+  EXPECT_EQ(expected_name("inof", {"info", "export"}), "did you mean info?");
+  EXPECT_EQ(expected_name("zzz", {"info", "export"}), "expected one of info, export");
+  EXPECT_EQ(expected_name("zzz", {"info"}), "expected info");
+}
+
+TEST(NearestFile, LooksInTheSameFolderAtTheSameEnding) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "nearest_file";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "tour.yaml") << "x";
+  std::ofstream(folder / "tuor.txt") << "x";
+  EXPECT_EQ(nearest_file(folder / "tuor.yaml"), folder / "tour.yaml");
+  EXPECT_EQ(nearest_file(folder / "stand.yaml"), "");
+  EXPECT_EQ(nearest_file(folder / "walk.yaml"), "") << "an ending in common is nothing in common";
+  EXPECT_EQ(nearest_file(folder / "absent" / "tour.yaml"), "");
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace pmg::model
