@@ -243,6 +243,7 @@ std::string KeyboardDriver::idle_text() const {
   if (now_ns() - heard->status_heard_ns > kSilent_ns) return "its controller is no longer heard";
   const std::string& other = heard->status->driving_source;
   if (!other.empty() && other != source_.name()) return "another source drives: " + other;
+  if (held_back_) return kRises;
   return *mode_ == Modes::STAND ? "stands; a key drives it" : "a key makes it stand up and walk";
 }
 
