@@ -12,33 +12,30 @@
 
 namespace pmg::apps {
 
-/// For the main thread.
+/// For the main thread; pictures are drawn in one of its own.
 class DrivingWindow {
  public:
   /// Opens the window and drives the controller of this name over the network, as any operator does. Throws
   /// std::runtime_error when there is no window or no network to be had.
   DrivingWindow(const mjModel* model, const std::string& robot, const std::string& url)
       : viewer_(model, {.title = "PMG: " + robot, .on_key = [this](const sim::ViewerKey& key) { take(key); }}),
-        keyboard_(url, robot) {
-    for (const std::string& line : ops::key_lines(ops::KeyReport::kPressAndRelease, "Closing the window ends.")) {
-      keys_ += (keys_.empty() ? "" : "\n") + line;
-    }
-  }
+        keyboard_(url, robot) {}
 
-  /// One frame of where the robot is, at most thirty a second; and what was typed meanwhile.
-  void draw(runtime::SimulatedRobot& robot) {
-    std::this_thread::sleep_until(next_);
-    next_ = std::chrono::steady_clock::now() + kFrame;
-    robot.take(pose_);
-    const ops::DrivingTable table = keyboard_.table();
-    viewer_.set_panel({.labels = table.labels, .values = table.values, .bottom = keys_});
-    if (pose_.count > 0) viewer_.show({pose_.qpos.data(), pose_.count}, "", pose_.rope);
+  /// From now on the window shows where the robot is, at most thirty times a second. Keeps a reference.
+  void show(runtime::SimulatedRobot& robot) {
+    viewer_.release();  // pictures are the painter's from now on
+    painter_ = std::jthread([this, &robot](const std::stop_token& stop) { paint(robot, stop); });
+  }
+  /// What was typed meanwhile; to be called every 10 ms or so, however slow a picture is.
+  void listen() {
+    viewer_.poll();
     keyboard_.listen();
   }
   bool closed() const { return viewer_.closed(); }
 
   /// Velocity to zero, then Stand; returns when that is so, or after kLongestCalm.
   void let_go() {
+    keyboard_.listen();
     keyboard_.let_go();
     const auto end = std::chrono::steady_clock::now() + kLongestCalm;
     while (!keyboard_.gone() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kPoll);
@@ -47,6 +44,19 @@ class DrivingWindow {
  private:
   static constexpr std::chrono::milliseconds kFrame{33}, kPoll{10}, kLongestCalm{2500};
 
+  void paint(runtime::SimulatedRobot& robot, const std::stop_token& stop) {
+    const ops::DrivingTable keys = ops::key_table();
+    runtime::PoseSample pose;
+    for (auto next = std::chrono::steady_clock::now(); !stop.stop_requested();) {
+      std::this_thread::sleep_until(next);
+      next = std::chrono::steady_clock::now() + kFrame;
+      robot.take(pose);
+      const ops::DrivingTable table = keyboard_.table();
+      if (pose.count == 0) continue;
+      viewer_.draw({pose.qpos.data(), pose.count}, "", pose.rope, {table.labels, table.values, keys.labels, keys.values});
+    }
+    viewer_.withdraw();
+  }
   void take(const sim::ViewerKey& key) {
     using What = sim::ViewerKey::What;
     if (key.what == What::kPressed) keyboard_.press(key.name, key.shift);
@@ -57,9 +67,7 @@ class DrivingWindow {
 
   sim::Viewer viewer_;
   ops::KeyboardThread keyboard_;
-  runtime::PoseSample pose_;
-  std::string keys_;
-  std::chrono::steady_clock::time_point next_{};
+  std::jthread painter_;  // after what it uses
 };
 
 }  // namespace pmg::apps

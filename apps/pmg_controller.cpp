@@ -204,7 +204,8 @@ struct Stage {
 /// Waits until somebody or something ends the run.
 void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
                const Stage& stage, Console& console, const std::atomic<bool>& bench_over) {
-  constexpr long kPoll_ms = 20;
+  constexpr long kPoll_ms = 20, kKeys_ms = 5;
+  if (stage.window != nullptr) stage.window->show(stage.robot);
   const auto start = std::chrono::steady_clock::now();
   const auto expired = [&] {
     return arguments.duration_s &&
@@ -212,10 +213,10 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   };
   bool signalled = false;
   while (!signalled && !expired() && !bench_over && controller.failure().empty()) {
-    signalled = signals.wait_ms(stage.window == nullptr ? kPoll_ms : 1);
+    signalled = signals.wait_ms(stage.window == nullptr ? kPoll_ms : kKeys_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
     if (stage.window == nullptr) continue;
-    stage.window->draw(stage.robot);
+    stage.window->listen();
     if (!stage.window->closed()) continue;
     spdlog::info("the window was closed: velocity to zero first");
     return stage.window->let_go();

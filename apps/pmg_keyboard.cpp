@@ -50,7 +50,7 @@ int drive(const Arguments& arguments) {
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
   ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, session_number(), clock);
-  const std::vector<std::string> keys = ops::key_lines(ops::KeyReport::kPressOnly, "Ctrl-C ends.");
+  const std::vector<std::string> keys = ops::key_lines();
   {
     apps::RawTerminal terminal;
     apps::notice({SIGINT, SIGTERM, SIGHUP, SIGQUIT});

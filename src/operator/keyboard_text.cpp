@@ -22,6 +22,21 @@ struct Row {
   std::string label, value;
 };
 
+constexpr std::array<std::pair<const char*, const char*>, 12> kMeanings = {{
+    {"W S", "forwards, backwards (or arrows)"},
+    {"A D", "turn left, right (or arrows)"},
+    {"Q E", "step to the left, right"},
+    {"Shift", "faster"},
+    {"Space", "velocity to zero"},
+    {"Esc", "DAMPS AT ONCE (Backspace, too)"},
+    {"I K", "rise, squat"},
+    {"O U", "bend forwards, back"},
+    {"J L", "lean left, right"},
+    {"N", "upright again"},
+    {"Enter", "stand, after a stop, too"},
+    {"H G R", "hoist: lift, set down; reset a fault"},
+}};
+
 std::string command_row(const char* label, const double* u) {
   std::string row = fmt::format("{:<10}", label);
   for (const Channel channel : kOrder) row += fmt::format("{:+10.2f}", u[channel]);
@@ -32,6 +47,10 @@ std::string upper_case(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); });
   return text;
+}
+
+std::string time_words(double time_s) {
+  return time_s < 1.0 ? fmt::format("{:.0f} ms", time_s * 1e3) : fmt::format("{:.0f} s", time_s);
 }
 
 std::vector<Row> head_rows(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
@@ -45,10 +64,10 @@ std::vector<Row> status_rows(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
   const std::string who = status.driving_source.empty() ? "nobody" : printable(status.driving_source);
   const std::string age =
-      status.command_age_s < 0.0 ? "" : fmt::format(", last command {:.0f} ms old", status.command_age_s * 1e3);
+      status.command_age_s < 0.0 ? "" : fmt::format(", last command {} old", time_words(status.command_age_s));
   std::vector<Row> rows = {{"limited", limits_text(news)},
                            {"fault", status.fault.empty() ? "none" : printable(status.fault)},
-                           {"driven by", fmt::format("{}{}; heard {:.0f} ms ago", who, age, silence_s * 1e3)}};
+                           {"driven by", fmt::format("{}{}; heard {} ago", who, age, time_words(silence_s))}};
   if (news.info) {
     rows.push_back(
         {"policy", fmt::format("{}, backend {}", printable(news.info->policy), printable(news.info->backend))});
@@ -109,19 +128,28 @@ DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, 
   return table;
 }
 
-std::vector<std::string> key_lines(KeyReport report, const std::string& closing) {
-  std::vector<std::string> lines = {
-      "W S   forwards, backwards (or arrows)     I K   rise, squat",
-      "A D   turn left, right (or arrows)        O U   bend forwards, back",
-      "Q E   step to the left, right             J L   lean left, right",
-      "Shift faster      Space  velocity to zero N     upright again",
-      "Esc   DAMPS AT ONCE (so does Backspace)   Enter stand (after a stop, too)",
-      "R     reset a fault                       H G   hoist: lift, set down",
-  };
-  lines.push_back(report == KeyReport::kPressAndRelease
-                      ? "A key that is let go brings velocity to zero, then Stand. " + closing
-                      : "Each press is a step; a second without any key brings velocity to zero. " + closing);
+std::vector<std::string> key_lines() {
+  std::vector<std::string> lines;
+  constexpr std::size_t kRows = (kMeanings.size() + 1) / 2;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    lines.push_back(fmt::format("{:<6}{:<36}", kMeanings[i].first, kMeanings[i].second));
+    if (i + kRows < kMeanings.size()) {
+      lines.back() += fmt::format("{:<6}{}", kMeanings[i + kRows].first, kMeanings[i + kRows].second);
+    }
+  }
+  lines.emplace_back("Each press is a step; a second without any key brings velocity to zero. Ctrl-C ends.");
   return lines;
+}
+
+DrivingTable key_table() {
+  DrivingTable table;
+  for (const auto& [keys, meaning] : kMeanings) {
+    table.labels += std::string(keys) + "\n";
+    table.values += std::string(meaning) + "\n";
+  }
+  table.labels += "let go";
+  table.values += "velocity to zero, then Stand";
+  return table;
 }
 
 }  // namespace pmg::ops

@@ -23,7 +23,8 @@ DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, 
 /// robot was heard.
 std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
 
-/// One line each. closing: how this program is ended.
-std::vector<std::string> key_lines(KeyReport report, const std::string& closing);
+/// What the keys do: for a terminal, and for a window.
+std::vector<std::string> key_lines();
+DrivingTable key_table();
 
 }  // namespace pmg::ops

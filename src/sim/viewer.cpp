@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
-#include <utility>
 
 #include "sim/scene.hpp"
 
@@ -94,19 +93,23 @@ struct Viewer::Impl {
   Impl(const mjModel* mj_model, const ViewerOptions& options)
       : model(mj_model), on_key(options.on_key), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
     mjr_defaultContext(&context);
-    mjr_makeContext(model, &context, mjFONTSCALE_150);
+    mjr_makeContext(model, &context, on_key ? mjFONTSCALE_100 : mjFONTSCALE_150);  // a panel says more than a caption
     mjr_setBuffer(mjFB_WINDOW, &context);
     mjv_defaultCamera(&camera);
     camera.distance = 3.2;
     camera.azimuth = 216.0;  // from the robot's front and left, as in films
     camera.elevation = -9.0;
+    measure();
     glfwSetWindowUserPointer(window.get(), this);
     glfwSetKeyCallback(window.get(), take_key);
     glfwSetWindowFocusCallback(window.get(), take_focus);
     glfwSetScrollCallback(window.get(), on_scroll);
     glfwSetCursorPosCallback(window.get(), on_move);
   }
-  ~Impl() { mjr_freeContext(&context); }
+  ~Impl() {
+    glfwMakeContextCurrent(window.get());
+    mjr_freeContext(&context);
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -132,8 +135,7 @@ struct Viewer::Impl {
   }
   static void on_scroll(GLFWwindow* handle, double /*x*/, double y) {
     constexpr double kPerNotch = -0.05;
-    Impl& viewer = of(handle);
-    mjv_moveCamera(viewer.model, mjMOUSE_ZOOM, 0.0, kPerNotch * y, &viewer.scene.last(), &viewer.camera);
+    of(handle).ask_for({mjMOUSE_ZOOM, 0.0, kPerNotch * y});
   }
   static void on_move(GLFWwindow* handle, double x, double y) {
     Impl& viewer = of(handle);
@@ -143,14 +145,37 @@ struct Viewer::Impl {
     viewer.mouse_x = x;
     viewer.mouse_y = y;
     const auto pressed = [handle](int button) { return glfwGetMouseButton(handle, button) == GLFW_PRESS; };
-    const auto move = [&](mjtMouse how) {
-      mjv_moveCamera(viewer.model, how, dx, dy, &viewer.scene.last(), &viewer.camera);
-    };
     if (pressed(GLFW_MOUSE_BUTTON_LEFT)) {
-      move(mjMOUSE_ROTATE_V);
+      viewer.ask_for({mjMOUSE_ROTATE_V, dx, dy});
     } else if (pressed(GLFW_MOUSE_BUTTON_RIGHT)) {
-      move(mjMOUSE_MOVE_V);
+      viewer.ask_for({mjMOUSE_MOVE_V, dx, dy});
     }
+  }
+
+  struct CameraMove {
+    mjtMouse how;
+    double dx, dy;
+  };
+  /// For whoever draws.
+  void ask_for(const CameraMove& move) {
+    const std::lock_guard lock(mutex);
+    moves.push_back(move);
+  }
+  void move_camera() {
+    const std::lock_guard lock(mutex);
+    for (const CameraMove& move : moves) mjv_moveCamera(model, move.how, move.dx, move.dy, &scene.last(), &camera);
+    moves.clear();
+  }
+  /// The window's, known to its main thread.
+  void measure() {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window.get(), &width, &height);
+    const std::lock_guard lock(mutex);
+    framebuffer = {0, 0, width, height};
+  }
+  mjrRect measured() {
+    const std::lock_guard lock(mutex);
+    return framebuffer;
   }
 
   /// Moves with the robot, and leaves what the user shifted as it is.
@@ -165,7 +190,6 @@ struct Viewer::Impl {
 
   const mjModel* model;
   std::function<void(const ViewerKey&)> on_key;
-  ViewerPanel panel;
   Window window;  // before everything that lives in its OpenGL context
   std::unique_ptr<mjData, FreeData> data;
   Scene scene;
@@ -175,6 +199,9 @@ struct Viewer::Impl {
   double followed[3] = {};
   bool first = true;
   mjrRect viewport{};
+  std::mutex mutex;  // of what the main thread tells the one that draws
+  std::vector<CameraMove> moves;
+  mjrRect framebuffer{};
 };
 
 Viewer::Viewer(const mjModel* model, const ViewerOptions& options) : impl_(std::make_unique<Impl>(model, options)) {}
@@ -182,27 +209,41 @@ Viewer::Viewer(const mjModel* model, const ViewerOptions& options) : impl_(std::
 Viewer::~Viewer() = default;
 
 void Viewer::show(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope) {
-  Impl& v = *impl_;
   if (closed()) return;
+  draw(qpos, text, rope, {});
+  poll();
+}
+
+void Viewer::release() { glfwMakeContextCurrent(nullptr); }
+
+void Viewer::withdraw() { glfwMakeContextCurrent(nullptr); }
+
+void Viewer::poll() {
+  glfwPollEvents();
+  impl_->measure();
+}
+
+void Viewer::draw(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope,
+                  const ViewerPanel& panel) {
+  Impl& v = *impl_;
+  if (glfwGetCurrentContext() != v.window.get()) glfwMakeContextCurrent(v.window.get());
   std::copy_n(qpos.begin(), std::min(qpos.size(), static_cast<std::size_t>(v.model->nq)), v.data->qpos);
   mj_kinematics(v.model, v.data.get());
   mj_comPos(v.model, v.data.get());
   mj_camlight(v.model, v.data.get());
+  v.move_camera();
   v.follow();
-  glfwGetFramebufferSize(v.window.get(), &v.viewport.width, &v.viewport.height);
+  v.viewport = v.measured();
   mjr_render(v.viewport, &v.scene.update(v.data.get(), v.camera, rope), &v.context);
-  if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, v.viewport, text.c_str(), nullptr, &v.context);
   const auto overlay = [&v](int corner, const std::string& left, const std::string& right) {
     if (left.empty()) return;
     mjr_overlay(mjFONT_NORMAL, corner, v.viewport, left.c_str(), right.empty() ? nullptr : right.c_str(), &v.context);
   };
-  overlay(mjGRID_TOPLEFT, v.panel.labels, v.panel.values);
-  overlay(mjGRID_BOTTOMLEFT, v.panel.bottom, "");
+  overlay(mjGRID_TOPLEFT, text, "");
+  overlay(mjGRID_TOPLEFT, panel.labels, panel.values);
+  overlay(mjGRID_BOTTOMLEFT, panel.bottom_labels, panel.bottom_values);
   glfwSwapBuffers(v.window.get());
-  glfwPollEvents();
 }
-
-void Viewer::set_panel(ViewerPanel panel) { impl_->panel = std::move(panel); }
 
 bool Viewer::closed() const { return glfwWindowShouldClose(impl_->window.get()) == GLFW_TRUE; }
 

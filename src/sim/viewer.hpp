@@ -31,16 +31,16 @@ struct ViewerKey {
   bool shift = false;
 };
 
-/// Text beside the picture, until it is set anew.
+/// Text beside the picture.
 struct ViewerPanel {
-  std::string labels, values;  ///< two columns, top left; as many lines in both
-  std::string bottom;          ///< bottom left
+  std::string labels, values;                ///< two columns, top left; as many lines in both
+  std::string bottom_labels, bottom_values;  ///< likewise, bottom left
 };
 
 struct ViewerOptions {
   int width = 1280, height = 800;  ///< of the window, in screen coordinates
   std::string title = "PMG";
-  std::function<void(const ViewerKey&)> on_key{};  ///< called from show(); then Esc and q don't close
+  std::function<void(const ViewerKey&)> on_key{};  ///< called from show() or poll(); then Esc and q don't close
 };
 
 /// Belongs to the main thread, as the window system wants it. Draws from a copy of the positions, so the simulation may
@@ -56,7 +56,15 @@ class Viewer {
   /// One frame: the robot at qpos (the model's nq values), text over the top left corner. Handles mouse and keys; waits
   /// for the screen's refresh where the driver does. Does nothing once closed.
   void show(std::span<const double> qpos, const std::string& text = "", const std::optional<Rope>& rope = std::nullopt);
-  void set_panel(ViewerPanel panel);
+
+  /// show() in its two halves, for a window whose keys must not wait for its pictures. After release() one other thread
+  /// draws, always the same, and ends with withdraw(); the main thread polls.
+  void release();
+  void poll();
+  void draw(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope,
+            const ViewerPanel& panel);
+  void withdraw();
+
   bool closed() const;  ///< by its user
 
   /// The last frame without its text: RGB triples from the bottom left.
