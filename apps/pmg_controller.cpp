@@ -46,8 +46,9 @@ recorded. It must hang clear of the ground with its base held fast. Stops, fault
 was recorded whole until then is kept; nothing begins again by itself.
 
 Example:
-  pmg_controller --hal sil --gantry --robot z1 --log out/first
+  pmg_controller --hal sil --robot z1 --log out/first
   pmg_send walk --robot z1 --vx 0.4 --for 5
+  pmg_controller --hal sil --viewer
   pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
 
 Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
