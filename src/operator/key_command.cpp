@@ -53,7 +53,7 @@ std::optional<Key> key_named(std::string_view name) noexcept {
 }
 
 void KeyCommand::press(Key key, bool fast, std::int64_t now_ns) noexcept {
-  pressed_ns_ = now_ns;
+  pressed_ns_ = sign_ns_ = now_ns;
   newest_ = key;
   if (key == Key::kRest) rest();
   if (key == Key::kUpright) upright();
@@ -69,14 +69,17 @@ void KeyCommand::repeat(Key key, bool fast, std::int64_t now_ns) noexcept {
   Held& held = held_[static_cast<std::size_t>(key)];
   if (!held.down) return;
   held.repeats = true;
-  held.seen_ns = now_ns;
+  held.seen_ns = sign_ns_ = now_ns;
   for (Held& other : held_) other.fast = fast;  // Shift is held or not, for all of them
   if (!bends(key) || now_ns - stepped_ns_ < kBendPeriod_ns) return;
   stepped_ns_ = now_ns;
   bend(key);
 }
 
-void KeyCommand::release(Key key) noexcept { held_[static_cast<std::size_t>(key)].down = false; }
+void KeyCommand::release(Key key, std::int64_t now_ns) noexcept {
+  held_[static_cast<std::size_t>(key)].down = false;
+  sign_ns_ = now_ns;
+}
 
 void KeyCommand::release_all() noexcept {
   for (Held& held : held_) held.down = false;
@@ -110,7 +113,8 @@ void KeyCommand::forget_lost(std::int64_t now_ns) noexcept {
   for (std::size_t k = 0; k < kKeys; ++k) {
     Held& held = held_[k];
     const bool repeater = held.repeats && newest_ == static_cast<Key>(k);
-    if (held.down && now_ns - held.seen_ns > (repeater ? kRepeatLost_ns : kUnconfirmed_ns)) held.down = false;
+    const bool lost = repeater ? now_ns - held.seen_ns > kRepeatLost_ns : now_ns - sign_ns_ > kUnconfirmed_ns;
+    if (lost) held.down = false;
   }
 }
 

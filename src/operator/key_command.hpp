@@ -52,8 +52,9 @@ class KeyCommand {
   /// A key that repeats by itself and stops to do so without being let go: its release was lost. Keyboards repeat
   /// 10 to 40 times a second.
   static constexpr std::int64_t kRepeatLost_ns = 400'000'000;
-  /// Only the last key repeats. One that can't show that it is still held counts as let go after so long.
-  static constexpr std::int64_t kUnconfirmed_ns = 5'000'000'000;
+  /// Only the last key repeats. One that can't show that it is still held counts as let go so long after the last sign
+  /// of any key.
+  static constexpr std::int64_t kUnconfirmed_ns = 10'000'000'000;
   static constexpr std::int64_t kDeaf_ns = 300'000'000;  ///< a window that doesn't look at keys for so long hears none
 
   explicit KeyCommand(KeyReport report) : report_(report) {}
@@ -63,7 +64,7 @@ class KeyCommand {
   void press(Key key, bool fast, std::int64_t now_ns) noexcept;
   void repeat(Key key, bool fast, std::int64_t now_ns) noexcept;  ///< of a key that is held
   void press_other() noexcept { newest_.reset(); }                ///< of a key that means nothing
-  void release(Key key) noexcept;
+  void release(Key key, std::int64_t now_ns) noexcept;
   void release_all() noexcept;                                          ///< the window is no longer listened to
   void listen(std::int64_t now_ns) noexcept { listened_ns_ = now_ns; }  ///< a window looked at its keys
   void rest() noexcept;     ///< velocity to zero; keys that are held must be pressed anew
@@ -90,7 +91,7 @@ class KeyCommand {
   std::array<Held, kKeys> held_{};
   std::optional<Key> newest_;
   Command command_;
-  std::int64_t presses_ = 0, pressed_ns_ = 0, stepped_ns_ = 0, listened_ns_ = 0;
+  std::int64_t presses_ = 0, pressed_ns_ = 0, stepped_ns_ = 0, listened_ns_ = 0, sign_ns_ = 0;
 };
 
 }  // namespace pmg::ops

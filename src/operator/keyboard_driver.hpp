@@ -36,7 +36,7 @@ class KeyboardDriver {
   void press(Key key, bool fast);
   void repeat(Key key, bool fast) { keys_.repeat(key, fast, now_ns()); }
   void press_other() noexcept { keys_.press_other(); }
-  void release(Key key) noexcept { keys_.release(key); }
+  void release(Key key) { keys_.release(key, now_ns()); }
   void release_all() noexcept { keys_.release_all(); }
   void listen() noexcept { keys_.listen(now_ns()); }
 
