@@ -51,6 +51,7 @@ class PseudoTerminal {
     return write(master_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size());
   }
   void send(int signal) const { kill(child_, signal); }
+  pid_t id() const { return child_; }  ///< of its process group too
   /// What it has written, newest picture last; reads what is there.
   const std::string& text() {
     std::array<char, 4096> bytes{};

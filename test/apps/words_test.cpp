@@ -56,8 +56,9 @@ class Words : public testing::Test {
 };
 
 const std::vector<std::string> kPrograms = {
-    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips", "pmg_controller", "pmg_diagnose", "pmg_eval", "pmg_log",
-    "pmg_report",          "pmg_send",           "pmg_sil",   "pmg_watch"};
+    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips",    "pmg_controller",
+    "pmg_diagnose",        "pmg_eval",           "pmg_keyboard", "pmg_log",
+    "pmg_report",          "pmg_send",           "pmg_sil",      "pmg_watch"};
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {
