@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "s left",
                              SIGTERM},
                     LongWork{"DiagnoseRecord", "pmg_diagnose", {"--robot", "z1", "--record", "OUT"}, "excitation"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_F(Interruption, ClipsThatWereThereStayWhole) {
   fs::copy("config/robots/z1/clips", folder_ / "clips");
