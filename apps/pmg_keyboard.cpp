@@ -53,7 +53,7 @@ int drive(const Arguments& arguments) {
   const std::vector<std::string> keys = ops::key_lines();
   {
     apps::RawTerminal terminal;
-    apps::notice({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
+    apps::notice({SIGINT, SIGTERM, SIGHUP, SIGQUIT}, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
     ops::TerminalKeys decoder;
     std::int64_t picture_at_ns = 0;

@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
       ->check(apps::positive());
   app.add_flag("--json", arguments.json, "print JSON, an object a line");
   return apps::run_program(app, argc, argv, [&]() -> int {
-    apps::notice({SIGINT, SIGTERM});
+    apps::notice({SIGINT, SIGTERM}, nullptr);
     std::signal(SIGPIPE, SIG_IGN);  // pmg_watch | head
     Watch watch(arguments);
     return arguments.once ? watch.once() : watch.forever();

@@ -62,9 +62,13 @@ int parse_and_run(CLI::App& app, int argc, char** argv, const std::function<int(
 }  // namespace
 
 void notice(std::initializer_list<int> signals, const char* finishing) {
-  finishing_line = fmt::format("{}{}: interrupted; {} (Ctrl-C again ends at once and loses that)\n",
-                               isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", program_name, finishing);
-  std::signal(SIGALRM, say_what_goes_on);
+  if (finishing == nullptr) {
+    std::signal(SIGALRM, SIG_IGN);
+  } else {
+    finishing_line = fmt::format("{}{}: interrupted; {} (Ctrl-C again ends at once and loses that)\n",
+                                 isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", program_name, finishing);
+    std::signal(SIGALRM, say_what_goes_on);
+  }
   for (const int signal : signals) handle(signal, keep_in_mind);
   handle(SIGHUP, keep_in_mind);
 }

@@ -13,7 +13,8 @@ inline volatile std::sig_atomic_t interrupt_requested = 0;
 
 /// From now on these signals only set interrupt_requested. SIGHUP does the same unless it is ignored (nohup). A program
 /// that is not done a second later says on stderr what it is doing, and that the signal once more ends it at once.
-/// finishing: as in "closing the film"; must live as long as the program.
+/// finishing: as in "closing the film"; null for a program that is done in an instant or that nothing may cut short (a
+/// terminal to be restored): it says nothing, and more signals change nothing.
 void notice(std::initializer_list<int> signals, const char* finishing = "writing what was done until now");
 
 /// Adds --version, parses, then runs the body, whose exit code it returns; 0 after --help and --version, 2 and a line

@@ -42,10 +42,9 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   if (!fs::exists(file)) {
     const std::string meant = model::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
-        meant.empty()
-            ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none", named_by,
-                          name, file.string())
-            : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
+        meant.empty() ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none",
+                                    named_by, name, file.string())
+                      : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
   }
   return file;
 }
@@ -138,7 +137,8 @@ LoadedControl load_control(const ControlSetup& setup) {
 }
 
 std::string told_bundle(const ControlSetup& setup) {
-  return fmt::format("{} (robot {}, policy {})", load_control(setup).bundle, setup.robot, setup.policy);
+  const LoadedControl loaded = load_control(setup);
+  return fmt::format("{} (robot {}, policy {})", loaded.bundle, loaded.robot.name, loaded.policy_name);
 }
 
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/interrupted_program.hpp"
 #include "apps/running_program.hpp"
-#include "apps/terminal_program.hpp"
 #include "io/log_reader.hpp"
 
 namespace pmg {
@@ -51,13 +51,13 @@ class Interruption : public testing::Test {
 };
 
 TEST_F(Interruption, AFilmUntilCtrlCIsWholeAndTheRunIsKept) {
-  test::TerminalProgram sil(
-      "pmg_sil", {"--policy", "none", "--scenario", scenario(600.0), "--out", at("run"), "--video"}, folder_);
+  test::PseudoTerminal sil("pmg_sil",
+                           {"--policy", "none", "--scenario", scenario(600.0), "--out", at("run"), "--video"});
   const fs::path log = folder_ / "run" / "log.lcm";
   // Half a megabyte is about a second: more frames than the encoder holds back.
-  ASSERT_TRUE(sil.until([&] { return fs::exists(log) && fs::file_size(log) > 500'000; })) << sil.shown();
-  const test::Ended ended = sil.interrupt();
-  EXPECT_EQ(ended.exit_code, kInterrupted) << sil.shown();
+  ASSERT_TRUE(test::until(sil, [&] { return fs::exists(log) && fs::file_size(log) > 500'000; })) << sil.text();
+  const test::Ended ended = test::interrupt(sil);
+  EXPECT_EQ(ended.exit_code, kInterrupted) << sil.text();
   const auto summary = json("run/summary.json");
   EXPECT_EQ(summary["interrupted"], true);
   EXPECT_FALSE(summary.contains("film_failure")) << summary["film_failure"];
@@ -87,10 +87,10 @@ TEST_P(LongWorkTest, EndsWithinASecond) {
   for (std::string& argument : arguments) {
     if (argument == "OUT") argument = at("out");
   }
-  test::TerminalProgram program(GetParam().program, arguments, folder_);
-  ASSERT_TRUE(program.shows(GetParam().shows)) << program.shown();
-  const test::Ended ended = program.interrupt(GetParam().signal);
-  EXPECT_EQ(ended.exit_code, kInterrupted) << program.shown();
+  test::PseudoTerminal program(GetParam().program, arguments);
+  ASSERT_TRUE(test::wrote(program, GetParam().shows)) << program.text();
+  const test::Ended ended = test::interrupt(program, GetParam().signal);
+  EXPECT_EQ(ended.exit_code, kInterrupted) << program.text();
   EXPECT_LT(ended.cpu_after_s, kPromised_s);
 }
 
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "s left",
                              SIGTERM},
                     LongWork{"DiagnoseRecord", "pmg_diagnose", {"--robot", "z1", "--record", "OUT"}, "excitation"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_F(Interruption, ClipsThatWereThereStayWhole) {
   fs::copy("config/robots/z1/clips", folder_ / "clips");
@@ -122,23 +122,23 @@ TEST_F(Interruption, ClipsThatWereThereStayWhole) {
     return all;
   };
   const std::string before = contents();
-  test::TerminalProgram clips("pmg_clips", {"synth", "--out", at("clips")}, folder_);
-  ASSERT_TRUE(clips.shows("making forward"));
-  EXPECT_EQ(clips.interrupt().exit_code, kInterrupted);
+  test::PseudoTerminal clips("pmg_clips", {"synth", "--out", at("clips")});
+  ASSERT_TRUE(test::wrote(clips, "making forward"));
+  EXPECT_EQ(test::interrupt(clips).exit_code, kInterrupted);
   EXPECT_EQ(contents(), before);
 
-  test::TerminalProgram invert("pmg_clips", {"invert", "--clips", at("clips")}, folder_);
-  ASSERT_TRUE(invert.shows("inverting"));
-  EXPECT_EQ(invert.interrupt().exit_code, kInterrupted);
+  test::PseudoTerminal invert("pmg_clips", {"invert", "--clips", at("clips")});
+  ASSERT_TRUE(test::wrote(invert, "inverting"));
+  EXPECT_EQ(test::interrupt(invert).exit_code, kInterrupted);
   EXPECT_EQ(contents(), before);
 }
 
 TEST_F(Interruption, AnEvaluationKeepsWhatIsComplete) {
-  test::TerminalProgram eval(
-      "pmg_eval", {"push", "--strengths", "0", "--trials", "400", "--jobs", "1", "--out", at("push")}, folder_);
-  ASSERT_TRUE(eval.shows("s left"));  // the first trial is over
-  const test::Ended ended = eval.interrupt();
-  EXPECT_EQ(ended.exit_code, kInterrupted) << eval.shown();
+  test::PseudoTerminal eval("pmg_eval",
+                            {"push", "--strengths", "0", "--trials", "400", "--jobs", "1", "--out", at("push")});
+  ASSERT_TRUE(test::wrote(eval, "s left"));  // the first trial is over
+  const test::Ended ended = test::interrupt(eval);
+  EXPECT_EQ(ended.exit_code, kInterrupted) << eval.text();
   EXPECT_LT(ended.cpu_after_s, kPromised_s);
   EXPECT_TRUE(fs::exists(folder_ / "push" / "report.html"));
   EXPECT_EQ(json("push/push.json")["complete"], false);

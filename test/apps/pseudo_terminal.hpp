@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
+#include <utmp.h>
 
 #include <array>
 #include <chrono>
@@ -51,6 +52,7 @@ class PseudoTerminal {
     return write(master_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size());
   }
   void send(int signal) const { kill(child_, signal); }
+  pid_t id() const { return child_; }  ///< of its process group too
   /// What it has written, newest picture last; reads what is there.
   const std::string& text() {
     std::array<char, 4096> bytes{};

@@ -52,12 +52,13 @@ class Words : public testing::Test {
   }
 
   const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("words " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+                           ("words_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 const std::vector<std::string> kPrograms = {
-    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips", "pmg_controller", "pmg_diagnose", "pmg_eval", "pmg_log",
-    "pmg_report",          "pmg_send",           "pmg_sil",   "pmg_watch"};
+    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips",    "pmg_controller",
+    "pmg_diagnose",        "pmg_eval",           "pmg_keyboard", "pmg_log",
+    "pmg_report",          "pmg_send",           "pmg_sil",      "pmg_watch"};
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {
@@ -125,7 +126,7 @@ TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
               "pmg_clips show: 'again' is one argument too many (pmg_clips show --help shows an example)");
   expect_line("pmg_sil --robot", "pmg_sil: --robot: its value is missing");
   expect_line("pmg_sil --seed 1 --seed 2", "pmg_sil: --seed: is given more than once; expected it once");
-  expect_line("pmg_sil --video --realtime", "pmg_sil: --video can't be given together with --realtime");
+  expect_line("pmg_sil --video --realtime", "pmg_sil: --realtime can't be given together with --video");
   expect_line("pmg_sil --excitation x", "pmg_sil: --excitation needs --bench");
 }
 
