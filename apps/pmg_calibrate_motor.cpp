@@ -246,9 +246,7 @@ int calibrate(const Arguments& arguments) {
   results.problem = &problem;
   results.method = arguments.method;
   results.threads = arguments.threads;
-  results.joint = !arguments.joint.empty() ? arguments.joint
-                  : !bench.joint.empty()   ? bench.joint
-                                           : fs::weakly_canonical(arguments.bench).filename().string();
+  results.joint = arguments.joint.empty() ? bench.joint_name() : arguments.joint;
   const calib::JointModel neutral = problem.model_at(problem.point_of(start));
   results.fitted = calib::assess(arguments.fit, problem.runs(), neutral, results.fit.model, arguments.threads);
   if (!scored.empty()) {

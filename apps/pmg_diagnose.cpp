@@ -63,7 +63,7 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "with --robot: a simulated one plays what shows most, into DIR/hanging.lcm and DIR/standing.lcm");
   app.add_option("--model", arguments.model, "motor.yaml that the simulation has now");
   app.add_option("--joint", arguments.joint,
-                 "its name in motor.yaml; the bench folder's, or the only one, if not given");
+                 "its name in motor.yaml; the only one in --model, bench.yaml's or the bench folder's if not given");
   app.add_option("--fit", arguments.fit,
                  "rows of runs.csv to diagnose, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
   app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
@@ -160,7 +160,7 @@ int diagnose(Arguments arguments) {
   options.seed = arguments.seed;
   options.step_s = arguments.step_s;
   if (!arguments.model.empty()) options.model = given_model(arguments);
-  if (arguments.joint.empty()) arguments.joint = fs::weakly_canonical(arguments.bench).filename().string();
+  if (arguments.joint.empty()) arguments.joint = bench.joint_name();
   const auto begin = std::chrono::steady_clock::now();
   diagnosis::DiagnosedRuns runs;
   const diagnosis::Diagnosis found =

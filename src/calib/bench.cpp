@@ -148,6 +148,10 @@ BenchRun describe(const Bench& bench, std::size_t row) {
 
 }  // namespace
 
+std::string Bench::joint_name() const {
+  return joint.empty() ? std::filesystem::weakly_canonical(folder).filename().string() : joint;
+}
+
 Bench read_bench(const std::filesystem::path& folder) {
   ConfigReader reader = ConfigReader::from_file(folder / "bench.yaml");
   Bench bench;

@@ -60,6 +60,8 @@ struct Bench {
   using Progress = std::function<bool(double share)>;
   /// The rows that the filter keeps, read and checked. Throws model::ConfigError, std::invalid_argument when none is.
   std::vector<BenchRun> read_runs(const RowFilter& filter, const Progress& progress = {}) const;
+  /// What motor.yaml calls the joint unless told otherwise: bench.yaml's joint, or the folder's name.
+  std::string joint_name() const;
 };
 
 /// Throws model::ConfigError on whatever is missing, unknown or implausible.

@@ -59,6 +59,12 @@ class BenchFiles : public testing::Test {
                            ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+TEST_F(BenchFiles, AJointIsCalledAsBenchYamlSaysOrElseAsItsFolder) {
+  EXPECT_EQ(calib::read_bench(folder_).joint_name(), folder_.filename().string());
+  std::ofstream(folder_ / "bench.yaml", std::ios::app) << "joint: left_knee\n";
+  EXPECT_EQ(calib::read_bench(folder_).joint_name(), "left_knee");
+}
+
 TEST_F(BenchFiles, AreReadAsTheyWereWritten) {
   const calib::Bench bench = calib::read_bench(folder_);
   const std::vector<calib::BenchRun> runs = bench.read_runs(calib::RowFilter("kp_Nm_per_rad in 20 and repeat == 0"));
