@@ -43,6 +43,8 @@ std::string fault_words(const HeardRobot& heard) {
 
 bool refused(const HeardRobot& heard) { return heard.ack && heard.ack->verdict == pmg_msgs::ack_t::NOT_YOURS; }
 
+bool upright(std::int8_t mode) { return mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK; }
+
 bool lease_is_over(const HeardRobot& heard, const std::string& me) {
   return heard.status && heard.status->stamp_ns >= heard.ack->stamp_ns &&
          (heard.status->driving_source.empty() || heard.status->driving_source == me);
@@ -68,17 +70,24 @@ std::string ModeWish::waits_for() const {
 }
 
 bool ModeWish::final(const HeardRobot& heard) const {
-  if (!refused(heard) || !heard.status) return true;
+  if (!refused(heard) || !heard.status || stopped_meanwhile(heard)) return true;
   if (lease_is_over(heard, source_.name()) || !heard.silent_driver(source_.name()).empty()) return false;
   return refused_ns_ >= 0 && source_.clock().now_ns() - refused_ns_ >= kDoubt_ns;
+}
+
+bool ModeWish::stopped_meanwhile(const HeardRobot& heard) const {
+  return upright_when_refused_ && goal_ != Goal::kReset && !upright(heard.status->mode);
 }
 
 void ModeWish::ask_again_after_lease() {
   const HeardRobot* heard = robot_.empty() ? nullptr : source_.heard(robot_);
   if (heard == nullptr || !refused(*heard)) return;
   const std::int64_t now_ns = source_.clock().now_ns();
-  if (refused_ns_ < 0) refused_ns_ = now_ns;
-  if (!lease_is_over(*heard, source_.name()) || now_ns < repeat_at_ns_) return;
+  if (refused_ns_ < 0) {
+    refused_ns_ = now_ns;
+    upright_when_refused_ = heard->status && upright(heard->status->mode);
+  }
+  if (final(*heard) || !lease_is_over(*heard, source_.name()) || now_ns < repeat_at_ns_) return;
   repeat_at_ns_ = now_ns + kRepeat_ns;
   source_.request(robot_, requested_mode(goal_), goal_ == Goal::kReset);
 }

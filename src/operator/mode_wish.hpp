@@ -54,6 +54,8 @@ class ModeWish {
   Answer judge(const std::string& robot) const;
   /// Whether a refusal is the last word: somebody drives, and goes on sending.
   bool final(const HeardRobot& heard) const;
+  /// Somebody stopped the robot, or it faulted, after the refusal: what was asked before that is not asked again.
+  bool stopped_meanwhile(const HeardRobot& heard) const;
   void ask_again_after_lease();
   Answer judge_taken(Answer answer, const HeardRobot& heard) const;
 
@@ -63,6 +65,7 @@ class ModeWish {
   double timeout_s_;
   std::int64_t begin_ns_, repeat_at_ns_;
   std::int64_t refused_ns_ = -1;  ///< the first time; -1: never
+  bool upright_when_refused_ = false;
 };
 
 }  // namespace pmg::ops

@@ -201,6 +201,22 @@ TEST_F(OperatorTest, AModeIsReachedAfterAnothersCrash) {
   EXPECT_LT(elapsed_s_, 2.0) << "a lease of half a second, and the way down";
 }
 
+TEST_F(OperatorTest, WhoeverStopsTheRobotDuringThatWaitKeepsItStopped) {
+  auto crashed = other_drives();
+  crashed.reset();
+  Drive mine(mine_, "biped", forward(0.2), DriveOptions{.duration_s = 1, .climb = true});
+  Progress progress = Progress::kPending;
+  while (mine.waits_for().empty()) progress = step(mine);
+  ASSERT_EQ(progress, Progress::kPending);
+  OperatorSource passer_by(network_.link, "passer_by", 1, network_.clock);
+  const ModeWish stop(passer_by, "biped", Goal::kStop, 2.0);
+  for (int k = 0; k < 300; ++k) {
+    progress = step(mine);
+    if (k > 10) EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+  }
+  EXPECT_EQ(progress, Progress::kFailed);
+}
+
 TEST_F(OperatorTest, TheWaitForALeaseIsBounded) {
   // A source that sends every 0.4 s keeps its lease and looks like one that has crashed.
   const auto crashed = other_drives();
