@@ -83,7 +83,7 @@
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     // A canvas has more pixels than the page on many screens.
-    const px = uPlot.pxRatio;
+    const px = devicePixelRatio;
     ctx.font = `${12 * px}px system-ui, sans-serif`;
     ctx.lineWidth = px;
     draw(ctx, bbox, (x) => u.valToPos(x, 'x', true), px);
