@@ -170,7 +170,7 @@
     if (lanes) {
       const count = lanes.length;
       Object.assign(y, {
-        size: Y_AXIS_PX,
+        size: Math.max(Y_AXIS_PX, 12 + CHARACTER_PX * Math.max(...lanes.map((lane) => lane.name.length))),
         splits: () => lanes.map((_, i) => count - i - 0.5),
         values: () => lanes.map((lane) => lane.name),
         grid: {show: false}, ticks: {show: false},

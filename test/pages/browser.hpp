@@ -35,7 +35,7 @@ inline std::string document_in_browser(const std::string& browser, std::string h
   // Four pixels of the canvas a pixel of the page: what is read is finer than what is asked.
   const std::string command = browser + " --headless --no-sandbox --disable-gpu --no-first-run --disable-sync" +
                               " --disable-background-networking --disable-component-update --hide-scrollbars" +
-                              " --force-device-scale-factor=4 --window-size=1000,12000 --virtual-time-budget=10000" +
+                              " --force-device-scale-factor=4 --window-size=1000,800 --virtual-time-budget=10000" +
                               " --user-data-dir=" + folder + "/profile --dump-dom file://" + folder + "/page.html 2>" +
                               folder + "/stderr";
   std::string document;

@@ -47,7 +47,7 @@ const std::string kAfter = R"js(
       const {width, height} = canvas, pixels = canvas.getContext('2d').getImageData(0, 0, width, height).data;
       const columns = [];
       for (let x = 0; x < width; ++x) {
-        let sum = 0, weight = 0, top = null, bottom = null;
+        let top = null, bottom = null;
         for (let y = 0; y < height; ++y) {
           const i = 4 * (x + y * width);
           const apart = Math.abs(pixels[i]) + Math.abs(pixels[i + 1] - 0x72) + Math.abs(pixels[i + 2] - 0xb2);
