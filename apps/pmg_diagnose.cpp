@@ -133,7 +133,7 @@ int diagnose_robot(const Arguments& arguments) {
   };
   if (!arguments.record.empty())
     return apps::record_robot(arguments.robot, arguments.record, arguments.seed, showing("excitation")) ? kOk
-                                                                                                      : kInterrupted;
+                                                                                                        : kInterrupted;
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
   return apps::diagnose_robot_logs({.robot = arguments.robot,

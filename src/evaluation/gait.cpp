@@ -153,8 +153,9 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
 }
 
 std::string difference_text(const GaitTest& test) {
-  std::string text = fmt::format("Walks at {:.3f} m/s when asked for {} m/s. From the published means, left and right: ",
-                                 test.walked_m_s, test.speed_m_s);
+  std::string text = fmt::format(
+      "Walks at {:.3f} m/s when asked for {} m/s. From the published means, left and right: ", test.walked_m_s,
+      test.speed_m_s);
   for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
     const auto& left = test.feet[kLeft].measured[joint];
     const auto& right = test.feet[kRight].measured[joint];
@@ -221,8 +222,8 @@ std::vector<std::string> text_of(const GaitTest& test) {
 }
 
 pages::Page page_of(const GaitTest& test) {
-  pages::Page page(fmt::format("Gait: {} on {}, asked to walk at {} m/s", test.evaluated.name, test.robot,
-                               test.speed_m_s));
+  pages::Page page(
+      fmt::format("Gait: {} on {}, asked to walk at {} m/s", test.evaluated.name, test.robot, test.speed_m_s));
   page.verdict(test.reached() ? pages::Tone::kGood : pages::Tone::kBad,
                fmt::format("{} (correlation at least {}, duty factor within {} of {})",
                            test.reached() ? "The shapes are as asked" : "A shape is not as asked: see below",
@@ -236,10 +237,9 @@ pages::Page page_of(const GaitTest& test) {
       for (const Foot foot : {kLeft, kRight}) {
         const FootGait& gait = test.feet[foot];
         page.chart(
-            {.title =
-                 fmt::format("{} {} [deg]: RMS {:.1f} deg, {:.1f} without offset, correlation {:.3f}", kSideNames[foot],
-                             kGaitJointNames[joint], gait.measured[joint].rms_deg, gait.measured[joint].shape_rms_deg,
-                             gait.measured[joint].correlation),
+            {.title = fmt::format("{} {} [deg]: RMS {:.1f} deg, {:.1f} without offset, correlation {:.3f}",
+                                  kSideNames[foot], kGaitJointNames[joint], gait.measured[joint].rms_deg,
+                                  gait.measured[joint].shape_rms_deg, gait.measured[joint].correlation),
              .x_name = "cycle",
              .x_unit = "%",
              .lines = {{.name = "measured", .x = percent, .y = gait.measured_deg[joint], .width_px = 2.2},

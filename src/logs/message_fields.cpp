@@ -295,13 +295,11 @@ constexpr std::array<std::string_view, 15> kChannelsInOrder = {
     "ROBOT_INFO", "SCENARIO", "STATE", "COMMAND", "MODE",         "TICK", "REFERENCE", "MOTOR_COMMAND",
     "STATUS",     "LIMITED",  "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK"};
 constexpr std::array<Read, 15> kReads = {
-    read<pmg_msgs::robot_info_t>,    read<pmg_msgs::scenario_step_t>, read<pmg_msgs::robot_state_t>,
-    read<pmg_msgs::command_t>,
-    read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,   read<pmg_msgs::reference_t>,
-    read<pmg_msgs::motor_command_t>, read<pmg_msgs::status_t>,       read<pmg_msgs::limited_t>,
-    read<pmg_msgs::fault_t>,
-    read<pmg_msgs::timing_t>,        read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,
-    read<pmg_msgs::link_t>};
+    read<pmg_msgs::robot_info_t>,   read<pmg_msgs::scenario_step_t>, read<pmg_msgs::robot_state_t>,
+    read<pmg_msgs::command_t>,      read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,
+    read<pmg_msgs::reference_t>,    read<pmg_msgs::motor_command_t>, read<pmg_msgs::status_t>,
+    read<pmg_msgs::limited_t>,      read<pmg_msgs::fault_t>,         read<pmg_msgs::timing_t>,
+    read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,           read<pmg_msgs::link_t>};
 
 struct ToText {
   std::string operator()(std::int64_t value) const { return std::to_string(value); }

@@ -61,7 +61,8 @@ constexpr std::size_t kLimitedShown = 8;  // joints: more than any sound run has
 /// When each joint was limited and why; the worst of them as lanes over time.
 void limited_joints(pages::Page& page, const Runs& runs) {
   pages::Table table{.header = {"joint", "limited by", "first at [s]", "longest [s]"}, .rows = {}};
-  pages::Lanes lanes{.title = "Joints whose target was limited: by range (blue), speed (orange), torque (red)", .lanes = {}};
+  pages::Lanes lanes{.title = "Joints whose target was limited: by range (blue), speed (orange), torque (red)",
+                     .lanes = {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const LimitedJoint& one : runs[i].limited) {
       const std::string name = runs[i].joint_names[one.joint] + suffix(runs, i);
@@ -78,8 +79,8 @@ void limited_joints(pages::Page& page, const Runs& runs) {
       lanes.lanes.push_back(std::move(lane));
     }
     if (runs[i].limited.empty() && limited_ticks(runs[i]) > 0) {
-      page.paragraph(fmt::format("Which joints were limited{} is not in the log: an older version wrote it.",
-                                 suffix(runs, i)));
+      page.paragraph(
+          fmt::format("Which joints were limited{} is not in the log: an older version wrote it.", suffix(runs, i)));
     }
   }
   if (table.rows.empty()) return;

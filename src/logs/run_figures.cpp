@@ -74,10 +74,10 @@ std::string tracking_text(const RunSeries& run) {
   const runtime::TrackingSummary& t = run.tracking;
   if (t.followed_s <= 0.0) return "";
   return fmt::format(
-      "Mean absolute errors over {:.1f} s on its own feet: velocity {:.3f} m/s, yaw rate {:.3f} rad/s, roll {:.3f} rad, "
+      "Mean absolute errors over {:.1f} s{}: velocity {:.3f} m/s, yaw rate {:.3f} rad/s, roll {:.3f} rad, "
       "pitch {:.3f} rad, height {:.3f} m; its loaded feet slip at {:.4f} m/s.",
-      t.followed_s, t.lin_vel_mae_m_s, t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m,
-      t.foot_slip_mean_m_s);
+      t.followed_s, run.fell ? ", what came after the fall included" : " on its own feet", t.lin_vel_mae_m_s,
+      t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m, t.foot_slip_mean_m_s);
 }
 
 std::string limited_text(const RunSeries& run) {

@@ -20,7 +20,8 @@ struct JointTracking {
 };
 std::vector<JointTracking> joint_tracking(const RunSeries& run);
 
-/// Errors against what was asked, and slip: the figures of summary.json in a sentence. Empty without a simulation's truth.
+/// Errors against what was asked, and slip: the figures of summary.json in a sentence. Empty without a simulation's
+/// truth.
 std::string tracking_text(const RunSeries& run);
 
 /// The joint that was limited most, by what and since when; empty when the log names none.

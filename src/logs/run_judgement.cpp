@@ -68,9 +68,9 @@ runtime::TrackingSummary errors_between(const runtime::TrackingSummary& before, 
   mean.followed_s = after.followed_s - before.followed_s;
   if (mean.followed_s <= 0.0) return mean;
   using Summary = runtime::TrackingSummary;
-  for (double Summary::*error : {&Summary::lin_vel_mae_m_s, &Summary::lin_vel_raw_mae_m_s, &Summary::yaw_vel_mae_rad_s,
-                                 &Summary::yaw_vel_raw_mae_rad_s, &Summary::roll_mae_rad, &Summary::pitch_mae_rad,
-                                 &Summary::height_mae_m}) {
+  for (double Summary::*error :
+       {&Summary::lin_vel_mae_m_s, &Summary::lin_vel_raw_mae_m_s, &Summary::yaw_vel_mae_rad_s,
+        &Summary::yaw_vel_raw_mae_rad_s, &Summary::roll_mae_rad, &Summary::pitch_mae_rad, &Summary::height_mae_m}) {
     mean.*error = (after.*error * after.followed_s - before.*error * before.followed_s) / mean.followed_s;
   }
   return mean;

@@ -46,9 +46,9 @@ Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step
 
 /// What a step asked for, channels that are not zero.
 std::string asked_text(const RunSeries::Step& step) {
-  static constexpr std::array<const char*, kChannels> kNames = {
-      "forward {:+.2f} m/s", "sideways {:+.2f} m/s", "turn {:+.2f} rad/s",
-      "pitch {:+.2f} rad",   "roll {:+.2f} rad",     "height {:+.3f} m"};
+  static constexpr std::array<const char*, kChannels> kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s",
+                                                                "turn {:+.2f} rad/s",  "pitch {:+.2f} rad",
+                                                                "roll {:+.2f} rad",    "height {:+.3f} m"};
   std::string text;
   for (std::size_t channel = 0; channel < kChannels; ++channel) {
     if (step.asked[channel] == 0.0) continue;
@@ -61,14 +61,16 @@ void steps_table(pages::Page& page, const Runs& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     if (run.steps.empty()) continue;
-    pages::Table table{.header = {"step", "from [s]", "to [s]", "what", "asked", "velocity error [m/s]",
-                                  "yaw rate error [rad/s]", "roll error [rad]", "pitch error [rad]", "height error [m]"},
-                       .rows = {}};
+    pages::Table table{
+        .header = {"step", "from [s]", "to [s]", "what", "asked", "velocity error [m/s]", "yaw rate error [rad/s]",
+                   "roll error [rad]", "pitch error [rad]", "height error [m]"},
+        .rows = {}};
     for (const RunSeries::Step& step : run.steps) {
       std::vector<std::string> row = {std::to_string(step.number), fmt::format("{:.1f}", step.from_s),
                                       fmt::format("{:.1f}", step.to_s), step.text, asked_text(step)};
       const runtime::TrackingSummary& t = step.tracking;
-      for (const double error : {t.lin_vel_mae_m_s, t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m})
+      for (const double error :
+           {t.lin_vel_mae_m_s, t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m})
         row.push_back(t.followed_s > 0.0 ? fmt::format("{:.3f}", error) : "-");
       table.rows.push_back(std::move(row));
     }
@@ -142,9 +144,10 @@ void verdicts(pages::Page& page, const Runs& runs) {
 
 void timeline(pages::Page& page, const Runs& runs) {
   page.heading("Timeline");
-  Lanes lanes{
-      .title = "Modes, scenario steps, who drives, and what the gantry carries; drag to zoom all charts, double click to go back",
-      .lanes = {}};
+  Lanes lanes{.title =
+                  "Modes, scenario steps, who drives, and what the gantry carries; drag to zoom all charts, double "
+                  "click to go back",
+              .lanes = {}};
   pages::Table events{.header = {"time [s]", "what"}, .rows = {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];

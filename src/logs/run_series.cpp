@@ -184,8 +184,8 @@ class Gathering {
   bool step(const pmg_msgs::scenario_step_t& message) {
     end_step();
     run_.scenario = message.scenario;
-    RunSeries::Step step{.from_s = t_s_, .to_s = t_s_, .number = message.number, .text = message.text, .asked = {},
-                         .tracking = {}};
+    RunSeries::Step step{
+        .from_s = t_s_, .to_s = t_s_, .number = message.number, .text = message.text, .asked = {}, .tracking = {}};
     std::ranges::copy(message.command, step.asked.begin());
     run_.steps.push_back(std::move(step));
     if (judgement_) before_step_ = judgement_->outcome().tracking;

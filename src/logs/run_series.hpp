@@ -82,9 +82,9 @@ struct RunSeries {
   std::string scenario;
   std::vector<Step> steps;
 
-  runtime::TrackingSummary tracking;    ///< followed_s is 0 without a simulation's truth
-  gco::SlipSummary reference_slip;      ///< as in summary.json
-  std::vector<LimitedJoint> limited;    ///< most often limited first
+  runtime::TrackingSummary tracking;  ///< followed_s is 0 without a simulation's truth
+  gco::SlipSummary reference_slip;    ///< as in summary.json
+  std::vector<LimitedJoint> limited;  ///< most often limited first
 
   bool fell = false;
   double fell_at_s = -1.0;

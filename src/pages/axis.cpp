@@ -56,7 +56,8 @@ Range shown_range(const Range& data, double margin) {
   const double largest = std::max(std::abs(data.from), std::abs(data.to));
   // Below the smallest normal numbers there are no digits left for ticks.
   if (largest < 1e-290) return {-1.0, 1.0};
-  const double least = data.span() > 0.0 ? kFewestUlps * std::numeric_limits<double>::epsilon() * largest : 0.2 * largest;
+  const double least =
+      data.span() > 0.0 ? kFewestUlps * std::numeric_limits<double>::epsilon() * largest : 0.2 * largest;
   const double beyond = std::max(margin * data.span(), 0.5 * (least - data.span()));
   return {data.from - beyond, data.to + beyond};
 }
@@ -70,8 +71,12 @@ double tick_step(double span, int count) {
 }
 
 std::vector<AxisTick> axis_ticks(const Range& range, int count) {
-  const double step = tick_step(range.span(), count);
   std::vector<double> values;
+  double step = tick_step(range.span(), count);
+  // One tick alone tells no scale.
+  while (std::floor(range.to / step + 1e-9) - std::ceil(range.from / step - 1e-9) < 1.0) {
+    step = tick_step(range.span(), ++count);
+  }
   const double first = std::ceil(range.from / step - 1e-9), last = std::floor(range.to / step + 1e-9);
   for (double k = first; k <= last && values.size() <= static_cast<std::size_t>(count); k += 1.0)
     values.push_back(k * step);

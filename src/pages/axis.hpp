@@ -1,5 +1,5 @@
-// What every picture's axis is made of: the stretch of values that it shows, and ticks whose labels differ. page.js holds
-// the same rules for charts.
+// What every picture's axis is made of: the stretch of values that it shows, and ticks whose labels differ. page.js
+// holds the same rules for charts.
 #pragma once
 
 #include <string>
@@ -33,7 +33,7 @@ struct AxisTick {
   std::string label;  ///< without unit; as many digits as tell it from its neighbours
 };
 
-/// At most count + 1 round values within the range.
+/// At most count + 1 round values within the range, at least two.
 std::vector<AxisTick> axis_ticks(const Range& range, int count);
 
 /// Round values within a range of common logarithms: powers of ten, and what lies between where these are few.

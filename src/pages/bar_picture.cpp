@@ -22,7 +22,7 @@ constexpr int kLabels = 5;
 
 double value_of(const Bars::Set& set, std::size_t row) {
   return row < set.values.size() && can_be_shown(set.values[row]) ? set.values[row]
-                                                                   : std::numeric_limits<double>::quiet_NaN();
+                                                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// What is shown: always with zero, from which bars begin.
@@ -56,7 +56,7 @@ class Drawing {
     names_ = std::min(names, kMostNames) + 12.0;
     const double beside = numbered_ ? widest + 10.0 : 10.0;
     from_px_ = names_ + (range_.from < 0.0 ? beside : 0.0);
-    to_px_ = kWidth - std::max(beside, text_width(bars.unit) + 24.0);
+    to_px_ = kWidth - std::max(beside, text_width(bars.unit) + 34.0);
   }
 
   std::string svg() {
@@ -92,8 +92,8 @@ class Drawing {
   void name(std::size_t row) {
     const std::string shown = fitted(bars_.names[row], kMostNames);
     const std::string whole = shown == bars_.names[row] ? "" : "<title>" + escape_html(bars_.names[row]) + "</title>";
-    add(R"(<text class="name" x="{:.1f}" y="{}">{}{}</text>)", names_ - 8.0,
-        row_top(row) + (row_ - kGap) / 2 + 4, escape_html(shown), whole);
+    add(R"(<text class="name" x="{:.1f}" y="{}">{}{}</text>)", names_ - 8.0, row_top(row) + (row_ - kGap) / 2 + 4,
+        escape_html(shown), whole);
   }
 
   void bar(std::size_t row, std::size_t set) {

@@ -47,10 +47,10 @@ Range range_of(const Histogram& histogram) {
 
 std::string summary(const Histogram::Set& set, const Bins& bins, const std::string& unit) {
   const std::int64_t finite = bins.total() - bins.not_finite;
-  std::string text = finite > 0 ? fmt::format("{}: {} values, p50 {}, p99 {} {}", set.name, finite,
-                                              number(percentile(set.values, 0.5)),
-                                              number(percentile(set.values, 0.99)), unit)
-                                : fmt::format("{}: no values", set.name);
+  std::string text = finite > 0
+                         ? fmt::format("{}: {} values, p50 {}, p99 {} {}", set.name, finite,
+                                       number(percentile(set.values, 0.5)), number(percentile(set.values, 0.99)), unit)
+                         : fmt::format("{}: no values", set.name);
   if (bins.below > 0) text += fmt::format(", {} below", bins.below);
   if (bins.above > 0) text += fmt::format(", {} beyond", bins.above);
   if (bins.not_finite > 0) text += fmt::format(", {} not finite", bins.not_finite);
@@ -74,9 +74,7 @@ std::string svg(const Histogram& histogram) {
   const auto y = [&](double n) {
     return n < 1.0 ? kBottom : kTop + kPlot * (1.0 - (std::log10(n) + 0.5) / (decades + 0.5));
   };
-  const auto x = [&](double value) {
-    return kLeft + (value - range.from) / range.span() * (kWidth - kLeft - kRight);
-  };
+  const auto x = [&](double value) { return kLeft + (value - range.from) / range.span() * (kWidth - kLeft - kRight); };
 
   std::string out = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
                                 kWidth, kBottom + kAxis + legend.height(), escape_html(histogram.title));

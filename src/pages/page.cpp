@@ -122,10 +122,9 @@ void Page::chart(const Chart& chart) {
   ordered_json bands = ordered_json::array();
   for (const Mark& mark : chart.marks) show_x(axis, mark.x);
   for (const Band& band : chart.bands) bands.push_back({band.from, band.to, band.colour});
-  const ordered_json spec = {{"axis", axis},           {"x_name", chart.x_name},
-                             {"x_unit", chart.x_unit}, {"height", chart.height_px},
-                             {"lines", lines},         {"bands", bands},
-                             {"marks", marks_json(chart.marks)}};
+  const ordered_json spec = {
+      {"axis", axis},   {"x_name", chart.x_name}, {"x_unit", chart.x_unit},          {"height", chart.height_px},
+      {"lines", lines}, {"bands", bands},         {"marks", marks_json(chart.marks)}};
   std::string text = dump(spec);
   text.pop_back();  // the closing brace: the tracks follow as text of their own
   text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";

@@ -3,7 +3,7 @@
 (() => {
   'use strict';
   const Y_AXIS_PX = 70, CHARACTER_PX = 7;
-  const X_LABEL_PX = 100, Y_LABEL_PX = 34;  // room for each tick
+  const X_LABEL_PX = 50, Y_LABEL_PX = 27;    // the least room for a tick
   const FONT = '12px system-ui, sans-serif';
   const MARGIN = 0.05;                       // of the range of y, above and below
   const FEW_POINTS = 40;                     // so few get a dot each
@@ -45,10 +45,15 @@
     for (const factor of [1, 2, 5]) if (factor * decade >= rough * (1 - 1e-9)) return factor * decade;
     return 10 * decade;
   };
+  const stepOf = (min, max, count) => {
+    let step = tickStep(max - min, count);
+    // One tick alone tells no scale.
+    while (Math.floor(max / step + 1e-9) - Math.ceil(min / step - 1e-9) < 1) step = tickStep(max - min, ++count);
+    return step;
+  };
   const ticks = (min, max, count) => {
-    const step = tickStep(max - min, count), values = [];
-    const last = Math.floor(max / step + 1e-9);
-    for (let k = Math.ceil(min / step - 1e-9); k <= last && values.length <= count; ++k) values.push(k * step);
+    const step = stepOf(min, max, count), values = [], last = Math.floor(max / step + 1e-9);
+    for (let k = Math.ceil(min / step - 1e-9); k <= last && values.length <= 2 * count; ++k) values.push(k * step);
     return values;
   };
   const scientific = (value, lastDigit) => {
@@ -57,7 +62,7 @@
     return value.toExponential(digits).replace('e+', 'e');
   };
   const labels = (values, min, max, count) => {
-    const lastDigit = exponent(tickStep(max - min, count));
+    const lastDigit = exponent(stepOf(min, max, count));
     const decimals = Math.max(0, -lastDigit);
     // A fixed number of 100 decimals or of 21 digits before the point is more than the language writes, and any reader.
     const writable = decimals <= 100 && Math.max(Math.abs(min), Math.abs(max)) < 1e21;
@@ -66,6 +71,16 @@
     const fixed = values.map((v) => (v === 0 ? 0 : v).toFixed(decimals));
     const longest = (all) => Math.max(0, ...all.map((label) => label.length));
     return longest(exponential) + 3 < longest(fixed) ? exponential : fixed;
+  };
+
+  // As many ticks as their labels have room for.
+  const xCount = ({min, max}, width, unit) => {
+    for (let count = Math.floor(width / X_LABEL_PX); count > 2; --count) {
+      const longest = Math.max(...labels(ticks(min, max, count), min, max, count).map((label) => label.length));
+      const room = width * stepOf(min, max, count) / (max - min);
+      if (CHARACTER_PX * (longest + unit.length + 3) <= room) return count;
+    }
+    return 2;
   };
 
   const zoom = (axis, min, max, from) => {
@@ -156,7 +171,7 @@
     const lanes = spec.lanes, axis = axisOf(spec);
     const grid = {stroke: '#e6e9ed', width: 1}, tickMarks = {stroke: '#c9ced6', width: 1, size: 4};
     const counts = (u) => ({
-      x: Math.max(2, Math.floor((u.width - Y_AXIS_PX) / X_LABEL_PX)),
+      x: xCount(u.scales.x, u.width - Y_AXIS_PX, spec.x_unit),
       y: Math.max(3, Math.floor((u.height - 60) / Y_LABEL_PX)),
     });
     const y = {

@@ -20,7 +20,9 @@ bool begins(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x
 
 }  // namespace
 
-double text_width(const std::string& text) { return kCharacter * static_cast<double>(std::ranges::count_if(text, begins)); }
+double text_width(const std::string& text) {
+  return kCharacter * static_cast<double>(std::ranges::count_if(text, begins));
+}
 
 std::string fitted(const std::string& text, double width) {
   if (text_width(text) <= width) return text;
@@ -51,8 +53,8 @@ std::string Legend::svg(double top) const {
   std::string out;
   for (const Entry& entry : entries_) {
     const double y = top + kRow * entry.row + 14.0;
-    out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", entry.x, y - 10.0,
-                       escape_html(entry.colour));
+    out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", entry.x,
+                       y - 10.0, escape_html(entry.colour));
     out += fmt::format(R"(<text class="entry" x="{:.1f}" y="{:.1f}">{}</text>)", entry.x + kSquare, y,
                        escape_html(fitted(entry.text, right_ - entry.x - kSquare)));
   }

@@ -12,8 +12,8 @@
 
 namespace pmg::runtime {
 
-/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick, LIMITED in
-/// ticks that limit a joint, GROUND_TRUTH in simulation, SCENARIO where a step of it begins, TIMING in the threaded
+/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick, LIMITED
+/// in ticks that limit a joint, GROUND_TRUTH in simulation, SCENARIO where a step of it begins, TIMING in the threaded
 /// controller, FAULT when one latches. Keeps its message buffers, so
 /// a tick allocates nothing once they have grown. Not for a real-time thread.
 class TickLog {

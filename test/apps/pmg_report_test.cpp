@@ -56,14 +56,16 @@ TEST_F(PmgReport, GivesMachinesTheFigures) {
   EXPECT_EQ(json["runs"][0]["fell"], false);
 }
 
-// (a run that walks, and one that walks without a policy until it lies) => the report's errors and slip, digit by digit.
+// (a run that walks, and one that walks without a policy until it lies) => the report's errors and slip, digit by
+// digit.
 TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
   std::ofstream(folder_ / "walk.yaml") << "name: walk\nsteps:\n  - {for_s: 1.5, text: stand, mode: stand}\n"
                                        << "  - {for_s: 2.5, text: go, mode: walk, command: {vx_m_s: 0.5}}\n";
   for (const std::string policy : {"pmg", "none"}) {
     const std::string out = (folder_ / policy).string();
-    test::RunningProgram sil("pmg_sil", {"--robot", "z1", "--policy", policy, "--scenario",
-                                         (folder_ / "walk.yaml").string(), "--out", out}, folder_);
+    test::RunningProgram sil(
+        "pmg_sil", {"--robot", "z1", "--policy", policy, "--scenario", (folder_ / "walk.yaml").string(), "--out", out},
+        folder_);
     sil.wait();
     const auto summary = nlohmann::json::parse(test::text_of(fs::path(out) / "summary.json"));
     const Finished done = run({out, "--out", page_, "--json"});

@@ -1,5 +1,5 @@
-// Charts and lanes are read back from the canvas of a real browser: the pixels of a line, and the words of the axes where
-// they were written. Nothing is asked of the library that draws them.
+// Charts and lanes are read back from the canvas of a real browser: the pixels of a line, and the words of the axes
+// where they were written. Nothing is asked of the library that draws them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "browser.hpp"
 #include "drawn_svg.hpp"
-#include "picture_data.hpp"
 #include "pages/axis.hpp"
+#include "picture_data.hpp"
 
 namespace pmg::pages {
 namespace {
@@ -218,7 +218,9 @@ TEST_F(ChartCanvas, ChartsOfOneAxisLieUnderEachOther) {
 TEST_F(ChartCanvas, WordsOfNarrowStretchesAndCloseMarksStayReadable) {
   Page page("words");
   page.lanes({.title = "steps",
-              .lanes = {{"step", {{0.0, 60.0, "stand for a while", colour::kSky}, {60.0, 65.0, "7 walk forward slowly", colour::kGrey}}}},
+              .lanes = {{"step",
+                         {{0.0, 60.0, "stand for a while", colour::kSky},
+                          {60.0, 65.0, "7 walk forward slowly", colour::kGrey}}}},
               .marks = {{30.0, "first fault"}, {30.5, "second fault"}}});
   const nlohmann::json drawn = drawn_charts(page, browser_);
   std::vector<std::string> words;

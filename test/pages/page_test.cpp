@@ -104,7 +104,8 @@ TEST(Page, ChartsOfOneAxisShareItsRangeAndNoOthers) {
   page.chart({.title = "a", .lines = {{.name = "a", .x = kX, .y = kY}}});
   page.lanes({.title = "b", .lanes = {{"lane", {{-1.0, 7.5, "long", colour::kSky}}}}});
   page.chart({.title = "a run", .lines = {{.name = "a", .x = eight, .y = eight}}, .axis = "run 3"});
-  page.chart({.title = "search", .x_name = "evaluation", .x_unit = "", .lines = {{.name = "", .x = evaluations, .y = eight}}});
+  page.chart(
+      {.title = "search", .x_name = "evaluation", .x_unit = "", .lines = {{.name = "", .x = evaluations, .y = eight}}});
   const std::string html = page.html();
   EXPECT_THAT(html, HasSubstr("&quot;time [s]&quot;:[-1.0,7.5]"));
   EXPECT_THAT(html, HasSubstr("&quot;run 3&quot;:[0.0,8.0]"));

@@ -5,11 +5,11 @@
 #include <numeric>
 
 #include "drawn_svg.hpp"
-#include "picture_data.hpp"
 #include "pages/axis.hpp"
 #include "pages/bar_picture.hpp"
 #include "pages/histogram_picture.hpp"
 #include "pages/plot_picture.hpp"
+#include "picture_data.hpp"
 
 namespace pmg::pages {
 namespace {
@@ -81,7 +81,9 @@ TEST_P(PicturesOf, BarsReachTheirValuesFromZero) {
 
 TEST_P(PicturesOf, BarsTellTheirValuesBesideThem) {
   const std::vector<double>& values = GetParam().values;
-  Bars bars{.title = "bars", .unit = "rad", .names = std::vector<std::string>(values.size(), "row"),
+  Bars bars{.title = "bars",
+            .unit = "rad",
+            .names = std::vector<std::string>(values.size(), "row"),
             .sets = {{"set", values}}};
   std::vector<double> told;
   for (const DrawnElement& e : drawn_elements(svg(bars))) {
@@ -99,8 +101,8 @@ TEST_P(PicturesOf, BarsTellTheirValuesBesideThem) {
 
 TEST_P(PicturesOf, WhiskersReachTheirEnds) {
   const std::vector<double>& values = GetParam().values;
-  Bars bars{.title = "bars", .unit = "", .names = std::vector<std::string>(values.size(), "row"),
-            .sets = {{"set", values}}};
+  Bars bars{
+      .title = "bars", .unit = "", .names = std::vector<std::string>(values.size(), "row"), .sets = {{"set", values}}};
   for (const double value : values) bars.sets[0].intervals.push_back({value - 0.5 * std::abs(value), 1.5 * value});
   const auto elements = drawn_elements(svg(bars));
   const DrawnAxis axis = x_axis(elements);
@@ -122,10 +124,7 @@ TEST_P(PicturesOf, WhiskersReachTheirEnds) {
 
 /// A line's points as drawn: in stretches between gaps, and dots that stand alone.
 void expect_plot_shows(const std::vector<double>& x_values, const std::vector<double>& values, bool zero) {
-  Plot plot{.title = "plot",
-            .x_name = "x",
-            .lines = {{.name = "line", .x = x_values, .y = values}},
-            .show_zero = zero};
+  Plot plot{.title = "plot", .x_name = "x", .lines = {{.name = "line", .x = x_values, .y = values}}, .show_zero = zero};
   const auto elements = drawn_elements(svg(plot));
   const DrawnAxis x = x_axis(elements), y = y_axis(elements);
   x.expect_sound(kDigit);
@@ -185,12 +184,13 @@ TEST_P(PicturesOf, HistogramsCountWhereTheValuesAre) {
     const double slack = 3.0 * kDigit * std::abs(x.per_unit());
     const std::vector<double> shown = shown_values(values);
     for (const double value : shown) {
-      EXPECT_TRUE(std::ranges::any_of(occupied, [&](const auto& bin) {
-        return value >= bin.first - slack && value <= bin.second + slack;
-      })) << value << " has no bin";
+      EXPECT_TRUE(std::ranges::any_of(
+          occupied, [&](const auto& bin) { return value >= bin.first - slack && value <= bin.second + slack; }))
+          << value << " has no bin";
     }
     for (const auto& [from, to] : occupied) {
-      EXPECT_TRUE(std::ranges::any_of(shown, [&](double value) { return value >= from - slack && value <= to + slack; }))
+      EXPECT_TRUE(
+          std::ranges::any_of(shown, [&](double value) { return value >= from - slack && value <= to + slack; }))
           << "a bin from " << from << " to " << to << " holds nothing";
     }
   }
@@ -215,8 +215,8 @@ TEST(SvgPictures, LogarithmicAxesHaveTicksOverAnyRange) {
   for (const auto& [low, high] : std::vector<std::pair<double, double>>{
            {1e-9, 1e9}, {0.5, 200.0}, {2.0, 3.0}, {4.0, 4.0}, {3e-12, 8e-12}, {1e-200, 1e200}}) {
     const std::vector<double> values = {low, high}, x = {0.0, 1.0};
-    const auto elements = drawn_elements(svg(
-        Plot{.title = "", .x_name = "", .lines = {{.name = "", .x = x, .y = values}}, .logarithmic_y = true}));
+    const auto elements = drawn_elements(
+        svg(Plot{.title = "", .x_name = "", .lines = {{.name = "", .x = x, .y = values}}, .logarithmic_y = true}));
     const DrawnAxis y = y_axis(elements);
     ASSERT_GE(y.at.size(), 2U) << low << " to " << high;
     for (const std::string& label : y.labels) EXPECT_EQ(std::ranges::count(y.labels, label), 1) << label;
@@ -252,8 +252,8 @@ TEST(SvgPictures, LegendsAndNamesStayInside) {
 
 TEST(SvgPictures, MarksStandAtTheirValues) {
   const std::vector<double> x = {0.0, 10.0};
-  const auto elements = drawn_elements(
-      svg(Plot{.title = "", .x_name = "", .lines = {{.name = "", .x = x, .y = x}}, .marks = {{12.5, "beyond the data"}}}));
+  const auto elements = drawn_elements(svg(
+      Plot{.title = "", .x_name = "", .lines = {{.name = "", .x = x, .y = x}}, .marks = {{12.5, "beyond the data"}}}));
   const DrawnAxis axis = x_axis(elements);
   const auto words = std::ranges::find(elements, "beyond the data", &DrawnElement::text);
   ASSERT_NE(words, elements.end());

@@ -44,7 +44,7 @@ TEST(Limiter, NamesTheJointsThatItLimitedAndWhy) {
   model::RobotState state = test::standing_state(robot);
   limiter.start_from(state.q);
   JointVector q_des = state.q;
-  q_des[3] += 1.0;  // in one tick: too fast
+  q_des[3] += 1.0;    // in one tick: too fast
   state.dq[7] = 1e3;  // braking that no drive can give
   const LimitReport report = limiter.apply(state, q_des);
   EXPECT_NE(report.by[3] & LimitReport::kSpeed, 0);
