@@ -28,12 +28,14 @@ void show_run(pages::Page& page, const FitResults& results, const SingleJoint& j
                             1e3 * error_rad, position_unit(*results.bench, true), unit),
        .lines = {{.name = "command", .x = r.t_s, .y = r.q_cmd_rad, .colour = pages::colour::kGrey, .stepped = true},
                  {.name = "measured", .x = r.t_s, .y = measured, .colour = pages::colour::kInk},
-                 {.name = "simulated", .x = r.t_s, .y = simulated, .colour = pages::colour::kVermillion}}});
+                 {.name = "simulated", .x = r.t_s, .y = simulated, .colour = pages::colour::kVermillion}},
+       .axis = joint.run().file});
   std::vector<double> miss(measured.size());
   for (std::size_t k = 0; k < miss.size(); ++k) miss[k] = 1e3 * (simulated[k] - measured[k]);
   page.chart({.title = fmt::format("simulated minus measured [{}]", position_unit(*results.bench, true)),
               .lines = {{.name = "error", .x = r.t_s, .y = miss, .colour = pages::colour::kBlue}},
-              .height_px = 130});
+              .height_px = 130,
+              .axis = joint.run().file});
 }
 
 void show_runs(pages::Page& page, const FitResults& results, const Assessment& assessment) {

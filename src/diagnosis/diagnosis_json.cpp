@@ -43,10 +43,8 @@ Json run_json(const NextRun& run) {
 }
 
 Json excitation_json(const NextExcitation& next) {
-  Json json = {{"text", next.text},
-               {"tells_apart", next.tells_apart},
-               {"runs", Json::array()},
-               {"expected", Json::array()}};
+  Json json = {
+      {"text", next.text}, {"tells_apart", next.tells_apart}, {"runs", Json::array()}, {"expected", Json::array()}};
   for (const NextRun& run : next.runs) json["runs"].push_back(run_json(run));
   for (const ExpectedPair& pair : next.pairs) {
     json["expected"].push_back({{"effects", {pair.first, pair.second}}, {"deviations", number(pair.deviations)}});

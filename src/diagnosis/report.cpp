@@ -74,7 +74,8 @@ void show_run(pages::Page& page, const calib::Bench& bench, const Diagnosis& dia
                  {.name = "simulated before", .x = r.t_s, .y = before, .colour = pages::colour::kOrange},
                  {.name = "simulated after", .x = r.t_s, .y = after, .colour = pages::colour::kBlue},
                  {.name = "measured", .x = r.t_s, .y = measured, .colour = pages::colour::kInk}},
-       .bands = switched_off(r)});
+       .bands = switched_off(r),
+       .axis = joint.run().file});
   std::vector<double> missed_before(measured.size()), missed_after(measured.size());
   for (std::size_t k = 0; k < measured.size(); ++k) {
     missed_before[k] = 1e3 * (before[k] - measured[k]);
@@ -83,7 +84,8 @@ void show_run(pages::Page& page, const calib::Bench& bench, const Diagnosis& dia
   page.chart({.title = fmt::format("simulated minus measured [{}]", calib::position_unit(bench, true)),
               .lines = {{.name = "before", .x = r.t_s, .y = missed_before, .colour = pages::colour::kOrange},
                         {.name = "after", .x = r.t_s, .y = missed_after, .colour = pages::colour::kBlue}},
-              .height_px = 150});
+              .height_px = 150,
+              .axis = joint.run().file});
 }
 
 void show_runs(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis,

@@ -152,6 +152,20 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
   for (const Foot foot : {kLeft, kRight}) test.feet[foot] = foot_gait(recordings[foot], test.norms);
 }
 
+std::string difference_text(const GaitTest& test) {
+  std::string text = fmt::format(
+      "Walks at {:.3f} m/s when asked for {} m/s. From the published means, left and right: ", test.walked_m_s,
+      test.speed_m_s);
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+    const auto& left = test.feet[kLeft].measured[joint];
+    const auto& right = test.feet[kRight].measured[joint];
+    text += fmt::format("{}{} {:.0f} and {:.0f} deg RMS ({:.0f} and {:.0f} without the constant offset)",
+                        joint == 0 ? "" : ", ", kGaitJointNames[joint], left.rms_deg, right.rms_deg, left.shape_rms_deg,
+                        right.shape_rms_deg);
+  }
+  return text + ".";
+}
+
 ordered_json to_json(const GaitTest& test) {
   ordered_json json = {
       {"kind", "gait"},
@@ -187,8 +201,7 @@ ordered_json to_json(const GaitTest& test) {
 
 std::vector<std::string> text_of(const GaitTest& test) {
   std::vector<std::string> lines = {
-      fmt::format("walks at {:.3f} m/s (asked {:.1f}), {}", test.walked_m_s, test.speed_m_s,
-                  test.trial.fell ? "FELL" : "did not fall"),
+      difference_text(test), test.trial.fell ? "FELL" : "did not fall",
       fmt::format("against {}:          measured                      reference", test.norms.source),
       "joint                       correlation  RMS deg  shape RMS   correlation  RMS deg"};
   for (const Foot foot : {kLeft, kRight}) {
@@ -209,10 +222,13 @@ std::vector<std::string> text_of(const GaitTest& test) {
 }
 
 pages::Page page_of(const GaitTest& test) {
-  pages::Page page(fmt::format("Gait: {} on {} at {} m/s", test.evaluated.name, test.robot, test.speed_m_s));
+  pages::Page page(
+      fmt::format("Gait: {} on {}, asked to walk at {} m/s", test.evaluated.name, test.robot, test.speed_m_s));
   page.verdict(test.reached() ? pages::Tone::kGood : pages::Tone::kBad,
-               test.reached() ? "Every joint correlates with the published mean as asked, and duty factors agree"
-                              : "A joint or a duty factor is off the published mean: see below");
+               fmt::format("{} (correlation at least {}, duty factor within {} of {})",
+                           test.reached() ? "The shapes are as asked" : "A shape is not as asked: see below",
+                           kAskedCorrelation, kAskedDutyDifference, kPublishedDutyFactor));
+  page.verdict(pages::Tone::kNeutral, difference_text(test));
   std::vector<double> percent(kCyclePoints);
   for (std::size_t k = 0; k < kCyclePoints; ++k) percent[k] = static_cast<double>(k);
   page.heading("Joints over the gait cycle");
@@ -221,9 +237,9 @@ pages::Page page_of(const GaitTest& test) {
       for (const Foot foot : {kLeft, kRight}) {
         const FootGait& gait = test.feet[foot];
         page.chart(
-            {.title =
-                 fmt::format("{} {} [deg]: correlation {:.3f}, RMS {:.1f}", kSideNames[foot], kGaitJointNames[joint],
-                             gait.measured[joint].correlation, gait.measured[joint].rms_deg),
+            {.title = fmt::format("{} {} [deg]: RMS {:.1f} deg, {:.1f} without offset, correlation {:.3f}",
+                                  kSideNames[foot], kGaitJointNames[joint], gait.measured[joint].rms_deg,
+                                  gait.measured[joint].shape_rms_deg, gait.measured[joint].correlation),
              .x_name = "cycle",
              .x_unit = "%",
              .lines = {{.name = "measured", .x = percent, .y = gait.measured_deg[joint], .width_px = 2.2},

@@ -62,5 +62,8 @@ void run_gait(GaitTest& test, const Supervision& supervision);
 nlohmann::ordered_json to_json(const GaitTest& test);
 pages::Page page_of(const GaitTest& test);
 std::vector<std::string> text_of(const GaitTest& test);
+/// Speed, and how far joints are from the published means in degrees, with their offset and without: what a correlation
+/// doesn't tell.
+std::string difference_text(const GaitTest& test);
 
 }  // namespace pmg::evaluation

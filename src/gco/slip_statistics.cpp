@@ -31,7 +31,8 @@ void SlipStatistics::add(const Reference& reference, const Result& result) noexc
   for (const Foot foot : {kLeft, kRight}) {
     if (!reference.contact[foot]) continue;
     before_sum_m_s_ += result.foot[foot].before_m_s;
-    ++before_samples_;
+    after_sum_m_s_ += result.foot[foot].after_m_s;
+    ++stance_samples_;
   }
   if (!(left && right)) {
     ++extremes_.single_support_ticks;
@@ -61,7 +62,10 @@ void SlipStatistics::add_heights(bool left, bool right, const Result& result) no
 
 SlipSummary SlipStatistics::summary() const noexcept {
   SlipSummary summary = extremes_;
-  if (before_samples_ > 0) summary.before_mean_m_s = before_sum_m_s_ / static_cast<double>(before_samples_);
+  if (stance_samples_ > 0) {
+    summary.before_mean_m_s = before_sum_m_s_ / static_cast<double>(stance_samples_);
+    summary.after_mean_m_s = after_sum_m_s_ / static_cast<double>(stance_samples_);
+  }
   if (double_support_samples_ > 0) {
     summary.double_support_mean_m_s = double_support_sum_m_s_ / static_cast<double>(double_support_samples_);
     summary.double_support_p95_m_s = p95_m_s();

@@ -14,6 +14,7 @@ namespace pmg::gco {
 /// their lowest points in every tick. Zero where there was no sample.
 struct SlipSummary {
   double before_mean_m_s = 0.0;          ///< all stance feet, base moving by the user's command
+  double after_mean_m_s = 0.0;           ///< the same feet, optimised
   double single_support_max_m_s = 0.0;   ///< optimised
   double double_support_mean_m_s = 0.0;  ///< optimised, both feet
   double double_support_p95_m_s = 0.0;   ///< the same, nearest rank, to 0.1 mm/s
@@ -36,8 +37,8 @@ class SlipStatistics {
   double p95_m_s() const noexcept;
 
   SlipSummary extremes_;
-  double before_sum_m_s_ = 0.0, double_support_sum_m_s_ = 0.0;
-  std::int64_t before_samples_ = 0, double_support_samples_ = 0;
+  double before_sum_m_s_ = 0.0, after_sum_m_s_ = 0.0, double_support_sum_m_s_ = 0.0;
+  std::int64_t stance_samples_ = 0, double_support_samples_ = 0;
   double double_support_max_m_s_ = 0.0;
   std::vector<std::int64_t> double_support_histogram_;  ///< the last bin takes everything faster
 };

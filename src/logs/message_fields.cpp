@@ -12,12 +12,14 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
+#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
@@ -195,6 +197,23 @@ void gather(const pmg_msgs::status_t& m, Gatherer& to) {
   to.flag("realtime", m.realtime);
 }
 
+void gather(const pmg_msgs::limited_t& m, Gatherer& to) {
+  to.number("stamp_ns", m.stamp_ns);
+  to.list("joint", m.joint);
+  to.list("by", m.by);
+}
+
+void gather(const pmg_msgs::scenario_step_t& m, Gatherer& to) {
+  to.number("stamp_ns", m.stamp_ns);
+  to.text("scenario", m.scenario);
+  to.number("number", m.number);
+  to.number("step_count", m.step_count);
+  to.real("duration_s", m.duration_s);
+  to.text("text", m.text);
+  to.number("mode", m.mode);
+  to.vector("command", m.command, kChannelNames);
+}
+
 void gather(const pmg_msgs::fault_t& m, Gatherer& to) {
   to.text("robot", m.robot);
   to.number("stamp_ns", m.stamp_ns);
@@ -272,15 +291,15 @@ bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& field
 }
 
 using Read = bool (*)(const Bytes&, const Names&, std::vector<Field>&);
-constexpr std::array<std::string_view, 13> kChannelsInOrder = {
-    "ROBOT_INFO", "STATE", "COMMAND", "MODE",         "TICK", "REFERENCE", "MOTOR_COMMAND",
-    "STATUS",     "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK"};
-constexpr std::array<Read, 13> kReads = {
-    read<pmg_msgs::robot_info_t>,    read<pmg_msgs::robot_state_t>,  read<pmg_msgs::command_t>,
-    read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,   read<pmg_msgs::reference_t>,
-    read<pmg_msgs::motor_command_t>, read<pmg_msgs::status_t>,       read<pmg_msgs::fault_t>,
-    read<pmg_msgs::timing_t>,        read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,
-    read<pmg_msgs::link_t>};
+constexpr std::array<std::string_view, 15> kChannelsInOrder = {
+    "ROBOT_INFO", "SCENARIO", "STATE", "COMMAND", "MODE",         "TICK", "REFERENCE", "MOTOR_COMMAND",
+    "STATUS",     "LIMITED",  "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK"};
+constexpr std::array<Read, 15> kReads = {
+    read<pmg_msgs::robot_info_t>,   read<pmg_msgs::scenario_step_t>, read<pmg_msgs::robot_state_t>,
+    read<pmg_msgs::command_t>,      read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,
+    read<pmg_msgs::reference_t>,    read<pmg_msgs::motor_command_t>, read<pmg_msgs::status_t>,
+    read<pmg_msgs::limited_t>,      read<pmg_msgs::fault_t>,         read<pmg_msgs::timing_t>,
+    read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,           read<pmg_msgs::link_t>};
 
 struct ToText {
   std::string operator()(std::int64_t value) const { return std::to_string(value); }

@@ -21,6 +21,12 @@ std::int64_t above_zero(const RunSeries::Samples& counts) {
   return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
 }
 
+/// Of any kind.
+std::int64_t limited_ticks(const RunSeries& run) {
+  return above_zero(run.status.limited_position) + above_zero(run.status.limited_rate) +
+         above_zero(run.status.limited_torque);
+}
+
 double hottest(const std::vector<float>& temperatures) {
   double most = -1e9;
   for (const float t : temperatures) most = std::max(most, std::isfinite(t) ? static_cast<double>(t) : most);
@@ -47,6 +53,38 @@ void limit_table(pages::Page& page, const Runs& runs) {
   row("a reference clamped to a joint's range", [](const RunSeries& run) { return run.reference.joint_clamped; });
   row("no convergence of the ground-aware optimisation",
       [](const RunSeries& run) { return run.reference.not_converged; });
+  page.table(table);
+}
+
+constexpr std::size_t kLimitedShown = 8;  // joints: more than any sound run has
+
+/// When each joint was limited and why; the worst of them as lanes over time.
+void limited_joints(pages::Page& page, const Runs& runs) {
+  pages::Table table{.header = {"joint", "limited by", "first at [s]", "longest [s]"}, .rows = {}};
+  pages::Lanes lanes{.title = "Joints whose target was limited: by range (blue), speed (orange), torque (red)",
+                     .lanes = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const LimitedJoint& one : runs[i].limited) {
+      const std::string name = runs[i].joint_names[one.joint] + suffix(runs, i);
+      table.rows.push_back({name, one.reasons(), fmt::format("{:.2f}", one.stretches.front().from_s),
+                            fmt::format("{:.2f}", one.longest_s())});
+    }
+    for (std::size_t k = 0; k < std::min(kLimitedShown, runs[i].limited.size()); ++k) {
+      const LimitedJoint& one = runs[i].limited[k];
+      pages::Lanes::Lane lane{.name = runs[i].joint_names[one.joint] + suffix(runs, i), .stretches = {}};
+      for (const LimitedJoint::Stretch& s : one.stretches) {
+        const char* colour = s.by[2] ? "#d55e00" : s.by[1] ? "#e69f00" : "#56b4e9";
+        lane.stretches.push_back({s.from_s, s.to_s, "", colour});
+      }
+      lanes.lanes.push_back(std::move(lane));
+    }
+    if (runs[i].limited.empty() && limited_ticks(runs[i]) > 0) {
+      page.paragraph(
+          fmt::format("Which joints were limited{} is not in the log: an older version wrote it.", suffix(runs, i)));
+    }
+  }
+  if (table.rows.empty()) return;
+  page.lanes(lanes);
   page.table(table);
 }
 
@@ -119,14 +157,13 @@ void delays(pages::Page& page, const Runs& runs) {
 void limits_and_temperatures(pages::Page& page, const Runs& runs) {
   page.heading("Limits and temperatures");
   limit_table(page, runs);
+  limited_joints(page, runs);
   page.columns([&] {
     std::vector<pages::Line> lines;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const auto& status = runs[i].status;
       const std::string behind = suffix(runs, i);
-      if (above_zero(status.limited_position) + above_zero(status.limited_rate) + above_zero(status.limited_torque) ==
-          0)
-        continue;
+      if (limited_ticks(runs[i]) == 0) continue;
       lines.push_back({.name = "range" + behind,
                        .x = status.t_s,
                        .y = status.limited_position,
@@ -143,7 +180,7 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs) {
                        .colour = palette(i).optimised,
                        .stepped = true});
     }
-    add_chart(page, runs, "Joints whose target was limited, and by what", std::move(lines));
+    add_chart(page, runs, "How many joints' targets were limited, and by what", std::move(lines));
     temperature_chart(page, runs);
   });
 }

@@ -99,11 +99,17 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   if (!lanes.lanes.empty()) page.lanes(lanes);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].reference.t_s.empty()) continue;
-    const SlipFigures slip = slip_figures(runs[i]);
-    page.paragraph(
-        fmt::format("Mean slip of the feet that the reference has on the ground{}: {:.4f} m/s if the base moved as "
-                    "commanded, {:.4f} m/s as optimised.",
-                    suffix(runs, i), slip.before_mean_m_s, slip.after_mean_m_s));
+    const gco::SlipSummary& slip = runs[i].reference_slip;
+    std::string text = fmt::format(
+        "Slip is the horizontal speed of a stance sole's contact point. Of the reference while it steps{}: mean {:.4f} "
+        "m/s "
+        "if the base moved as commanded, {:.4f} m/s as optimised.",
+        suffix(runs, i), slip.before_mean_m_s, slip.after_mean_m_s);
+    if (runs[i].tracking.followed_s > 0.0) {
+      text +=
+          fmt::format(" Of the simulated robot's loaded feet: mean {:.4f} m/s.", runs[i].tracking.foot_slip_mean_m_s);
+    }
+    page.paragraph(text);
   }
   page.columns([&] {
     for (std::size_t foot = 0; foot < 2; ++foot) {

@@ -8,6 +8,7 @@
 
 #include "pages/histogram.hpp"
 #include "runtime/mode.hpp"
+#include "runtime/summary.hpp"
 
 namespace pmg::logs {
 
@@ -69,23 +70,27 @@ std::vector<JointTracking> joint_tracking(const RunSeries& run) {
   return joints;
 }
 
-SlipFigures slip_figures(const RunSeries& run) {
-  SlipFigures sum;
-  std::int64_t count = 0;
-  const auto& reference = run.reference;
-  const std::vector<bool> held = holding(run, reference.t_s);
-  for (std::size_t foot = 0; foot < 2; ++foot) {
-    for (std::size_t i = 0; i < reference.t_s.size(); ++i) {
-      const double before = reference.slip_before_m_s[foot][i], after = reference.slip_after_m_s[foot][i];
-      if (!held[i] || !reference.contact[foot][i] || !std::isfinite(before) || !std::isfinite(after)) continue;
-      sum.before_mean_m_s += before;
-      sum.after_mean_m_s += after;
-      ++count;
-    }
+std::string tracking_text(const RunSeries& run) {
+  const runtime::TrackingSummary& t = run.tracking;
+  if (t.followed_s <= 0.0) return "";
+  return fmt::format(
+      "Mean absolute errors over {:.1f} s{}: velocity {:.3f} m/s, yaw rate {:.3f} rad/s, roll {:.3f} rad, "
+      "pitch {:.3f} rad, height {:.3f} m; its loaded feet slip at {:.4f} m/s.",
+      t.followed_s, run.fell ? ", what came after the fall included" : " on its own feet", t.lin_vel_mae_m_s,
+      t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m, t.foot_slip_mean_m_s);
+}
+
+std::string limited_text(const RunSeries& run) {
+  if (run.limited.empty()) return "";
+  const LimitedJoint& most = run.limited.front();
+  std::string text = fmt::format("Limited: {} by {}, first at {:.2f} s", run.joint_names[most.joint], most.reasons(),
+                                 most.stretches.front().from_s);
+  if (run.limited.size() == 2) {
+    text += fmt::format("; and {}", run.joint_names[run.limited[1].joint]);
+  } else if (run.limited.size() > 2) {
+    text += fmt::format("; and {} more joints", run.limited.size() - 1);
   }
-  if (count == 0) return {};
-  const double share = 1.0 / static_cast<double>(count);
-  return {sum.before_mean_m_s * share, sum.after_mean_m_s * share};
+  return text + ".";
 }
 
 std::string verdict(const RunSeries& run) {
@@ -110,7 +115,11 @@ std::string verdict(const RunSeries& run) {
   } else if (!run.truth.t_s.empty()) {
     text += ", did not fall";
   }
-  return text + ".";
+  text += ".";
+  for (const std::string& more : {tracking_text(run), limited_text(run)}) {
+    if (!more.empty()) text += " " + more;
+  }
+  return text;
 }
 
 nlohmann::ordered_json run_json(const RunSeries& run) {
@@ -121,7 +130,19 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
   }
   const std::vector<JointTracking> tracking = joint_tracking(run);
   for (std::size_t i = 0; i < tracking.size(); ++i) errors[run.joint_names[i]] = tracking[i].error_rms_rad;
-  const SlipFigures slip = slip_figures(run);
+  ordered_json limited = ordered_json::array(), steps = ordered_json::array();
+  for (const LimitedJoint& one : run.limited) {
+    limited.push_back({{"joint", run.joint_names[one.joint]},
+                       {"first_s", one.stretches.front().from_s},
+                       {"longest_s", one.longest_s()},
+                       {"position_ticks", one.ticks[0]},
+                       {"rate_ticks", one.ticks[1]},
+                       {"torque_ticks", one.ticks[2]}});
+  }
+  for (const RunSeries::Step& step : run.steps) {
+    steps.push_back({{"number", step.number}, {"from_s", step.from_s}, {"to_s", step.to_s}, {"text", step.text}});
+  }
+  const bool judged = run.tracking.followed_s > 0.0;
   return {{"log", run.name},
           {"robot", run.info.robot},
           {"model", run.info.model},
@@ -136,7 +157,11 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"guard_trips", events_json(run.guard_trips)},
           {"modes_s", modes},
           {"tracking_rms_rad", errors},
-          {"slip", {{"before_mean_m_s", slip.before_mean_m_s}, {"after_mean_m_s", slip.after_mean_m_s}}},
+          {"tracking", judged ? runtime::tracking_json(run.tracking) : ordered_json(nullptr)},
+          {"reference_slip", runtime::reference_slip_json(run.reference_slip)},
+          {"scenario", run.scenario.empty() ? ordered_json(nullptr) : ordered_json(run.scenario)},
+          {"steps", steps},
+          {"limited_joints", limited},
           {"limited_ticks",
            {{"position", ticks_above_zero(run.status.limited_position)},
             {"rate", ticks_above_zero(run.status.limited_rate)},

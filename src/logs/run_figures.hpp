@@ -20,13 +20,14 @@ struct JointTracking {
 };
 std::vector<JointTracking> joint_tracking(const RunSeries& run);
 
-/// Mean over the ticks and feet in contact, while holding [m/s].
-struct SlipFigures {
-  double before_mean_m_s = 0.0, after_mean_m_s = 0.0;
-};
-SlipFigures slip_figures(const RunSeries& run);
+/// Errors against what was asked, and slip: the figures of summary.json in a sentence. Empty without a simulation's
+/// truth.
+std::string tracking_text(const RunSeries& run);
 
-/// One line: what ran, how long, and how it ended.
+/// The joint that was limited most, by what and since when; empty when the log names none.
+std::string limited_text(const RunSeries& run);
+
+/// What ran, how long, how it ended, how well it followed and what limited it.
 std::string verdict(const RunSeries& run);
 
 nlohmann::ordered_json run_json(const RunSeries& run);

@@ -34,6 +34,52 @@ Lanes::Lane lane(const std::string& name, const std::vector<RunSeries::Stretch>&
   return row;
 }
 
+/// Neighbours have different colours; a narrow one shows its number.
+Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step>& steps) {
+  Lanes::Lane row{.name = name, .stretches = {}};
+  for (const RunSeries::Step& step : steps) {
+    row.stretches.push_back({step.from_s, step.to_s, fmt::format("{} {}", step.number, step.text),
+                             row.stretches.size() % 2 == 0 ? "#e9e4f2" : "#d8cfe8"});
+  }
+  return row;
+}
+
+/// What a step asked for, channels that are not zero.
+std::string asked_text(const RunSeries::Step& step) {
+  static constexpr std::array<const char*, kChannels> kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s",
+                                                                "turn {:+.2f} rad/s",  "pitch {:+.2f} rad",
+                                                                "roll {:+.2f} rad",    "height {:+.3f} m"};
+  std::string text;
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    if (step.asked[channel] == 0.0) continue;
+    text += (text.empty() ? "" : ", ") + fmt::format(fmt::runtime(kNames[channel]), step.asked[channel]);
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+void steps_table(pages::Page& page, const Runs& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunSeries& run = runs[i];
+    if (run.steps.empty()) continue;
+    pages::Table table{
+        .header = {"step", "from [s]", "to [s]", "what", "asked", "velocity error [m/s]", "yaw rate error [rad/s]",
+                   "roll error [rad]", "pitch error [rad]", "height error [m]"},
+        .rows = {}};
+    for (const RunSeries::Step& step : run.steps) {
+      std::vector<std::string> row = {std::to_string(step.number), fmt::format("{:.1f}", step.from_s),
+                                      fmt::format("{:.1f}", step.to_s), step.text, asked_text(step)};
+      const runtime::TrackingSummary& t = step.tracking;
+      for (const double error :
+           {t.lin_vel_mae_m_s, t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m})
+        row.push_back(t.followed_s > 0.0 ? fmt::format("{:.3f}", error) : "-");
+      table.rows.push_back(std::move(row));
+    }
+    page.folded(fmt::format("The {} steps of scenario {}{}, with the mean absolute error within each", run.steps.size(),
+                            run.scenario, suffix(runs, i)),
+                [&] { page.table(table); });
+  }
+}
+
 /// The code before the colon: a mark has little room.
 std::string short_fault(const std::string& text) { return text.substr(0, text.find(':')); }
 
@@ -98,14 +144,16 @@ void verdicts(pages::Page& page, const Runs& runs) {
 
 void timeline(pages::Page& page, const Runs& runs) {
   page.heading("Timeline");
-  Lanes lanes{
-      .title = "Modes, who drives, and what the gantry carries; drag to zoom all charts, double click to go back",
-      .lanes = {}};
+  Lanes lanes{.title =
+                  "Modes, scenario steps, who drives, and what the gantry carries; drag to zoom all charts, double "
+                  "click to go back",
+              .lanes = {}};
   pages::Table events{.header = {"time [s]", "what"}, .rows = {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     const std::string behind = suffix(runs, i);
     lanes.lanes.push_back(lane("mode" + behind, run.modes, nullptr));
+    if (!run.steps.empty()) lanes.lanes.push_back(step_lane("step" + behind, run.steps));
     if (!run.sources.empty()) lanes.lanes.push_back(lane("driver" + behind, run.sources, "#dfe6ee"));
     if (!run.hoisted.empty()) lanes.lanes.push_back(lane("gantry" + behind, run.hoisted, "#efe3d3"));
     for (const RunSeries::Event& fault : run.faults)
@@ -118,6 +166,7 @@ void timeline(pages::Page& page, const Runs& runs) {
   if (!lanes.marks.empty()) lanes.lanes.push_back({"faults", {}});  // room for the marks' words
   page.lanes(lanes);
   if (!events.rows.empty()) page.table(events);
+  steps_table(page, runs);
 }
 
 void who_ran_what(pages::Page& page, const Runs& runs) {

@@ -4,20 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 
 #include "io/log_series.hpp"
 #include "logs/measured_command.hpp"
+#include "logs/run_judgement.hpp"
+#include "logs/timing_csv.hpp"
+#include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
@@ -70,6 +72,9 @@ class Gathering {
     if (channel == "STATE") return with(event, &Gathering::state);
     if (channel == "REFERENCE") return with(event, &Gathering::reference);
     if (channel == "STATUS") return with(event, &Gathering::status);
+    if (channel == "COMMAND") return with(event, &Gathering::command);
+    if (channel == "SCENARIO") return with(event, &Gathering::step);
+    if (channel == "LIMITED") return with(event, &Gathering::limited);
     if (channel == "GROUND_TRUTH") return with(event, &Gathering::truth);
     if (channel == "TIMING") return with(event, &Gathering::timing);
     if (channel == "TICK") return with(event, &Gathering::tick);
@@ -86,6 +91,14 @@ class Gathering {
       if (!is_known(fault)) run_.faults.push_back(fault);
     }
     std::ranges::sort(run_.faults, {}, &RunSeries::Event::t_s);
+    end_step();
+    run_.limited = limited_.most_first();
+    std::erase_if(run_.limited, [this](const LimitedJoint& one) { return one.joint >= run_.joint_names.size(); });
+    if (judgement_) {
+      const runtime::RunOutcome outcome = judgement_->outcome();
+      run_.tracking = outcome.tracking;
+      run_.reference_slip = outcome.reference_slip;
+    }
     if (!run_.identified) run_.problems.push_back("no ROBOT_INFO: who ran what is unknown, joints have numbers");
     const auto tell = [this](std::int64_t count, const char* what) {
       if (count > 0) run_.problems.push_back(fmt::format("{} {}", count, what));
@@ -130,6 +143,7 @@ class Gathering {
     run_.identified = true;
     run_.info = std::move(*info);
     run_.joint_names = run_.info.joint_names;
+    judgement_.emplace(run_.info.standing_height_m);
     make_joints();
   }
 
@@ -162,8 +176,36 @@ class Gathering {
     return true;
   }
 
+  bool command(const pmg_msgs::command_t& message) {
+    if (judgement_) judgement_->command(message);
+    return true;
+  }
+
+  bool step(const pmg_msgs::scenario_step_t& message) {
+    end_step();
+    run_.scenario = message.scenario;
+    RunSeries::Step step{
+        .from_s = t_s_, .to_s = t_s_, .number = message.number, .text = message.text, .asked = {}, .tracking = {}};
+    std::ranges::copy(message.command, step.asked.begin());
+    run_.steps.push_back(std::move(step));
+    if (judgement_) before_step_ = judgement_->outcome().tracking;
+    return true;
+  }
+
+  void end_step() {
+    if (run_.steps.empty()) return;
+    run_.steps.back().to_s = t_s_;
+    if (judgement_) run_.steps.back().tracking = errors_between(before_step_, judgement_->outcome().tracking);
+  }
+
+  bool limited(const pmg_msgs::limited_t& message) {
+    limited_.add(t_s_, message);
+    return true;
+  }
+
   bool reference(const pmg_msgs::reference_t& message) {
     if (!fits(message.joint_count)) return false;
+    if (judgement_) judgement_->reference(message);
     auto& to = run_.reference;
     to.t_s.push_back(t_s_);
     append(message.q_ref_rad, to.q_ref_rad);
@@ -193,6 +235,7 @@ class Gathering {
       latched_.push_back(
           {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
     }
+    if (judgement_) judgement_->status(message);
     extend(run_.modes, t_s_, to_string(mode));
     extend(run_.sources, t_s_, message.driving_source);
     run_.status.t_s.push_back(t_s_);
@@ -205,6 +248,7 @@ class Gathering {
   bool truth(const pmg_msgs::ground_truth_t& message) {
     auto& to = run_.truth;
     to.t_s.push_back(t_s_);
+    if (judgement_) judgement_->truth(message);
     const double standing_height_m = run_.info.standing_height_m;
     const auto measured = measured_command_.add(message, gait_period_s_, standing_height_m);
     // What the gantry carries does not follow.
@@ -267,6 +311,9 @@ class Gathering {
 
   RunSeries run_;
   MeasuredCommand measured_command_;
+  std::optional<RunJudgement> judgement_;  // once the robot is known
+  runtime::TrackingSummary before_step_;
+  LimitedJoints limited_;
   std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;
   std::map<std::string, double> newest_s_;  // of each channel
@@ -274,30 +321,6 @@ class Gathering {
   std::int64_t newest_ns_ = 0;
   std::int64_t unreadable_ = 0, back_in_time_ = 0, earlier_runs_ = 0;
 };
-
-/// timing.csv of a lockstep run: time_s,tick_us,generator_us,gco_us,policy_us.
-void read_timing_csv(const fs::path& file, RunSeries& run) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;
-  auto& to = run.timing;
-  std::array<double, 5> row{};
-  while (std::getline(in, line)) {
-    std::istringstream cells(line);
-    bool whole = true;
-    for (double& value : row) {
-      std::string cell;
-      whole = whole && std::getline(cells, cell, ',') && std::istringstream(cell) >> value;
-    }
-    if (!whole || (!to.t_s.empty() && row[0] < to.t_s.back())) continue;
-    to.t_s.push_back(row[0]);
-    to.tick_us.push_back(row[1]);
-    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNone);
-    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNone);
-    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNone);
-  }
-}
 
 }  // namespace
 

@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "gco/slip_statistics.hpp"
+#include "logs/limited_joints.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
+#include "runtime/metrics.hpp"
 
 namespace pmg::logs {
 
@@ -67,6 +70,21 @@ struct RunSeries {
   };
   std::vector<Event> faults;  ///< as they latched, in words
   std::vector<Event> guard_trips, stops;
+
+  /// A scenario's step, as the log tells it.
+  struct Step {
+    double from_s, to_s;
+    int number;
+    std::string text;
+    std::array<double, kChannels> asked;
+    runtime::TrackingSummary tracking;  ///< within it
+  };
+  std::string scenario;
+  std::vector<Step> steps;
+
+  runtime::TrackingSummary tracking;  ///< followed_s is 0 without a simulation's truth
+  gco::SlipSummary reference_slip;    ///< as in summary.json
+  std::vector<LimitedJoint> limited;  ///< most often limited first
 
   bool fell = false;
   double fell_at_s = -1.0;

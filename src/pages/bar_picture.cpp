@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
-#include "pages/histogram.hpp"
+#include "pages/axis.hpp"
 #include "pages/svg_parts.hpp"
 #include "pages/text.hpp"
 
@@ -14,141 +15,146 @@ namespace pmg::pages {
 
 namespace {
 
-double largest_shown(const Bars& bars) {
-  double largest = 0.0;
-  const auto show = [&largest](double value) { largest = std::isfinite(value) ? std::max(largest, value) : largest; };
-  for (const Bars::Set& set : bars.sets) {
-    for (const double value : set.values) show(value);
-    for (const Interval& interval : set.intervals) show(interval.upper);
-  }
-  for (const Mark& mark : bars.marks) show(mark.x);
-  return largest;
+constexpr int kWidth = 640, kAxis = 22, kGap = 7;
+constexpr double kLeastNames = 90.0, kMostNames = 270.0;
+constexpr int kRoomyBars = 12;  // few enough for a number at each
+constexpr int kLabels = 5;
+
+double value_of(const Bars::Set& set, std::size_t row) {
+  return row < set.values.size() && can_be_shown(set.values[row]) ? set.values[row]
+                                                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// A whisker through the middle of a bar; x in pixels.
-std::string whisker(double from, double to, double y) {
-  return fmt::format(
-      R"(<path d="M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}V{4:.1f}M{1:.1f} {3:.1f}V{4:.1f}" stroke="{5}" )"
-      R"(stroke-width="1.2" fill="none"/>)",
-      from, to, y, y - 3, y + 3, colour::kInk);
+/// What is shown: always with zero, from which bars begin.
+Range range_of(const Bars& bars) {
+  Range range{0.0, 0.0};
+  for (const Bars::Set& set : bars.sets) {
+    for (const double value : set.values) range.include(value);
+    for (const Interval& interval : set.intervals) range.include(interval.lower), range.include(interval.upper);
+  }
+  for (const Mark& mark : bars.marks) range.include(mark.x);
+  return range.span() > 0.0 ? range : Range{0.0, 1.0};
 }
+
+class Drawing {
+ public:
+  explicit Drawing(const Bars& bars)
+      : bars_(bars),
+        range_(range_of(bars)),
+        numbered_(bars.sets.size() <= 1 || bars.sets.size() * bars.names.size() <= kRoomyBars),
+        bar_(bars.sets.size() <= 1 ? 10
+             : numbered_           ? 14
+                                   : 7),
+        row_(bar_ * static_cast<int>(std::max<std::size_t>(bars.sets.size(), 1)) + kGap),
+        top_(bars.marks.empty() ? 6 : 18),
+        bottom_(top_ + row_ * static_cast<int>(bars.names.size())) {
+    double names = kLeastNames, widest = 0.0;
+    for (const std::string& name : bars.names) names = std::max(names, text_width(name));
+    for (const Bars::Set& set : bars.sets) {
+      for (const double value : set.values) widest = std::max(widest, text_width(number(value)));
+    }
+    names_ = std::min(names, kMostNames) + 12.0;
+    const double beside = numbered_ ? widest + 10.0 : 10.0;
+    from_px_ = names_ + (range_.from < 0.0 ? beside : 0.0);
+    to_px_ = kWidth - std::max(beside, text_width(bars.unit) + 34.0);
+  }
+
+  std::string svg() {
+    const Legend names = legend();
+    out_ = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)", kWidth,
+                       bottom_ + kAxis + names.height(), escape_html(bars_.title));
+    axis();
+    for (std::size_t row = 0; row < bars_.names.size(); ++row) {
+      name(row);
+      for (std::size_t set = 0; set < bars_.sets.size(); ++set) bar(row, set);
+    }
+    if (range_.from < 0.0) add(R"(<path d="M{:.1f} {}V{}" stroke="{}"/>)", x(0.0), top_, bottom_, colour::kInk);
+    marks();
+    return out_ + names.svg(bottom_ + kAxis) + "</svg>";
+  }
+
+ private:
+  double x(double value) const { return from_px_ + (value - range_.from) / range_.span() * (to_px_ - from_px_); }
+
+  template <typename... T>
+  void add(fmt::format_string<T...> format, T&&... values) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<T>(values)...);
+  }
+
+  void axis() {
+    for (const AxisTick& tick : axis_ticks(range_, kLabels)) {
+      add(R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
+          x(tick.value), top_, bottom_, bottom_ + 15, tick.label);
+    }
+    add(R"(<text x="{:.1f}" y="{}">{}</text>)", to_px_ + 20.0, bottom_ + 15, escape_html(bars_.unit));
+  }
+
+  void name(std::size_t row) {
+    const std::string shown = fitted(bars_.names[row], kMostNames);
+    const std::string whole = shown == bars_.names[row] ? "" : "<title>" + escape_html(bars_.names[row]) + "</title>";
+    add(R"(<text class="name" x="{:.1f}" y="{}">{}{}</text>)", names_ - 8.0, row_top(row) + (row_ - kGap) / 2 + 4,
+        escape_html(shown), whole);
+  }
+
+  void bar(std::size_t row, std::size_t set) {
+    const double value = value_of(bars_.sets[set], row);
+    if (std::isnan(value)) return;
+    const int top = row_top(row) + static_cast<int>(set) * bar_;
+    double low = std::min(x(0.0), x(value)), high = std::max(x(0.0), x(value));
+    add(R"(<rect class="bar" x="{:.1f}" y="{}" width="{:.1f}" height="{}" fill="{}"/>)", low, top, high - low, bar_ - 1,
+        escape_html(bars_.sets[set].colour));
+    if (row < bars_.sets[set].intervals.size()) {
+      const auto [lower, upper] = bars_.sets[set].intervals[row];
+      if (can_be_shown(lower) && can_be_shown(upper)) {
+        whisker(x(lower), x(upper), top + 0.5 * (bar_ - 1));
+        low = std::min(low, x(lower));
+        high = std::max(high, x(upper));
+      }
+    }
+    if (!numbered_) return;
+    const bool negative = value < 0.0;
+    add(R"(<text class="{}" x="{:.1f}" y="{}">{}</text>)", negative ? "name value" : "value",
+        negative ? low - 5.0 : high + 5.0, top + bar_ - 2, number(value));
+  }
+
+  /// Through the middle of a bar; x in the picture's units.
+  void whisker(double from, double to, double y) {
+    add(R"(<path class="whisker" d="M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}V{4:.1f}M{1:.1f} {3:.1f}V{4:.1f}" )"
+        R"(stroke="{5}" stroke-width="1.2" fill="none"/>)",
+        from, to, y, y - 3, y + 3, colour::kInk);
+  }
+
+  void marks() {
+    for (const Mark& mark : bars_.marks) {
+      if (!can_be_shown(mark.x)) continue;
+      const double half = 0.5 * text_width(mark.text);
+      add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
+          R"(<text class="tick" x="{4:.1f}" y="{5}">{6}</text>)",
+          x(mark.x), top_, bottom_, colour::kInk, std::clamp(x(mark.x), half, kWidth - half), top_ - 5,
+          escape_html(mark.text));
+    }
+  }
+
+  Legend legend() const {
+    Legend legend(names_, kWidth);
+    for (const Bars::Set& set : bars_.sets) {
+      if (bars_.sets.size() > 1) legend.add(set.colour, set.name);
+    }
+    return legend;
+  }
+
+  int row_top(std::size_t row) const { return top_ + row_ * static_cast<int>(row) + 3; }
+
+  const Bars& bars_;
+  const Range range_;
+  const bool numbered_;
+  const int bar_, row_, top_, bottom_;
+  double names_ = 0.0, from_px_ = 0.0, to_px_ = 0.0;
+  std::string out_;
+};
 
 }  // namespace
 
-std::string svg(const Bars& bars) {
-  constexpr int kWidth = 640, kLeft = 190, kRight = 70, kAxis = 22;
-  constexpr int kRoomyBars = 12;  // few enough for a number at each
-  const int per_row = static_cast<int>(bars.sets.size());
-  const bool numbered = per_row == 1 || per_row * static_cast<int>(bars.names.size()) <= kRoomyBars;
-  const int bar = per_row == 1 ? 10 : numbered ? 14 : 7, row = per_row * bar + 7;
-  const int legend = per_row > 1 ? 20 * per_row : 0;
-  const int top_margin = bars.marks.empty() ? 6 : 18;
-  const int height = top_margin + row * static_cast<int>(bars.names.size()) + kAxis + legend;
-  const double largest = largest_shown(bars);
-  const double full = largest > 0.0 ? largest : 1.0;
-  const double scale = (kWidth - kLeft - kRight) / full;
-  const int bottom = height - kAxis - legend;
-
-  std::string out = fmt::format(R"(<svg viewBox="0 0 {} {}" style="max-width:{}px" role="img" aria-label="{}">)",
-                                kWidth, height, kWidth, escape_html(bars.title));
-  const auto add = std::back_inserter(out);
-  const double step = tick_step(full, 5);
-  for (double tick = 0.0; tick <= full * 1.0001; tick += step) {
-    const double x = kLeft + tick * scale;
-    fmt::format_to(add, R"(<path class="grid" d="M{:.1f} {}V{}"/><text class="tick" x="{:.1f}" y="{}">{}</text>)", x,
-                   top_margin, bottom, x, bottom + 15, number(tick));
-  }
-  fmt::format_to(add, R"(<text x="{}" y="{}">{}</text>)", kWidth - kRight + 12, bottom + 15, escape_html(bars.unit));
-  for (std::size_t i = 0; i < bars.names.size(); ++i) {
-    const int y = top_margin + row * static_cast<int>(i) + 3;
-    fmt::format_to(add, R"(<text class="name" x="{}" y="{}">{}</text>)", kLeft - 8, y + (row - 7) / 2 + 4,
-                   escape_html(bars.names[i]));
-    for (std::size_t set = 0; set < bars.sets.size(); ++set) {
-      const double value = i < bars.sets[set].values.size() ? bars.sets[set].values[i] : std::nan("");
-      if (!std::isfinite(value)) continue;
-      const double length = std::max(0.0, value) * scale;
-      const int top = y + static_cast<int>(set) * bar;
-      fmt::format_to(add, R"(<rect x="{}" y="{}" width="{:.1f}" height="{}" fill="{}"/>)", kLeft, top, length, bar - 1,
-                     bars.sets[set].colour);
-      double end = kLeft + length;
-      if (i < bars.sets[set].intervals.size()) {
-        const auto [lower, upper] = bars.sets[set].intervals[i];
-        if (std::isfinite(lower) && std::isfinite(upper)) {
-          out += whisker(kLeft + std::max(0.0, lower) * scale, kLeft + std::max(0.0, upper) * scale,
-                         top + 0.5 * (bar - 1));
-          end = std::max(end, kLeft + upper * scale);
-        }
-      }
-      if (numbered) fmt::format_to(add, R"(<text x="{:.1f}" y="{}">{}</text>)", end + 5, top + bar - 2, number(value));
-    }
-  }
-  for (const Mark& mark : bars.marks) {
-    const double x = kLeft + mark.x * scale;
-    fmt::format_to(add,
-                   R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
-                   R"(<text class="tick" x="{0:.1f}" y="{4}">{5}</text>)",
-                   x, top_margin, bottom, colour::kInk, top_margin - 5, escape_html(mark.text));
-  }
-  for (std::size_t set = 0; legend > 0 && set < bars.sets.size(); ++set) {
-    out += legend_entry(kLeft, height - legend + 20 * static_cast<double>(set) + 16, bars.sets[set].colour,
-                        bars.sets[set].name);
-  }
-  return out + "</svg>";
-}
-
-std::string svg(const Histogram& histogram) {
-  constexpr int kWidth = 640, kPlot = 180, kLeft = 52, kRight = 16, kTop = 8, kAxis = 24, kBins = 60;
-  const int height = kTop + kPlot + kAxis + 20 * static_cast<int>(histogram.sets.size());
-  // The few values far beyond all others are told in words: they would press those into one bin.
-  double from = 0.0, to = 0.0;
-  for (const Histogram::Set& set : histogram.sets) {
-    to = std::max(to, std::min(percentile(set.values, 0.999), 4.0 * percentile(set.values, 0.99)));
-    from = std::min(from, percentile(set.values, 0.001));
-  }
-  if (!(to > from)) to = from + 1.0;
-  std::vector<Bins> bins;
-  double highest = 1.0;
-  for (const Histogram::Set& set : histogram.sets) {
-    bins.push_back(count(set.values, from, to, kBins));
-    for (const std::int64_t n : bins.back().counts) highest = std::max(highest, static_cast<double>(n));
-  }
-  const double decades = std::max(1.0, std::ceil(std::log10(highest)));
-  // Counts on a logarithmic axis, half a decade for a single one: rare long times are what one looks for.
-  const auto y = [&](double n) {
-    return n < 1.0 ? kTop + kPlot : kTop + kPlot * (1.0 - (std::log10(n) + 0.5) / (decades + 0.5));
-  };
-  const double scale = (kWidth - kLeft - kRight) / (to - from);
-
-  std::string out = fmt::format(R"(<svg viewBox="0 0 {} {}" style="max-width:{}px" role="img" aria-label="{}">)",
-                                kWidth, height, kWidth, escape_html(histogram.title));
-  const auto add = std::back_inserter(out);
-  for (int decade = 0; decade <= static_cast<int>(decades); ++decade) {
-    const double at = y(std::pow(10.0, decade));
-    fmt::format_to(add, R"(<path class="grid" d="M{} {:.1f}H{}"/><text class="name" x="{}" y="{:.1f}">{}</text>)",
-                   kLeft, at, kWidth - kRight, kLeft - 6, at + 4, number(std::pow(10.0, decade)));
-  }
-  const double step = tick_step(to - from, 6);
-  for (double tick = std::ceil(from / step) * step; tick <= to; tick += step) {
-    fmt::format_to(add, R"(<text class="tick" x="{:.1f}" y="{}">{} {}</text>)", kLeft + (tick - from) * scale,
-                   kTop + kPlot + 16, number(tick), escape_html(histogram.unit));
-  }
-  for (std::size_t set = 0; set < bins.size(); ++set) {
-    const Bins& b = bins[set];
-    std::string path = fmt::format("M{} {}", kLeft, kTop + kPlot);
-    for (std::size_t i = 0; i < b.counts.size(); ++i) {
-      fmt::format_to(std::back_inserter(path), "V{:.1f}H{:.1f}", y(static_cast<double>(b.counts[i])),
-                     kLeft + static_cast<double>(i + 1) * b.width * scale);
-    }
-    fmt::format_to(add, R"(<path d="{}V{}Z" fill="{}" fill-opacity="0.45" stroke="{}"/>)", path, kTop + kPlot,
-                   histogram.sets[set].colour, histogram.sets[set].colour);
-    const std::span<const double> values = histogram.sets[set].values;
-    const std::string beyond = b.above > 0 ? fmt::format(", {} beyond", b.above) : "";
-    out += legend_entry(
-        kLeft, kTop + kPlot + kAxis + 20.0 * static_cast<double>(set) + 14, histogram.sets[set].colour,
-        fmt::format("{}: {} values, p50 {}, p99 {} {}{}", histogram.sets[set].name, b.total(),
-                    number(percentile(values, 0.5)), number(percentile(values, 0.99)), histogram.unit, beyond));
-  }
-  return out + "</svg>";
-}
+std::string svg(const Bars& bars) { return Drawing(bars).svg(); }
 
 }  // namespace pmg::pages

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pages/axis.hpp"
+
 namespace pmg::pages {
 
 namespace {
@@ -49,14 +51,30 @@ void push_column(LineData& data, std::span<const double> x, const std::vector<st
   }
 }
 
+/// decimate() of the points whose place is known.
+LineData decimate_placed(std::span<const double> x, const std::vector<std::span<const double>>& y, std::size_t columns,
+                         double longest_gap) {
+  const auto placed = [&x](std::span<const double> values) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (can_be_shown(x[i])) kept.push_back(values[i]);
+    }
+    return kept;
+  };
+  std::vector<std::vector<double>> kept;
+  for (const auto line : y) kept.push_back(placed(line));
+  return decimate(placed(x), {kept.begin(), kept.end()}, columns, longest_gap);
+}
+
 }  // namespace
 
 LineData decimate(std::span<const double> x, const std::vector<std::span<const double>>& y, std::size_t columns,
                   double longest_gap) {
-  if (!std::ranges::is_sorted(x)) throw std::invalid_argument("a line's x must not decrease");
   for (const auto line : y) {
     if (line.size() != x.size()) throw std::invalid_argument("a line needs one y for each x");
   }
+  if (!std::ranges::all_of(x, can_be_shown)) return decimate_placed(x, y, columns, longest_gap);
+  if (!std::ranges::is_sorted(x)) throw std::invalid_argument("a line's x must not decrease");
   LineData data;
   data.y.resize(y.size());
   const bool keep_all = x.size() <= 2 * columns;
@@ -74,11 +92,9 @@ LineData decimate(std::span<const double> x, const std::vector<std::span<const d
 }
 
 std::string delta_json(const std::vector<double>& values, double resolution) {
-  constexpr double kLargest = 1e300;  // beyond it a range overflows
-  const auto shown = [](double value) { return std::abs(value) < kLargest; };
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values) {
-    if (!shown(value)) continue;
+    if (!can_be_shown(value)) continue;
     low = std::min(low, value);
     high = std::max(high, value);
   }
@@ -92,7 +108,7 @@ std::string delta_json(const std::vector<double>& values, double resolution) {
   std::int64_t last = 0;
   const char* comma = "";
   for (const double value : values) {
-    if (shown(value)) {
+    if (can_be_shown(value)) {
       const std::int64_t steps = std::llround((value - offset) / step);
       fmt::format_to(std::back_inserter(text), "{}{}", comma, steps - last);
       last = steps;

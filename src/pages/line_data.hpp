@@ -15,8 +15,8 @@ struct LineData {
 
 /// At most two points per column of equal width in x: of every line the smallest and the largest finite value, in the
 /// order in which they came, so no peak is lost. Fewer than 2 * columns points are kept as they are. Where x jumps by
-/// more than longest_gap a gap is put in. y's lines have x.size() values; x doesn't decrease (throws
-/// std::invalid_argument otherwise).
+/// more than longest_gap a gap is put in; points whose x isn't finite are left out. y's lines have x.size() values; x
+/// doesn't decrease (throws std::invalid_argument otherwise).
 LineData decimate(std::span<const double> x, const std::vector<std::span<const double>>& y, std::size_t columns,
                   double longest_gap);
 

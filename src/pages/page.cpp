@@ -11,6 +11,7 @@
 
 #include "pages/assets.hpp"
 #include "pages/bar_picture.hpp"
+#include "pages/histogram_picture.hpp"
 #include "pages/line_data.hpp"
 #include "pages/plot_picture.hpp"
 #include "pages/text.hpp"
@@ -31,6 +32,10 @@ ordered_json marks_json(const std::vector<Mark>& marks) {
   ordered_json json = ordered_json::array();
   for (const Mark& mark : marks) json.push_back({mark.x, mark.text});
   return json;
+}
+
+std::string axis_name(const std::string& named, const std::string& x_name, const std::string& x_unit) {
+  return named.empty() ? fmt::format("{} [{}]", x_name, x_unit) : named;
 }
 
 bool same_x(const Line& a, const Line& b) { return a.x.data() == b.x.data() && a.x.size() == b.x.size(); }
@@ -102,9 +107,10 @@ void Page::table(const Table& table) {
 
 void Page::chart(const Chart& chart) {
   const auto groups = tracks(chart.lines);
+  const std::string axis = axis_name(chart.axis, chart.x_name, chart.x_unit);
   ordered_json lines = ordered_json::array();
   for (const auto& group : groups) {
-    show_x(group.front()->x.front(), group.front()->x.back());
+    for (const double x : group.front()->x) show_x(axis, x);
     for (const Line* line : group) {
       lines.push_back({{"name", line->name},
                        {"colour", line->colour},
@@ -114,9 +120,11 @@ void Page::chart(const Chart& chart) {
     }
   }
   ordered_json bands = ordered_json::array();
+  for (const Mark& mark : chart.marks) show_x(axis, mark.x);
   for (const Band& band : chart.bands) bands.push_back({band.from, band.to, band.colour});
-  const ordered_json spec = {{"x_name", chart.x_name}, {"x_unit", chart.x_unit}, {"height", chart.height_px},
-                             {"lines", lines},         {"bands", bands},         {"marks", marks_json(chart.marks)}};
+  const ordered_json spec = {
+      {"axis", axis},   {"x_name", chart.x_name}, {"x_unit", chart.x_unit},          {"height", chart.height_px},
+      {"lines", lines}, {"bands", bands},         {"marks", marks_json(chart.marks)}};
   std::string text = dump(spec);
   text.pop_back();  // the closing brace: the tracks follow as text of their own
   text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";
@@ -124,16 +132,18 @@ void Page::chart(const Chart& chart) {
 }
 
 void Page::lanes(const Lanes& lanes) {
+  const std::string axis = axis_name("", lanes.x_name, lanes.x_unit);
   ordered_json rows = ordered_json::array();
   for (const Lanes::Lane& lane : lanes.lanes) {
     ordered_json stretches = ordered_json::array();
     for (const Lanes::Stretch& s : lane.stretches) {
-      show_x(s.from, s.to);
+      for (const double x : {s.from, s.to}) show_x(axis, x);
       stretches.push_back({s.from, s.to, s.text, s.colour});
     }
     rows.push_back({{"name", lane.name}, {"stretches", stretches}});
   }
-  const ordered_json spec = {{"x_unit", lanes.x_unit},
+  const ordered_json spec = {{"axis", axis},
+                             {"x_unit", lanes.x_unit},
                              {"lines", ordered_json::array()},
                              {"bands", ordered_json::array()},
                              {"marks", marks_json(lanes.marks)},
@@ -162,13 +172,16 @@ void Page::picture(const std::string& title, const std::string& content) {
   body_ += "<div class=\"picture\"><h3>" + escape_html(title) + "</h3>" + content + "</div>\n";
 }
 
-void Page::show_x(double from, double to) {
-  if (std::isfinite(from)) x_from_ = std::min(x_from_, from);
-  if (std::isfinite(to)) x_to_ = std::max(x_to_, to);
+void Page::show_x(const std::string& axis, double x) {
+  axes_.try_emplace(axis, Range::empty()).first->second.include(x);
 }
 
 std::string Page::html() const {
-  const bool some_x = x_from_ < x_to_;
+  ordered_json axes = ordered_json::object();
+  for (const auto& [name, range] : axes_) {
+    const Range shown = shown_range(range, 0.0);
+    axes[name] = {shown.from, shown.to};
+  }
   const std::string title = escape_html(title_);
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
@@ -178,8 +191,7 @@ std::string Page::html() const {
       "script-src "
       "'unsafe-inline'\">\n<title>" +
       title + "</title>\n<style>" + kUplotStyle + "\n" + kPageStyle + "</style></head>\n";
-  text += fmt::format("<body data-from=\"{}\" data-to=\"{}\">\n<h1>{}</h1>\n", some_x ? x_from_ : 0.0,
-                      some_x ? x_to_ : 1.0, title);
+  text += fmt::format("<body data-axes=\"{}\">\n<h1>{}</h1>\n", escape_html(dump(axes)), title);
   if (headings_ > 1) text += "<nav>" + contents_ + "</nav>\n";
   text += "<noscript><p>The charts need JavaScript; tables, bars and histograms don't.</p></noscript>\n" + body_;
   text += std::string("<script>") + kUplotScript + "\n" + kPageScript + "</script>\n</body></html>\n";

@@ -1,13 +1,14 @@
 // One self-contained HTML page, pictures first: no network is needed to read it, and its tables, bars and histograms
-// need no script either. Charts share the cursor and the zoom.
+// need no script either. Charts over the same axis share range, cursor and zoom.
 #pragma once
 
 #include <filesystem>
 #include <functional>
-#include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "pages/axis.hpp"
 #include "pages/pictures.hpp"
 
 namespace pmg::pages {
@@ -37,11 +38,11 @@ class Page {
 
  private:
   void picture(const std::string& title, const std::string& content);
-  void show_x(double from, double to);
+  void show_x(const std::string& axis, double x);
 
   std::string title_, body_, contents_;
   int headings_ = 0;
-  double x_from_ = std::numeric_limits<double>::infinity(), x_to_ = -std::numeric_limits<double>::infinity();
+  std::map<std::string, Range> axes_;  ///< what charts show of each axis at first
 };
 
 }  // namespace pmg::pages

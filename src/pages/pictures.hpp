@@ -49,9 +49,12 @@ struct Chart {
   std::vector<Mark> marks = {};
   int height_px = 230;
   double longest_gap = std::numeric_limits<double>::infinity();  ///< of x, over which a line is not drawn
+  /// Charts of a page that name the same axis share its range, cursor and zoom. Empty: those of the same quantity, by
+  /// x_name and x_unit.
+  std::string axis = {};
 };
 
-/// Rows of coloured stretches over the charts' x: who was when in which state.
+/// Rows of coloured stretches over x: who was when in which state. They share the axis of charts of the same quantity.
 struct Lanes {
   struct Stretch {
     double from, to;
@@ -63,7 +66,7 @@ struct Lanes {
     std::vector<Stretch> stretches;
   };
   std::string title;
-  std::string x_unit = "s";
+  std::string x_name = "time", x_unit = "s";
   std::vector<Lane> lanes;
   std::vector<Mark> marks = {};
 };
@@ -73,7 +76,7 @@ struct Interval {
   double lower, upper;
 };
 
-/// Horizontal bars, names.size() rows of one bar a set.
+/// Horizontal bars from zero, to either side; names.size() rows of one bar a set.
 struct Bars {
   struct Set {
     std::string name;

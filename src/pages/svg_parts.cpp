@@ -2,23 +2,63 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstddef>
 
 #include "pages/text.hpp"
 
 namespace pmg::pages {
 
-double tick_step(double span, int count) {
-  const double rough = span / count, decade = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * decade >= rough) return factor * decade;
-  }
-  return 10.0 * decade;
+namespace {
+
+constexpr double kCharacter = 6.9;  // of 12 px sans-serif fonts: Open Sans' and DejaVu Sans' mean is 6.5
+constexpr double kSquare = 16.0, kBetween = 18.0;
+constexpr int kRow = 18;
+
+/// Bytes that begin a character in UTF-8.
+bool begins(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
+
+}  // namespace
+
+double text_width(const std::string& text) {
+  return kCharacter * static_cast<double>(std::ranges::count_if(text, begins));
 }
 
-std::string legend_entry(double x, double y, const std::string& colour, const std::string& text) {
-  return fmt::format(R"(<rect x="{}" y="{}" width="11" height="11" fill="{}"/><text x="{}" y="{}">{}</text>)", x,
-                     y - 10, colour, x + 16, y, escape_html(text));
+std::string fitted(const std::string& text, double width) {
+  if (text_width(text) <= width) return text;
+  std::string shown;
+  double used = 2.0 * kCharacter;  // the ellipsis
+  for (const char byte : text) {
+    if (begins(byte) && (used += kCharacter) > width) break;
+    shown += byte;
+  }
+  while (!shown.empty() && shown.back() == ' ') shown.pop_back();
+  return shown + "…";
+}
+
+void Legend::add(const std::string& colour, const std::string& text) {
+  const double width = kSquare + text_width(text);
+  int row = entries_.empty() ? 0 : entries_.back().row;
+  if (at_ > left_ && at_ + width > right_) {
+    ++row;
+    at_ = left_;
+  }
+  entries_.push_back({at_, row, colour, text});
+  at_ += width + kBetween;
+}
+
+int Legend::height() const { return entries_.empty() ? 0 : kRow * (entries_.back().row + 1); }
+
+std::string Legend::svg(double top) const {
+  std::string out;
+  for (const Entry& entry : entries_) {
+    const double y = top + kRow * entry.row + 14.0;
+    out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", entry.x,
+                       y - 10.0, escape_html(entry.colour));
+    out += fmt::format(R"(<text class="entry" x="{:.1f}" y="{:.1f}">{}</text>)", entry.x + kSquare, y,
+                       escape_html(fitted(entry.text, right_ - entry.x - kSquare)));
+  }
+  return out;
 }
 
 }  // namespace pmg::pages

@@ -2,13 +2,34 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pmg::pages {
 
-/// A round step for about count ticks over span.
-double tick_step(double span, int count);
+/// About how wide a text of the pictures' font is, in the picture's units: on the safe side.
+double text_width(const std::string& text);
 
-/// A coloured square and a name; x and y of the text's base line, in the picture's units.
-std::string legend_entry(double x, double y, const std::string& colour, const std::string& text);
+/// The text, or as much of its beginning as fits, with an ellipsis; not escaped.
+std::string fitted(const std::string& text, double width);
+
+/// Coloured squares with names, in as many rows as they need.
+class Legend {
+ public:
+  Legend(double left, double right) : left_(left), right_(right), at_(left) {}
+
+  void add(const std::string& colour, const std::string& text);
+  int height() const;
+  std::string svg(double top) const;
+
+ private:
+  struct Entry {
+    double x;
+    int row;
+    std::string colour, text;
+  };
+  double left_, right_, at_;
+  std::vector<Entry> entries_;
+};
 
 }  // namespace pmg::pages

@@ -2,9 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pmg::pages {
+
+namespace {
+
+std::string without_trailing_zeros(std::string text) {
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
 
 std::string escape_html(std::string_view text) {
   std::string escaped;
@@ -41,17 +53,16 @@ std::string escape_script(std::string json) {
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "-";
-  if (value != 0.0 && std::abs(value) < 1e-3) return fmt::format("{:.2g}", value);
-  std::string text = fmt::format("{:.{}f}", value,
-                                 std::abs(value) >= 1000.0  ? 0
-                                 : std::abs(value) >= 100.0 ? 1
-                                 : std::abs(value) >= 10.0  ? 2
-                                                            : 3);
-  if (text.find('.') != std::string::npos) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
+  if (value == 0.0) return "0";
+  constexpr int kDigits = 4;
+  constexpr double kSmallest = 1e-4, kLargest = 1e7;  // without an exponent
+  if (std::abs(value) < kSmallest || std::abs(value) >= kLargest) {
+    const std::string text = fmt::format("{:.{}e}", value, kDigits - 1);
+    const std::size_t e = text.find('e');
+    return fmt::format("{}e{}", without_trailing_zeros(text.substr(0, e)), std::stoi(text.substr(e + 1)));
   }
-  return text == "-0" ? "0" : text;
+  const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+  return without_trailing_zeros(fmt::format("{:.{}f}", value, std::max(0, kDigits - before_point)));
 }
 
 }  // namespace pmg::pages

@@ -12,7 +12,8 @@ std::string escape_html(std::string_view text);
 /// JSON that may stand inside a script element: no "<", so no end tag and no comment.
 std::string escape_script(std::string json);
 
-/// A number for people: four significant digits, no exponent where a few zeros do; "-" when it isn't finite.
+/// A number for people: four significant digits (integers below ten million whole), no exponent where a few zeros do;
+/// "-" when it isn't finite.
 std::string number(double value);
 
 }  // namespace pmg::pages

@@ -6,12 +6,14 @@ namespace pmg::runtime {
 
 namespace {
 
-/// Clamps value; one if that changed it.
-int clamp_into(double low, double high, double& value) noexcept {
+/// Clamps value. If that changes it, the joint's bit is set and the joint counted.
+void clamp_into(double low, double high, double& value, std::uint8_t bit, std::uint8_t& by, int& count) noexcept {
   const double clamped = std::clamp(value, low, high);
-  const int changed = clamped == value ? 0 : 1;
+  if (clamped != value) {
+    by = static_cast<std::uint8_t>(by | bit);
+    ++count;
+  }
   value = clamped;
-  return changed;
 }
 
 }  // namespace
@@ -33,12 +35,14 @@ void Limiter::start_from(const JointVector& q) noexcept { previous_ = q; }
 LimitReport Limiter::apply(const model::RobotState& state, JointVector& q_des) noexcept {
   LimitReport report;
   for (Eigen::Index i = 0; i < q_des.size(); ++i) {
-    report.rate += clamp_into(previous_[i] - step_[i], previous_[i] + step_[i], q_des[i]);
+    std::uint8_t& by = report.by[static_cast<std::size_t>(i)];
+    clamp_into(previous_[i] - step_[i], previous_[i] + step_[i], q_des[i], LimitReport::kSpeed, by, report.rate);
     if (kp_[i] > 0.0) {
       const double braking_rad = kd_[i] * state.dq[i] / kp_[i], reach_rad = effort_[i] / kp_[i];
-      report.torque += clamp_into(state.q[i] + braking_rad - reach_rad, state.q[i] + braking_rad + reach_rad, q_des[i]);
+      clamp_into(state.q[i] + braking_rad - reach_rad, state.q[i] + braking_rad + reach_rad, q_des[i],
+                 LimitReport::kTorque, by, report.torque);
     }
-    report.position += clamp_into(lower_[i], upper_[i], q_des[i]);
+    clamp_into(lower_[i], upper_[i], q_des[i], LimitReport::kRange, by, report.position);
   }
   previous_ = q_des;
   return report;

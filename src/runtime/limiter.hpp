@@ -1,6 +1,9 @@
 // The last stage before the drives: joint targets that the robot may be given. Limiting is not a fault; it is counted.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
@@ -18,6 +21,9 @@ struct LimitReport {
   int position = 0;  ///< target outside the joint's range
   int rate = 0;      ///< target moved too fast
   int torque = 0;    ///< |kp (q_des - q) - kd dq| above the effort limit
+
+  static constexpr std::uint8_t kRange = 1, kSpeed = 2, kTorque = 4;
+  std::array<std::uint8_t, kMaxJoints> by{};  ///< bits of each joint
 };
 
 class Limiter {

@@ -55,7 +55,10 @@ void Lockstep::control(double time_s) {
   inbox_.put(player_.request());
   control_cycle_.run(clock_.now_ns());
   timing_.add(time_s, tick_.result().times);
-  if (log_ != nullptr) log_->write(control_cycle_.record());
+  if (log_ != nullptr) {
+    log_->write_step(clock_.now_ns(), scenario_, player_.number());
+    log_->write(control_cycle_.record());
+  }
   if (after_record) after_record(control_cycle_.record());
 
   if (!options_.always_hoisted) {

@@ -50,6 +50,7 @@ void RealtimeRun::speak() {
   const double time_s = static_cast<double>(clock_.now_ns() - start_ns_) * 1e-9;
   if (time_s >= scenario_.duration_s()) spoken_.store(true);
   player_.step(time_s, clock_.now_ns());
+  spoken_step_.store(player_.number());
   // A full inbox means that the control thread stands still; the next message will do.
   controller_.inbox().put(player_.drive());
   controller_.inbox().put(player_.request());
@@ -72,6 +73,7 @@ void RealtimeRun::record_tick() {
   if (record_.drive_count > 0) asked_ = record_.drives[record_.drive_count - 1].command;
   const TruthSample* truth = robot_.take_truth(record_.state.bus_sample);
   if (log_ != nullptr) {
+    if (const std::size_t step = spoken_step_.load(); step > 0) log_->write_step(record_.now_ns, scenario_, step);
     log_->write(record_);
     log_->write_timing(record_, bus_, controller_.outbox().dropped_records.load());
     if (truth != nullptr) log_->write_truth(record_.now_ns, truth->truth, truth->hoisted);

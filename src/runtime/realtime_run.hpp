@@ -52,6 +52,7 @@ class RealtimeRun {
   ScenarioPlayer player_;
   std::int64_t start_ns_ = 0, next_ns_ = 0;
   std::atomic<bool> spoken_{false};
+  std::atomic<std::size_t> spoken_step_{0};  // number of the scenario's step in force; 0 before the first word
 
   // the recorder's thread
   RunMeasure measure_;

@@ -7,22 +7,31 @@ namespace pmg::runtime {
 namespace {
 constexpr double kTickPeriod_s = static_cast<double>(ControlCycle::kPeriod_ns) * 1e-9;
 constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
+
+bool holds(Mode mode) { return mode == Mode::kStand || mode == Mode::kWalk; }
 }  // namespace
 
 RunMeasure::RunMeasure(double standing_height_m)
     : metrics_(standing_height_m, kTickPeriod_s), gait_period_s_(kGaitPeriodBeforeWalking_s) {}
 
 void RunMeasure::add(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked) {
+  add_reference(result);
+  add_truth(result, truth, hoisted, asked);
+}
+
+void RunMeasure::add_reference(const TickResult& result) {
   ++ticks_;
-  if (hoisted) sums_.hoisted_s += kTickPeriod_s;
   if (result.mode == Mode::kFault && last_mode_ != Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 
-  const bool holding = result.mode == Mode::kStand || result.mode == Mode::kWalk;
-  if (holding) slip_.add(result.reference, result.optimised);
+  if (holds(result.mode)) slip_.add(result.reference, result.optimised);
   if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
+}
+
+void RunMeasure::add_truth(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked) {
+  if (hoisted) sums_.hoisted_s += kTickPeriod_s;
   // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
-  const bool judged = !hoisted && (holding || result.mode == Mode::kFault);
+  const bool judged = !hoisted && (holds(result.mode) || result.mode == Mode::kFault);
   if (judged) {
     metrics_.add(truth, result.mode == Mode::kStand ? Command{} : asked, gait_period_s_);
   } else {

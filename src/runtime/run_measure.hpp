@@ -40,6 +40,11 @@ class RunMeasure {
   /// One tick; asked: the scenario's command. Ticks on the gantry and before the first standing are not judged.
   void add(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked);
 
+  /// Its two halves, for who knows no truth. Of the result the first reads mode, fault, reference and optimised, the
+  /// second the mode.
+  void add_reference(const TickResult& result);
+  void add_truth(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked);
+
   /// With everything that add() saw; interrupted and diverged are the caller's to say.
   RunOutcome outcome() const;
 

@@ -56,6 +56,10 @@ ScenarioPlayer::ScenarioPlayer(const Scenario& scenario) : scenario_(scenario), 
   drive_.lease_s = 0.5;
 }
 
+std::size_t ScenarioPlayer::number() const noexcept {
+  return static_cast<std::size_t>(current_ - scenario_.steps.data()) + 1;
+}
+
 void ScenarioPlayer::step(double time_s, std::int64_t now_ns) noexcept {
   current_ = &scenario_.at(time_s);
   ++drive_.sequence;

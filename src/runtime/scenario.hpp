@@ -46,6 +46,7 @@ class ScenarioPlayer {
   /// time_s counts from the scenario's start; now_ns is the run's clock.
   void step(double time_s, std::int64_t now_ns) noexcept;
   const ScenarioStep& current() const noexcept { return *current_; }
+  std::size_t number() const noexcept;  ///< of the current step, from 1
   const DriveMessage& drive() const noexcept { return drive_; }
   const ModeRequest& request() const noexcept { return request_; }
 

@@ -8,6 +8,13 @@ namespace pmg::runtime {
 
 namespace {
 
+nlohmann::ordered_json stage_json(const StageTiming& timing, std::int64_t StageTimes::*stage) {
+  const Percentiles times = timing.percentiles(stage);
+  return {{"p50", times.p50_us}, {"p99", times.p99_us}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json tracking_json(const TrackingSummary& tracking) {
   return {{"lin_vel_mae_m_s", tracking.lin_vel_mae_m_s},
           {"lin_vel_raw_mae_m_s", tracking.lin_vel_raw_mae_m_s},
@@ -20,8 +27,9 @@ nlohmann::ordered_json tracking_json(const TrackingSummary& tracking) {
           {"followed_s", tracking.followed_s}};
 }
 
-nlohmann::ordered_json slip_json(const gco::SlipSummary& slip) {
+nlohmann::ordered_json reference_slip_json(const gco::SlipSummary& slip) {
   return {{"before_mean_m_s", slip.before_mean_m_s},
+          {"after_mean_m_s", slip.after_mean_m_s},
           {"single_support_max_m_s", slip.single_support_max_m_s},
           {"double_support_mean_m_s", slip.double_support_mean_m_s},
           {"double_support_p95_m_s", slip.double_support_p95_m_s},
@@ -29,13 +37,6 @@ nlohmann::ordered_json slip_json(const gco::SlipSummary& slip) {
           {"other_foot_height_max_m", slip.other_foot_height_max_m},
           {"not_converged_ticks", slip.not_converged_ticks}};
 }
-
-nlohmann::ordered_json stage_json(const StageTiming& timing, std::int64_t StageTimes::*stage) {
-  const Percentiles times = timing.percentiles(stage);
-  return {{"p50", times.p50_us}, {"p99", times.p99_us}};
-}
-
-}  // namespace
 
 nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,
                                     const model::RobotModel& robot) {
@@ -60,7 +61,7 @@ nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& ou
       {"wall_s", run.wall_s},
       {"realtime_factor", run.wall_s > 0.0 ? outcome.duration_s / run.wall_s : 0.0},
       {"tracking", tracking_json(outcome.tracking)},
-      {"reference_slip", slip_json(outcome.reference_slip)},
+      {"reference_slip", reference_slip_json(outcome.reference_slip)},
       {"timing_us",
        {{"tick", stage_json(timing, &StageTimes::tick_ns)},
         {"generator", stage_json(timing, &StageTimes::generator_ns)},

@@ -23,6 +23,10 @@ struct RunIdentity {
 nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,
                                     const model::RobotModel& robot);
 
+/// Its parts, as reports tell them too.
+nlohmann::ordered_json tracking_json(const TrackingSummary& tracking);
+nlohmann::ordered_json reference_slip_json(const gco::SlipSummary& slip);
+
 /// Throws std::runtime_error.
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 

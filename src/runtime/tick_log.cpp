@@ -31,6 +31,8 @@ void TickLog::write(const TickRecord& record) {
   writer_->write("MOTOR_COMMAND", stamp_ns, motor_command_);
   fill(record, run_, robot_, status_);
   writer_->write("STATUS", stamp_ns, status_);
+  fill(record, limited_);
+  if (limited_.count > 0) writer_->write("LIMITED", stamp_ns, limited_);
   write_fault_once(record);
 }
 
@@ -65,6 +67,13 @@ void TickLog::write_fault_once(const TickRecord& record) {
 void TickLog::write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
   fill(record, bus, dropped_records, timing_);
   writer_->write("TIMING", record.now_ns, timing_);
+}
+
+void TickLog::write_step(std::int64_t stamp_ns, const Scenario& scenario, std::size_t number) {
+  if (number == last_step_) return;
+  last_step_ = number;
+  fill(scenario, number, stamp_ns, step_);
+  writer_->write("SCENARIO", stamp_ns, step_);
 }
 
 void TickLog::write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) {

@@ -12,8 +12,9 @@
 
 namespace pmg::runtime {
 
-/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick,
-/// GROUND_TRUTH in simulation, TIMING in the threaded controller, FAULT when one latches. Keeps its message buffers, so
+/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick, LIMITED
+/// in ticks that limit a joint, GROUND_TRUTH in simulation, SCENARIO where a step of it begins, TIMING in the threaded
+/// controller, FAULT when one latches. Keeps its message buffers, so
 /// a tick allocates nothing once they have grown. Not for a real-time thread.
 class TickLog {
  public:
@@ -30,6 +31,8 @@ class TickLog {
 
   void write(const TickRecord& record);
   void write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  /// Once where the scenario's step changes; number counts from 1. Before the step's first tick.
+  void write_step(std::int64_t stamp_ns, const Scenario& scenario, std::size_t number);
   void write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted);
 
  private:
@@ -40,6 +43,7 @@ class TickLog {
   const model::RobotModel& robot_;
   const RunInfo run_;
   const int joint_count_;
+  std::size_t last_step_ = 0;
   Fault last_fault_, announced_fault_;
   pmg_msgs::robot_info_t info_;
   pmg_msgs::tick_input_t input_;
@@ -51,6 +55,8 @@ class TickLog {
   pmg_msgs::status_t status_;
   pmg_msgs::timing_t timing_;
   pmg_msgs::ground_truth_t truth_;
+  pmg_msgs::limited_t limited_;
+  pmg_msgs::scenario_step_t step_;
   pmg_msgs::fault_t fault_;
 };
 

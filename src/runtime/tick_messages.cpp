@@ -160,6 +160,19 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
   message.realtime = run.realtime;
 }
 
+void fill(const TickRecord& record, pmg_msgs::limited_t& message) {
+  const auto& by = record.result.limited.by;
+  message.stamp_ns = record.now_ns;
+  message.joint.clear();
+  message.by.clear();
+  for (std::size_t joint = 0; joint < by.size(); ++joint) {
+    if (by[joint] == 0) continue;
+    message.joint.push_back(static_cast<std::int32_t>(joint));
+    message.by.push_back(static_cast<std::int8_t>(by[joint]));
+  }
+  message.count = static_cast<std::int32_t>(message.joint.size());
+}
+
 void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
   const TickInput input = record.input();
   message.stamp_ns = input.now_ns;
@@ -228,6 +241,18 @@ void fill(const ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msg
   message.sequence = ack.sequence;
   message.verdict = static_cast<std::int8_t>(ack.verdict);
   message.mode = static_cast<std::int8_t>(ack.mode);
+}
+
+void fill(const Scenario& scenario, std::size_t number, std::int64_t stamp_ns, pmg_msgs::scenario_step_t& message) {
+  const ScenarioStep& step = scenario.steps.at(number - 1);
+  message.stamp_ns = stamp_ns;
+  message.scenario = scenario.name;
+  message.number = static_cast<std::int32_t>(number);
+  message.step_count = static_cast<std::int32_t>(scenario.steps.size());
+  message.duration_s = step.duration_s;
+  message.text = step.text;
+  message.mode = static_cast<std::int8_t>(step.mode);
+  copy(step.command, message.command);
 }
 
 void fill(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted, pmg_msgs::ground_truth_t& message) {

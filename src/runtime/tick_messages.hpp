@@ -10,16 +10,19 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
+#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "runtime/bus_timing.hpp"
 #include "runtime/run_info.hpp"
+#include "runtime/scenario.hpp"
 #include "runtime/tick_record.hpp"
 #include "sim/world.hpp"
 
@@ -32,6 +35,7 @@ void fill(const TickRecord& record, int joint_count, pmg_msgs::robot_state_t& me
 void fill(const TickRecord& record, int joint_count, pmg_msgs::reference_t& message);
 void fill(const TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message);
 void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message);
+void fill(const TickRecord& record, pmg_msgs::limited_t& message);
 void fill(const TickRecord& record, pmg_msgs::tick_input_t& message);
 void fill(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
@@ -39,6 +43,8 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
 void fill(const DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message);
 void fill(const ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message);
 void fill(const ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
+/// number counts from 1.
+void fill(const Scenario& scenario, std::size_t number, std::int64_t stamp_ns, pmg_msgs::scenario_step_t& message);
 void fill(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
 
 /// The other way: the values as they are, unchecked; who hears strangers validates first.

@@ -56,6 +56,32 @@ TEST_F(PmgReport, GivesMachinesTheFigures) {
   EXPECT_EQ(json["runs"][0]["fell"], false);
 }
 
+// (a run that walks, and one that walks without a policy until it lies) => the report's errors and slip, digit by
+// digit.
+TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
+  std::ofstream(folder_ / "walk.yaml") << "name: walk\nsteps:\n  - {for_s: 1.5, text: stand, mode: stand}\n"
+                                       << "  - {for_s: 2.5, text: go, mode: walk, command: {vx_m_s: 0.5}}\n";
+  for (const std::string policy : {"pmg", "none"}) {
+    const std::string out = (folder_ / policy).string();
+    test::RunningProgram sil(
+        "pmg_sil", {"--robot", "z1", "--policy", policy, "--scenario", (folder_ / "walk.yaml").string(), "--out", out},
+        folder_);
+    sil.wait();
+    const auto summary = nlohmann::json::parse(test::text_of(fs::path(out) / "summary.json"));
+    const Finished done = run({out, "--out", page_, "--json"});
+    const auto report = nlohmann::json::parse(done.out)["runs"][0];
+    EXPECT_EQ(report["fell"], summary["fell"]) << policy;
+    EXPECT_GT(summary["tracking"]["followed_s"], 1.0) << policy;
+    EXPECT_EQ(report["tracking"], summary["tracking"]) << policy;
+    EXPECT_GT(summary["reference_slip"]["before_mean_m_s"], 0.0) << policy;
+    EXPECT_EQ(report["reference_slip"], summary["reference_slip"]) << policy;
+    EXPECT_EQ(report["scenario"], "walk");
+    EXPECT_EQ(report["steps"].size(), 2U);
+    EXPECT_EQ(report["steps"][1]["text"], "go");
+    EXPECT_NEAR(report["steps"][1]["from_s"], 1.5, 0.011);
+  }
+}
+
 TEST_F(PmgReport, KeepsWhatIsReadableOfATruncatedLog) {
   const std::string path = log("cut.lcm");
   fs::resize_file(path, fs::file_size(path) / 2);

@@ -37,6 +37,7 @@ TEST(SlipStatistics, SplitTheSupportPhases) {
   statistics.add(supported_by(false, false), result);
   const SlipSummary summary = statistics.summary();
   EXPECT_NEAR(summary.before_mean_m_s, (0.3 + 0.1 + 0.2 + 0.4) / 4, 1e-15);
+  EXPECT_NEAR(summary.after_mean_m_s, (1e-6 + 3e-6 + 0.010 + 0.030) / 4, 1e-15);
   EXPECT_EQ(summary.single_support_max_m_s, 3e-6);
   EXPECT_NEAR(summary.double_support_mean_m_s, 0.020, 1e-15);
   EXPECT_EQ(summary.double_support_p95_m_s, 0.030);

@@ -93,10 +93,35 @@ TEST_F(RunSeriesTest, FiguresMatchTheLog) {
   EXPECT_NEAR(tracking[0].error_rms_rad, 0.1, 1e-6);  // positions are kept as float
   EXPECT_NEAR(tracking[1].error_rms_rad, 0.0, 1e-6);
   EXPECT_NEAR(tracking[0].torque_max_Nm, 12.5, 1e-6);
-  EXPECT_NEAR(slip_figures(run).before_mean_m_s, 0.08, 1e-12);
-  EXPECT_NEAR(slip_figures(run).after_mean_m_s, 0.02, 1e-12);
+  EXPECT_NEAR(run.reference_slip.before_mean_m_s, 0.08, 1e-12) << "standing does not dilute it";
+  EXPECT_NEAR(run.reference_slip.after_mean_m_s, 0.02, 1e-12);
   EXPECT_NEAR(run.truth.measured[kVx].back(), 0.5, 1e-12);
   EXPECT_NEAR(run.truth.measured[kHeight].back(), 0.0, 1e-12);
+}
+
+TEST_F(RunSeriesTest, NamesTheJointThatWasLimitedAndWhen) {
+  const RunSeries run = read_run(write({}));
+  ASSERT_EQ(run.limited.size(), 1U);
+  EXPECT_EQ(run.joint_names[run.limited[0].joint], "right_joint");
+  EXPECT_EQ(run.limited[0].reasons(), "speed in 10 ticks");
+  ASSERT_EQ(run.limited[0].stretches.size(), 1U) << "ticks that follow each other are one stretch";
+  EXPECT_NEAR(run.limited[0].stretches[0].from_s, 1.5, 1e-9);
+  EXPECT_NEAR(run.limited[0].longest_s(), 0.1, 1e-9);
+  EXPECT_THAT(verdict(run), HasSubstr("Limited: right_joint by speed in 10 ticks, first at 1.50 s."));
+  EXPECT_THAT(verdict(read_run(write({.left_out = {"LIMITED"}}))), testing::Not(HasSubstr("Limited")));
+}
+
+TEST_F(RunSeriesTest, KnowsTheScenariosStepsAndTheErrorsWithinEach) {
+  const RunSeries run = read_run(write({.measured_vx_m_s = 0.4}));
+  EXPECT_EQ(run.scenario, "small");
+  ASSERT_EQ(run.steps.size(), 3U);
+  EXPECT_EQ(run.steps[1].text, "walk forward");
+  EXPECT_NEAR(run.steps[1].from_s, 1.0, 1e-9);
+  EXPECT_NEAR(run.steps[1].to_s, 2.0, 1e-9);
+  EXPECT_NEAR(run.steps[0].tracking.lin_vel_mae_m_s, 0.4, 1e-9) << "it drifts while it should stand";
+  EXPECT_NEAR(run.steps[2].tracking.lin_vel_mae_m_s, 0.1, 1e-9);
+  EXPECT_NEAR(run.tracking.followed_s, 3.0, 1e-9);
+  EXPECT_THAT(verdict(run), HasSubstr("Mean absolute errors over 3.0 s on its own feet: velocity 0."));
 }
 
 TEST_F(RunSeriesTest, AnyChannelMayBeMissing) {

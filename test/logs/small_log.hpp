@@ -8,12 +8,15 @@
 #include <string>
 
 #include "io/log_writer.hpp"
+#include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
+#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
@@ -45,10 +48,13 @@ struct SmallLog {
     if (announced) put("FAULT", start_ns, fault(start_ns + fault_at * kTick_ns));
     for (int tick = 0; tick < ticks; ++tick) {
       const std::int64_t now_ns = start_ns + tick * kTick_ns;
+      if (tick % 100 == 0) put("SCENARIO", now_ns, step(tick / 100, now_ns));
       put("STATE", now_ns, state(now_ns));
+      put("COMMAND", now_ns, command(tick, now_ns));
       put("TICK", now_ns, input(tick, now_ns));
       put("REFERENCE", now_ns, reference(tick, now_ns));
       put("STATUS", now_ns, status(tick, now_ns));
+      if (is_limited(tick)) put("LIMITED", now_ns, limited(now_ns));
       if (tick == fault_at) put("FAULT", now_ns, fault(now_ns));
       put("TIMING", now_ns, timing(tick, now_ns));
       put("GROUND_TRUTH", now_ns, truth(tick, now_ns));
@@ -95,8 +101,11 @@ struct SmallLog {
     message.contact[1] = tick % 50 >= 20;
     message.user[0] = message.command[0] = 0.5;
     message.optimised[0] = 0.48;
-    message.slip_before_m_s[0] = message.slip_before_m_s[1] = 0.08;
-    message.slip_after_m_s[0] = message.slip_after_m_s[1] = 0.02;
+    if (tick >= 100) {
+      message.gain = 0.5;
+      message.slip_before_m_s[0] = message.slip_before_m_s[1] = 0.08;
+      message.slip_after_m_s[0] = message.slip_after_m_s[1] = 0.02;
+    }
     return message;
   }
   pmg_msgs::status_t status(int tick, std::int64_t now_ns) const {
@@ -107,7 +116,40 @@ struct SmallLog {
     message.mode = fault ? pmg_msgs::mode_t::FAULT : tick < 100 ? pmg_msgs::mode_t::STAND : pmg_msgs::mode_t::WALK;
     if (fault) message.fault = fault_text;
     message.driving_source = "tester";
-    message.limited_rate = tick == 150 ? 2 : 0;
+    message.limited_rate = is_limited(tick) ? 1 : 0;
+    return message;
+  }
+  static bool is_limited(int tick) { return tick >= 150 && tick < 160; }
+  pmg_msgs::limited_t limited(std::int64_t now_ns) const {
+    pmg_msgs::limited_t message{};
+    message.stamp_ns = now_ns;
+    message.count = 1;
+    message.joint = {1};
+    message.by = {pmg_msgs::limited_t::SPEED};
+    return message;
+  }
+  /// Nothing is asked of the first second, 0.5 m/s of the others.
+  pmg_msgs::scenario_step_t step(int index, std::int64_t now_ns) const {
+    pmg_msgs::scenario_step_t message{};
+    message.stamp_ns = now_ns;
+    message.scenario = "small";
+    message.number = index + 1;
+    message.step_count = (ticks + 99) / 100;
+    message.duration_s = 1.0;
+    message.text = index == 0 ? "stand" : "walk forward";
+    message.mode = index == 0 ? pmg_msgs::mode_t::STAND : pmg_msgs::mode_t::WALK;
+    message.command[0] = index == 0 ? 0.0 : 0.5;
+    return message;
+  }
+  pmg_msgs::command_t command(int tick, std::int64_t now_ns) const {
+    pmg_msgs::command_t message{};
+    message.version = pmg_msgs::command_t::VERSION;
+    message.robot = robot;
+    message.stamp_ns = now_ns;
+    message.source = "tester";
+    message.sequence = tick;
+    message.lease_s = 0.5;
+    message.vx_m_s = tick < 100 ? 0.0 : 0.5;
     return message;
   }
   pmg_msgs::fault_t fault(std::int64_t now_ns) const {

@@ -98,11 +98,21 @@ TEST(Page, ChartsCarryTheirLinesOnce) {
   EXPECT_EQ(specs[0]["lines"][2]["name"], "b");
 }
 
-TEST(Page, ShowsAllChartsOverOneRange) {
+TEST(Page, ChartsOfOneAxisShareItsRangeAndNoOthers) {
   Page page("range");
+  const std::vector<double> eight = {0.0, 8.0}, evaluations = {1.0, 190.0};
   page.chart({.title = "a", .lines = {{.name = "a", .x = kX, .y = kY}}});
   page.lanes({.title = "b", .lanes = {{"lane", {{-1.0, 7.5, "long", colour::kSky}}}}});
-  EXPECT_THAT(page.html(), HasSubstr("data-from=\"-1\" data-to=\"7.5\""));
+  page.chart({.title = "a run", .lines = {{.name = "a", .x = eight, .y = eight}}, .axis = "run 3"});
+  page.chart(
+      {.title = "search", .x_name = "evaluation", .x_unit = "", .lines = {{.name = "", .x = evaluations, .y = eight}}});
+  const std::string html = page.html();
+  EXPECT_THAT(html, HasSubstr("&quot;time [s]&quot;:[-1.0,7.5]"));
+  EXPECT_THAT(html, HasSubstr("&quot;run 3&quot;:[0.0,8.0]"));
+  EXPECT_THAT(html, HasSubstr("&quot;evaluation []&quot;:[1.0,190.0]"));
+  std::vector<std::string> axes;
+  for (const nlohmann::json& spec : chart_specs(html)) axes.push_back(spec["axis"]);
+  EXPECT_THAT(axes, testing::ElementsAre("time [s]", "time [s]", "run 3", "evaluation []"));
 }
 
 TEST(Page, EmptyPicturesAreNoError) {
@@ -137,10 +147,14 @@ TEST(Page, SaysSoWhenItCantBeWritten) {
 TEST(Number, IsShortAndReadable) {
   EXPECT_EQ(number(0.0), "0");
   EXPECT_EQ(number(-0.0001), "-0.0001");
-  EXPECT_EQ(number(0.12345), "0.123");
+  EXPECT_EQ(number(0.12345), "0.1235");
+  EXPECT_EQ(number(0.0123), "0.0123");
   EXPECT_EQ(number(-0.0), "0");
   EXPECT_EQ(number(12.3), "12.3");
+  EXPECT_EQ(number(99.999), "100");
   EXPECT_EQ(number(123456.7), "123457");
+  EXPECT_EQ(number(-4.25e-7), "-4.25e-7");
+  EXPECT_EQ(number(3e300), "3e300") << "no number takes three hundred digits";
   EXPECT_EQ(number(std::nan("")), "-");
 }
 

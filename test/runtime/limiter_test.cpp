@@ -38,6 +38,29 @@ TEST(Limiter, LeavesAPlainTargetAlone) {
   EXPECT_EQ(report.position + report.rate + report.torque, 0);
 }
 
+TEST(Limiter, NamesTheJointsThatItLimitedAndWhy) {
+  const model::RobotModel& robot = test::z1();
+  Limiter limiter = limiter_of(robot, {});
+  model::RobotState state = test::standing_state(robot);
+  limiter.start_from(state.q);
+  JointVector q_des = state.q;
+  q_des[3] += 1.0;    // in one tick: too fast
+  state.dq[7] = 1e3;  // braking that no drive can give
+  const LimitReport report = limiter.apply(state, q_des);
+  EXPECT_NE(report.by[3] & LimitReport::kSpeed, 0);
+  EXPECT_NE(report.by[7] & LimitReport::kTorque, 0);
+  int position = 0, rate = 0, torque = 0;
+  for (const std::uint8_t by : report.by) {
+    position += (by & LimitReport::kRange) != 0;
+    rate += (by & LimitReport::kSpeed) != 0;
+    torque += (by & LimitReport::kTorque) != 0;
+  }
+  EXPECT_EQ(position, report.position);
+  EXPECT_EQ(rate, report.rate);
+  EXPECT_EQ(torque, report.torque);
+  EXPECT_EQ(report.by[0], 0);
+}
+
 TEST(Limiter, EveryPromiseHoldsForArbitraryTargets) {
   const model::RobotModel& robot = test::z1();
   const LimiterOptions options;

@@ -1,0 +1,39 @@
+// Which joints' targets the limiter changed, when, and why: from a log's LIMITED messages.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pmg_msgs/limited_t.hpp"
+
+namespace pmg::logs {
+
+inline constexpr std::array<const char*, 3> kLimitNames = {"range", "speed", "torque"};
+
+struct LimitedJoint {
+  std::size_t joint = 0;
+  std::array<std::int64_t, 3> ticks{};  ///< by its range, its speed, its torque
+  std::int64_t any_ticks = 0;           ///< by at least one of them
+
+  struct Stretch {
+    double from_s, to_s;
+    std::array<bool, 3> by;
+  };
+  std::vector<Stretch> stretches;  ///< of one reason each
+
+  double longest_s() const;
+  std::string reasons() const;  ///< "torque in 12 ticks, speed in 3"
+};
+
+class LimitedJoints {
+ public:
+  void add(double t_s, const pmg_msgs::limited_t& message);
+  std::vector<LimitedJoint> most_first() const;  ///< by any_ticks
+
+ private:
+  std::vector<LimitedJoint> joints_;  ///< in the order of their first time
+};
+
+}  // namespace pmg::logs

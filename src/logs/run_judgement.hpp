@@ -1,0 +1,44 @@
+// A logged run measured again as a running one is (runtime/run_measure.hpp): the report's errors and slip are those of
+// summary.json.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "pmg_msgs/command_t.hpp"
+#include "pmg_msgs/ground_truth_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "runtime/run_measure.hpp"
+
+namespace pmg::logs {
+
+class RunJudgement {
+ public:
+  explicit RunJudgement(double standing_height_m);
+
+  // (messages of a tick, in the log's order) => one tick of the measure; STATUS ends the tick, GROUND_TRUTH follows it.
+  void command(const pmg_msgs::command_t& message);
+  void reference(const pmg_msgs::reference_t& message);
+  void status(const pmg_msgs::status_t& message);
+  void truth(const pmg_msgs::ground_truth_t& message);
+
+  /// Of the ticks so far. Without GROUND_TRUTH followed_s is 0, without REFERENCE all of slip.
+  runtime::RunOutcome outcome() const { return measure_.outcome(); }
+
+ private:
+  /// What the driving source wants; in a fault what the last one that drove wants; without a source nothing.
+  Command asked() const;
+
+  runtime::RunMeasure measure_;
+  runtime::TickResult tick_;  ///< what the measure reads of it
+  std::int64_t reference_ns_ = -1;
+  std::string driving_, last_driving_;
+  std::map<std::string, Command> commands_;  ///< newest of each source
+  bool has_status_ = false;
+};
+
+/// Mean errors of the time between two sums of one run; foot_slip_mean_m_s is left 0.
+runtime::TrackingSummary errors_between(const runtime::TrackingSummary& before, const runtime::TrackingSummary& after);
+
+}  // namespace pmg::logs

@@ -1,0 +1,37 @@
+#include "logs/timing_csv.hpp"
+
+#include <array>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace pmg::logs {
+
+namespace {
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+}
+
+void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;
+  auto& to = run.timing;
+  std::array<double, 5> row{};
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    bool whole = true;
+    for (double& value : row) {
+      std::string cell;
+      whole = whole && std::getline(cells, cell, ',') && std::istringstream(cell) >> value;
+    }
+    if (!whole || (!to.t_s.empty() && row[0] < to.t_s.back())) continue;
+    to.t_s.push_back(row[0]);
+    to.tick_us.push_back(row[1]);
+    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNone);
+    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNone);
+    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNone);
+  }
+}
+
+}  // namespace pmg::logs

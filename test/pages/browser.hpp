@@ -1,0 +1,49 @@
+// Pages as a browser draws them: headless Chromium, where there is one.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "pages/page.hpp"
+
+namespace pmg::pages {
+
+/// PMG_BROWSER, or the first Chromium on the path; nothing when there is none.
+inline std::optional<std::string> find_browser() {
+  if (const char* named = std::getenv("PMG_BROWSER")) return named;
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+    if (std::system(("command -v " + std::string(name) + " >/dev/null").c_str()) == 0) return name;
+  }
+  return std::nullopt;
+}
+
+/// The document after the script before (in the head: first of all) and the script after (at the body's end) have run.
+inline std::string document_in_browser(const std::string& browser, std::string html, const std::string& before,
+                                       const std::string& after) {
+  namespace fs = std::filesystem;
+  std::string folder = (fs::temp_directory_path() / "pmg_page_XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  html.insert(html.find("<style>"), "<script>" + before + "</script>");
+  html.insert(html.rfind("</body>"), "<script>" + after + "</script>");
+  std::ofstream(fs::path(folder) / "page.html") << html;
+  // Four pixels of the canvas a pixel of the page: what is read is finer than what is asked.
+  const std::string command = browser + " --headless --no-sandbox --disable-gpu --no-first-run --disable-sync" +
+                              " --disable-background-networking --disable-component-update --hide-scrollbars" +
+                              " --force-device-scale-factor=4 --window-size=1000,800 --virtual-time-budget=10000" +
+                              " --user-data-dir=" + folder + "/profile --dump-dom file://" + folder + "/page.html 2>" +
+                              folder + "/stderr";
+  std::string document;
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  char buffer[65536];
+  for (std::size_t n; pipe && (n = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;) document.append(buffer, n);
+  fs::remove_all(folder);
+  return document;
+}
+
+}  // namespace pmg::pages
