@@ -15,8 +15,7 @@ const TerminalKey kEscape{.name = "escape"};
 
 TEST(TerminalKeys, LettersAndTheirCapitals) {
   TerminalKeys keys;
-  EXPECT_EQ(keys.take("wW \r\x7f#1\x03", 0),
-            (Keys{{"w"}, {"w", true}, {"space"}, {"enter"}, {"backspace"}}));
+  EXPECT_EQ(keys.take("wW \r\x7f#1\x03", 0), (Keys{{"w"}, {"w", true}, {"space"}, {"enter"}, {"backspace"}}));
 }
 
 TEST(TerminalKeys, ArrowsInBothOfTheirWaysAndWithShift) {
