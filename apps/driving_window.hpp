@@ -53,7 +53,8 @@ class DrivingWindow {
       robot.take(pose);
       const ops::DrivingTable table = keyboard_.table();
       if (pose.count == 0) continue;
-      viewer_.draw({pose.qpos.data(), pose.count}, "", pose.rope, {table.labels, table.values, keys.labels, keys.values});
+      viewer_.draw({pose.qpos.data(), pose.count}, "", pose.rope,
+                   {table.labels, table.values, keys.labels, keys.values});
     }
     viewer_.withdraw();
   }

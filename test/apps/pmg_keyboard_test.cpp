@@ -1,5 +1,6 @@
-// pmg_keyboard in a terminal, and the keys of pmg_controller's window, against a real pmg_controller and its simulated robot.
-// They run by the wall clock on a computer that others use too: what is asked for is that things happen, not how soon.
+// pmg_keyboard in a terminal, and the keys of pmg_controller's window, against a real pmg_controller and its simulated
+// robot. They run by the wall clock on a computer that others use too: what is asked for is that things happen, not how
+// soon.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -88,7 +89,8 @@ TEST_F(PmgKeyboard, ByKeysALimpRobotStandsUpIsSetDownWalksRestsAndIsDamped) {
     ASSERT_TRUE(robot.until([&] { return robot.err().find("mode: passive") != std::string::npos; }, kDeadline_s));
     PseudoTerminal terminal("pmg_keyboard", {});
     ASSERT_TRUE(terminal.shows("z1 PASSIVE", kDeadline_s)) << terminal.text();
-    // A computer that leaves these processes alone for a second may bring the robot down: as its operator would, up again.
+    // A computer that leaves these processes alone for a second may bring the robot down: as its operator would, up
+    // again.
     bool walked = false;
     for (int attempt = 0; attempt < 5 && !walked; ++attempt) {
       if (attempt > 0) {
@@ -127,7 +129,8 @@ TEST_F(PmgKeyboard, InTheWindowAHeldKeyWalksAndWhenItIsLetGoTheRobotStands) {
     const auto said = [&](const std::string& words) { return robot.err().find(words) != std::string::npos; };
     ASSERT_TRUE(robot.until([&] { return said("mode: passive"); }, kDeadline_s)) << robot.err();
     const auto window = [](const std::string& what) {
-      return std::system(("xdotool search --sync --name 'PMG: z1' windowfocus --sync " + what + " >/dev/null 2>&1").c_str());
+      return std::system(
+          ("xdotool search --sync --name 'PMG: z1' windowfocus --sync " + what + " >/dev/null 2>&1").c_str());
     };
     ASSERT_EQ(window("keydown w"), 0);
     ASSERT_TRUE(robot.until([&] { return said("mode: walk"); }, kDeadline_s)) << robot.err();

@@ -9,7 +9,8 @@ namespace pmg::ops {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-const CommandLimits kLimits{.lower = {-0.5, -0.35, -0.8, -0.15, -0.25, -0.2}, .upper = {0.8, 0.35, 0.8, 0.5, 0.25, 0.02}};
+const CommandLimits kLimits{.lower = {-0.5, -0.35, -0.8, -0.15, -0.25, -0.2},
+                            .upper = {0.8, 0.35, 0.8, 0.5, 0.25, 0.02}};
 
 /// Keys and a clock that moves by itself only.
 struct Keyboard {
@@ -43,8 +44,8 @@ struct Terminal : Keyboard {
 
 TEST(KeyCommand, EveryNameIsAKeyAndEveryKeyHasAName) {
   std::set<Key> named;
-  for (const char* name : {"w", "up", "s", "down", "a", "left", "d", "right", "q", "e", "k", "i", "o", "u", "j", "l", "n",
-                           "space", "escape", "backspace", "enter", "r", "h", "g"}) {
+  for (const char* name : {"w", "up", "s", "down", "a", "left",  "d",      "right",     "q",     "e", "k", "i",
+                           "o", "u",  "j", "l",    "n", "space", "escape", "backspace", "enter", "r", "h", "g"}) {
     ASSERT_TRUE(key_named(name)) << name;
     named.insert(*key_named(name));
   }
@@ -179,7 +180,8 @@ TEST(KeyCommand, PosturesStayInBothUntilUpright) {
     for (int k = 0; k < 3; ++k) keyboard.press(Key::kSquat);
     keyboard.press(Key::kBendForwards);
     keyboard.press(Key::kLeanRight);
-    for (const Key key : {Key::kSquat, Key::kBendForwards, Key::kLeanRight}) keyboard.keys.release(key, keyboard.now_ns);
+    for (const Key key : {Key::kSquat, Key::kBendForwards, Key::kLeanRight})
+      keyboard.keys.release(key, keyboard.now_ns);
     keyboard.wait(10'000);
     EXPECT_NEAR(keyboard[kHeight], -0.06, 1e-12);
     EXPECT_NEAR(keyboard[kPitch], 0.05, 1e-12);

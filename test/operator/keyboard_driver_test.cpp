@@ -227,7 +227,7 @@ TEST_F(KeyboardTest, LettingGoBringsItToRestAndFreesItForOthers) {
   driver_.press(Key::kForwards, false);
   EXPECT_LT(until([&] { return driver_.gone(); }), 2.0);
   EXPECT_EQ(mode(), Mode::kStand);
-  step();
+  run(0.05);  // its last command's lease, and some
   EXPECT_EQ(robot_.result().driving, runtime::Source{});
 }
 

@@ -15,8 +15,7 @@ const TerminalKey kEscape{.name = "escape"};
 
 TEST(TerminalKeys, LettersAndTheirCapitals) {
   TerminalKeys keys;
-  EXPECT_EQ(keys.take("wW \r\x7f#1\x03", 0),
-            (Keys{{"w"}, {"w", true}, {"space"}, {"enter"}, {"backspace"}}));
+  EXPECT_EQ(keys.take("wW \r\x7f#1\x03", 0), (Keys{{"w"}, {"w", true}, {"space"}, {"enter"}, {"backspace"}}));
 }
 
 TEST(TerminalKeys, ArrowsInBothOfTheirWaysAndWithShift) {
@@ -66,7 +65,7 @@ TEST(TerminalKeys, NoGarbageSwallowsAnEscape) {
   std::int64_t now_ns = 0;
   for (int round = 0; round < 2000; ++round) {
     std::string garbage;
-    for (unsigned k = random() % 12; k > 0; --k) garbage += static_cast<char>(random() % 4 == 0 ? '\x1b' : random() % 256);
+    for (auto k = random() % 12; k > 0; --k) garbage += static_cast<char>(random() % 4 == 0 ? '\x1b' : random() % 256);
     keys.take(garbage, now_ns);
     now_ns += static_cast<std::int64_t>(random() % 60) * kMs;
     keys.take("\x1b", now_ns);

@@ -54,7 +54,8 @@ TEST(Crane, SetsAStandingRobotDownAndLetsGoOnlyWhenItsFeetHaveCarriedForAWhile) 
 TEST(Crane, TakesUpARobotThatNoLongerStandsWhileItIsSetDown) {
   for (const double after_s : {0.5, 1.9, 2.4, 2.7}) {
     Crane crane;
-    for (double t_s = 0.0; t_s < after_s; t_s += kDt_s) crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
+    for (double t_s = 0.0; t_s < after_s; t_s += kDt_s)
+      crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
     ASSERT_NE(crane.state(), State::kFree) << after_s;
     run(crane, {.torso_height_m = -0.1}, 5.0);
     EXPECT_EQ(crane.state(), State::kHolding) << after_s;

@@ -1,5 +1,5 @@
-// A simulated robot whose hoist works by itself, from limp to walking and back up after a fall: the controller's own parts in
-// one thread, by a clock that only the simulation moves.
+// A simulated robot whose hoist works by itself, from limp to walking and back up after a fall: the controller's own
+// parts in one thread, by a clock that only the simulation moves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,12 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
 
   /// 10 ms, in which somebody asks for the velocity.
   void step(double vx_m_s = 0.0) {
-    DriveMessage drive{.source = Source::make("test", 1), .sequence = ++sequence_, .stamp_ns = clock_.now_ns(),
-                       .received_ns = clock_.now_ns(), .lease_s = 0.5, .command = {}};
+    DriveMessage drive{.source = Source::make("test", 1),
+                       .sequence = ++sequence_,
+                       .stamp_ns = clock_.now_ns(),
+                       .received_ns = clock_.now_ns(),
+                       .lease_s = 0.5,
+                       .command = {}};
     drive.command[kVx] = vx_m_s;
     inbox_.put(drive);
     cycle_->run(clock_.now_ns());
@@ -43,8 +47,12 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
     fastest_joint_rad_s_ = std::max(fastest_joint_rad_s_, qvel.tail(qvel.size() - 6).cwiseAbs().maxCoeff());
   }
   void ask(Mode mode, bool reset = false) {
-    inbox_.put(ModeRequest{.source = Source::make("test", 1), .sequence = ++sequence_, .stamp_ns = clock_.now_ns(),
-                           .received_ns = clock_.now_ns(), .mode = mode, .reset_fault = reset});
+    inbox_.put(ModeRequest{.source = Source::make("test", 1),
+                           .sequence = ++sequence_,
+                           .stamp_ns = clock_.now_ns(),
+                           .received_ns = clock_.now_ns(),
+                           .mode = mode,
+                           .reset_fault = reset});
   }
   template <typename Condition>
   double until(Condition condition, double at_most_s, double vx_m_s = 0.0) {
