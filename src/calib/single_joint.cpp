@@ -66,9 +66,9 @@ template <typename Seen>
 void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
   sim::ActuatorModel actuator(model.actuator, step_s_);
   double q_rad = start_rad(model), dq_rad_s = 0.0;
-  actuator.reset(q_rad);
   const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
   const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  actuator.reset_at_rest(input(0), q_rad, gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad));
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
     const sim::ActuatorTorque drive = actuator.step(input(k), q_rad, dq_rad_s);
