@@ -28,11 +28,10 @@ class RobotBench : public testing::Test {
     return code;
   }
   std::string at(const char* name) const { return (folder_ / name).string(); }
-  void excitation(const char* joint) {
-    ASSERT_EQ(run("pmg_calibrate_motor", {"--make-excitation", "--robot", "z1", "--joint", joint, "--seconds", "5",
-                                          "--repeats", "1", "--out", at("excitation")}),
-              0)
-        << err_;
+  void excitation(const char* joint, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"--make-excitation", "--robot", "z1", "--joint", joint, "--seconds", "5", "--out", at("excitation")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(run("pmg_calibrate_motor", arguments), 0) << err_;
   }
 
   const fs::path folder_ = fs::path(testing::TempDir()) /
@@ -44,6 +43,7 @@ class RobotBench : public testing::Test {
 struct Known {
   const char* joint;
   sim::ActuatorParameters of_motor_yaml;  // neutral: none is given
+  std::vector<std::string> excitation;    // options of --make-excitation
 };
 std::ostream& operator<<(std::ostream& out, const Known& known) { return out << known.joint; }
 
@@ -65,7 +65,7 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(robot.joint_index.at(known.joint))];
   const sim::ActuatorParameters truth = sim::actuator_in_force(joint, {{known.joint, known.of_motor_yaml}});
-  excitation(known.joint);
+  excitation(known.joint, known.excitation);
   std::vector<std::string> arguments = {"--robot",      "z1",          "--bench", known.joint, "--excitation",
                                         at("excitation"), "--out", at("recorded")};
   if (known.of_motor_yaml != sim::ActuatorParameters{}) {
@@ -88,8 +88,8 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfALimb, KnownMotor,
-                         testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15)},
-                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0)}, Known{"left_knee", {}}),
+                         testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15), {"--repeats", "1"}},
+                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1"}}, Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
                          [](const auto& known) {
                            return std::string(known.param.joint) +
                                   (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
