@@ -121,9 +121,8 @@ void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs
   const double floor_rad = found.noise_floor.mean_absolute_rad;
   std::cout << fmt::format(
       "{} mean absolute error: {:.4g} {} before, {:.4g} {} after; in noise floors: {:.2g} before, {:.2g} after\n",
-      found.held_out ? "held-out" : "fitted", 1e3 * found.held_out_before.value, unit,
-      1e3 * found.held_out_after.value, unit, found.held_out_before.value / floor_rad,
-      found.held_out_after.value / floor_rad);
+      found.held_out ? "held-out" : "fitted", 1e3 * found.held_out_before.value, unit, 1e3 * found.held_out_after.value,
+      unit, found.held_out_before.value / floor_rad, found.held_out_after.value / floor_rad);
   std::cout << fmt::format("noise floor {:.4g} {} ({}); {:.0f} % of the way to it\n", 1e3 * floor_rad, unit,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
   std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());

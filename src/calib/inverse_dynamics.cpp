@@ -1,10 +1,10 @@
 #include "calib/inverse_dynamics.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace pmg::calib {
 namespace {
 
 constexpr std::size_t kFewestWindows = 100;
-constexpr double kUnresolved = 0.1;  // of the drive: above it, accelerations are off by as much
+constexpr double kUnresolved = 0.1;   // of the drive: above it, accelerations are off by as much
 constexpr double kRest_share = 0.01;  // of the greatest speed: below it the sign is noise
 
 /// Value, first and second derivative of a cubic through 2 reach + 1 evenly spaced samples, at the middle one.
@@ -51,7 +51,7 @@ struct LocalCubic {
 struct Equations {
   std::vector<Eigen::Vector4d> rows;  // ddq, dq, sign dq, -1
   std::vector<double> torque_Nm;
-  double scatter = 0.0;  // of the drive about the cubics: the sum of variances [Nm^2]
+  double scatter = 0.0;                    // of the drive about the cubics: the sum of variances [Nm^2]
   double drive_Nm = 0.0, drive_Nm2 = 0.0;  // sums
 };
 
@@ -116,9 +116,11 @@ std::string meaning_of_negative(const InverseDynamics& found) {
   if (const std::string beyond_noise = named(impossible, true); !beyond_noise.empty()) {
     text = beyond_noise + " below zero: no joint has that. ";
     text += found.unresolved > kUnresolved
-                ? fmt::format("The torque changes too fast for {:g} samples a second: {:.0f} % of it is lost between them. ",
-                              found.sample_rate_hz, 100.0 * found.unresolved)
-                : "The recorded torque doesn't belong to the recorded motion: it is early or late, its unit is another one, or "
+                ? fmt::format(
+                      "The torque changes too fast for {:g} samples a second: {:.0f} % of it is lost between them. ",
+                      found.sample_rate_hz, 100.0 * found.unresolved)
+                : "The recorded torque doesn't belong to the recorded motion: it is early or late, its unit is another "
+                  "one, or "
                   "the load in bench.yaml is wrong. ";
     text += "The fit needs no torque: go by the fit.";
   }
@@ -162,14 +164,15 @@ std::optional<InverseDynamics> inverse_dynamics(const Bench& bench, const std::v
   const auto estimate = [&](Eigen::Index i) -> InverseDynamics::Estimate {
     return {solution[i], std::sqrt(std::max(0.0, covariance(i, i)))};
   };
-  return InverseDynamics{.armature_kg_m2 = estimate(0),
-                         .viscous_Nm_s_per_rad = estimate(1),
-                         .coulomb_Nm = estimate(2),
-                         .offset_Nm = estimate(3),
-                         .residual_Nm = std::sqrt(variance),
-                         .unresolved = std::sqrt(equations.scatter / (equations.drive_Nm2 - mean_Nm * equations.drive_Nm)),
-                         .sample_rate_hz = bench.sample_rate_hz,
-                         .samples = count};
+  return InverseDynamics{
+      .armature_kg_m2 = estimate(0),
+      .viscous_Nm_s_per_rad = estimate(1),
+      .coulomb_Nm = estimate(2),
+      .offset_Nm = estimate(3),
+      .residual_Nm = std::sqrt(variance),
+      .unresolved = std::sqrt(equations.scatter / (equations.drive_Nm2 - mean_Nm * equations.drive_Nm)),
+      .sample_rate_hz = bench.sample_rate_hz,
+      .samples = count};
 }
 
 }  // namespace pmg::calib

@@ -29,8 +29,8 @@ sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t
   return input;
 }
 
-/// Where the joint rests before the command first changes: the mean of the readings there, or the first one where they drift
-/// by more than three deviations of their noise. One noisy reading would load friction by gain times noise.
+/// Where the joint rests before the command first changes: the mean of the readings there, or the first one where they
+/// drift by more than three deviations of their noise. One noisy reading would load friction by gain times noise.
 double resting_reading_rad(const Recording& r) {
   std::size_t count = 0;
   while (count < r.q_rad.size() && r.valid[count] && r.q_cmd_rad[count] == r.q_cmd_rad.front()) ++count;
@@ -53,7 +53,8 @@ double resting_reading_rad(const Recording& r) {
 
 double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
 
-SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s) : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {
+SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s)
+    : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {
   const Recording& r = run_.recording;
   for (std::size_t s = 0; s < r.t_s.size(); ++s) inputs_.push_back(input_at(bench, run_, s));
   const double start_s = r.t_s.front();

@@ -30,8 +30,8 @@ class SingleJoint {
  public:
   SingleJoint(const Bench& bench, BenchRun run, double step_s);
 
-  /// The drive's reading at each of the recording's samples, open loop from where it began, at rest there: what the drive
-  /// leaves of gravity lies on dry friction, as far as it can carry that.
+  /// The drive's reading at each of the recording's samples, open loop from where it began, at rest there: what the
+  /// drive leaves of gravity lies on dry friction, as far as it can carry that.
   std::vector<double> rollout(const JointModel& model) const;
 
   RolloutError error(const JointModel& model) const;

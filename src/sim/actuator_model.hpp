@@ -35,9 +35,9 @@ class ActuatorModel {
   /// At rest there. What was told before the first step is taken to be as its input, but commanded where the joint is.
   void reset(double q_rad) noexcept;
 
-  /// At rest there while it holds load_Nm (of gravity: positive pulls q down): dry friction carries what the drive leaves of
-  /// the load, as far as it can, and a shaft is wound by the load. Where friction can carry it, the input is taken to have
-  /// been told for long; otherwise the input is taken for a step that comes now, as reset has it.
+  /// At rest there while it holds load_Nm (of gravity: positive pulls q down): dry friction carries what the drive
+  /// leaves of the load, as far as it can, and a shaft is wound by the load. Where friction can carry it, the input is
+  /// taken to have been told for long; otherwise the input is taken for a step that comes now, as reset has it.
   void reset_at_rest(const ActuatorInput& input, double q_rad, double load_Nm) noexcept;
 
   /// The torque during the step that begins with the joint at (q, dq).

@@ -46,9 +46,9 @@ struct Rope {
   Eigen::Vector3d top_W = Eigen::Vector3d::Zero();     ///< out of the picture [m]
 };
 
-/// The MJCF text of this robot in this world. Deterministic: same input, same bytes. For MuJoCo alone: its actuators are
-/// position servos (ctrl = q_des [rad]) with robot.yaml's gains, and its joints have MuJoCo's dry friction where World's
-/// have the actuator model; the keyframe "stand" is the standing posture on the ground. Throws
+/// The MJCF text of this robot in this world. Deterministic: same input, same bytes. For MuJoCo alone: its actuators
+/// are position servos (ctrl = q_des [rad]) with robot.yaml's gains, and its joints have MuJoCo's dry friction where
+/// World's have the actuator model; the keyframe "stand" is the standing posture on the ground. Throws
 /// model::ConfigError when a link collides by a mesh; a visual mesh is left out.
 std::string mjcf(const model::RobotModel& robot, const WorldOptions& options);
 

@@ -29,7 +29,8 @@ class RobotBench : public testing::Test {
   }
   std::string at(const char* name) const { return (folder_ / name).string(); }
   void excitation(const char* joint, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"--make-excitation", "--robot", "z1", "--joint", joint, "--seconds", "5", "--out", at("excitation")};
+    std::vector<std::string> arguments = {"--make-excitation", "--robot", "z1",    "--joint",       joint,
+                                          "--seconds",         "5",       "--out", at("excitation")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(run("pmg_calibrate_motor", arguments), 0) << err_;
   }
@@ -66,7 +67,7 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(robot.joint_index.at(known.joint))];
   const sim::ActuatorParameters truth = sim::actuator_in_force(joint, {{known.joint, known.of_motor_yaml}});
   excitation(known.joint, known.excitation);
-  std::vector<std::string> arguments = {"--robot",      "z1",          "--bench", known.joint, "--excitation",
+  std::vector<std::string> arguments = {"--robot",        "z1",    "--bench",     known.joint, "--excitation",
                                         at("excitation"), "--out", at("recorded")};
   if (known.of_motor_yaml != sim::ActuatorParameters{}) {
     std::ofstream(at("motor.yaml")) << sim::motor_yaml({{known.joint, truth}});
@@ -89,7 +90,8 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
 
 INSTANTIATE_TEST_SUITE_P(OfALimb, KnownMotor,
                          testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15), {"--repeats", "1"}},
-                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1"}}, Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
+                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1"}},
+                                         Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
                          [](const auto& known) {
                            return std::string(known.param.joint) +
                                   (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");

@@ -214,7 +214,8 @@ TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
 
   calib::InverseDynamics small;
   small.viscous_Nm_s_per_rad = {-0.01, 0.02};
-  EXPECT_THAT(calib::meaning_of_negative(small), AllOf(HasSubstr("Viscous friction"), HasSubstr("too small to be seen")));
+  EXPECT_THAT(calib::meaning_of_negative(small),
+              AllOf(HasSubstr("Viscous friction"), HasSubstr("too small to be seen")));
   EXPECT_TRUE(calib::take_inverse_dynamics(small, bench, start, unknowns));
   EXPECT_EQ(start.actuator.friction.viscous_Nm_s_per_rad, 0.0);
 }

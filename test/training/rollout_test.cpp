@@ -63,8 +63,9 @@ model::JointCommand command_of(const model::RobotModel& robot) {
   return command;
 }
 
-/// Drives that are late, slow and rub, on some joints of both legs; by the names of motor.yaml. Behind the play is a whole leg: a
-/// light foot there has nothing to damp it, and where it knocks depends on the step (by 4 mrad between training's and ours).
+/// Drives that are late, slow and rub, on some joints of both legs; by the names of motor.yaml. Behind the play is a
+/// whole leg: a light foot there has nothing to damp it, and where it knocks depends on the step (by 4 mrad between
+/// training's and ours).
 const std::map<std::string, std::map<std::string, double>> kMotors = {
     {"left_knee", {{"command.delay_s", 0.008}, {"friction.coulomb_Nm", 1.0}, {"friction.viscous_Nm_s_per_rad", 0.5}}},
     {"right_knee", {{"drive.kp_scale", 0.8}, {"friction.coulomb_Nm", 1.0}, {"friction.load_driving", 0.2}}},
