@@ -175,13 +175,13 @@ void tell(const calib::FitResults& results, const fs::path& out) {
   };
   if (results.inverse) {
     const calib::InverseDynamics& found = *results.inverse;
-    const double coulomb = found.coulomb_Nm.value, offset = found.offset_Nm.value;
     std::cout << fmt::format(
         "inverse dynamics{}: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g} ({:.4g} forwards, {:.4g} backwards), "
-        "offset "
-        "{:.4g}\n",
-        results.inverse_taken ? " (taken)" : "", found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value, coulomb,
-        coulomb - offset, coulomb + offset, offset);
+        "offset {:.4g}\n",
+        results.inverse_taken ? " (taken)" : "", found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value,
+        found.coulomb_Nm.value, found.coulomb_forward_Nm(), found.coulomb_backward_Nm(), found.offset_Nm.value);
+    if (const std::string meaning = calib::meaning_of_negative(found); !meaning.empty())
+      std::cout << "  " << meaning << '\n';
   }
   line("fitted", results.fitted);
   if (results.scored) line("scored", *results.scored);
@@ -223,8 +223,8 @@ int calibrate(const Arguments& arguments) {
   std::vector<calib::BenchRun> runs;
   for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
   results.inverse = calib::inverse_dynamics(bench, runs);
-  results.inverse_taken = results.inverse && bench.law == calib::DriveLaw::kCascadePd && !arguments.only;
-  if (results.inverse_taken) calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
+  if (results.inverse && bench.law == calib::DriveLaw::kCascadePd && !arguments.only)
+    results.inverse_taken = calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));
   calib::FitOptions options;
   options.method = calib::method_of(arguments.method);

@@ -105,9 +105,9 @@ void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs
   const std::string unit = calib::position_unit(bench, true);
   std::cout << "verdict: " << name(found.verdict) << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
-    std::cout << fmt::format("  {}{}: {:.4g} -> {:.4g} {}\n", cause.effect,
+    std::cout << fmt::format("  {}{}: error {:.4g} {} without it, {:.4g} {} with it\n", cause.effect,
                              cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),
-                             1e3 * cause.held_out_error_before, 1e3 * cause.held_out_error_after, unit);
+                             1e3 * cause.held_out_error_before, unit, 1e3 * cause.held_out_error_after, unit);
     if (!cause.same_here.empty())
       std::cout << fmt::format("    which on this rig is the same as {}\n", fmt::join(cause.same_here, ", "));
     for (const diagnosis::ParameterEstimate& p : cause.parameters) {
@@ -118,11 +118,16 @@ void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs
   if (!found.depends_on.empty())
     std::cout << fmt::format("what remains depends on {}\n", fmt::join(found.depends_on, ", "));
   if (found.next_excitation) std::cout << "record next: " << found.next_excitation->text << '\n';
-  std::cout << fmt::format("{} mean absolute error {:.4g} -> {:.4g} {}; noise floor {:.4g} ({}); {:.0f} % of the way\n",
-                           found.held_out ? "held-out" : "fitted", 1e3 * found.held_out_before.value,
-                           1e3 * found.held_out_after.value, unit, 1e3 * found.noise_floor.mean_absolute_rad,
+  const double floor_rad = found.noise_floor.mean_absolute_rad;
+  std::cout << fmt::format(
+      "{} mean absolute error: {:.4g} {} before, {:.4g} {} after; in noise floors: {:.2g} before, {:.2g} after\n",
+      found.held_out ? "held-out" : "fitted", 1e3 * found.held_out_before.value, unit, 1e3 * found.held_out_after.value,
+      unit, found.held_out_before.value / floor_rad, found.held_out_after.value / floor_rad);
+  std::cout << fmt::format("noise floor {:.4g} {} ({}); {:.0f} % of the way to it\n", 1e3 * floor_rad, unit,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
   std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());
+  if (!found.causes.empty())
+    std::cout << fmt::format("simulate with what was found: pmg_sil --motor {}\n", (out / "motor.yaml").string());
 }
 
 int diagnose_robot(const Arguments& arguments) {

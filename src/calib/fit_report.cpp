@@ -102,9 +102,9 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.samples, found.residual_Nm));
-  page.paragraph(fmt::format("Dry friction {:.4g} forwards, {:.4g} backwards.",
-                             found.coulomb_Nm.value - found.offset_Nm.value,
-                             found.coulomb_Nm.value + found.offset_Nm.value));
+  page.paragraph(fmt::format("Dry friction {:.4g} forwards, {:.4g} backwards.", found.coulomb_forward_Nm(),
+                             found.coulomb_backward_Nm()));
+  if (const std::string meaning = meaning_of_negative(found); !meaning.empty()) page.paragraph(meaning);
   page.table({.header = {"parameter", "value", "one standard deviation"},
               .rows = {row("transmission.armature_kg_m2", found.armature_kg_m2),
                        row("friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad),

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -37,15 +38,14 @@ Json inverse_json(const InverseDynamics& found) {
   const auto estimate = [](const InverseDynamics::Estimate& e) -> Json {
     return {{"value", e.value}, {"deviation", e.deviation}};
   };
-  const double forward_Nm = found.coulomb_Nm.value - found.offset_Nm.value;
-  const double backward_Nm = found.coulomb_Nm.value + found.offset_Nm.value;
   return {{"transmission.armature_kg_m2", estimate(found.armature_kg_m2)},
           {"friction.viscous_Nm_s_per_rad", estimate(found.viscous_Nm_s_per_rad)},
           {"friction.coulomb_Nm", estimate(found.coulomb_Nm)},
           {"ripple.offset_Nm", estimate(found.offset_Nm)},
-          {"coulomb_forward_Nm", forward_Nm},
-          {"coulomb_backward_Nm", backward_Nm},
+          {"coulomb_forward_Nm", found.coulomb_forward_Nm()},
+          {"coulomb_backward_Nm", found.coulomb_backward_Nm()},
           {"residual_Nm", found.residual_Nm},
+          {"unresolved", found.unresolved},
           {"windows", found.samples}};
 }
 
@@ -89,19 +89,25 @@ std::string reservation(const FitParameter& parameter, double value, const Confi
   return "";
 }
 
-void take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+bool take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns) {
-  const std::pair<const char*, double> taken[] = {
-      {"transmission.armature_kg_m2", found.armature_kg_m2.value},
-      {"friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad.value},
-      {"friction.coulomb_Nm", found.coulomb_Nm.value},
+  const double viscous = found.viscous_Nm_s_per_rad.value, coulomb_Nm = found.coulomb_Nm.value;
+  const std::pair<const char*, double> determined[] = {
+      {"transmission.armature_kg_m2", std::max(0.0, found.armature_kg_m2.value)},
+      {"friction.viscous_Nm_s_per_rad", std::max(0.0, viscous)},
+      {"friction.coulomb_Nm", std::max(0.0, coulomb_Nm)},
       {"ripple.offset_Nm", found.offset_Nm.value},
   };
-  for (const auto& [name, value] : taken) {
-    set(start, name, value);
+  const bool possible = std::ranges::none_of(impossible_estimates(found), &ImpossibleEstimate::significant);
+  for (const auto& [name, value] : determined) {
     std::erase_if(unknowns, [name = name](const FitParameter& p) { return p.name == name; });
+    if (possible)
+      set(start, name, value);
+    else
+      unknowns.push_back(fit_parameter(name, bench));
   }
   if (unknowns.empty()) unknowns.push_back(fit_parameter("sensor.velocity_lag_s", bench));
+  return possible;
 }
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
@@ -126,6 +132,8 @@ Json fit_json(const FitResults& results) {
   if (results.inverse) {
     json["inverse_dynamics"] = inverse_json(*results.inverse);
     json["inverse_dynamics"]["taken"] = results.inverse_taken;
+    const std::string meaning = meaning_of_negative(*results.inverse);
+    json["inverse_dynamics"]["meaning_of_negative"] = meaning.empty() ? Json(nullptr) : Json(meaning);
   }
   if (!results.noise_floor.pairs.empty()) json["noise_floor"] = noise_json(results.noise_floor);
   json["fit"] = assessment_json(results.fitted);

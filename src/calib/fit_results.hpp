@@ -37,8 +37,10 @@ struct FitResults {
 };
 
 /// What inverse dynamics determines becomes the model's own and is looked for no longer: a rollout can't tell inertia
-/// from a lag of the drive's velocity, the recorded drive can. Where nothing is left to look for, that lag is.
-void take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+/// from a lag of the drive's velocity, the recorded drive can. Where nothing is left to look for, that lag is. A number
+/// below zero by less than its uncertainty is taken as zero; where one is impossible nothing is taken, rollouts look
+/// for all of it, and the result is false.
+bool take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns);
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calib/bench.hpp"
 
@@ -21,8 +23,25 @@ struct InverseDynamics {
   Estimate
       offset_Nm;  ///< that pushes forwards, as ActuatorParameters::Ripple's: half of backward minus forward friction
   double residual_Nm = 0.0;  ///< root mean square
+  double unresolved = 0.0;   ///< what a window's cubic doesn't follow of the drive, over the drive's own deviation
+  double sample_rate_hz = 0.0;
   std::size_t samples = 0;
+
+  double coulomb_forward_Nm() const { return coulomb_Nm.value - offset_Nm.value; }
+  double coulomb_backward_Nm() const { return coulomb_Nm.value + offset_Nm.value; }
 };
+
+/// Inertia or friction below zero, which no joint has.
+struct ImpossibleEstimate {
+  std::string what;          ///< "viscous friction"
+  bool significant = false;  ///< beyond two standard deviations: not noise
+};
+
+/// Every number of it that is below zero.
+std::vector<ImpossibleEstimate> impossible_estimates(const InverseDynamics& found);
+
+/// What numbers below zero mean, in a sentence or two; empty where there is none.
+std::string meaning_of_negative(const InverseDynamics& found);
 
 /// Positions are differentiated by cubics over window_s to either side, which add no phase; torques are smoothed alike.
 /// Nothing where no drive_V or torque is recorded, or torque_per_unit is unknown, or fewer than 100 windows move.

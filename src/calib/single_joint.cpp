@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace pmg::calib {
 
@@ -28,11 +29,32 @@ sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t
   return input;
 }
 
+/// Where the joint rests before the command first changes: the mean of the readings there, or the first one where they
+/// drift by more than three deviations of their noise. One noisy reading would load friction by gain times noise.
+double resting_reading_rad(const Recording& r) {
+  std::size_t count = 0;
+  while (count < r.q_rad.size() && r.valid[count] && r.q_cmd_rad[count] == r.q_cmd_rad.front()) ++count;
+  const std::size_t half = count / 2;
+  if (half < 2) return r.q_rad.front();
+  double means_rad[2], squares_rad2 = 0.0;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto begin = r.q_rad.begin() + static_cast<std::ptrdiff_t>(h * half);
+    const auto end = begin + static_cast<std::ptrdiff_t>(half);
+    means_rad[h] = std::accumulate(begin, end, 0.0) / static_cast<double>(half);
+    for (auto reading = begin; reading != end; ++reading) squares_rad2 += std::pow(*reading - means_rad[h], 2);
+  }
+  const double noise_rad = std::sqrt(squares_rad2 / static_cast<double>(2 * half - 2));
+  const double drift_rad = std::abs(means_rad[1] - means_rad[0]);
+  if (drift_rad > 3.0 * noise_rad * std::sqrt(2.0 / static_cast<double>(half))) return r.q_rad.front();
+  return 0.5 * (means_rad[0] + means_rad[1]);
+}
+
 }  // namespace
 
 double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
 
-SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s) : run_(std::move(run)), step_s_(step_s) {
+SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s)
+    : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {
   const Recording& r = run_.recording;
   for (std::size_t s = 0; s < r.t_s.size(); ++s) inputs_.push_back(input_at(bench, run_, s));
   const double start_s = r.t_s.front();
@@ -66,9 +88,9 @@ template <typename Seen>
 void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
   sim::ActuatorModel actuator(model.actuator, step_s_);
   double q_rad = start_rad(model), dq_rad_s = 0.0;
-  actuator.reset(q_rad);
   const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
   const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  actuator.reset_at_rest(input(0), q_rad, gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad));
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
     const sim::ActuatorTorque drive = actuator.step(input(k), q_rad, dq_rad_s);

@@ -30,7 +30,8 @@ class SingleJoint {
  public:
   SingleJoint(const Bench& bench, BenchRun run, double step_s);
 
-  /// The drive's reading at each of the recording's samples, open loop from the first one, at rest there.
+  /// The drive's reading at each of the recording's samples, open loop from where it began, at rest there: what the
+  /// drive leaves of gravity lies on dry friction, as far as it can carry that.
   std::vector<double> rollout(const JointModel& model) const;
 
   RolloutError error(const JointModel& model) const;
@@ -40,7 +41,7 @@ class SingleJoint {
   std::size_t steps() const { return sample_of_step_.size(); }
   sim::ActuatorInput input(std::size_t step) const;
   double start_rad(const JointModel& model) const {
-    return sim::ActuatorModel::joint_rad(model.actuator.sensor, run_.recording.q_rad.front());
+    return sim::ActuatorModel::joint_rad(model.actuator.sensor, start_reading_rad_);
   }
 
  private:
@@ -53,7 +54,7 @@ class SingleJoint {
   };
   BenchRun run_;
   double step_s_;
-  double supply_;
+  double start_reading_rad_;
   std::vector<sim::ActuatorInput> inputs_;  // one a sample
   std::vector<std::size_t> sample_of_step_;
   std::vector<double> q_cmd_of_step_rad_;

@@ -4,10 +4,8 @@ namespace pmg::sim {
 
 void hand_over(mjModel* model, int actuator, const ActuatorModel& by) {
   const int dof = model->jnt_dofadr[model->actuator_trnid[2 * actuator]];
-  const ActuatorParameters& parameters = by.parameters();
-  if (parameters.transmission.armature_kg_m2 > 0.0) model->dof_armature[dof] = by.joint_armature_kg_m2();
-  if (parameters.friction != ActuatorParameters::Friction{})
-    model->dof_damping[dof] = model->dof_frictionloss[dof] = 0.0;
+  model->dof_armature[dof] = by.joint_armature_kg_m2();
+  model->dof_damping[dof] = model->dof_frictionloss[dof] = 0.0;
   model->actuator_forcelimited[actuator] = 0;
   model->actuator_gainprm[actuator * mjNGAIN] = 1.0;
 }

@@ -7,8 +7,7 @@
 
 namespace pmg::sim {
 
-/// The joint's armature, damping, friction and torque limit become the actuator model's. An armature of zero and
-/// friction that is all zero leave the MuJoCo model's own. Call mj_setConst afterwards.
+/// The joint's armature, damping, friction and torque limit become the actuator model's. Call mj_setConst afterwards.
 void hand_over(mjModel* model, int actuator, const ActuatorModel& by);
 
 /// Sets the torque of the step to come; the integrator (`implicit`) takes the slope implicitly. dq: of data's state.

@@ -45,7 +45,7 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
   reset(0.0);
 }
 
-void ActuatorModel::reset(double q_rad) {
+void ActuatorModel::reset(double q_rad) noexcept {
   sensor_rad_ = q_rad;
   const double reading = reading_rad(q_rad);
   told_before_ = false;
@@ -60,6 +60,29 @@ void ActuatorModel::reset(double q_rad) {
   heat_Nm2_s_ = drive_Nm_ = 0.0;
   temperature_C_ = kReferenceTemperature_C;
   friction_factor_ = torque_factor_ = 1.0;
+}
+
+void ActuatorModel::reset_at_rest(const ActuatorInput& input, double q_rad, double load_Nm) noexcept {
+  reset(q_rad);
+  const ActuatorModel stepped = *this;
+  past_.fill({input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward});
+  told_before_ = true;
+  command_rad_ = input.q_rad;
+  if (thermal_) warm(input.temperature_C);
+  const double carried_Nm = load_Nm - drive(input, q_rad, 0.0).torque_Nm - ripple_Nm(q_rad);  // by dry friction
+  load_Nm_ = load_Nm;
+  const double direction = carried_Nm > 0.0 ? -1.0 : 1.0;
+  const double most_Nm = most_dry_friction_Nm(0.0, direction);
+  if (std::abs(carried_Nm) > most_Nm) *this = stepped;
+  held_for_s_ = stepped.held_for_s_;
+  if (most_Nm > 0.0) {
+    bristle_rad_ = direction * parameters_.friction.presliding_rad * std::min(1.0, std::abs(carried_Nm) / most_Nm);
+  }
+  load_Nm_ = given_.torque_Nm = load_Nm;
+  if (elastic_ && load_Nm != 0.0) {
+    const double half_play_rad = 0.5 * parameters_.transmission.backlash_rad;
+    rotor_rad_ += load_Nm / parameters_.transmission.stiffness_Nm_per_rad + std::copysign(half_play_rad, load_Nm);
+  }
 }
 
 double ActuatorModel::joint_armature_kg_m2() const { return elastic_ ? 0.0 : parameters_.transmission.armature_kg_m2; }
@@ -185,10 +208,8 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   return {along * available_Nm, on_slope ? -p.stall_torque_Nm / p.no_load_rad_s : 0.0};
 }
 
-ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) noexcept {
+double ActuatorModel::most_dry_friction_Nm(double dq_rad_s, double direction) const noexcept {
   const ActuatorParameters::Friction& p = parameters_.friction;
-  const double bend_rad = bristle_rad_ + step_s_ * dq_rad_s;
-  const double direction = bend_rad >= 0.0 ? 1.0 : -1.0;
   double most_Nm = p.coulomb_Nm;
   if (p.stribeck_Nm != 0.0) {
     const double ratio = dq_rad_s / p.stribeck_rad_s;
@@ -197,10 +218,23 @@ ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) noexcept {
   if (load_dependent_) {
     most_Nm += (load_Nm_ * direction > 0.0 ? p.load_driving : p.load_backdriving) * std::abs(load_Nm_);
   }
-  most_Nm *= friction_factor_ * (1.0 + p.asymmetry * direction);
-  if (std::abs(bend_rad) >= p.presliding_rad) return {-direction * most_Nm, 0.0};
-  const double stiffness = most_Nm / p.presliding_rad;
+  return most_Nm * friction_factor_ * (1.0 + p.asymmetry * direction);
+}
+
+ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) const noexcept {
+  const double presliding_rad = parameters_.friction.presliding_rad;
+  const double bend_rad = bristle_rad_ + step_s_ * dq_rad_s;
+  const double direction = bend_rad >= 0.0 ? 1.0 : -1.0;
+  const double most_Nm = most_dry_friction_Nm(dq_rad_s, direction);
+  if (std::abs(bend_rad) >= presliding_rad) return {-direction * most_Nm, 0.0};
+  const double stiffness = most_Nm / presliding_rad;
   return {-stiffness * bend_rad, -stiffness * step_s_};
+}
+
+double ActuatorModel::ripple_Nm(double motor_rad) const noexcept {
+  const ActuatorParameters::Ripple& p = parameters_.ripple;
+  if (p.amplitude_Nm == 0.0) return p.offset_Nm;
+  return p.offset_Nm + p.amplitude_Nm * std::sin(p.order * motor_rad + p.phase_rad);
 }
 
 void ActuatorModel::warm(double temperature_C) noexcept {
@@ -231,11 +265,7 @@ ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, dou
   const double viscous = friction_factor_ * parameters_.friction.viscous_Nm_s_per_rad;
   motor.torque_Nm += dry.torque_Nm - viscous * motor_rad_s;
   motor.slope += dry.slope - viscous;
-  const ActuatorParameters::Ripple& ripple = parameters_.ripple;
-  motor.torque_Nm += ripple.offset_Nm;
-  if (ripple.amplitude_Nm != 0.0) {
-    motor.torque_Nm += ripple.amplitude_Nm * std::sin(ripple.order * motor_rad + ripple.phase_rad);
-  }
+  motor.torque_Nm += ripple_Nm(motor_rad);
   given_ = elastic_ ? elastic(motor, q_rad, dq_rad_s) : ActuatorTorque{motor.torque_Nm, motor.slope};
   given_at_rad_s_ = dq_rad_s;
   return given_;

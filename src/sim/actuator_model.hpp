@@ -33,7 +33,12 @@ class ActuatorModel {
   ActuatorModel(const ActuatorParameters& parameters, double step_s);
 
   /// At rest there. What was told before the first step is taken to be as its input, but commanded where the joint is.
-  void reset(double q_rad);
+  void reset(double q_rad) noexcept;
+
+  /// At rest there while it holds load_Nm (of gravity: positive pulls q down): dry friction carries what the drive
+  /// leaves of the load, as far as it can, and a shaft is wound by the load. Where friction can carry it, the input is
+  /// taken to have been told for long; otherwise the input is taken for a step that comes now, as reset has it.
+  void reset_at_rest(const ActuatorInput& input, double q_rad, double load_Nm) noexcept;
 
   /// The torque during the step that begins with the joint at (q, dq).
   ActuatorTorque step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
@@ -68,7 +73,9 @@ class ActuatorModel {
   Line drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
   Line powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s, double dq_rad_s) noexcept;
   double sag(double full_Nm) const noexcept;
-  Line dry_friction(double dq_rad_s) noexcept;
+  double most_dry_friction_Nm(double dq_rad_s, double direction) const noexcept;
+  Line dry_friction(double dq_rad_s) const noexcept;
+  double ripple_Nm(double motor_rad) const noexcept;
   void warm(double temperature_C) noexcept;
   ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
   ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;

@@ -67,7 +67,9 @@ Arm arm_to(const model::RobotModel& robot, const std::string& link) {
   return arm;
 }
 
-void expect_joints(const JointVector& values, const model::RobotModel& robot, const char* what) {
+double factor(const JointVector& factors, Eigen::Index joint) { return factors.size() > 0 ? factors[joint] : 1.0; }
+
+void expect_size(const JointVector& values, const model::RobotModel& robot, const char* what) {
   if (values.size() == 0 || values.size() == robot.joint_index.size()) return;
   throw std::invalid_argument(
       fmt::format("{}: {} values; expected one for each of {} joints", what, values.size(), robot.joint_index.size()));
@@ -161,12 +163,26 @@ PerFoot<std::string> hand_links(const model::RobotModel& robot) {
   return {arms[kLeft].last_moving_link, arms[kRight].last_moving_link};
 }
 
+void expect_joints(const Variation& variation, const model::RobotModel& robot) {
+  expect_size(variation.armature_factor, robot, "armature_factor");
+  expect_size(variation.joint_friction_factor, robot, "joint_friction_factor");
+  expect_size(variation.kp_factor, robot, "kp_factor");
+  expect_size(variation.kd_factor, robot, "kd_factor");
+  expect_size(variation.encoder_offset_rad, robot, "encoder_offset_rad");
+}
+
+ActuatorParameters varied(ActuatorParameters actuator, const Variation& variation, Eigen::Index joint) {
+  actuator.drive.kp_scale *= factor(variation.kp_factor, joint);
+  actuator.drive.kd_scale *= factor(variation.kd_factor, joint);
+  actuator.transmission.armature_kg_m2 *= factor(variation.armature_factor, joint);
+  ActuatorParameters::Friction& friction = actuator.friction;
+  for (double* dry : {&friction.coulomb_Nm, &friction.stribeck_Nm, &friction.load_driving, &friction.load_backdriving})
+    *dry *= factor(variation.joint_friction_factor, joint);
+  if (variation.encoder_offset_rad.size() > 0) actuator.sensor.zero_offset_rad += variation.encoder_offset_rad[joint];
+  return actuator;
+}
+
 void apply(const Variation& variation, const model::RobotModel& robot, mjModel* model, mjData* data) {
-  expect_joints(variation.armature_factor, robot, "armature_factor");
-  expect_joints(variation.joint_friction_factor, robot, "joint_friction_factor");
-  expect_joints(variation.kp_factor, robot, "kp_factor");
-  expect_joints(variation.kd_factor, robot, "kd_factor");
-  expect_joints(variation.encoder_offset_rad, robot, "encoder_offset_rad");
   for (const auto& [link, factor] : variation.link_mass_factor) {
     const int id = body(model, link);
     model->body_mass[id] *= factor;
@@ -186,12 +202,6 @@ void apply(const Variation& variation, const model::RobotModel& robot, mjModel* 
       throw std::invalid_argument(
           fmt::format("variation leaves {} kg of {}", model->body_mass[id], mj_id2name(model, mjOBJ_BODY, id)));
     }
-  }
-  for (int j = 0; j < robot.joint_index.size(); ++j) {
-    const int joint = mj_name2id(model, mjOBJ_JOINT, robot.joint_index.name(j).c_str());
-    const int dof = model->jnt_dofadr[joint];
-    if (variation.armature_factor.size() > 0) model->dof_armature[dof] *= variation.armature_factor[j];
-    if (variation.joint_friction_factor.size() > 0) model->dof_frictionloss[dof] *= variation.joint_friction_factor[j];
   }
   mj_setConst(model, data);
 }

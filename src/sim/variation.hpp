@@ -11,6 +11,7 @@
 
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
+#include "sim/actuator_parameters.hpp"
 
 namespace pmg::sim {
 
@@ -23,7 +24,7 @@ struct Variation {
   double torso_mass_kg = 0.0;                                        ///< added at the torso's centre of mass
   Eigen::Vector3d torso_center_of_mass_m = Eigen::Vector3d::Zero();  ///< shift in the torso's frame
   PerFoot<double> hand_payload_kg{};                                 ///< left and right, at the hand's centre of mass
-  JointVector armature_factor, joint_friction_factor;
+  JointVector armature_factor, joint_friction_factor;                ///< rotor inertia; dry friction
   JointVector kp_factor, kd_factor;  ///< of what the drives make of the gains that they are given
   JointVector encoder_offset_rad;    ///< what encoders show too much; the drives go by them too
   double delay_s = 0.0;              ///< from the command to the torque: whole physics steps, rounded
@@ -61,9 +62,15 @@ void vary(WorldOptions& options, const VariationRanges& ranges, const model::Rob
 /// Throws std::invalid_argument when a side has none.
 PerFoot<std::string> hand_links(const model::RobotModel& robot);
 
-/// Writes masses, inertias, armature and friction into a compiled model; MuJoCo's derived constants follow. data is
-/// scratch: reset it afterwards. Throws std::invalid_argument for a link that the model doesn't have or a vector of
-/// another size than the joints.
+/// Throws std::invalid_argument for a vector of another size than the robot's joints.
+void expect_joints(const Variation& variation, const model::RobotModel& robot);
+
+/// That joint's actuator as it varies: gains, rotor inertia and dry friction times their factors, the encoder's offset
+/// added.
+ActuatorParameters varied(ActuatorParameters actuator, const Variation& variation, Eigen::Index joint);
+
+/// Writes masses and inertias into a compiled model; MuJoCo's derived constants follow. data is scratch: reset it
+/// afterwards. Throws std::invalid_argument for a link that the model doesn't have.
 void apply(const Variation& variation, const model::RobotModel& robot, mjModel* model, mjData* data);
 
 }  // namespace pmg::sim

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim/actuator_joint.hpp"
+#include "sim/motors_in_force.hpp"
 #include "sim/sensor_noise.hpp"
 #include "sim/suspension.hpp"
 
@@ -73,14 +74,8 @@ struct World::Impl {
         noise(world_options, robot.joint_index.size()),
         underway(1 +
                  static_cast<std::size_t>(std::lround(world_options.variation.delay_s / world_options.timestep_s))) {
-    const int joints = robot.joint_index.size();
-    const Variation& variation = options.variation;
-    for (int j = 0; j < joints; ++j) make_motor(robot.joints[static_cast<std::size_t>(j)], j);
-    apply(variation, robot, model.get(), data.get());
-    kp_factor = variation.kp_factor.size() > 0 ? variation.kp_factor : JointVector::Ones(joints);
-    kd_factor = variation.kd_factor.size() > 0 ? variation.kd_factor : JointVector::Ones(joints);
-    encoder_offset_rad =
-        variation.encoder_offset_rad.size() > 0 ? variation.encoder_offset_rad : JointVector::Zero(joints);
+    make_motors(robot);
+    apply(options.variation, robot, model.get(), data.get());
     for (const auto& joint : robot.joints) {
       const int id = find(model.get(), mjOBJ_JOINT, joint.name);
       qpos_address.push_back(model->jnt_qposadr[id]);
@@ -96,20 +91,16 @@ struct World::Impl {
     gyro_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_gyro")];
     accelerometer_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_accelerometer")];
     orientation_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_orientation")];
-    // The exported model's actuators are position servos. Here ctrl carries kp q_des + kd dq_des + tau_ff whole,
-    // because a drive that only damps has kp = 0.
-    for (int a = 0; a < model->nu; ++a) model->actuator_gainprm[a * mjNGAIN] = 1.0;
   }
 
-  /// A drive that motor.yaml gives no limit keeps the joint's.
-  void make_motor(const model::Joint& joint, int index) {
-    motors.emplace_back();
-    const auto found = options.motors.find(joint.name);
-    if (found == options.motors.end()) return;
-    ActuatorParameters parameters = found->second;
-    if (!std::isfinite(parameters.drive.limit)) parameters.drive.limit = joint.effort_limit_Nm;
-    motors.back().emplace(parameters, options.timestep_s);
-    hand_over(model.get(), index, *motors.back());
+  /// The MJCF's actuators are position servos with MuJoCo's friction. Here every joint's are the actuator model's.
+  void make_motors(const model::RobotModel& robot) {
+    expect_joints(options.variation, robot);
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const ActuatorParameters actuator = actuator_in_force(robot.joints[j], options.motors);
+      motors.emplace_back(varied(actuator, options.variation, static_cast<Eigen::Index>(j)), options.timestep_s);
+      hand_over(model.get(), static_cast<int>(j), motors.back());
+    }
   }
 
   /// A rotor has no weight and adds nothing to what hangs further up: a heavy one holds a joint like a clamp, at any
@@ -128,8 +119,7 @@ struct World::Impl {
   SensorNoise noise;
   std::vector<model::JointCommand> underway;  // to the drives: a ring as long as the delay, the newest included
   std::size_t newest_command = 0;
-  std::vector<std::optional<ActuatorModel>> motors;  // in joint order
-  JointVector kp_factor, kd_factor, encoder_offset_rad;
+  std::vector<ActuatorModel> motors;  // in joint order
   Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
   std::vector<int> qpos_address, dof_address;  // in joint order, as the actuators are
   int base_body = 0, torso_body = 0;
@@ -164,9 +154,7 @@ void World::reset() {
   }
   w.noise = SensorNoise(w.options, robot_.joint_index.size());
   std::ranges::fill(w.underway, limp(robot_.joint_index.size()));
-  for (std::size_t j = 0; j < w.motors.size(); ++j) {
-    if (w.motors[j]) w.motors[j]->reset(data_->qpos[w.qpos_address[j]]);
-  }
+  for (std::size_t j = 0; j < w.motors.size(); ++j) w.motors[j].reset(data_->qpos[w.qpos_address[j]]);
   w.push_W_N.setZero();
   w.foot_force_N = w.foot_slip_m_s = {};
   w.steps = 0;
@@ -202,23 +190,15 @@ void World::step(const model::JointCommand& command) noexcept {
 void World::set_drives(const model::JointCommand& command) noexcept {
   Impl& w = *impl_;
   for (int j = 0; j < model_->nu; ++j) {
-    const double kp = w.kp_factor[j] * command.kp[j], kd = w.kd_factor[j] * command.kd[j];
     const auto index = static_cast<std::size_t>(j);
-    if (w.motors[index]) {
-      const double q_rad = data_->qpos[w.qpos_address[index]], dq_rad_s = data_->qvel[w.dof_address[index]];
-      const ActuatorInput input{.q_rad = command.q[j] - w.encoder_offset_rad[j],
-                                .dq_rad_s = command.dq[j],
-                                .kp = kp,
-                                .kd = kd,
-                                .feed_forward = command.tau_ff[j],
-                                .temperature_C = kDriveTemperature_degC};
-      apply(model_, data_, j, w.motors[index]->step(input, q_rad, dq_rad_s), dq_rad_s);
-      continue;
-    }
-    mjtNum* bias = model_->actuator_biasprm + j * mjNBIAS;
-    bias[1] = -kp;
-    bias[2] = -kd;
-    data_->ctrl[j] = kp * (command.q[j] - w.encoder_offset_rad[j]) + kd * command.dq[j] + command.tau_ff[j];
+    const double q_rad = data_->qpos[w.qpos_address[index]], dq_rad_s = data_->qvel[w.dof_address[index]];
+    const ActuatorInput input{.q_rad = command.q[j],
+                              .dq_rad_s = command.dq[j],
+                              .kp = command.kp[j],
+                              .kd = command.kd[j],
+                              .feed_forward = command.tau_ff[j],
+                              .temperature_C = kDriveTemperature_degC};
+    apply(model_, data_, j, w.motors[index].step(input, q_rad, dq_rad_s), dq_rad_s);
   }
 }
 
@@ -261,14 +241,12 @@ void World::read(model::RobotState& state) noexcept {
   state.bus_sample = w.steps;
   state.q.resize(joints);
   state.dq.resize(joints);
-  state.tau = Eigen::Map<const Eigen::VectorXd>(data_->actuator_force, joints);
+  state.tau.resize(joints);
   state.temperature_degC.setConstant(joints, kDriveTemperature_degC);
   for (int j = 0; j < joints; ++j) {
     const auto index = static_cast<std::size_t>(j);
-    const double q_rad = data_->qpos[w.qpos_address[index]];
-    if (w.motors[index]) state.tau[j] = w.motors[index]->drive_torque_Nm();
-    const double reading_rad = w.motors[index] ? w.motors[index]->reading_rad(q_rad) : q_rad;
-    state.q[j] = reading_rad + w.encoder_offset_rad[j] + w.noise.encoder_rad()[j];
+    state.tau[j] = w.motors[index].drive_torque_Nm();
+    state.q[j] = w.motors[index].reading_rad(data_->qpos[w.qpos_address[index]]) + w.noise.encoder_rad()[j];
     state.dq[j] = data_->qvel[w.dof_address[index]] + w.noise.velocity_rad_s()[j];
   }
   state.gyro_rad_s = Eigen::Map<const Eigen::Vector3d>(data_->sensordata + w.gyro_address) + w.noise.gyro_rad_s();

@@ -25,7 +25,7 @@ struct WorldOptions {
   std::uint64_t seed = 0;                                                               ///< of the sensor noise
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
   double velocity_noise_rad_s = 0.0;  ///< of measured joint velocities, likewise
-  ActuatorsByJoint motors;            ///< joints that have more than a PD and MuJoCo's own friction
+  ActuatorsByJoint motors;            ///< what a motor.yaml says of some joints; robot.yaml says the rest
   Variation variation;                ///< what else is not as the model says
 };
 
@@ -46,8 +46,9 @@ struct Rope {
   Eigen::Vector3d top_W = Eigen::Vector3d::Zero();     ///< out of the picture [m]
 };
 
-/// The MJCF text of this robot in this world. Deterministic: same input, same bytes. Its actuators are position servos
-/// (ctrl = q_des [rad]) with robot.yaml's gains; the keyframe "stand" is the standing posture on the ground. Throws
+/// The MJCF text of this robot in this world. Deterministic: same input, same bytes. For MuJoCo alone: its actuators
+/// are position servos (ctrl = q_des [rad]) with robot.yaml's gains, and its joints have MuJoCo's dry friction where
+/// World's have the actuator model; the keyframe "stand" is the standing posture on the ground. Throws
 /// model::ConfigError when a link collides by a mesh; a visual mesh is left out.
 std::string mjcf(const model::RobotModel& robot, const WorldOptions& options);
 
@@ -60,7 +61,7 @@ class World {
 
   void reset();  ///< standing posture, soles on the ground (or hanging on the gantry), at rest, time zero
 
-  /// One physics step under the command (held); the drives' PD runs inside MuJoCo's affine-bias actuators. No heap.
+  /// One physics step under the command (held), each joint through its actuator model. No heap.
   /// The command's vectors have one element a joint. A variation's delay holds it back for so many steps; until the
   /// first arrives the drives are limp. After divergence nothing moves any more until reset().
   void step(const model::JointCommand& command) noexcept;

@@ -51,7 +51,7 @@ void BM_single_joint_floor(benchmark::State& state) {
   bare->dof_frictionloss[0] = 0.15;
   bare->dof_damping[0] = 0.02;
   mj_setConst(bare, data);
-  mujoco.reset(0.0);
+  mujoco.reset({}, 0.0);
   for (auto _ : state) {
     for (std::size_t k = 0; k < joint().steps(); ++k) {
       data->ctrl[0] = 20.0 * joint().input(k).q_rad;

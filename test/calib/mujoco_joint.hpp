@@ -25,11 +25,12 @@ class MujocoJoint {
     mj_setConst(model_.get(), data_.get());
   }
 
-  void reset(double q_rad) {
+  /// At rest there while it is told that.
+  void reset(const sim::ActuatorInput& input, double q_rad) {
     mj_resetData(model_.get(), data_.get());
     data_->qpos[0] = q_rad;
-    actuator_.reset(q_rad);
     mj_step1(model_.get(), data_.get());
+    actuator_.reset_at_rest(input, q_rad, data_->qfrc_bias[0]);
   }
 
   /// As World::step: MuJoCo's step in halves, the drive between them.

@@ -7,6 +7,10 @@
 
 #include "calib/mujoco_joint.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "sim/joint_load.hpp"
+#include "sim/motors_in_force.hpp"
+#include "sim/robots.hpp"
+#include "sim/world.hpp"
 
 namespace pmg {
 namespace {
@@ -92,7 +96,7 @@ TEST_P(BothSimulators, MoveAJointAlike) {
   for (const calib::SingleJoint& recorded : joints) {
     const calib::SingleJoint joint = warming(bench, recorded);
     test::MujocoJoint mujoco(joint.run().load, model.actuator, joint.step_s());
-    mujoco.reset(joint.start_rad(model));
+    mujoco.reset(joint.input(0), joint.start_rad(model));
     const std::vector<double> compiled = joint.rollout(model);
     double largest_rad = 0.0, farthest_rad = 0.0;
     for (std::size_t k = 0; k < joint.steps(); ++k) {
@@ -118,6 +122,75 @@ TEST(BothSimulators, AreComparedInEveryParameterThatMotorYamlHas) {
     };
     EXPECT_TRUE(std::ranges::any_of(kinds(), changes)) << parameter.name;
   }
+}
+
+// The same 1e-6 rad, of a whole robot's joint. Without a motor.yaml its numbers are robot.yaml's, and friction is the
+// actuator model's: MuJoCo's own moves a knee by up to a milliradian otherwise.
+TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
+  for (const char* name : {"left_knee", "left_ankle_roll", "head_pitch"}) {
+    const int index = z1().joint_index.at(name);
+    const model::Joint& joint = z1().joints[static_cast<std::size_t>(index)];
+    sim::WorldOptions options;
+    options.gantry = true;
+    options.benched_joint = name;
+    sim::World world(z1(), options);
+    model::JointCommand command = standing_command(z1());
+    model::RobotState state;
+    for (int step = 0; step < 1000; ++step) world.step(command);  // comes to rest
+
+    const sim::HangingLoad load = sim::hanging_load(z1(), name);
+    calib::Bench bench = test::pd_bench(true);
+    bench.sample_rate_hz = 500.0;
+    calib::BenchRun run;
+    run.kp = joint.kp_Nm_per_rad, run.kd = joint.kd_Nm_s_per_rad;
+    run.load = {load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad};
+    for (int step = 0; step < 1500; ++step) {
+      const double t_s = 0.002 * step;
+      world.read(state);
+      command.q[index] = joint.stand_rad + (t_s < 0.1 ? 0.0 : t_s < 1.5 ? 0.2 * std::sin(9.0 * (t_s - 0.1)) : 0.15);
+      run.recording.t_s.push_back(t_s);
+      run.recording.q_cmd_rad.push_back(command.q[index]);
+      run.recording.q_rad.push_back(state.q[index]);
+      run.recording.valid.push_back(true);
+      world.step(command);
+    }
+    const calib::SingleJoint alone(bench, run, options.timestep_s);
+    const std::vector<double> q_rad = alone.rollout({.actuator = sim::actuator_in_force(joint, {})});
+    double worst_rad = 0.0, moved_rad = 0.0;
+    for (std::size_t k = 0; k < q_rad.size(); ++k) {
+      worst_rad = std::max(worst_rad, std::abs(q_rad[k] - run.recording.q_rad[k]));
+      moved_rad = std::max(moved_rad, std::abs(q_rad[k] - q_rad[0]));
+    }
+    EXPECT_GT(moved_rad, 0.1) << name;
+    EXPECT_LT(worst_rad, 1e-6) << name;
+  }
+}
+
+TEST(SingleJoint, RestsOnItsFrictionUntilItIsMoved) {
+  const calib::Bench bench = test::pd_bench(true);
+  calib::BenchRun run;
+  run.kp = 20.0, run.kd = 0.8;
+  run.load = {0.02, 1.0, 0.0};
+  for (int k = 0; k < 200; ++k) {
+    run.recording.t_s.push_back(0.01 * k);
+    run.recording.q_cmd_rad.push_back(0.5);
+    run.recording.q_rad.push_back(0.465);  // 0.45 Nm of weight less 0.7 Nm of drive
+    run.recording.valid.push_back(true);
+  }
+  const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.02;
+  model.actuator.friction.coulomb_Nm = 0.3;
+  const auto moved_rad = [&] { return std::abs(joint.rollout(model).back() - 0.465); };
+  EXPECT_LT(moved_rad(), 1e-9);
+  model.actuator.command.delay_s = 0.03;
+  EXPECT_LT(moved_rad(), 1e-9) << "told for long: nothing is underway";
+  model.actuator.friction.coulomb_Nm = 0.2;
+  EXPECT_GT(moved_rad(), 1e-3) << "more than friction can carry";
+  model.actuator.friction.coulomb_Nm = 0.3;
+  model.actuator.transmission.stiffness_Nm_per_rad = 200.0;
+  model.actuator.transmission.backlash_rad = 0.02;
+  EXPECT_LT(moved_rad(), 1e-9) << "on the side of its play where the weight lies, and wound by it";
 }
 
 TEST(SingleJoint, SwingsWithThePeriodOfAPendulum) {

@@ -88,17 +88,33 @@ TEST(Variation, FrictionIsThatOfTheSoleOnTheFloor) {
   for (int c = 0; c < data->ncon; ++c) EXPECT_DOUBLE_EQ(data->contact[c].friction[0], 0.4);
 }
 
-TEST(Variation, ArmatureAndJointFrictionAreScaled) {
+TEST(Variation, ArmatureAndDryFrictionAreScaled) {
   const int n = z1().joint_index.size();
+  sim::Variation variation;
+  variation.armature_factor = JointVector::Constant(n, 1.3);
+  variation.joint_friction_factor = JointVector::Constant(n, 0.5);
+  sim::ActuatorParameters nominal;
+  nominal.transmission.armature_kg_m2 = 0.04;
+  nominal.friction = {.viscous_Nm_s_per_rad = 0.3,
+                      .coulomb_Nm = 0.6,
+                      .stribeck_Nm = -0.2,
+                      .load_driving = 0.1,
+                      .load_backdriving = 0.08};
+  const sim::ActuatorParameters drawn = sim::varied(nominal, variation, 3);
+  EXPECT_NEAR(drawn.transmission.armature_kg_m2, 0.052, 1e-12);
+  EXPECT_NEAR(drawn.friction.coulomb_Nm, 0.3, 1e-12);
+  EXPECT_NEAR(drawn.friction.stribeck_Nm, -0.1, 1e-12);
+  EXPECT_NEAR(drawn.friction.load_driving, 0.05, 1e-12);
+  EXPECT_NEAR(drawn.friction.load_backdriving, 0.04, 1e-12);
+  EXPECT_EQ(drawn.friction.viscous_Nm_s_per_rad, 0.3);
+  EXPECT_EQ(sim::varied(nominal, {}, 3), nominal);
+
   sim::WorldOptions options;
-  options.variation.armature_factor = JointVector::Constant(n, 1.3);
-  options.variation.joint_friction_factor = JointVector::Constant(n, 0.5);
+  options.variation = variation;
   sim::World world(z1(), options);
-  for (int j = 0; j < n; ++j) {
-    const auto& joint = z1().joints[static_cast<std::size_t>(j)];
+  for (const model::Joint& joint : z1().joints) {
     const int dof = world.mj_model()->jnt_dofadr[mj_name2id(world.mj_model(), mjOBJ_JOINT, joint.name.c_str())];
-    EXPECT_NEAR(world.mj_model()->dof_armature[dof], 1.3 * joint.armature_kg_m2, 1e-12);
-    EXPECT_NEAR(world.mj_model()->dof_frictionloss[dof], 0.5 * joint.friction_Nm, 1e-12);
+    EXPECT_NEAR(world.mj_model()->dof_armature[dof], 1.3 * joint.armature_kg_m2, 1e-12) << joint.name;
   }
 }
 

@@ -133,12 +133,13 @@ TEST(World, StepIsMuJoCosStep) {
   sim::World world(z1(), {});
   model::JointCommand command = standing_command(z1());
   command.q[z1().joint_index.at("left_elbow")] -= 0.5;
-  world.step(command);  // the gains are in the model from the first command on
+  world.step(command);
   mjModel* model = mj_copyModel(nullptr, world.mj_model());
   mjData* data = mj_copyData(nullptr, model, world.mj_data());
-  for (int j = 0; j < model->nu; ++j) data->ctrl[j] = command.kp[j] * command.q[j];
   for (int i = 0; i < 500; ++i) {
     world.step(command);
+    mju_copy(data->ctrl, world.mj_data()->ctrl, model->nu);  // what the actuator models gave, and its slope in speed
+    mju_copy(model->actuator_biasprm, world.mj_model()->actuator_biasprm, mjNBIAS * model->nu);
     mj_step(model, data);
   }
   // The solver starts warm from other estimates, so contacts agree to its tolerance only.

@@ -1,5 +1,5 @@
-"""Runs an exported policy in plain MuJoCo on the CPU, on the model that the controller's simulation uses, with the controller's
-own generator and observation, and reports errors against the user's command.
+"""Runs an exported policy in plain MuJoCo on the CPU, on the exported model (dry friction is MuJoCo's own), with the controller's own
+generator and observation, and reports errors against the user's command.
 
 Example: python3 -m pmg_train.evaluate pmg.onnx --robot config/robots/z1 --mjcf z1.xml --library libpmg_batch.so \\
              --scenario config/scenarios/tour.yaml --seeds 3

@@ -6,11 +6,10 @@ import torch
 import warp as wp
 
 from pmg_train.actuation import step_inertia
-from pmg_train.motors import Motors
+from pmg_train.motors import Motors, joints_with_actuators
 from pmg_train.randomization import Robots
 
-BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature",
-           "dof_frictionloss")
+BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature")
 
 
 @wp.kernel
@@ -41,10 +40,13 @@ class Worlds:
 
     def __init__(self, model: mujoco.MjModel, worlds: int, substeps: int, foot_links: list[str], limits: dict,
                  device: str, motors: dict[str, dict[str, float]] | None = None):
-        """motors: what a motor.yaml says of some joints' actuators; the others are MuJoCo's position servos."""
+        """motors: what a motor.yaml says of some joints' actuators. Joints with dry friction have an actuator of src/sim's kind in any
+        case; the others are MuJoCo's position servos."""
         self.device = device
         self.deployed_step_s = limits["deployed_timestep_s"]
-        self.motors = Motors(model, motors, worlds, device) if motors else None
+        motors = motors or {}
+        modelled = {name: motors.get(name, {}) for name in joints_with_actuators(model, motors)}
+        self.motors = Motors(model, modelled, worlds, device) if modelled else None
         self.model = model
         with wp.ScopedDevice(device):
             self.m = mjw.put_model(model, batch_sizes={name: worlds for name in BATCHED})
@@ -78,14 +80,15 @@ class Worlds:
         if self.motors:
             gain[:, self.motors.index] = 1.0
             self.motors.vary(robots, self.deployed_step_s)
-        view(self.m.dof_frictionloss)[:, 6:] *= robots.joint_friction
 
     def _set_armature(self, factor: torch.Tensor) -> None:
         """The drawn one, less what the damping in these longer steps adds."""
         model, armature = self.model, wp.to_torch(self.m.dof_armature)[:, 6:]
         kd = torch.tensor(model.dof_damping[6:] - model.actuator_biasprm[:, 2], dtype=torch.float32, device=self.torch_device)
         if self.motors:
-            kd[self.motors.index] += torch.where(self.motors.model.elastic, 0.0, self.motors.kd[0])
+            actuator = self.motors.model
+            damping = self.motors.kd[0] + actuator.p["friction.viscous_Nm_s_per_rad"]
+            kd[self.motors.index] += torch.where(actuator.elastic, 0.0, damping)
         added = step_inertia(kd, model.opt.timestep, self.deployed_step_s)
         armature.copy_(torch.maximum(armature * factor - added, 0.1 * armature))
 

@@ -49,7 +49,8 @@ def _check(model: mujoco.MjModel, description: dict) -> mujoco.MjModel:
 
 
 def evaluation_model(mjcf: str | Path, description: dict, gains: dict) -> mujoco.MjModel:
-    """What the controller's simulation runs (2 ms, implicit, all collision shapes), with the policy's gains."""
+    """The exported model (2 ms, implicit, all collision shapes), with the policy's gains: the controller's simulation but for dry friction,
+    which is MuJoCo's own here."""
     spec = mujoco.MjSpec.from_file(str(mjcf))
     _set_gains(spec, description, gains)
     return _check(spec.compile(), description)
@@ -78,7 +79,7 @@ def training_model(mjcf: str | Path, description: dict, gains: dict, physics: di
     policy = {j["name"] for j in description["joints"] if j["policy"]}
     for joint in spec.joints:
         if joint.type == mujoco.mjtJoint.mjJNT_HINGE and joint.name not in policy:
-            joint.frictionloss = 0.0  # a constraint row each, and no balance depends on it
+            joint.frictionloss = 0.0  # an actuator model each, and no balance depends on it
     for sensor in list(spec.sensors):
         spec.delete(sensor)
     spec.option.timestep = physics["timestep_s"]
