@@ -72,7 +72,6 @@ class Summariser {
     run_.emplace();
     first_ns_ = stamp_ns;
     next_tick_.reset();
-    mode_.reset();
     told_faults_.clear();
     timings_ns_ = {};
   }
@@ -111,9 +110,10 @@ class Summariser {
 
   void take_status(const io::LogReader& event) {
     const auto status = event.decode<pmg_msgs::status_t>();
-    if (!status || mode_ == status->mode) return;
-    mode_ = status->mode;
-    run_->modes.push_back({seconds(event.stamp_ns()), mode_name(status->mode)});
+    if (!status) return;
+    std::string mode = mode_name(status->mode) + (status->hanging ? ", hanging" : "");
+    if (!run_->modes.empty() && run_->modes.back().text == mode) return;
+    run_->modes.push_back({seconds(event.stamp_ns()), std::move(mode)});
   }
 
   void take_fault(const io::LogReader& event) {
@@ -138,7 +138,6 @@ class Summariser {
   std::optional<RunSummary> run_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::optional<std::int64_t> next_tick_;
-  std::optional<std::int8_t> mode_;
   std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;
   std::array<std::vector<std::int64_t>, kTimings.size()> timings_ns_;
 };

@@ -88,6 +88,12 @@ SlipFigures slip_figures(const RunSeries& run) {
   return {sum.before_mean_m_s * share, sum.after_mean_m_s * share};
 }
 
+double hanging_s(const RunSeries& run) {
+  double all_s = 0.0;
+  for (const RunSeries::Stretch& stretch : run.hanging) all_s += stretch.to_s - stretch.from_s;
+  return all_s;
+}
+
 std::string verdict(const RunSeries& run) {
   std::string text = run.name + ": ";
   if (run.identified) {
@@ -109,6 +115,9 @@ std::string verdict(const RunSeries& run) {
     text += fmt::format(". FELL at {:.2f} s", run.fell_at_s);
   } else if (!run.truth.t_s.empty()) {
     text += ", did not fall";
+  }
+  if (hanging_s(run) > 0.0) {
+    text += fmt::format(". For {:.1f} s the feet carried nothing and the policy was not run", hanging_s(run));
   }
   return text + ".";
 }
@@ -135,6 +144,7 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"faults", events_json(run.faults)},
           {"guard_trips", events_json(run.guard_trips)},
           {"modes_s", modes},
+          {"hanging_s", hanging_s(run)},
           {"tracking_rms_rad", errors},
           {"slip", {{"before_mean_m_s", slip.before_mean_m_s}, {"after_mean_m_s", slip.after_mean_m_s}}},
           {"limited_ticks",

@@ -26,6 +26,9 @@ struct SlipFigures {
 };
 SlipFigures slip_figures(const RunSeries& run);
 
+/// For how long the feet carried nothing, so that the policy was not run.
+double hanging_s(const RunSeries& run);
+
 /// One line: what ran, how long, and how it ended.
 std::string verdict(const RunSeries& run);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/mode_text.hpp"
+
 namespace pmg::runtime {
 
 Film::Film(sim::World& world, const std::filesystem::path& file)
@@ -11,8 +13,8 @@ Film::Film(sim::World& world, const std::filesystem::path& file)
 
 void Film::after_tick(const RunProgress& progress) {
   if (++ticks_ % kTicksPerFrame != 0) return;
-  const std::string text =
-      fmt::format("{:6.1f} s  {}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text);
+  const std::string text = fmt::format("{:6.1f} s  {}\n{}", progress.time_s,
+                                       mode_text(progress.result.mode, progress.result.hanging), progress.step.text);
   writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
 }
 

@@ -15,6 +15,7 @@ RunMeasure::RunMeasure(double standing_height_m)
 void RunMeasure::add(const TickResult& result, const sim::Truth& truth, bool hoisted, const Command& asked) {
   ++ticks_;
   if (hoisted) sums_.hoisted_s += kTickPeriod_s;
+  if (result.hanging) sums_.hanging_s += kTickPeriod_s;
   if (result.mode == Mode::kFault && last_mode_ != Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 
