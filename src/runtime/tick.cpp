@@ -181,6 +181,9 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
 
 void Tick::watch_feet(const model::RobotState& state) noexcept {
   if (!feet_ || !drives(result_.mode)) return;
+  result_.foot_load.reset();
+  // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
+  if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
   feet_->update(state, result_.command);
   result_.foot_load = feet_->share();
   if (feet_->hangs() != result_.hanging) change_over();
