@@ -22,6 +22,7 @@
 #include "runtime/control_setup.hpp"
 #include "runtime/controller.hpp"
 #include "runtime/controller_report.hpp"
+#include "runtime/mode_text.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/simulated_robot.hpp"
@@ -169,21 +170,24 @@ class Console {
   Console(const model::RobotModel& robot, std::string name) : robot_(robot), name_(std::move(name)) {}
 
   void show(const runtime::ControllerNews& news) {
-    if (news.mode == mode_) return;
+    if (news.mode == mode_ && news.hanging == hanging_) return;
     mode_ = news.mode;
+    hanging_ = news.hanging;
     if (news.mode == runtime::Mode::kFault) {
       spdlog::error("FAULT, damping: {}", runtime::describe(news.fault, robot_));
       spdlog::error("{} Then: pmg_send reset --robot {}", runtime::advice(news.fault.code), name_);
       return;
     }
     const char* driving = news.driving.name.data();
-    spdlog::info("mode: {}{}{}", runtime::to_string(news.mode), *driving == '\0' ? "" : ", driven by ", driving);
+    spdlog::info("mode: {}{}{}", runtime::mode_text(news.mode, news.hanging), *driving == '\0' ? "" : ", driven by ",
+                 driving);
   }
 
  private:
   const model::RobotModel& robot_;
   std::string name_;
   runtime::Mode mode_ = runtime::Mode::kPassive;
+  bool hanging_ = false;
 };
 
 void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant variant) {

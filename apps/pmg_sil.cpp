@@ -22,6 +22,7 @@
 #include "runtime/film.hpp"
 #include "runtime/live_view.hpp"
 #include "runtime/lockstep.hpp"
+#include "runtime/mode_text.hpp"
 #include "runtime/realtime_run.hpp"
 #include "runtime/summary.hpp"
 #include "sim/motors_in_force.hpp"
@@ -126,7 +127,7 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
 
 void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
   const std::string of = std::isfinite(progress.duration_s) ? fmt::format(" / {:.1f}", progress.duration_s) : "";
-  line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of, runtime::to_string(progress.result.mode),
+  line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of, runtime::mode_text(progress.result.mode, progress.result.hanging),
                         progress.step.text));
 }
 
@@ -146,6 +147,11 @@ void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& su
              "reference slip: single support {:.4f} m/s at most, double support {:.4f} m/s mean, {:.4f} m/s p95\n",
              outcome.reference_slip.single_support_max_m_s, outcome.reference_slip.double_support_mean_m_s,
              outcome.reference_slip.double_support_p95_m_s);
+  if (outcome.hanging_s > 0.0) {
+    std::cout << fmt::format(
+        "the feet carried nothing for {:.1f} s: there the policy did not run, nor did the robot walk\n",
+        outcome.hanging_s);
+  }
   if (outcome.diverged) std::cout << "the simulation diverged\n";
   for (const auto& fault : summary["faults"]) {
     std::cout << fmt::format("fault at {:.2f} s: {}\n", fault["t_s"].get<double>(), fault["text"].get<std::string>());

@@ -30,7 +30,7 @@ constexpr Eigen::Index kShared = 5;
 using Shared = Eigen::Matrix<double, kShared, 1>;  // the IMU's tilt, then the soles' give
 
 /// What soles that give under their load miss by.
-Eigen::Matrix<double, 5, 3> miss_by_give(const PerFoot<SoleLoad>& load) {
+Eigen::Matrix<double, 5, 3> miss_by_give(const PerFoot<model::SoleLoad>& load) {
   Eigen::Matrix<double, 5, 3> miss = Eigen::Matrix<double, 5, 3>::Zero();
   miss(0, 0) = load[kLeft].moment_Nm.y();
   miss(1, 1) = -load[kLeft].moment_Nm.x();
@@ -128,7 +128,8 @@ class Alignment {
     const StillPose& real = poses_[pose];
     const JointVector q = estimate(pose, z);
     ZeroPose judged;
-    judged.load = load_[pose] = loads_.of(q, real.torque_Nm, constraint_.gravity_B(q, real.gravity_I));
+    loads_.set_posture(q, constraint_.gravity_B(q, real.gravity_I));
+    judged.load = load_[pose] = loads_.of(real.torque_Nm);
     for (const Eigen::Vector3d& s_sim : constraint_.gravity_of_simulated(q, shared.head<2>()))
       judged.misalignment_rad = std::max(judged.misalignment_rad, (real.gravity_I - s_sim).norm());
     judged.height_miss_m = constraint_.miss(q, real.gravity_I, shared.head<2>())[4];
@@ -139,7 +140,7 @@ class Alignment {
 
   bool stands(const ZeroPose& pose) const {
     return std::ranges::all_of(
-        pose.load, [this](const SoleLoad& load) { return load.force_N >= options_.least_load * weight_N_; });
+        pose.load, [this](const model::SoleLoad& load) { return load.force_N >= options_.least_load * weight_N_; });
   }
 
   /// Inverse squares of what is expected of zero points and of what is shared.
@@ -177,10 +178,10 @@ class Alignment {
   const std::vector<StillPose>& poses_;
   const ZeroOptions& options_;
   StandingConstraint constraint_;
-  SoleLoads loads_;
+  model::SoleLoads loads_;
   double weight_N_;
   Eigen::Vector2d half_sole_m_ = Eigen::Vector2d::Ones();
-  std::vector<PerFoot<SoleLoad>> load_;  // of each pose, as last judged
+  std::vector<PerFoot<model::SoleLoad>> load_;  // of each pose, as last judged
 };
 
 std::string direction_text(const Eigen::VectorXd& direction, const std::vector<int>& joints,

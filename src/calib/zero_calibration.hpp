@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/sole_load.hpp"
 #include "calib/standing_constraint.hpp"
 #include "calib/zero_poses.hpp"
+#include "model/sole_load.hpp"
 
 namespace pmg::calib {
 
@@ -38,7 +38,7 @@ struct ZeroPose {
   std::string why_not;            ///< empty when used
   double misalignment_rad = 0.0;  ///< |s_real - s_sim|, of the worse foot
   double height_miss_m = 0.0;
-  PerFoot<SoleLoad> load;
+  PerFoot<model::SoleLoad> load;
 };
 
 /// Joints of which nothing but a combination can be told.

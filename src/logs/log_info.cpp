@@ -72,7 +72,6 @@ class Summariser {
     run_.emplace();
     first_ns_ = stamp_ns;
     next_tick_.reset();
-    mode_.reset();
     driver_.clear();
     told_faults_.clear();
     timings_ns_ = {};
@@ -116,9 +115,9 @@ class Summariser {
     if (!driver_.empty()) run_->driven_s[driver_] += static_cast<double>(event.stamp_ns() - status_ns_) * 1e-9;
     driver_ = status->driving_source;
     status_ns_ = event.stamp_ns();
-    if (mode_ == status->mode) return;
-    mode_ = status->mode;
-    run_->modes.push_back({seconds(event.stamp_ns()), mode_name(status->mode)});
+    std::string mode = mode_name(status->mode) + (status->hanging ? ", hanging" : "");
+    if (!run_->modes.empty() && run_->modes.back().text == mode) return;
+    run_->modes.push_back({seconds(event.stamp_ns()), std::move(mode)});
   }
 
   void take_fault(const io::LogReader& event) {
@@ -143,7 +142,6 @@ class Summariser {
   std::optional<RunSummary> run_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::optional<std::int64_t> next_tick_;
-  std::optional<std::int8_t> mode_;
   std::string driver_;  // as of status_ns_; empty: nobody
   std::int64_t status_ns_ = 0;
   std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;

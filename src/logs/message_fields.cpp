@@ -194,6 +194,8 @@ void gather(const pmg_msgs::status_t& m, Gatherer& to) {
   to.number("limited_torque", m.limited_torque);
   to.flag("gco_held", m.gco_held);
   to.flag("policy_held", m.policy_held);
+  to.flag("hanging", m.hanging);
+  to.vector("foot_load", m.foot_load, kFeet);
   to.flag("realtime", m.realtime);
 }
 

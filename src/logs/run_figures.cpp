@@ -93,6 +93,12 @@ std::string limited_text(const RunSeries& run) {
   return text + ".";
 }
 
+double hanging_s(const RunSeries& run) {
+  double all_s = 0.0;
+  for (const RunSeries::Stretch& stretch : run.hanging) all_s += stretch.to_s - stretch.from_s;
+  return all_s;
+}
+
 std::string verdict(const RunSeries& run) {
   std::string text = run.name + ": ";
   if (run.identified) {
@@ -116,6 +122,9 @@ std::string verdict(const RunSeries& run) {
     text += ", did not fall";
   }
   text += ".";
+  if (hanging_s(run) > 0.0) {
+    text += fmt::format(" For {:.1f} s the feet carried nothing and the policy was not run.", hanging_s(run));
+  }
   for (const std::string& more : {tracking_text(run), limited_text(run)}) {
     if (!more.empty()) text += " " + more;
   }
@@ -156,6 +165,7 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"faults", events_json(run.faults)},
           {"guard_trips", events_json(run.guard_trips)},
           {"modes_s", modes},
+          {"hanging_s", hanging_s(run)},
           {"tracking_rms_rad", errors},
           {"tracking", judged ? runtime::tracking_json(run.tracking) : ordered_json(nullptr)},
           {"reference_slip", runtime::reference_slip_json(run.reference_slip)},

@@ -27,6 +27,9 @@ std::string tracking_text(const RunSeries& run);
 /// The joint that was limited most, by what and since when; empty when the log names none.
 std::string limited_text(const RunSeries& run);
 
+/// For how long the feet carried nothing, so that the policy was not run.
+double hanging_s(const RunSeries& run);
+
 /// What ran, how long, how it ended, how well it followed and what limited it.
 std::string verdict(const RunSeries& run);
 

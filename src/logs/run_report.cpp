@@ -134,9 +134,9 @@ void verdicts(pages::Page& page, const Runs& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     const std::string letter = runs.size() > 1 ? fmt::format("{}  ", static_cast<char>('A' + i)) : "";
-    const pages::Tone tone = run.fell || !run.faults.empty() ? pages::Tone::kBad
-                             : run.modes.empty()             ? pages::Tone::kNeutral
-                                                             : pages::Tone::kGood;
+    const pages::Tone tone = run.fell || !run.faults.empty()                              ? pages::Tone::kBad
+                             : run.modes.empty() || hanging_s(run) > 0.5 * run.duration_s ? pages::Tone::kNeutral
+                                                                                          : pages::Tone::kGood;
     page.verdict(tone, letter + verdict(run));
     for (const std::string& problem : run.problems) page.verdict(pages::Tone::kNeutral, letter + problem);
   }
@@ -155,6 +155,7 @@ void timeline(pages::Page& page, const Runs& runs) {
     lanes.lanes.push_back(lane("mode" + behind, run.modes, nullptr));
     if (!run.steps.empty()) lanes.lanes.push_back(step_lane("step" + behind, run.steps));
     if (!run.sources.empty()) lanes.lanes.push_back(lane("driver" + behind, run.sources, "#dfe6ee"));
+    if (!run.hanging.empty()) lanes.lanes.push_back(lane("feet" + behind, run.hanging, "#f2dfa8"));
     if (!run.hoisted.empty()) lanes.lanes.push_back(lane("gantry" + behind, run.hoisted, "#efe3d3"));
     for (const RunSeries::Event& fault : run.faults)
       lanes.marks.push_back({fault.t_s, short_fault(fault.text) + behind});

@@ -83,7 +83,7 @@ class Gathering {
 
   /// The run; nothing can be added any more.
   RunSeries finish() {
-    for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted}) {
+    for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted, &run_.hanging}) {
       std::erase_if(*stretches, [](const auto& stretch) { return stretch.text.empty(); });
     }
     // A log that begins in a fault, or whose FAULT is lost, still has its words in every status.
@@ -238,6 +238,7 @@ class Gathering {
     if (judgement_) judgement_->status(message);
     extend(run_.modes, t_s_, to_string(mode));
     extend(run_.sources, t_s_, message.driving_source);
+    extend(run_.hanging, t_s_, message.hanging ? "hanging, no policy" : "");
     run_.status.t_s.push_back(t_s_);
     run_.status.limited_position.push_back(message.limited_position);
     run_.status.limited_rate.push_back(message.limited_rate);

@@ -63,6 +63,7 @@ struct RunSeries {
     std::string text;
   };
   std::vector<Stretch> modes, sources, hoisted;
+  std::vector<Stretch> hanging;  ///< the feet carried nothing, so the policy was not run
 
   struct Event {
     double t_s;

@@ -131,6 +131,7 @@ std::string Drive::trouble() const {
                                          : "another source drives: " + status.driving_source;
   }
   if (status.mode != pmg_msgs::mode_t::WALK) {
+    if (status.hanging) return kHangs;
     const char* mode = mode_name(status.mode);
     return options_.climb ? fmt::format("walk was ended by another request: mode is {}", mode)
                           : fmt::format("mode is {}: commands move a robot in walk only", mode);

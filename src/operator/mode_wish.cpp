@@ -153,6 +153,7 @@ Answer ModeWish::judge_taken(Answer answer, const HeardRobot& heard) const {
     answer.text = "brakes; a robot that stood goes limp only when told twice";
   } else {
     answer.text = fmt::format("on its way to {}", mode_name(requested_mode(goal_)));
+    if (heard.status && heard.status->hanging) answer.text = kHangs;
   }
   return answer;
 }

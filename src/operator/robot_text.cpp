@@ -16,6 +16,8 @@ namespace pmg::ops {
 
 namespace {
 
+constexpr double kNotEstimated = -1.0;  // status_t.foot_load
+
 struct Hottest {
   double temperature_degC;
   std::string joint;
@@ -37,6 +39,10 @@ std::string variant(const pmg_msgs::robot_info_t& info) {
     return to_string(Variant::kPmg);
   }
   return options["variant"].get<std::string>();
+}
+
+std::string mode_text(const pmg_msgs::status_t& status) {
+  return fmt::format("{}{}", mode_name(status.mode), status.hanging ? ", hanging" : "");
 }
 
 std::string driver(const pmg_msgs::status_t& status) {
@@ -88,7 +94,7 @@ std::string limits_text(const RobotNews& news) {
 std::string one_line(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
   std::string line =
-      fmt::format("{:<12} {:<8} driven by {:<16}", printable(status.robot), mode_name(status.mode), driver(status));
+      fmt::format("{:<12} {:<8} driven by {:<16}", printable(status.robot), mode_text(status), driver(status));
   if (news.reference) {
     line += fmt::format(" vx {:+.2f} vy {:+.2f} omega {:+.2f}", news.reference->command[kVx],
                         news.reference->command[kVy], news.reference->command[kOmega]);
@@ -118,7 +124,7 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   if (news.info) {
     add("software", fmt::format("{}   bundle {:.12}", printable(news.info->software), printable(news.info->bundle)));
   }
-  add("mode", fmt::format("{}{}", mode_name(status.mode),
+  add("mode", fmt::format("{}{}", mode_text(status),
                           silence_s > kGone_s ? fmt::format("   NOT HEARD for {:.0f} s", silence_s) : ""));
   add("fault", status.fault.empty() ? "none" : printable(status.fault));
   add("driven by", status.command_age_s < 0.0
@@ -131,6 +137,10 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
     add("u'", command_text(reference.optimised));
     add("gait", fmt::format("phase {:.2f}   left {}   right {}", reference.phase, reference.contact[0] ? "##" : "..",
                             reference.contact[1] ? "##" : ".."));
+  }
+  if (status.foot_load[kLeft] != kNotEstimated) {
+    add("feet carry", fmt::format("left {:.0f} %  right {:.0f} % of the weight{}", 100.0 * status.foot_load[kLeft],
+                                  100.0 * status.foot_load[kRight], status.hanging ? ": the policy isn't run" : ""));
   }
   add("limited", limits_text(news));
   if (const auto hot = hottest(news))
@@ -162,6 +172,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"realtime", status.realtime != 0},
       {"gco_held", status.gco_held != 0},
       {"policy_held", status.policy_held != 0},
+      {"hanging", status.hanging != 0},
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
   if (news.info) {
@@ -176,6 +187,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
     json["phase"] = news.reference->phase;
     json["contact"] = {news.reference->contact[0] != 0, news.reference->contact[1] != 0};
   }
+  if (status.foot_load[kLeft] != kNotEstimated) json["foot_load"] = {status.foot_load[kLeft], status.foot_load[kRight]};
   if (const auto hot = hottest(news)) {
     json["hottest"] = {{"temperature_degC", hot->temperature_degC}, {"joint", hot->joint}};
   }

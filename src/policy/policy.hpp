@@ -33,7 +33,11 @@ class Policy {
   /// Largest |q_des - q_ref| that the policy gives while it is in its element [rad]; nothing: the monitor's own bound.
   virtual std::optional<double> action_bound_rad() const { return std::nullopt; }
 
-  /// Forgets its history. On every entry into Stand, before the first act().
+  /// Whether it runs only while the feet carry the robot, as whatever balances must. Asked once, before the first
+  /// act().
+  virtual bool needs_ground() const { return true; }
+
+  /// Forgets its history. Before the first act() after an entry into Stand, and after the robot has hung.
   virtual void reset() noexcept {}
 
   /// q_des for every joint, rad, from what a robot can sense. observed: u' for PMG, u for the baselines. No exception.
@@ -42,9 +46,10 @@ class Policy {
                      JointVector& q_des) noexcept = 0;
 };
 
-/// `--policy none`: q_des = q_ref.
+/// `--policy none`: q_des = q_ref, in the air too, as a first start needs it.
 class ReferencePolicy final : public Policy {
  public:
+  bool needs_ground() const override { return false; }
   Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
              JointVector& q_des) noexcept override;
 };

@@ -84,6 +84,16 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/entry/speed_rad_s", tick.entry.speed_rad_s);
   visit("/entry/shortest_s", tick.entry.shortest_s);
   visit("/entry/longest_s", tick.entry.longest_s);
+  visit("/foot_load/lost_share", tick.foot_load.lost_share);
+  visit("/foot_load/lost_s", tick.foot_load.lost_s);
+  visit("/foot_load/found_share", tick.foot_load.found_share);
+  visit("/foot_load/found_s", tick.foot_load.found_s);
+  visit("/foot_load/held_share", tick.foot_load.held_share);
+  visit("/foot_load/filter_s", tick.foot_load.filter_s);
+  visit("/foot_load/blind_share", tick.foot_load.blind_share);
+  visit("/change_over/speed_rad_s", tick.change_over.speed_rad_s);
+  visit("/change_over/shortest_s", tick.change_over.shortest_s);
+  visit("/change_over/longest_s", tick.change_over.longest_s);
   visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
   visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
   visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);

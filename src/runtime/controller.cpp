@@ -67,7 +67,11 @@ void Controller::run_control(const CycleTiming& timing) noexcept {
   const TickResult& result = record_.result;
   for (std::size_t i = 0; i < result.ack_count; ++i) outbox_.acks.push(result.acks[i]);
   outbox_.newest.put(record_);
-  news_.put({.now_ns = record_.now_ns, .mode = result.mode, .fault = result.fault, .driving = result.driving});
+  news_.put({.now_ns = record_.now_ns,
+             .mode = result.mode,
+             .hanging = result.hanging,
+             .fault = result.fault,
+             .driving = result.driving});
   mode_.store(result.mode, std::memory_order_release);
 }
 

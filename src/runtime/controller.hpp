@@ -36,6 +36,7 @@ struct ControllerOptions {
 struct ControllerNews {
   std::int64_t now_ns = 0;
   Mode mode = Mode::kPassive;
+  bool hanging = false;
   Fault fault;
   Source driving;
 };

@@ -18,6 +18,7 @@ class EntryRamp {
   void start(const JointVector& measured_rad, const JointVector& wanted_rad) noexcept;
   /// Moves q_des towards the measured posture by what is left of the ramp, and the ramp on by dt_s.
   void apply(double dt_s, JointVector& q_des) noexcept;
+  void finish() noexcept { elapsed_s_ = duration_s_; }  ///< the rest of the way at once
   bool done() const noexcept { return elapsed_s_ >= duration_s_; }
   double duration_s() const noexcept { return duration_s_; }
 

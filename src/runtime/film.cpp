@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "runtime/mode_text.hpp"
+
 namespace pmg::runtime {
 
 Film::Film(sim::World& world, const std::filesystem::path& file)
@@ -22,7 +24,8 @@ void Film::after_tick(const RunProgress& progress) {
 
 void Film::shoot(const RunProgress& progress) {
   const std::string text =
-      fmt::format("{:6.1f} s  {}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text);
+      fmt::format("{:6.1f} s  {}\n{}", progress.time_s,
+                  mode_text(progress.result.mode, progress.result.hanging), progress.step.text);
   writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
 }
 

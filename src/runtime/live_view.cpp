@@ -5,7 +5,7 @@
 #include <span>
 #include <thread>
 
-#include "runtime/mode.hpp"
+#include "runtime/mode_text.hpp"
 
 namespace pmg::runtime {
 
@@ -52,8 +52,8 @@ void LiveView::draw(SimulatedRobot& robot) {
 std::string LiveView::text(const RunProgress& progress) const {
   const std::string fault =
       progress.result.mode == Mode::kFault ? describe(progress.result.fault, robot_) : std::string();
-  return fmt::format("{:6.1f} s  {}\n{}\n{}", progress.time_s, to_string(progress.result.mode), progress.step.text,
-                     fault);
+  return fmt::format("{:6.1f} s  {}\n{}\n{}", progress.time_s, mode_text(progress.result.mode, progress.result.hanging),
+                     progress.step.text, fault);
 }
 
 }  // namespace pmg::runtime

@@ -21,6 +21,7 @@ void RunMeasure::add(const TickResult& result, const sim::Truth& truth, bool hoi
 
 void RunMeasure::add_reference(const TickResult& result) {
   ++ticks_;
+  if (result.hanging) sums_.hanging_s += kTickPeriod_s;
   if (result.mode == Mode::kFault && last_mode_ != Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 

@@ -16,6 +16,7 @@ namespace pmg::runtime {
 struct RunOutcome {
   double duration_s = 0.0;  ///< simulated
   double hoisted_s = 0.0;
+  double hanging_s = 0.0;  ///< the feet carried nothing, so the policy was not run
   bool interrupted = false;
   bool diverged = false;  ///< the simulation blew up; the run ends there
   bool fell = false;

@@ -58,6 +58,7 @@ nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& ou
       {"interrupted", outcome.interrupted},
       {"duration_s", outcome.duration_s},
       {"hoisted_s", outcome.hoisted_s},
+      {"hanging_s", outcome.hanging_s},
       {"wall_s", run.wall_s},
       {"realtime_factor", run.wall_s > 0.0 ? outcome.duration_s / run.wall_s : 0.0},
       {"tracking", tracking_json(outcome.tracking)},

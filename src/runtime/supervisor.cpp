@@ -84,8 +84,8 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
     case Mode::kStand:
       if (*wanted_ == Mode::kWalk) {
         if (!input.entry_done) return;  // the request waits for the ramp
-        // Without somebody who drives it would stop at once; and walking must not begin by itself when a link comes
-        // back.
+        // Without somebody who drives, or in the air, it would stop at once; and walking must not begin by itself when
+        // a link comes back or the robot is set down.
         if (may_walk(input)) mode_ = Mode::kWalk;
       }
       wanted_.reset();
@@ -104,7 +104,8 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
 }
 
 bool Supervisor::may_walk(const SupervisorInput& input) const noexcept {
-  return input.command_age_s <= options_.stale_command_s && input.gco_held_ticks < options_.gco_held_ticks;
+  return input.command_age_s <= options_.stale_command_s && input.gco_held_ticks < options_.gco_held_ticks &&
+         !input.hanging;
 }
 
 void Supervisor::stop_walking_if_due(const SupervisorInput& input) noexcept {

@@ -24,6 +24,7 @@ struct SupervisorInput {
   bool entry_done = false;  ///< the ramp from the measured posture into Stand has ended
   bool at_rest = false;     ///< the reference moves no foot
   int gco_held_ticks = 0;   ///< ticks in a row in which the ground-aware optimisation held an old solution
+  bool hanging = false;     ///< the feet carry nothing of a robot whose policy needs the ground
 };
 
 class Supervisor {

@@ -53,6 +53,8 @@ ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy:
   return options;
 }
 
+bool drives(Mode mode) noexcept { return mode == Mode::kStand || mode == Mode::kWalk; }
+
 bool finite(const Command& command) noexcept {
   return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
 }
@@ -81,6 +83,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       policy_(std::move(policy)),
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
+      change_over_(options.change_over),
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
       target_(robot.q_stand()) {
@@ -90,6 +93,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     values->setZero(robot.joint_index.size());
   }
   result_.reference = motion_.reference();
+  if (policy_->needs_ground()) feet_.emplace(robot, options.foot_load, options.dt_s);
   if (!options.excitation) return;
   if (policy_->action_bound_rad()) throw std::invalid_argument("a joint is excited without a policy; expected none");
   const Eigen::Index joint = options.excitation->joint;
@@ -108,10 +112,11 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   take_messages(input);
 
   const Mode before = result_.mode;
+  watch_feet(input.state);
   const Mode mode = supervisor_.update(supervisor_input(input));
   result_.user = supervisor_.admit(intake_.command());
   if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
-  if (mode == Mode::kStand || mode == Mode::kWalk) {
+  if (drives(mode)) {
     Fault fault = drive(input.state);
     if (fault.code != FaultCode::kNone) {
       fault.stamp_ns = input.now_ns;
@@ -120,7 +125,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   }
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
-  if (result_.mode != Mode::kStand && result_.mode != Mode::kWalk) release(input.state);
+  if (!drives(result_.mode)) release(input.state);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
@@ -165,34 +170,70 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                         .command_age_s = result_.command_age_s,
                         .entry_done = entry_.done(),
                         .at_rest = motion_.reference().gain == 0.0,
-                        .gco_held_ticks = gco_held_ticks_};
-  const bool holding = result_.mode == Mode::kStand || result_.mode == Mode::kWalk;
+                        .gco_held_ticks = gco_held_ticks_,
+                        .hanging = result_.hanging};
   // On its way from the posture in which it was found the torso may be anywhere.
-  if (holding && entry_.done()) {
+  if (drives(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
     known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
   }
   return known;
 }
 
-void Tick::enter_stand(const model::RobotState& state) noexcept {
-  motion_.reset();
+void Tick::watch_feet(const model::RobotState& state) noexcept {
+  if (!feet_ || !drives(result_.mode)) return;
+  result_.foot_load.reset();
+  // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
+  if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
+  feet_->update(state, result_.command);
+  result_.foot_load = feet_->share();
+  if (feet_->hangs() != result_.hanging) change_over();
+}
+
+void Tick::change_over() noexcept {
+  result_.hanging = feet_->hangs();
+  if (!result_.hanging) begin_policy();
+  // From the targets in force, so that no torque jumps. Where the policy will want to go isn't known yet; it stays near
+  // the reference.
+  change_over_.start(result_.command.q, motion_.reference().q);
+}
+
+void Tick::begin_policy() noexcept {
   policy_->reset();
   action_monitor_.reset();
+  policy_owes_ticks_ = 0;
+}
+
+void Tick::enter_stand(const model::RobotState& state) noexcept {
+  motion_.reset();
   target_ = motion_.reference().q;
-  policy_owes_ticks_ = gco_held_ticks_ = 0;
+  gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
+  change_over_.finish();
   limiter_.start_from(state.q);
+  result_.hanging = feet_.has_value();
+  if (feet_) {
+    feet_->start();
+  } else {
+    begin_policy();
+  }
 }
 
 Fault Tick::drive(const model::RobotState& state) noexcept {
   Fault fault = make_reference();
-  if (fault.code == FaultCode::kNone) fault = ask_policy(state);
+  if (fault.code == FaultCode::kNone) {
+    if (result_.hanging) {
+      target_ = result_.reference.q;
+    } else {
+      fault = ask_policy(state);
+    }
+  }
   if (fault.code != FaultCode::kNone) return fault;
 
   model::JointCommand& command = result_.command;
   command.q = target_;
   entry_.apply(dt_s_, command.q);
+  change_over_.apply(dt_s_, command.q);
   command.kp = gains_.kp_Nm_per_rad;
   command.kd = gains_.kd_Nm_s_per_rad;
   if (excitation_ && entry_.done()) excite(command);
@@ -244,6 +285,8 @@ Fault Tick::ask_policy(const model::RobotState& state) noexcept {
 }
 
 void Tick::release(const model::RobotState& state) noexcept {
+  result_.hanging = false;
+  result_.foot_load.reset();
   model::JointCommand& command = result_.command;
   // The drives multiply it by zero; but zero times NaN is NaN, so a broken measurement must not pass through.
   const bool usable = state.q.size() == target_.size() && state.q.allFinite();

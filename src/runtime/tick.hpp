@@ -19,6 +19,7 @@
 #include "runtime/command_intake.hpp"
 #include "runtime/entry_ramp.hpp"
 #include "runtime/excitation_player.hpp"
+#include "runtime/foot_load_watch.hpp"
 #include "runtime/limiter.hpp"
 #include "runtime/mode.hpp"
 #include "runtime/supervisor.hpp"
@@ -32,6 +33,10 @@ struct TickOptions {
   SupervisorOptions supervisor;
   LimiterOptions limiter;
   EntryRampOptions entry;
+  FootLoadOptions foot_load;
+  /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
+  /// because a robot that is set down must be balanced.
+  EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
   ActionMonitorOptions action_monitor;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
@@ -71,6 +76,11 @@ struct TickResult {
   ExcitationProgress excitation;  ///< what the command belongs to
   bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
+  /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand, and in
+  /// Walk while it comes to its end.
+  bool hanging = false;
+  /// What each foot carries, of the robot's weight; nothing where no policy needs to know it, and before Stand.
+  std::optional<PerFoot<double>> foot_load;
   LimitReport limited;
   IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
   double command_age_s = 0.0;              ///< infinite before the first command
@@ -95,7 +105,10 @@ class Tick {
  private:
   void take_messages(const TickInput& input) noexcept;
   SupervisorInput supervisor_input(const TickInput& input) const noexcept;
+  void watch_feet(const model::RobotState& state) noexcept;
   void enter_stand(const model::RobotState& state) noexcept;
+  void change_over() noexcept;
+  void begin_policy() noexcept;
   /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
   Fault drive(const model::RobotState& state) noexcept;
   Fault make_reference() noexcept;
@@ -112,7 +125,8 @@ class Tick {
   std::unique_ptr<policy::Policy> policy_;
   CommandIntake intake_;
   Supervisor supervisor_;
-  EntryRamp entry_;
+  std::optional<FootLoadWatch> feet_;  // nothing for a policy that needs no ground
+  EntryRamp entry_, change_over_;
   std::optional<ExcitationPlayer> excitation_;
   Limiter limiter_;
   ActionMonitor action_monitor_;

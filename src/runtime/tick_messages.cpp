@@ -157,6 +157,8 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
   message.limited_torque = result.limited.torque;
   message.gco_held = result.optimised.status == gco::Status::kNotConverged;
   message.policy_held = result.policy_held;
+  message.hanging = result.hanging;
+  copy(result.foot_load.value_or(PerFoot<double>{-1.0, -1.0}), message.foot_load);
   message.realtime = run.realtime;
 }
 

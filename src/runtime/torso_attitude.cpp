@@ -1,29 +1,14 @@
 #include "runtime/torso_attitude.hpp"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "model/link_chain.hpp"
 
 namespace pmg::runtime {
 
-namespace {
-
-model::ChainKinematics chain_between(const model::RobotModel& robot, const std::string& from, const std::string& to) {
-  KDL::Chain chain;
-  if (!robot.tree.getChain(from, to, chain)) {
-    throw std::invalid_argument(robot.name + ": no chain of joints leads from " + from + " to " + to);
-  }
-  std::vector<int> joints;
-  for (const KDL::Segment& segment : chain.segments) {
-    const KDL::Joint& joint = segment.getJoint();
-    if (joint.getType() != KDL::Joint::Fixed) joints.push_back(robot.joint_index.at(joint.getName()));
-  }
-  return {chain, std::move(joints)};
-}
-
-}  // namespace
-
 TorsoAttitude::TorsoAttitude(const model::RobotModel& robot)
-    : imu_link_to_torso_(chain_between(robot, robot.imu.link, robot.torso_link)), R_LI_(robot.imu.T_LI.linear()) {}
+    : imu_link_to_torso_(model::chain_between(robot, robot.imu.link, robot.torso_link)),
+      R_LI_(robot.imu.T_LI.linear()) {}
 
 double TorsoAttitude::error_rad(const model::RobotState& state, const RollPitchAim& aim) noexcept {
   imu_link_to_torso_.compute(state.q);

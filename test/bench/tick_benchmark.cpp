@@ -73,6 +73,8 @@ void BM_tick(benchmark::State& state) {
   const ThreadCpuClock stopwatch;
   runtime::TickOptions options = runtime::tick_options(robot);
   options.action_monitor.persist_ticks = 1'000'000;  // feet that find no ground make a policy reach for it
+  options.foot_load.lost_share = -2e9;               // and it is run all the same
+  options.foot_load.found_share = -1e9;
   for (auto _ : state) {
     sim::World world(robot, runtime::world_with_noise(1, true));
     runtime::Tick tick(robot, library, trained_policy(robot), stopwatch, options);

@@ -16,12 +16,13 @@ namespace pmg::test {
 /// Drives that follow at once; what they report can be spoilt.
 class SpoiltBus final : public hal::Hal {
  public:
-  explicit SpoiltBus(const model::RobotModel& robot) : state_(standing_state(robot)) {}
+  explicit SpoiltBus(const model::RobotModel& robot) : feet_(robot), state_(standing_state(robot)) {}
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
     last_command = command;
     ++exchanges;
     if (command.kp.sum() > 0.0) state_.q = command.q;
+    feet_.apply(carried, state_);
     if (status != hal::BusStatus::kOk) return status;
     state_.bus_sample += 1;
     state = state_;
@@ -40,11 +41,13 @@ class SpoiltBus final : public hal::Hal {
   }
 
   hal::BusStatus status = hal::BusStatus::kOk;
+  PerFoot<double> carried{0.5, 0.5};  ///< by the feet, of the weight
   std::function<void(model::RobotState&)> spoil;
   model::JointCommand last_command;
   int exchanges = 0;
 
  private:
+  LoadedFeet feet_;
   model::RobotState state_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <kdl/chaindynparam.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
 #include "runtime/plant.hpp"
 #include "runtime/tick.hpp"
@@ -32,7 +34,42 @@ inline ClipLibrary clips(const model::RobotModel& robot) {
   return model::load_clip_library(robot.directory / "clips", robot);
 }
 
-/// Standing still, everything well.
+/// The legs' torques of a robot whose pelvis is upright and whose feet carry it at rest. No heap after construction.
+class LoadedFeet {
+ public:
+  explicit LoadedFeet(const model::RobotModel& robot)
+      : robot_(robot),
+        legs_(robot),
+        gravity_{KDL::ChainDynParam(robot.leg_chain[kLeft], KDL::Vector(0.0, 0.0, -9.81)),
+                 KDL::ChainDynParam(robot.leg_chain[kRight], KDL::Vector(0.0, 0.0, -9.81))} {
+    for (const Foot foot : {kLeft, kRight}) q_[foot].resize(joints(foot)), holding_[foot].resize(joints(foot));
+  }
+
+  /// share: what each foot carries of the weight. Leaves a state alone whose q is broken.
+  void apply(const PerFoot<double>& share, model::RobotState& state) {
+    const int n = robot_.joint_index.size();
+    if (state.q.size() != n || state.tau.size() != n || state.dq.size() != n || !state.q.allFinite()) return;
+    const auto& feet = legs_.compute(state.q, state.dq);
+    for (const Foot foot : {kLeft, kRight}) {
+      for (unsigned i = 0; i < joints(foot); ++i) q_[foot](i) = state.q[robot_.leg_joints[foot][i]];
+      gravity_[foot].JntToGravity(q_[foot], holding_[foot]);
+      for (unsigned i = 0; i < joints(foot); ++i) {
+        state.tau[robot_.leg_joints[foot][i]] =
+            holding_[foot](i) - feet[foot].J(2, i) * share[foot] * robot_.total_mass_kg * 9.81;
+      }
+    }
+  }
+
+ private:
+  unsigned joints(Foot foot) const { return static_cast<unsigned>(robot_.leg_joints[foot].size()); }
+
+  const model::RobotModel& robot_;
+  model::LegKinematics legs_;
+  PerFoot<KDL::ChainDynParam> gravity_;
+  PerFoot<KDL::JntArray> q_, holding_;
+};
+
+/// Standing still on both feet, everything well.
 inline model::RobotState standing_state(const model::RobotModel& robot) {
   const int n = robot.joint_index.size();
   model::RobotState state;
@@ -42,18 +79,20 @@ inline model::RobotState standing_state(const model::RobotModel& robot) {
   state.acceleration_m_s2 = {0.0, 0.0, 9.81};
   // The IMU's link upright: R_WI = R_LI.
   state.orientation_WI = Eigen::Quaterniond(robot.imu.T_LI.linear());
+  LoadedFeet(robot).apply({0.5, 0.5}, state);
   return state;
 }
 
 /// Drives that follow at once, in a world where nothing ever falls.
 class IdealBus final : public hal::Hal {
  public:
-  explicit IdealBus(const model::RobotModel& robot) : state_(standing_state(robot)) {}
+  explicit IdealBus(const model::RobotModel& robot) : feet_(robot), state_(standing_state(robot)) {}
 
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
     state_.bus_sample += 1;
     state_.stamp_ns = static_cast<std::int64_t>(state_.bus_sample) * 2'000'000;
     if (command.kp.sum() > 0.0) state_.q = command.q;
+    feet_.apply({0.5, 0.5}, state_);
     state = state_;
     last_command = command;
     return status;
@@ -63,6 +102,7 @@ class IdealBus final : public hal::Hal {
   model::JointCommand last_command;
 
  private:
+  LoadedFeet feet_;
   model::RobotState state_;
 };
 
@@ -85,6 +125,7 @@ class BreakablePolicy final : public policy::Policy {
   enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
   policy::Status act(const model::RobotState&, const Reference& reference, const Command& optimised,
                      JointVector& q_des) noexcept override {
+    ++calls;
     if (meanwhile) meanwhile();
     seen_command = optimised;
     q_des = reference.q;
@@ -97,8 +138,11 @@ class BreakablePolicy final : public policy::Policy {
   }
   std::optional<policy::DriveGains> gains() const override { return own_gains; }
   void reset() noexcept override { ++resets; }
+  bool needs_ground() const override { return balances; }
 
   Break how = Break::kNone;
+  bool balances = true;
+  int calls = 0;
   std::function<void()> meanwhile;  ///< what the world does while the policy thinks
   std::optional<policy::DriveGains> own_gains;
   Command seen_command;
@@ -115,7 +159,8 @@ struct DrivenTick {
   DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy)
       : DrivenTick(robot, std::move(any_policy), clips(robot)) {}
   DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy, ClipLibrary library)
-      : state(standing_state(robot)),
+      : feet(robot),
+        state(standing_state(robot)),
         policy(any_policy.get()),
         tick(robot, library, std::move(any_policy), clock, runtime::tick_options(robot)) {
     drive.source = request.source = runtime::Source::make("test", 1);
@@ -137,6 +182,7 @@ struct DrivenTick {
                                                    .drives = {&drive, messages},
                                                    .requests = {&request, asking ? messages : 0}});
     if (result.command.kp.sum() > 0.0) state.q = result.command.q;
+    feet.apply(carried, state);
     return result;
   }
   const runtime::TickResult& run(double duration_s, bool speaking = true) {
@@ -145,6 +191,8 @@ struct DrivenTick {
   }
 
   io::SimulationClock clock;
+  LoadedFeet feet;
+  PerFoot<double> carried{0.5, 0.5};  ///< by the feet, of the weight
   model::RobotState state;
   BreakablePolicy* policy;
   runtime::Tick tick;

@@ -225,6 +225,63 @@ TEST(Tick, APolicyForgetsItsHistoryOnEveryEntryIntoStand) {
   EXPECT_EQ(driven.policy->resets, 2);
 }
 
+TEST(Tick, APolicyIsNotRunInTheAirAndWalkingAgainNeedsANewRequest) {
+  test::DrivenTick driven(test::z1());
+  driven.drive.command[kVx] = 0.5;
+  driven.request.mode = Mode::kWalk;
+  driven.run(4.0);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kWalk);
+  ASSERT_FALSE(driven.tick.result().hanging);
+  driven.asking = false;  // one request is enough to walk on
+  driven.carried = {0.0, 0.0};
+  driven.run(0.15);
+  ASSERT_TRUE(driven.tick.result().hanging);
+  const int calls = driven.policy->calls, resets = driven.policy->resets;
+  driven.run(0.6);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
+  EXPECT_NEAR(driven.tick.result().reference.gain, 0.0, 1e-9);
+  EXPECT_EQ(driven.policy->calls, calls) << "not once";
+  driven.asking = true;
+  driven.run(0.3);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << "nobody walks in the air";
+  driven.asking = false;
+  driven.carried = {0.5, 0.5};
+  driven.run(1.0);
+  EXPECT_FALSE(driven.tick.result().hanging);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << "what was refused in the air is forgotten";
+  EXPECT_GT(driven.policy->calls, calls);
+  EXPECT_GT(driven.policy->resets, resets) << "it knows nothing of what it last did";
+  driven.asking = true;
+  driven.run(0.1);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
+}
+
+TEST(Tick, FaultsStayInForceInTheAir) {
+  const model::RobotModel& robot = test::z1();
+  test::DrivenTick driven(robot);
+  driven.carried = {0.0, 0.0};
+  driven.request.mode = Mode::kStand;
+  driven.run(2.0);
+  ASSERT_TRUE(driven.tick.result().hanging);
+  driven.state.orientation_WI = Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX()) * driven.state.orientation_WI;
+  driven.run(0.05);
+  EXPECT_EQ(driven.tick.result().fault.code, FaultCode::kTilt);
+  EXPECT_FALSE(driven.tick.result().hanging) << "a sub-state of Stand and of Walk alone";
+  EXPECT_FALSE(driven.tick.result().foot_load.has_value());
+}
+
+TEST(Tick, WhatNeedsNoGroundIsRunInTheAir) {
+  auto policy = std::make_unique<test::BreakablePolicy>();
+  policy->balances = false;
+  test::DrivenTick driven(test::z1(), std::move(policy));
+  driven.carried = {0.0, 0.0};
+  driven.drive.command[kVx] = 0.5;
+  driven.request.mode = Mode::kWalk;
+  driven.run(4.0);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
+  EXPECT_FALSE(driven.tick.result().hanging);
+}
+
 /// Steps so short that speeds are finite and their squares are not: the optimisation can't converge while feet move.
 ClipLibrary hopeless_clips(const model::RobotModel& robot) {
   ClipLibrary library = test::clips(robot);
@@ -268,6 +325,10 @@ long allocations_of_a_run(test::BreakablePolicy::Break how) {
   driven.run(3.0);
   driven.request.mode = Mode::kStand;
   driven.run(1.0);
+  driven.carried = {0.0, 0.0};
+  driven.run(0.5);
+  driven.carried = {0.5, 0.5};
+  driven.run(0.5);
   driven.request.mode = Mode::kDamping;
   driven.run(0.1);
   driven.state.q[3] = std::numeric_limits<double>::quiet_NaN();

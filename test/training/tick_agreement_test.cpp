@@ -24,6 +24,7 @@ class Witness final : public policy::Policy {
     return static_cast<Eigen::Index>(observation.layout().action_joints().size());
   }
   Variant variant() const override { return own_variant; }
+  bool needs_ground() const override { return false; }  // its robot has no torques
   void reset() noexcept override {
     observation.reset();
     ++resets;

@@ -1,0 +1,120 @@
+#include "model/sole_load.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <kdl/chaindynparam.hpp>
+#include <memory>
+#include <random>
+
+#include "allocation_count.hpp"
+#include "model/leg_kinematics.hpp"
+
+namespace pmg::model {
+namespace {
+
+const std::string kZ1 = std::string(PMG_SOURCE_DIR) + "/config/robots/z1";
+
+class SoleLoadsTest : public testing::Test {
+ protected:
+  double draw(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+
+  /// Somewhere in the joints' ranges, with a knee that is bent.
+  JointVector posture() {
+    JointVector q = robot_.q_stand();
+    for (const Foot foot : {kLeft, kRight}) {
+      for (const int joint : robot_.leg_joints[foot]) {
+        const Joint& limits = robot_.joints[static_cast<std::size_t>(joint)];
+        q[joint] = draw(0.8 * limits.lower_rad, 0.8 * limits.upper_rad);
+        if (limits.name.ends_with("knee")) q[joint] = draw(0.2, 1.5);
+      }
+    }
+    return q;
+  }
+
+  /// What KDL's own dynamics say the drives must give.
+  JointVector torques(const JointVector& q, const Eigen::Vector3d& gravity_B,
+                      const PerFoot<Eigen::Matrix<double, 6, 1>>& wrench_B) {
+    JointVector torque_Nm = JointVector::Zero(q.size());
+    LegKinematics legs(robot_);
+    const auto& feet = legs.compute(q, JointVector::Zero(q.size()));
+    for (const Foot foot : {kLeft, kRight}) {
+      const auto& joints = robot_.leg_joints[foot];
+      const auto n = static_cast<unsigned>(joints.size());
+      const Eigen::Vector3d g = 9.81 * gravity_B;
+      KDL::ChainDynParam dynamics(robot_.leg_chain[foot], KDL::Vector(g.x(), g.y(), g.z()));
+      KDL::JntArray angles(n), held(n);
+      for (unsigned i = 0; i < n; ++i) angles(i) = q[joints[i]];
+      dynamics.JntToGravity(angles, held);
+      for (unsigned i = 0; i < n; ++i) torque_Nm[joints[i]] = held(i) - feet[foot].J.col(i).dot(wrench_B[foot]);
+    }
+    return torque_Nm;
+  }
+
+  RobotModel robot_ = load_robot(kZ1);
+  SoleLoads loads_{robot_};
+  std::mt19937 random_{5};
+};
+
+TEST_F(SoleLoadsTest, AreTheForcesThatTheTorquesHold) {
+  for (int trial = 0; trial < 200; ++trial) {
+    const JointVector q = posture();
+    const Eigen::Vector3d gravity_B = Eigen::Vector3d(draw(-0.5, 0.5), draw(-0.5, 0.5), -1.0).normalized();
+    PerFoot<Eigen::Matrix<double, 6, 1>> wrench_B;
+    for (auto& wrench : wrench_B) {
+      wrench << draw(-50.0, 50.0), draw(-50.0, 50.0), draw(0.0, 400.0), draw(-20.0, 20.0), draw(-20.0, 20.0),
+          draw(-5.0, 5.0);
+    }
+    loads_.set_posture(q, gravity_B);
+    const PerFoot<SoleLoad> loads = loads_.of(torques(q, gravity_B, wrench_B));
+    LegKinematics legs(robot_);
+    const auto& feet = legs.compute(q, JointVector::Zero(q.size()));
+    for (const Foot foot : {kLeft, kRight}) {
+      const double normal_N = feet[foot].R_BF.col(2).dot(wrench_B[foot].head<3>());
+      // The condition of a knee bent by 0.2 rad or more leaves that of the rounding.
+      EXPECT_NEAR(loads[foot].force_N, normal_N, 1e-6) << trial;
+      EXPECT_NEAR(loads[foot].vertical_N, -gravity_B.dot(wrench_B[foot].head<3>()), 1e-6) << trial;
+    }
+  }
+}
+
+TEST_F(SoleLoadsTest, OfALegThatHangsAreNothing) {
+  const JointVector q = posture();
+  const Eigen::Vector3d down_B(0.0, 0.0, -1.0);
+  loads_.set_posture(q, down_B);
+  const PerFoot<SoleLoad> loads =
+      loads_.of(torques(q, down_B, {Eigen::Matrix<double, 6, 1>::Zero(), Eigen::Matrix<double, 6, 1>::Zero()}));
+  for (const SoleLoad& load : loads) EXPECT_NEAR(load.vertical_N, 0.0, 1e-7);
+}
+
+TEST_F(SoleLoadsTest, FrictionFalsifiesThemByAFewNewtonsStandingAndBeyondMeasureWithAStraightKnee) {
+  const Eigen::Vector3d down_B(0.0, 0.0, -1.0);
+  JointVector q = robot_.q_stand();
+  loads_.set_posture(q, down_B);
+  const double weight_N = robot_.total_mass_kg * 9.81;
+  EXPECT_LT(loads_.friction_N(kLeft), 0.05 * weight_N);
+  EXPECT_GT(loads_.friction_N(kLeft), 0.01 * weight_N);
+  const int knee = robot_.joint_index.at("left_knee");
+  q[knee] = 0.0;
+  loads_.set_posture(q, down_B);
+  EXPECT_GT(loads_.friction_N(kLeft), weight_N);
+  EXPECT_LT(loads_.friction_N(kRight), 0.05 * weight_N) << "the other leg is as it was";
+}
+
+TEST_F(SoleLoadsTest, NeverUseTheHeapNorTheRobot) {
+  auto robot = std::make_unique<RobotModel>(load_robot(kZ1));
+  SoleLoads loads(*robot);
+  const JointVector q = robot->q_stand(), torque_Nm = JointVector::Zero(q.size());
+  robot.reset();
+  const std::size_t before = allocation_count();
+  double sum = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    loads.set_posture(q, {0.0, 0.0, -1.0});
+    sum += loads.of(torque_Nm)[kLeft].force_N;
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_TRUE(std::isfinite(sum));
+}
+
+}  // namespace
+}  // namespace pmg::model
