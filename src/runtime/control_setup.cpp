@@ -1,7 +1,8 @@
 #include "runtime/control_setup.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -38,10 +39,14 @@ std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file,
                                               1.0 / loaded.options.dt_s);
 }
 
-Blend blend_named(const std::string& name) {
-  if (name == "gain") return Blend::kGain;
-  if (name == "paper") return Blend::kPaper;
-  throw std::invalid_argument(fmt::format("--blend {}: expected gain or paper", name));
+Blend blend_named(const std::string& name, const ClipLibrary& library) {
+  if (name == "library") return library.blend;
+  const auto found = std::ranges::find(kBlendNames, name);
+  if (found == kBlendNames.end()) {
+    throw std::invalid_argument(
+        fmt::format("--blend {}: expected library or one of {}", name, fmt::join(kBlendNames, ", ")));
+  }
+  return static_cast<Blend>(found - kBlendNames.begin());
 }
 
 /// Every option of the tick that a configuration shows, by its place there. Options: TickOptions, const or not.
@@ -99,7 +104,7 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.clips = setup.clips.empty() ? loaded.robot.directory / "clips" : setup.clips;
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   loaded.options = tick_options(loaded.robot);
-  loaded.options.generator.blend = blend_named(setup.blend);
+  loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
   const std::optional<fs::path> policy = policy_file(setup.policy, loaded.robot);
   loaded.policy = load_policy(policy, loaded);
   loaded.variant = loaded.policy->variant();
@@ -126,7 +131,7 @@ nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedContr
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
                                  {"policy", setup.policy},
-                                 {"blend", setup.blend},
+                                 {"blend", kBlendNames[static_cast<std::size_t>(*loaded.options.generator.blend)]},
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
   if (setup.policy != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));
