@@ -28,11 +28,15 @@ class Soles {
                                         reference.command_rate[kPitch], reference.command_rate[kRoll]);
     const PerFoot<model::FootKinematics>& feet = legs_.compute(reference.q, reference.dq);
     PerFoot<double> inner = {std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+    PerFoot<double> front = {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest()};
+    PerFoot<double> rear = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
     for (const Foot foot : {kLeft, kRight}) {
       double lowest = std::numeric_limits<double>::max();
       for (const Eigen::Vector3d& corner_B : feet[foot].sole_B) {
         const Eigen::Vector3d corner = base.R_HB * corner_B;
         lowest = std::min(lowest, corner.z() + standing_height_m_ + result.command[kHeight]);
+        front[foot] = std::max(front[foot], corner.x());
+        rear[foot] = std::min(rear[foot], corner.x());
         inner[foot] = foot == kLeft ? std::min(inner[foot], corner.y()) : std::max(inner[foot], corner.y());
       }
       if (reference.contact_weight[foot] > 0.0) continue;
@@ -42,7 +46,8 @@ class Soles {
         walk.clearance_m = std::min(walk.clearance_m, lowest);
       }
     }
-    walk.foot_gap_m = std::min(walk.foot_gap_m, inner[kLeft] - inner[kRight]);
+    const bool abreast = rear[kLeft] < front[kRight] && rear[kRight] < front[kLeft];
+    if (abreast) walk.foot_gap_m = std::min(walk.foot_gap_m, inner[kLeft] - inner[kRight]);
   }
 
  private:

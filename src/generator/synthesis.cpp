@@ -1,6 +1,7 @@
 #include "generator/synthesis.hpp"
 
 #include <cmath>
+#include <future>
 #include <numbers>
 #include <utility>
 
@@ -152,24 +153,23 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
       make(forward_task(making), {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
   library.positive[kVx] = clip(forward);
 
-  progress("backward");
-  const MadeGait backward = make(backward_task(making, forward.legs, forward.task),
-                                 {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
-  library.negative[kVx] = clip(backward);
-
-  progress("lateral");
-  GaitTask lateral_wanted = lateral_task(making);
+  progress("backward, lateral and turn");
+  GaitTask lateral_wanted = lateral_task(making), turn_wanted = turn_task(making);
   lateral_wanted.scenarios.push_back(
       {0.53, 3.0, clip_addition(making, forward.legs, forward.task, 0.47, lateral_wanted.period_s)});
-  const MadeGait lateral = make(lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree});
-  library.positive[kVy] = clip(lateral);
-
-  progress("turn");
-  GaitTask turn_wanted = turn_task(making);
   turn_wanted.scenarios.push_back(
       {0.45, 4.0, clip_addition(making, forward.legs, forward.task, 0.55, turn_wanted.period_s)});
+  auto backward_made = std::async(std::launch::async, [&] {
+    return make(backward_task(making, forward.legs, forward.task),
+                {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+  });
+  auto lateral_made =
+      std::async(std::launch::async, [&] { return make(lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
   const MadeGait turn =
       make(turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
+  library.negative[kVx] = clip(backward);
+  library.positive[kVy] = clip(lateral);
   library.positive[kOmega] = clip(turn);
 
   if (with_corners) library.corners = make_corners(making, library, {forward, backward, lateral, turn}, progress);
