@@ -18,8 +18,8 @@ namespace pmg {
 
 /// Superposition of clips with the lift of the feet shared. Opposite directions have the lift in common and everything
 /// else with opposite signs, so the mean deviation from standing over opposite directions, M(phi), is stepping on the
-/// spot. What two clips do together is the sum of their deviations less one M, or the feet would be lifted twice; for
-/// three, by inclusion and exclusion, the sum of the deviations plus the pairs' own coupling terms plus one M.
+/// spot. What two clips do together is the sum of their deviations less one M, or the feet would be lifted twice; three
+/// are a pair and one more in the same way, the mean of the three ways to choose the pair.
 class Superposition {
  public:
   /// Copies; allocates. clips: directions checked, corners as far as they are known.
@@ -92,17 +92,18 @@ class Superposition {
     }
   }
 
+  /// The mean, over the channels used, of the corner without that channel plus the channel's own direction less M.
   void add_deviations(const Corner& corner, double phase, JointVector& q, JointVector& dq_dphi) const {
     const auto directions = parts(corner, 1);
-    if (directions.size() == 2) {
-      for (const std::size_t d : directions) add(d, 1.0, phase, q, dq_dphi);
-      add_lift(-1.0, phase, q, dq_dphi);
-      return;
+    const auto used = static_cast<double>(directions.size());
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      if (corner.sign[channel] == 0) continue;
+      Corner rest = corner;
+      rest.sign[channel] = 0;
+      add(corner_of(rest), 1.0 / used, phase, q, dq_dphi);
+      add(direction_of(channel, corner.sign[channel] < 0), 1.0 / used, phase, q, dq_dphi);
     }
-    // d_1 + d_2 + d_3 + sum over pairs of (d_ij - d_i - d_j) + M: each direction is in two pairs.
-    for (const std::size_t pair : parts(corner, 2)) add(pair, 1.0, phase, q, dq_dphi);
-    for (const std::size_t d : directions) add(d, -1.0, phase, q, dq_dphi);
-    add_lift(1.0, phase, q, dq_dphi);
+    add_lift(-1.0, phase, q, dq_dphi);
   }
 
   PerCorner<std::optional<DynamicClip>> clips_;
@@ -127,7 +128,7 @@ inline void add_corner_clips(const ClipLibrary& library, PerCorner<std::optional
   }
   check::contact_centers(clips);
   for (const int channels : {2, 3}) {  // triples need the pairs
-    const Superposition superposition(clips, library.q_stand);
+    std::optional<Superposition> superposition;
     for (std::size_t c = kDirections; c < kCorners; ++c) {
       int used = 0;
       bool walkable = true;
@@ -136,7 +137,9 @@ inline void add_corner_clips(const ClipLibrary& library, PerCorner<std::optional
         used += sign != 0 ? 1 : 0;
         walkable = walkable && (sign == 0 || clips[direction_of(channel, sign < 0)]);
       }
-      if (!clips[c] && walkable && used == channels) clips[c] = superposition.at(kCornerTable[c]);
+      if (clips[c] || !walkable || used != channels) continue;
+      if (!superposition) superposition.emplace(clips, library.q_stand);
+      clips[c] = superposition->at(kCornerTable[c]);
     }
   }
 }

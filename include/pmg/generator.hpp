@@ -133,6 +133,21 @@ class Generator {
 
   const Reference& reference() const noexcept { return reference_; }
 
+  /// The library with a clip at every corner that its blend can ask for. Generators made of it have that work behind
+  /// them: for thousands at once. Allocates; throws as the constructor does.
+  static ClipLibrary completed(ClipLibrary library) {
+    if (library.blend != Blend::kCorners) return library;
+    const auto directions = all_directions(library);
+    PerCorner<std::optional<DynamicClip>> clips;
+    std::copy(directions.begin(), directions.end(), clips.begin());
+    add_corner_clips(library, clips);
+    library.corners.clear();
+    for (std::size_t c = kDirections; c < kCorners; ++c) {
+      if (clips[c]) library.corners.push_back({kCornerTable[c].sign, *clips[c]});
+    }
+    return library;
+  }
+
  private:
   void check_options() {
     check::command_limits(options_.limits);

@@ -177,6 +177,17 @@ TEST(Superposition, StridesAddUpAndTheLiftIsSharedByTwoAndByThree) {
   }
 }
 
+TEST(CornerBlend, ACompletedLibraryWalksTheSame) {
+  ClipLibrary library = make_library(31);
+  library.blend = Blend::kCorners;
+  const ClipLibrary completed = Generator::completed(library);
+  EXPECT_EQ(completed.corners.size(), kCorners - kDirections);
+  GeneratorOptions options = make_options();
+  Generator a(library, options), b(completed, options);
+  const Command command = make_command(0.48, -0.21, 0.48);
+  EXPECT_EQ(run(a, command, 3.0).q, run(b, command, 3.0).q);
+}
+
 TEST(CornerBlend, WithoutABackwardClipThereIsNoBackwardCorner) {
   ClipLibrary library = make_library(31);
   library.negative[kVx].reset();
