@@ -56,11 +56,11 @@ TrialResult run_trial(const Candidate& candidate, const runtime::Scenario& scena
   const bool diverged = lockstep.run().diverged;
   if (diverged) measure.count_as_fallen(next_s, tick->result(), truth);
   const runtime::RunOutcome outcome = measure.outcome();
-  TrialResult result{.complete = !interrupted,
-                     .fell = outcome.fell || diverged,
-                     .fell_at_s = outcome.fell_at_s,
-                     .faults = {},
-                     .duration_s = outcome.duration_s};
+  TrialResult result;
+  result.complete = !interrupted;
+  result.fell = outcome.fell || diverged;
+  result.fell_at_s = outcome.fell_at_s;
+  result.duration_s = outcome.duration_s;
   measure.report(result);
   for (const runtime::Fault& fault : outcome.faults) result.faults.push_back(runtime::describe(fault, robot));
   return result;
