@@ -228,10 +228,8 @@ int walk(const WalkOptions& options) {
     clamped += one.clamped ? 1.0 : 0.0;
     cut += one.limited ? 1.0 : 0.0;
     worst.pure_single_support_m_s = std::max(worst.pure_single_support_m_s, one.pure_single_support_m_s);
-    worst.slip.other_foot_height_max_m =
-        std::max(worst.slip.other_foot_height_max_m, one.slip.other_foot_height_max_m);
-    worst.slip.lower_foot_height_max_m =
-        std::max(worst.slip.lower_foot_height_max_m, one.slip.lower_foot_height_max_m);
+    worst.slip.other_foot_height_max_m = std::max(worst.slip.other_foot_height_max_m, one.slip.other_foot_height_max_m);
+    worst.slip.lower_foot_height_max_m = std::max(worst.slip.lower_foot_height_max_m, one.slip.lower_foot_height_max_m);
     worst.lowest_swing_m = std::min(worst.lowest_swing_m, one.lowest_swing_m);
     worst.clearance_m = std::min(worst.clearance_m, one.clearance_m);
     worst.foot_gap_m = std::min(worst.foot_gap_m, one.foot_gap_m);
@@ -239,7 +237,8 @@ int walk(const WalkOptions& options) {
     progress.clear();
     const auto& u = commands[i].u;
     fmt::print(
-        "asked {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} admitted {:6.3f} {:6.3f} {:6.3f} did {:6.3f} {:6.3f} {:6.3f} "
+        "asked {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} admitted {:6.3f} {:6.3f} {:6.3f} did {:6.3f} {:6.3f} "
+        "{:6.3f} "
         "{:6.3f} slip {:4.1f} ({:4.1f}) cm/s feet {:4.1f} mm clearance {:5.1f} mm swing {:5.1f} mm gap {:4.0f} mm\n",
         u[0], u[1], u[2], u[3], u[4], u[5], one.admissible[kVx], one.admissible[kVy], one.admissible[kOmega],
         one.mean[kVx], one.mean[kVy], one.mean[kOmega], one.mean[kHeight], 100.0 * one.slip.double_support_mean_m_s,
@@ -253,8 +252,9 @@ int walk(const WalkOptions& options) {
                missed[c], missed_at_most[c]);
   }
   fmt::print("single support slip at most {:.3f} mm/s\n", 1000.0 * worst.pure_single_support_m_s);
-  fmt::print("double support slip {:.1f} cm/s in the mean over commands (95th percentiles: {:.1f}), worst command {:.1f}\n",
-             100.0 * slip_m_s, 100.0 * slip_p95_m_s, 100.0 * slip_worst_m_s);
+  fmt::print(
+      "double support slip {:.1f} cm/s in the mean over commands (95th percentiles: {:.1f}), worst command {:.1f}\n",
+      100.0 * slip_m_s, 100.0 * slip_p95_m_s, 100.0 * slip_worst_m_s);
   fmt::print("stance feet off the ground at most {:.2f} / {:.1f} mm (lower / other)\n",
              1000.0 * worst.slip.lower_foot_height_max_m, 1000.0 * worst.slip.other_foot_height_max_m);
   fmt::print("swing clearance at least {:.1f} mm in mid-swing, {:.1f} mm anywhere; soles {:.0f} mm apart\n",
@@ -288,7 +288,8 @@ int main(int argc, char** argv) {
   std::filesystem::path inverse_clips;
   std::string blend = "library";
   const auto add_blend = [&blend](CLI::App* command) {
-    command->add_option("--blend", blend, "how the clips shall be mixed; library: as library.yaml says, or gain without")
+    command
+        ->add_option("--blend", blend, "how the clips shall be mixed; library: as library.yaml says, or gain without")
         ->check(CLI::IsMember({"library", "gain", "paper", "corners"}))
         ->capture_default_str();
   };
@@ -306,7 +307,9 @@ int main(int argc, char** argv) {
   walk_command->add_option("--blend", walking.blend, "as for invert")
       ->check(CLI::IsMember({"library", "gain", "paper", "corners"}))
       ->capture_default_str();
-  walk_command->add_option("--commands", walking.commands, "how many")->check(CLI::PositiveNumber)->capture_default_str();
+  walk_command->add_option("--commands", walking.commands, "how many")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   walk_command->add_option("--seed", walking.seed, "of the commands")->capture_default_str();
   walk_command->add_option("--postures", walking.posture_share, "share of the posture ranges, for half of the commands")
       ->check(CLI::Range(0.0, 1.0))

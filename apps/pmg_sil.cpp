@@ -60,9 +60,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--policy", arguments.control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference")
       ->capture_default_str();
-  app.add_option("--blend", arguments.control.blend,
-                 "how clips are mixed: as the library says, gain, corners (combined commands keep their size), or paper for "
-                 "the paper's weights to the letter")
+  app.add_option(
+         "--blend", arguments.control.blend,
+         "how clips are mixed: as the library says, gain, corners (combined commands keep their size), or paper for "
+         "the paper's weights to the letter")
       ->check(CLI::IsMember({"library", "gain", "paper", "corners"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");

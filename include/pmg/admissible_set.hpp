@@ -61,8 +61,8 @@ class AdmissibleSet {
     return excursion > room ? std::max(room, 0.0) / excursion : 1.0;
   }
 
-  JointVector room_up_;             ///< q_upper - margin - q_stand [rad]
-  JointVector room_down_;           ///< q_stand - q_lower - margin [rad]
+  JointVector room_up_;          ///< q_upper - margin - q_stand [rad]
+  JointVector room_down_;        ///< q_stand - q_lower - margin [rad]
   PerCorner<JointVector> up_;    ///< largest q_i(phi) - q_stand over phi [rad]
   PerCorner<JointVector> down_;  ///< largest q_stand - q_i(phi) over phi [rad]
 };

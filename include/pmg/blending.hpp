@@ -1,4 +1,5 @@
-// How much of each clip: the gains of the six directions and of the corners between them, and the gait timing they give.
+// How much of each clip: the gains of the six directions and of the corners between them, and the gait timing they
+// give.
 #pragma once
 
 #include <algorithm>

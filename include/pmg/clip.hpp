@@ -54,10 +54,10 @@ struct CornerClip {
 struct ClipLibrary {
   std::array<std::optional<DynamicClip>, kVelocityChannels> positive;  ///< vx, vy, omega > 0
   std::array<std::optional<DynamicClip>, kVelocityChannels> negative;  ///< vx, vy, omega < 0
-  std::vector<CornerClip> corners;  ///< used by Blend::kCorners; any may be missing (corner_clips.hpp)
-  std::array<StaticClip, 3> posture;                                   ///< pitch, roll, height
-  JointVector q_stand;                                                 ///< [rad]
-  JointVector q_lower, q_upper;                                        ///< joint limits [rad]
+  std::vector<CornerClip> corners;    ///< used by Blend::kCorners; any may be missing (corner_clips.hpp)
+  std::array<StaticClip, 3> posture;  ///< pitch, roll, height
+  JointVector q_stand;                ///< [rad]
+  JointVector q_lower, q_upper;       ///< joint limits [rad]
   MirrorMap mirror;
   Blend blend = Blend::kGain;  ///< that the library was made for
   CommandInverse inverse;      ///< for that blend; empty: the command as it is

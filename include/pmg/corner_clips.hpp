@@ -1,5 +1,5 @@
-// The clips at the corners of the command box (Blend::kCorners): the library's own, mirrored ones, and for the rest what
-// superposition gives.
+// The clips at the corners of the command box (Blend::kCorners): the library's own, mirrored ones, and for the rest
+// what superposition gives.
 #pragma once
 
 #include <cmath>

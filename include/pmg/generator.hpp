@@ -308,7 +308,7 @@ class Generator {
   CommandLimiter limiter_;
   GaitPhase phase_;
   StanceRamp stance_;
-  GaitTiming timing_;            ///< of the last motion; held at rest
+  GaitTiming timing_;         ///< of the last motion; held at rest
   PerCorner<double> gain_{};  ///< of the previous tick
   JointVector q_s_, previous_q_s_;
   Reference reference_;

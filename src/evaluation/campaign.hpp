@@ -56,7 +56,7 @@ struct CaseSummary {
   std::array<Estimate, kErrors> errors;
   std::array<Estimate, kErrors> errors_raw;           ///< velocities not averaged over a gait period
   std::array<Estimate, kErrors> errors_beyond_reach;  ///< of the steps that ask for more than clips give together
-  std::vector<Errors> step_errors;  ///< means over seeds, by step of the scenario
+  std::vector<Errors> step_errors;                    ///< means over seeds, by step of the scenario
 };
 CaseSummary summarise(const std::vector<TrialResult>& runs);
 

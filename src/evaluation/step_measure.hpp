@@ -16,8 +16,7 @@ class StepMeasure {
   StepMeasure(const model::RobotModel& robot, const runtime::Scenario& scenario)
       : measure_(robot.standing_height_m), scenario_(scenario) {}
 
-  void add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted,
-           const runtime::ScenarioStep& step);
+  void add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted, const runtime::ScenarioStep& step);
 
   /// What is left of a run whose simulation diverged: the robot counts as fallen.
   void count_as_fallen(double from_s, const runtime::TickResult& result, sim::Truth last);

@@ -91,7 +91,8 @@ void measure_yardsticks(Table1& table, const Supervision& supervision) {
   for_each_piece(table.cases.size(), supervision, [&](std::size_t c) {
     table.yardsticks[c] = yardstick(table.cases[c].candidate, table.scenario, supervision.interrupted);
   });
-  for (const Yardstick& one : table.yardsticks) table.campaign.complete = table.campaign.complete && one.nothing.complete;
+  for (const Yardstick& one : table.yardsticks)
+    table.campaign.complete = table.campaign.complete && one.nothing.complete;
 }
 
 void evaluate(Table1& table) {

@@ -46,7 +46,7 @@ struct Table1 {
   std::vector<std::string> films;  ///< files beside the page
 
   bool gentle() const { return scenario.name == kGentleScenario; }
-  Errors shares(std::size_t c) const;     ///< share_left of a case's mean errors
+  Errors shares(std::size_t c) const;      ///< share_left of a case's mean errors
   double figure(std::size_t error) const;  ///< of the judged policy, as its limit counts it: mean error or share
   double limit(std::size_t error) const { return gentle() ? kErrorLimits[error] : kShareLimits[error]; }
   bool reached(std::size_t error) const;  ///< the judged policy's figure is within its limit

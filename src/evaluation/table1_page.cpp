@@ -214,7 +214,8 @@ pages::Page page_of(const Table1& table) {
       "Every "
       "tick from the first standing counts, transitions included; velocities are averaged over one gait period in the "
       "heading frame; after a fall velocity and height count as zero and attitude as measured, to the end. Intervals "
-      "are Student's, over seeds. Doing nothing is standing upright whatever is asked; a perfect follower does at once what "
+      "are Student's, over seeds. Doing nothing is standing upright whatever is asked; a perfect follower does at once "
+      "what "
       "ranges and rates let through; both pass through the same averaging. The share left is (error - follower) / "
       "(nothing - follower). Steps beyond the clips' reach are counted apart, against the user's command. The paper's "
       "figures are from its own robot in Isaac Gym, and its commands are unknown.",

@@ -70,8 +70,7 @@ Errors share_left(const Errors& errors, const Yardstick& between) {
   Errors share{};
   for (std::size_t e = 0; e < kErrors; ++e) {
     const double span = between.nothing.errors[e] - between.follower.errors[e];
-    share[e] =
-        span > 0.0 ? (errors[e] - between.follower.errors[e]) / span : std::numeric_limits<double>::quiet_NaN();
+    share[e] = span > 0.0 ? (errors[e] - between.follower.errors[e]) / span : std::numeric_limits<double>::quiet_NaN();
   }
   return share;
 }

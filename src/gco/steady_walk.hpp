@@ -17,11 +17,11 @@ struct SteadyWalk {
   double pure_single_support_m_s = 0.0;  ///< largest slip where the other foot has no contact weight
   Command mean;                          ///< u' over whole cycles
   Command admissible;                    ///< what the generator made of the command
-  double lowest_swing_m = 0.0;           ///< lowest sole point of a foot without contact weight; negative: in the ground
-  double clearance_m = 0.0;              ///< lowest sole point of a foot in the middle of its swing (0.3 .. 0.7 of it)
-  double foot_gap_m = 0.0;               ///< smallest gap between the soles along the base's y axis while they are abreast
-  bool limited = false;                  ///< the generator said so
-  bool clamped = false;                  ///< a joint met the last guard
+  double lowest_swing_m = 0.0;  ///< lowest sole point of a foot without contact weight; negative: in the ground
+  double clearance_m = 0.0;     ///< lowest sole point of a foot in the middle of its swing (0.3 .. 0.7 of it)
+  double foot_gap_m = 0.0;      ///< smallest gap between the soles along the base's y axis while they are abreast
+  bool limited = false;         ///< the generator said so
+  bool clamped = false;         ///< a joint met the last guard
 };
 
 /// Walks for some gait cycles. Throws what Generator throws.

@@ -286,7 +286,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
   velocity_ = scenario.gain * task.velocity + scenario.addition.velocity + velocity_correction;
   // The base sways towards the left foot in the middle of its stance, and to the right half a cycle later.
   const double angle = 2.0 * std::numbers::pi * (phase - 0.5 * r);
-  velocity_.y() -= (scenario.gain * task.sway_m + scenario.addition.sway_m) * 2.0 * std::numbers::pi / task.period_s * std::sin(angle);
+  velocity_.y() -= (scenario.gain * task.sway_m + scenario.addition.sway_m) * 2.0 * std::numbers::pi / task.period_s *
+                   std::sin(angle);
 }
 
 PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample,

@@ -165,8 +165,7 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
   });
   auto lateral_made =
       std::async(std::launch::async, [&] { return make(lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
-  const MadeGait turn =
-      make(turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  const MadeGait turn = make(turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
   const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
   library.negative[kVx] = clip(backward);
   library.positive[kVy] = clip(lateral);

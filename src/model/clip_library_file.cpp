@@ -141,7 +141,7 @@ std::vector<NamedClip> blended_clips(const ClipLibrary& library) {
       clips.push_back({kNegativeNames[channel], negative->contact_center});
     } else if (positive && channel != kVx) {
       clips.push_back({kPositiveNames[channel],
-                            {wrap(positive->contact_center[kRight] + 0.5), wrap(positive->contact_center[kLeft] + 0.5)}});
+                       {wrap(positive->contact_center[kRight] + 0.5), wrap(positive->contact_center[kLeft] + 0.5)}});
     }
   }
   for (const CornerClip& corner : library.corners) {

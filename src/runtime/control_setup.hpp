@@ -15,9 +15,9 @@
 namespace pmg::runtime {
 
 struct ControlSetup {
-  std::string robot = "z1";     ///< name below config/robots, or a folder
-  std::filesystem::path clips;  ///< empty: the robot's own
-  std::string policy = "none";  ///< name below the robot's policies/, or none: drives follow the reference
+  std::string robot = "z1";       ///< name below config/robots, or a folder
+  std::filesystem::path clips;    ///< empty: the robot's own
+  std::string policy = "none";    ///< name below the robot's policies/, or none: drives follow the reference
   std::string blend = "library";  ///< how clips are mixed: as the library says, or gain, paper or corners
 };
 

@@ -38,8 +38,7 @@ TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
   Command both = of(kVx, 0.4);
   both[kPitch] = 0.2;
   const runtime::Scenario scenario{
-      .name = "hand",
-      .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 4.0, runtime::Mode::kWalk, both)}};
+      .name = "hand", .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 4.0, runtime::Mode::kWalk, both)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   ASSERT_TRUE(between.nothing.complete);
   // Walking begins some ticks into the second step (entry into the mode): the first one has 4 s less that.
@@ -75,7 +74,8 @@ TEST(Yardstick, ShareLeftIsZeroForAFollowerAndOneForDoingNothing) {
   Yardstick between;
   between.nothing.errors = {0.5, 0.4, 0.1, 0.2, 0.0};
   between.follower.errors = {0.1, 0.1, 0.0, 0.05, 0.0};
-  const Errors follower = share_left(between.follower.errors, between), nothing = share_left(between.nothing.errors, between);
+  const Errors follower = share_left(between.follower.errors, between),
+               nothing = share_left(between.nothing.errors, between);
   for (const std::size_t e : {kLinVel, kYawVel, kRollError, kPitchError}) {
     EXPECT_NEAR(follower[e], 0.0, 1e-15);
     EXPECT_NEAR(nothing[e], 1.0, 1e-15);

@@ -138,8 +138,8 @@ ClipLibrary striding_and_lifting() {
     for (int k = 0; k < 100; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / 100.0;
       made.q.push_back(JointVector(Eigen::Vector2d(stride * std::cos(angle), 0.3 + 0.3 * std::sin(angle))));
-      made.dq_dphi.push_back(JointVector(2.0 * std::numbers::pi *
-                                         Eigen::Vector2d(-stride * std::sin(angle), 0.3 * std::cos(angle))));
+      made.dq_dphi.push_back(
+          JointVector(2.0 * std::numbers::pi * Eigen::Vector2d(-stride * std::sin(angle), 0.3 * std::cos(angle))));
     }
     made.duty_factor = {0.6, 0.6};
     made.contact_center = {0.3, 0.8};
