@@ -3,7 +3,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
@@ -14,12 +17,15 @@
 #include <system_error>
 
 #include "gco/make_command_inverse.hpp"
+#include "gco/steady_walk.hpp"
 #include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/command_inverse_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
+#include "pmg/blending.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 
@@ -41,6 +47,10 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   dynamic("backward", library.negative[kVx]);
   dynamic("lateral", library.positive[kVy]);
   dynamic("turn", library.positive[kOmega]);
+  for (const CornerClip& corner : library.corners) {
+    const std::string name = model::corner_clip_name({corner.sign});
+    model::write_dynamic_clip(directory, name, corner.clip, robot, generator::clip_source(name));
+  }
   posture("bend", kPitch);
   posture("lean", kRoll);
   posture("squat", kHeight);
@@ -62,15 +72,18 @@ void require_writable(const std::filesystem::path& directory) {
 }
 
 /// From the clips as they are read back, so that it belongs to the files. Interrupted, the old one stays.
-void write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips) {
+void write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips, const std::string& blend) {
   apps::ProgressLine progress;
-  const CommandInverse inverse =
-      gco::make_command_inverse(robot, model::load_clip_library(clips, robot), [&progress](double share) {
-        if (apps::interrupt_requested != 0) throw Interrupted{};
-        progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
-      });
+  ClipLibrary library = model::load_clip_library(clips, robot);
+  const auto named = std::ranges::find(kBlendNames, blend);
+  if (named != kBlendNames.end()) library.blend = static_cast<Blend>(named - kBlendNames.begin());
+  const CommandInverse inverse = gco::make_command_inverse(robot, library, [&progress](double share) {
+    if (apps::interrupt_requested != 0) throw Interrupted{};
+    progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
+  });
   progress.clear();
   model::write_command_inverse(clips, inverse);
+  if (named != kBlendNames.end()) model::write_blend(clips, library.blend);
 }
 
 /// A folder inside the library's, in which a new one is made and from which it moves when it is whole: an interruption
@@ -103,19 +116,19 @@ class UnfinishedLibrary {
   std::filesystem::path folder_;
 };
 
-int invert(const std::string& robot_name, const std::filesystem::path& clips) {
+int invert(const std::string& robot_name, const std::filesystem::path& clips, const std::string& blend) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
   require_writable(directory);
-  write_inverse(robot, directory);
+  write_inverse(robot, directory, blend);
   return 0;
 }
 
-int synth(const std::string& robot_name, const std::filesystem::path& out) {
+int synth(const std::string& robot_name, const std::filesystem::path& out, const std::string& blend) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   require_writable(out);  // now, not after a minute's work
   apps::ProgressLine progress;
-  const ClipLibrary library = generator::synthesize(robot, [&progress](const std::string& clip) {
+  const ClipLibrary library = generator::synthesize(robot, blend == "corners", [&progress](const std::string& clip) {
     if (apps::interrupt_requested != 0) {
       throw Interrupted{};
     }
@@ -124,7 +137,7 @@ int synth(const std::string& robot_name, const std::filesystem::path& out) {
   progress.clear();
   const UnfinishedLibrary unfinished(out);
   write_library(unfinished.folder(), library, robot);
-  write_inverse(robot, unfinished.folder());
+  write_inverse(robot, unfinished.folder(), blend);
   unfinished.finish();
   return 0;
 }
@@ -209,6 +222,82 @@ int show(const ShowOptions& options) {
   return 0;
 }
 
+struct WalkOptions {
+  std::string robot = "z1";
+  std::string blend = "library";
+  std::filesystem::path clips;
+  int commands = 100;
+  std::uint64_t seed = 1;
+  double posture_share = 0.0;
+  bool list = false;
+};
+
+/// Double-support limits of docs/method.md hold for the mean over all commands, the others for each.
+int walk(const WalkOptions& options) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
+  ClipLibrary library =
+      model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
+  const auto named = std::ranges::find(kBlendNames, options.blend);
+  if (named != kBlendNames.end()) library.blend = static_cast<Blend>(named - kBlendNames.begin());
+  apps::ProgressLine progress;
+  gco::SteadyWalk worst;
+  worst.lowest_swing_m = worst.clearance_m = worst.foot_gap_m = 1.0;
+  Command missed, missed_at_most;
+  double slip_m_s = 0.0, slip_p95_m_s = 0.0, slip_worst_m_s = 0.0, clamped = 0.0, cut = 0.0;
+  const auto commands = gco::commands_over_the_box(robot, options.commands, options.seed, options.posture_share);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (apps::interrupt_requested != 0) throw Interrupted{};
+    progress.show(fmt::format("walking {} of {}", i + 1, commands.size()));
+    const gco::SteadyWalk one = gco::walk_steadily(robot, library, commands[i]);
+    const auto n = static_cast<double>(commands.size());
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      const double error = std::abs(one.mean.u[c] - one.admissible.u[c]);
+      missed.u[c] += error / n;
+      missed_at_most.u[c] = std::max(missed_at_most.u[c], error);
+    }
+    slip_m_s += one.slip.double_support_mean_m_s / n;
+    slip_p95_m_s += one.slip.double_support_p95_m_s / n;
+    slip_worst_m_s = std::max(slip_worst_m_s, one.slip.double_support_mean_m_s);
+    clamped += one.clamped ? 1.0 : 0.0;
+    cut += one.limited ? 1.0 : 0.0;
+    worst.pure_single_support_m_s = std::max(worst.pure_single_support_m_s, one.pure_single_support_m_s);
+    worst.slip.other_foot_height_max_m = std::max(worst.slip.other_foot_height_max_m, one.slip.other_foot_height_max_m);
+    worst.slip.lower_foot_height_max_m = std::max(worst.slip.lower_foot_height_max_m, one.slip.lower_foot_height_max_m);
+    worst.lowest_swing_m = std::min(worst.lowest_swing_m, one.lowest_swing_m);
+    worst.clearance_m = std::min(worst.clearance_m, one.clearance_m);
+    worst.foot_gap_m = std::min(worst.foot_gap_m, one.foot_gap_m);
+    if (!options.list) continue;
+    progress.clear();
+    const auto& u = commands[i].u;
+    fmt::print(
+        "asked {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} admitted {:6.3f} {:6.3f} {:6.3f} did {:6.3f} {:6.3f} "
+        "{:6.3f} "
+        "{:6.3f} slip {:4.1f} ({:4.1f}) cm/s feet {:4.1f} mm clearance {:5.1f} mm swing {:5.1f} mm gap {:4.0f} mm\n",
+        u[0], u[1], u[2], u[3], u[4], u[5], one.admissible[kVx], one.admissible[kVy], one.admissible[kOmega],
+        one.mean[kVx], one.mean[kVy], one.mean[kOmega], one.mean[kHeight], 100.0 * one.slip.double_support_mean_m_s,
+        100.0 * one.slip.double_support_p95_m_s, 1000.0 * one.slip.other_foot_height_max_m, 1000.0 * one.clearance_m,
+        1000.0 * one.lowest_swing_m, 1000.0 * one.foot_gap_m);
+  }
+  progress.clear();
+  fmt::print("{} steady commands over the box, {:.0f} of them cut to what the clips reach\n", commands.size(), cut);
+  for (const Channel c : {kVx, kVy, kOmega, kHeight}) {
+    fmt::print("mean u' against the admissible command, {}: {:.4f} in the mean, {:.4f} at most\n", kChannelNames[c],
+               missed[c], missed_at_most[c]);
+  }
+  fmt::print("single support slip at most {:.3f} mm/s\n", 1000.0 * worst.pure_single_support_m_s);
+  fmt::print(
+      "double support slip {:.1f} cm/s in the mean over commands (95th percentiles: {:.1f}), worst command {:.1f}\n",
+      100.0 * slip_m_s, 100.0 * slip_p95_m_s, 100.0 * slip_worst_m_s);
+  fmt::print("stance feet off the ground at most {:.2f} / {:.1f} mm (lower / other)\n",
+             1000.0 * worst.slip.lower_foot_height_max_m, 1000.0 * worst.slip.other_foot_height_max_m);
+  fmt::print("swing clearance at least {:.1f} mm in mid-swing, {:.1f} mm anywhere; soles {:.0f} mm apart\n",
+             1000.0 * worst.clearance_m, 1000.0 * worst.lowest_swing_m, 1000.0 * worst.foot_gap_m);
+  fmt::print("{:.0f} commands with clamped joints\n", clamped);
+  const bool good = worst.pure_single_support_m_s <= 0.001 && slip_m_s <= 0.03 && slip_p95_m_s <= 0.10 &&
+                    worst.slip.other_foot_height_max_m <= 0.010 && clamped == 0.0;
+  return good ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -231,15 +320,41 @@ int main(int argc, char** argv) {
   show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with");
   show_command->add_flag("--json", options.json, "for machines");
   std::filesystem::path inverse_clips;
+  std::string blend = "library";
+  const auto add_blend = [&blend](CLI::App* command) {
+    command
+        ->add_option("--blend", blend, "how the clips shall be mixed; library: as library.yaml says, or gain without")
+        ->check(apps::one_of({"library", "gain", "paper", "corners"}))
+        ->capture_default_str();
+  };
+  add_blend(synth_command);
   CLI::App* invert_command = app.add_subcommand(
       "invert", "Make inverse.csv: what to ask of the clips so that the mean optimised command is the user's");
   invert_command->add_option("--robot", robot, "robot's name, or its directory")->capture_default_str();
   invert_command->add_option("--clips", inverse_clips, "directory of the clips; the robot's own if left out");
+  add_blend(invert_command);
+  WalkOptions walking;
+  CLI::App* walk_command = app.add_subcommand(
+      "walk", "Walk steadily at random commands over the whole box: velocities against the command, slip, clearance");
+  walk_command->add_option("--robot", walking.robot, "robot's name, or its directory")->capture_default_str();
+  walk_command->add_option("--clips", walking.clips, "directory of the clips; the robot's own if left out");
+  walk_command->add_option("--blend", walking.blend, "as for invert")
+      ->check(apps::one_of({"library", "gain", "paper", "corners"}))
+      ->capture_default_str();
+  walk_command->add_option("--commands", walking.commands, "how many")
+      ->check(apps::positive())
+      ->capture_default_str();
+  walk_command->add_option("--seed", walking.seed, "of the commands")->capture_default_str();
+  walk_command->add_option("--postures", walking.posture_share, "share of the posture ranges, for half of the commands")
+      ->check(apps::in_range(0.0, 1.0))
+      ->capture_default_str();
+  walk_command->add_flag("--list", walking.list, "print every command's figures");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM}, "leaving the old clips as they were");
     try {
-      if (invert_command->parsed()) return invert(robot, inverse_clips);
-      return synth_command->parsed() ? synth(robot, out) : show(options);
+      if (walk_command->parsed()) return walk(walking);
+      if (invert_command->parsed()) return invert(robot, inverse_clips, blend);
+      return synth_command->parsed() ? synth(robot, out, blend) : show(options);
     } catch (const Interrupted&) {
       return 130;
     }

@@ -195,6 +195,7 @@ int table1(const Arguments& arguments) {
   fs::create_directories(arguments.out);
   table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());
+  measure_yardsticks(table, Watch(arguments).supervision());
   std::vector<std::string> failures;
   if (arguments.video && table.campaign.complete) failures = make_films(arguments, table);
   evaluate(table);
@@ -266,7 +267,7 @@ int main(int argc, char** argv) {
   CLI::App* table1_command =
       app.add_subcommand("table1", "Errors of policies over the same commands: Table I of the paper");
   declare_common(*table1_command, arguments);
-  declare_seeds(*table1_command, arguments, "config/scenarios/table1.yaml");
+  declare_seeds(*table1_command, arguments, "config/scenarios/table1_full.yaml");
   table1_command->add_option("--policy", arguments.policies, std::string(kPolicyHelp) + "; may be given several times")
       ->default_str("pmg without_gco single_gait");
   table1_command->add_flag("--video", arguments.video, "film each policy with seed 1 (needs ffmpeg; minutes each)");
@@ -316,7 +317,7 @@ int main(int argc, char** argv) {
     if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};
     if (arguments.scenario.empty())
       arguments.scenario = table2_command->parsed() ? "config/scenarios/table2.yaml"
-                           : compares               ? "config/scenarios/table1.yaml"
+                           : compares               ? "config/scenarios/table1_full.yaml"
                                                     : "config/scenarios/tour.yaml";
     if (compares) return table1(arguments);
     if (table2_command->parsed()) return table2(arguments);

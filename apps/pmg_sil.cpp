@@ -70,9 +70,11 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--policy", arguments.control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
                  "given, and none with --bench");
-  app.add_option("--blend", arguments.control.blend,
-                 "how clips are mixed: gain, or paper for the paper's weights to the letter")
-      ->check(apps::one_of({"gain", "paper"}))
+  app.add_option(
+         "--blend", arguments.control.blend,
+         "how clips are mixed: as the library says, gain, corners (combined commands keep their size), or paper for "
+         "the paper's weights to the letter")
+      ->check(apps::one_of({"library", "gain", "paper", "corners"}))
       ->capture_default_str();
   app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option(

@@ -13,7 +13,7 @@ namespace pmg {
 
 /// The set of gains g and posture offsets q_s with
 ///   q_lower + margin <= q_stand + q_s + sum g_i (q_i(phi_i) - q_stand) <= q_upper - margin   for all joints and phi_i.
-/// Each clip is taken at its own worst phase: conservative for mixtures, exact for one direction alone, and linear in
+/// Each clip is taken at its own worst phase: conservative for mixtures, exact for one corner alone, and linear in
 /// the gains.
 class AdmissibleSet {
  public:
@@ -22,16 +22,16 @@ class AdmissibleSet {
   /// q_stand lies within the limits by the margin or more.
   AdmissibleSet(const JointVector& q_stand, const JointVector& q_lower, const JointVector& q_upper, double margin_rad)
       : room_up_((q_upper - q_stand).array() - margin_rad), room_down_((q_stand - q_lower).array() - margin_rad) {
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
       up_[d].setZero(q_stand.size());
       down_[d].setZero(q_stand.size());
     }
   }
 
-  void add(std::size_t direction, const ClipCurve& curve, const JointVector& q_stand) {
-    curve.extremes(up_[direction], down_[direction]);
-    up_[direction] -= q_stand;
-    down_[direction] = q_stand - down_[direction];
+  void add(std::size_t corner, const ClipCurve& curve, const JointVector& q_stand) {
+    curve.extremes(up_[corner], down_[corner]);
+    up_[corner] -= q_stand;
+    down_[corner] = q_stand - down_[corner];
   }
 
   bool contains_posture(const JointVector& q_s) const noexcept {
@@ -39,10 +39,10 @@ class AdmissibleSet {
   }
 
   /// The largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s.
-  double velocity_scale(const PerDirection<double>& gain, const JointVector& q_s) const noexcept {
+  double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s) const noexcept {
     JointVector rise = JointVector::Zero(q_s.size());
     JointVector fall = JointVector::Zero(q_s.size());
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
       if (gain[d] == 0.0) continue;
       rise.noalias() += gain[d] * up_[d];
       fall.noalias() += gain[d] * down_[d];
@@ -61,10 +61,10 @@ class AdmissibleSet {
     return excursion > room ? std::max(room, 0.0) / excursion : 1.0;
   }
 
-  JointVector room_up_;             ///< q_upper - margin - q_stand [rad]
-  JointVector room_down_;           ///< q_stand - q_lower - margin [rad]
-  PerDirection<JointVector> up_;    ///< largest q_i(phi) - q_stand over phi [rad]
-  PerDirection<JointVector> down_;  ///< largest q_stand - q_i(phi) over phi [rad]
+  JointVector room_up_;          ///< q_upper - margin - q_stand [rad]
+  JointVector room_down_;        ///< q_stand - q_lower - margin [rad]
+  PerCorner<JointVector> up_;    ///< largest q_i(phi) - q_stand over phi [rad]
+  PerCorner<JointVector> down_;  ///< largest q_stand - q_i(phi) over phi [rad]
 };
 
 /// The largest found s in [0, 1] for which the posture command scaled by s is admissible, and its offset q_s. Posture

@@ -1,4 +1,5 @@
-// How much of each clip: the gains of the six directions, and the gait timing they give.
+// How much of each clip: the gains of the six directions and of the corners between them, and the gait timing they
+// give.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +14,6 @@
 
 namespace pmg {
 
-enum class Blend {
-  kGain,   ///< g_i = n_i / max(1, sum n), q_d = sum g_i q_i + (1 - sum g_i) q_stand
-  kPaper,  ///< the paper's w and alpha literally
-};
-
 /// Each velocity channel has a clip a sign: vx+, vx-, vy+, vy-, omega+, omega-.
 inline constexpr std::size_t kDirections = 2 * kVelocityChannels;
 constexpr std::size_t direction_of(std::size_t channel, bool negative) noexcept {
@@ -28,20 +24,110 @@ constexpr std::size_t direction_of(std::size_t channel, bool negative) noexcept 
 template <typename T>
 using PerDirection = std::array<T, kDirections>;
 
-struct Mixture {
-  PerDirection<double> gain{};    ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
-  PerDirection<double> weight{};  ///< for T, mu and r; sums to 1, or all 0 for a zero command
-  double gain_sum = 0.0;          ///< at most 1
-  bool normalised = false;        ///< the amplitudes asked for were more than one whole gait
+/// A place of the normalised command box where a clip can be: -1, 0 or 1 for each of vx, vy and omega, not all 0.
+struct Corner {
+  std::array<int, kVelocityChannels> sign{};
+  friend constexpr bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// The gains of a velocity command. Either rule ends in the same form q_d = sum g q + (1 - sum g) q_stand:
+/// Six directions, twelve pairs and eight triples. The directions come first, in their own order, so that a
+/// direction's index is its corner's too; pairs come before triples.
+inline constexpr std::size_t kCorners = 26;
+inline constexpr std::array<Corner, kCorners> kCornerTable = [] {
+  std::array<Corner, kCorners> table{};
+  std::size_t next = 0;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    for (const int sign : {1, -1}) table[next++].sign[channel] = sign;
+  }
+  for (const int channels : {2, 3}) {
+    for (const int x : {1, -1, 0}) {
+      for (const int y : {1, -1, 0}) {
+        for (const int w : {1, -1, 0}) {
+          if (x * x + y * y + w * w == channels) table[next++].sign = {x, y, w};
+        }
+      }
+    }
+  }
+  return table;
+}();
+
+/// Index in kCornerTable of three signs, not all 0.
+constexpr std::size_t corner_of(const Corner& corner) noexcept {
+  constexpr auto code = [](const Corner& c) {
+    return static_cast<std::size_t>(9 * (c.sign[0] + 1) + 3 * (c.sign[1] + 1) + c.sign[2] + 1);
+  };
+  constexpr std::array<std::size_t, 27> index = [code] {
+    std::array<std::size_t, 27> table{};
+    for (std::size_t c = 0; c < kCorners; ++c) table[code(kCornerTable[c])] = c;
+    return table;
+  }();
+  return index[code(corner)];
+}
+
+/// One value a corner.
+template <typename T>
+using PerCorner = std::array<T, kCorners>;
+
+struct Mixture {
+  PerCorner<double> gain{};    ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
+  PerCorner<double> weight{};  ///< for T, mu and r; sums to 1, or all 0 for a zero command
+  double gain_sum = 0.0;       ///< at most 1
+  bool normalised = false;     ///< the amplitudes asked for were more than the clips give together
+};
+
+/// kCorners: by how much the amplitudes n_i = |u_i| / u_max_i may add up. Two channels at 90 % of their ranges, or all
+/// three at 60 %: the hips of a person who strides, sidesteps and turns at full size at once don't give more.
+inline constexpr double kCornerReach = 1.8;
+
+/// Multilinear between rest (q_stand), the clips of single directions and those of their combinations: with n_i in
+/// [0, 1], the corner that uses the channels A among the commanded ones C has the gain
+///   prod over A of n_i * prod over C \ A of (1 - n_i),
+/// a convex combination, as the paper's. One channel alone is the paper's formula. The amplitudes are first scaled
+/// together until each is at most 1 and their sum at most kCornerReach: the direction of the command stays.
+inline Mixture mix_corners(const Command& command, const PerDirection<double>& scale) noexcept {
+  Mixture mixture;
+  std::array<double, kVelocityChannels> amplitude{};
+  Corner sign;
+  double sum = 0.0, largest = 0.0;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    const double u = command.u[channel];
+    if (u == 0.0) continue;
+    sign.sign[channel] = u < 0.0 ? -1 : 1;
+    amplitude[channel] = std::abs(u) / scale[direction_of(channel, u < 0.0)];
+    sum += amplitude[channel];
+    largest = std::max(largest, amplitude[channel]);
+  }
+  if (sum == 0.0) return mixture;
+  const double excess = std::max(largest, sum / kCornerReach);
+  mixture.normalised = excess > 1.0;
+  if (mixture.normalised) {
+    for (double& n : amplitude) n /= excess;
+  }
+  for (unsigned used = 1; used < (1U << kVelocityChannels); ++used) {
+    Corner corner;
+    double gain = 1.0;
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      const bool uses = ((used >> channel) & 1U) != 0;
+      if (uses) corner.sign[channel] = sign.sign[channel];
+      gain *= uses ? amplitude[channel] : 1.0 - amplitude[channel];
+    }
+    if (gain == 0.0) continue;
+    mixture.gain[corner_of(corner)] = gain;
+    mixture.gain_sum += gain;
+  }
+  for (std::size_t c = 0; c < kCorners; ++c) mixture.weight[c] = mixture.gain[c] / mixture.gain_sum;
+  return mixture;
+}
+
+/// The gains of a velocity command. Every rule ends in the same form q_d = sum g q + (1 - sum g) q_stand:
 ///  kGain   n_i = |u_i| / u_max_i, g_i = n_i / max(1, sum n), weights g_i / sum g. Mixtures keep their amplitude.
 ///  kPaper  alpha_i = clip(|u_i| / u_max_i, 0, 1), w_i = |u_i| / (sum |u| + 1e-6), q_d = sum w_i (alpha_i q_i +
 ///          (1 - alpha_i) q_stand), hence g_i = w_i alpha_i. The weights sum to a little less than 1, and to 0 at rest,
 ///          where the paper's sum would be the zero posture: what is missing goes to q_stand. T, mu and r take w_i /
 ///          sum w for the same reason.
+///  kCorners  mix_corners().
 inline Mixture mix(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
+  if (blend == Blend::kCorners) return mix_corners(command, scale);
   constexpr double kEpsilon = 1e-6;  // the paper's, for numerical stability
   Mixture mixture;
   double amplitude_sum = 0.0, speed_sum = 0.0;
@@ -81,12 +167,12 @@ struct GaitTiming {
 class GaitTimings {
  public:
   GaitTimings() = default;
-  explicit GaitTimings(const PerDirection<std::optional<DynamicClip>>& clips) {
-    for (std::size_t d = kDirections; d-- > 0;) {
+  explicit GaitTimings(const PerCorner<std::optional<DynamicClip>>& clips) {
+    for (std::size_t d = kCorners; d-- > 0;) {
       if (!clips[d]) continue;
       origin_ = {clips[d]->period_s, clips[d]->contact_center, clips[d]->duty_factor};  // ends as the first there is
     }
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
       if (!clips[d]) continue;
       from_origin_[d] = {clips[d]->period_s, {}, clips[d]->duty_factor};
       for (const Foot foot : {kLeft, kRight}) {
@@ -99,10 +185,11 @@ class GaitTimings {
   /// Of the first clip there is: what a robot has that never walked.
   const GaitTiming& first() const noexcept { return origin_; }
 
-  /// weight: sums to 1 over directions that have a clip.
-  GaitTiming average(const PerDirection<double>& weight) const noexcept {
+  /// weight: sums to 1 over corners that have a clip.
+  GaitTiming average(const PerCorner<double>& weight) const noexcept {
     GaitTiming mean{0.0, origin_.contact_center, {}};
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
+      if (weight[d] == 0.0) continue;
       mean.period_s += weight[d] * from_origin_[d].period_s;
       for (const Foot foot : {kLeft, kRight}) {
         mean.contact_center[foot] += weight[d] * from_origin_[d].contact_center[foot];
@@ -115,7 +202,7 @@ class GaitTimings {
 
  private:
   GaitTiming origin_;
-  PerDirection<GaitTiming> from_origin_;  ///< contact centres as differences from origin_
+  PerCorner<GaitTiming> from_origin_;  ///< contact centres as differences from origin_
 };
 
 }  // namespace pmg

@@ -36,15 +36,31 @@ struct MirrorMap {
   std::vector<double> sign;
 };
 
+/// How the generator mixes clips (blending.hpp).
+enum class Blend {
+  kGain,     ///< g_i = n_i / max(1, sum n), q_d = sum g_i q_i + (1 - sum g_i) q_stand
+  kPaper,    ///< the paper's w and alpha literally
+  kCorners,  ///< multilinear between the clips at the corners of the command box: combined commands keep their size
+};
+inline constexpr std::array<const char*, 3> kBlendNames = {"gain", "paper", "corners"};
+
+/// A clip of several velocities at once, at full amplitude of each: a walked circle, say.
+struct CornerClip {
+  std::array<int, kVelocityChannels> sign{};  ///< of vx, vy, omega: -1, 0 or 1; at least two aren't 0
+  DynamicClip clip;
+};
+
 /// Everything the generator blends. A missing negative velocity clip means: mirror the positive one (vy, omega).
 struct ClipLibrary {
   std::array<std::optional<DynamicClip>, kVelocityChannels> positive;  ///< vx, vy, omega > 0
   std::array<std::optional<DynamicClip>, kVelocityChannels> negative;  ///< vx, vy, omega < 0
-  std::array<StaticClip, 3> posture;                                   ///< pitch, roll, height
-  JointVector q_stand;                                                 ///< [rad]
-  JointVector q_lower, q_upper;                                        ///< joint limits [rad]
+  std::vector<CornerClip> corners;    ///< used by Blend::kCorners; any may be missing (corner_clips.hpp)
+  std::array<StaticClip, 3> posture;  ///< pitch, roll, height
+  JointVector q_stand;                ///< [rad]
+  JointVector q_lower, q_upper;       ///< joint limits [rad]
   MirrorMap mirror;
-  CommandInverse inverse;  ///< empty: the command as it is
+  Blend blend = Blend::kGain;  ///< that the library was made for
+  CommandInverse inverse;      ///< for that blend; empty: the command as it is
 };
 
 }  // namespace pmg

@@ -15,6 +15,7 @@
 #include "pmg/command.hpp"
 #include "pmg/command_limiter.hpp"
 #include "pmg/contact.hpp"
+#include "pmg/corner_clips.hpp"
 #include "pmg/joint_clamp.hpp"
 #include "pmg/library_check.hpp"
 #include "pmg/mirror.hpp"
@@ -36,7 +37,7 @@ enum class StanceRule {
 };
 
 struct GeneratorOptions {
-  Blend blend = Blend::kGain;
+  std::optional<Blend> blend;  ///< the library's if not given
   CommandLimits limits;
   std::array<double, kVelocityChannels> scale_positive{};  ///< u_max_i for positive commands
   std::array<double, kVelocityChannels> scale_negative{};  ///< u_max_i for negative commands, positive numbers
@@ -66,23 +67,27 @@ class Generator {
     check_options();
     check::stand_and_limits(library, options_.limit_margin_rad);
     inverse_ = library.inverse;
+    blend_ = options_.blend.value_or(library.blend);
     q_stand_ = library.q_stand;
     q_lower_ = library.q_lower;
     q_upper_ = library.q_upper;
-    const auto clips = all_directions(library);
+    const auto directions = all_directions(library);
+    PerCorner<std::optional<DynamicClip>> clips;
+    std::copy(directions.begin(), directions.end(), clips.begin());
     check::contact_centers(clips);
+    if (blend_ == Blend::kCorners) add_corner_clips(library, clips);
     timings_ = GaitTimings(clips);
     admissible_ = AdmissibleSet(q_stand_, q_lower_, q_upper_, options_.limit_margin_rad);
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      if (!clips[d]) continue;
-      curve_[d] = ClipCurve(*clips[d]);
-      admissible_.add(d, curve_[d], q_stand_);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      if (!clips[c]) continue;
+      curve_[c] = ClipCurve(*clips[c]);
+      admissible_.add(c, curve_[c], q_stand_);
     }
     for (std::size_t i = 0; i < kPostureChannels; ++i) {
       check::static_clip(library.posture[i], q_stand_, std::string("clip ") + kChannelNames[kVelocityChannels + i]);
     }
     posture_ = Posture(library.posture, q_stand_);
-    limits_ = realisable_limits(clips);
+    limits_ = realisable_limits(directions);
     limiter_ = CommandLimiter(limits_, options_.double_support_rate, options_.stop_within_s);
     reset();
   }
@@ -111,14 +116,14 @@ class Generator {
     const Command asked = ask_for(wanted);
     const double posture_share = posture_scale(
         admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
-    Mixture mixture = mix(options_.blend, asked, scale_);
+    Mixture mixture = mix(blend_, asked, scale_);
     const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_);
     for (double& g : mixture.gain) g *= velocity_share;
     mixture.gain_sum *= velocity_share;
 
     report_command(wanted, asked, mixture, posture_share, dt_s);
     // What the inverse adds to a full command is no limit that the user has met.
-    const bool too_much = mixture.normalised && mix(options_.blend, wanted, scale_).normalised;
+    const bool too_much = mixture.normalised && mix(blend_, wanted, scale_).normalised;
     reference_.command_limited = limiter_.limited() || too_much || posture_share < 1.0 || velocity_share < 1.0;
     advance_gait(mixture, dt_s);
     blend(mixture, dt_s);
@@ -127,6 +132,21 @@ class Generator {
   }
 
   const Reference& reference() const noexcept { return reference_; }
+
+  /// The library with a clip at every corner that its blend can ask for. Generators made of it have that work behind
+  /// them: for thousands at once. Allocates; throws as the constructor does.
+  static ClipLibrary completed(ClipLibrary library) {
+    if (library.blend != Blend::kCorners) return library;
+    const auto directions = all_directions(library);
+    PerCorner<std::optional<DynamicClip>> clips;
+    std::copy(directions.begin(), directions.end(), clips.begin());
+    add_corner_clips(library, clips);
+    library.corners.clear();
+    for (std::size_t c = kDirections; c < kCorners; ++c) {
+      if (clips[c]) library.corners.push_back({kCornerTable[c].sign, *clips[c]});
+    }
+    return library;
+  }
 
  private:
   void check_options() {
@@ -149,7 +169,7 @@ class Generator {
       clips[direction_of(channel, true)] = library.negative[channel];
     }
     for (std::size_t d = 0; d < kDirections; ++d) {
-      if (clips[d]) check::dynamic_clip(*clips[d], library.q_stand.size(), check::direction_name(d));
+      if (clips[d]) check::dynamic_clip(*clips[d], library.q_stand.size(), check::corner_name(d));
     }
     for (const std::size_t channel : {std::size_t{kVy}, std::size_t{kOmega}}) {
       auto& positive = clips[direction_of(channel, false)];
@@ -215,8 +235,11 @@ class Generator {
                       double dt_s) noexcept {
     const Command previous = reference_.command;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-      const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
-      const double given = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
+      double given = 0.0;
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        const int sign = kCornerTable[c].sign[channel];
+        if (sign != 0) given += sign * mixture.gain[c] * scale_[direction_of(channel, sign < 0)];
+      }
       reference_.command.u[channel] = given - (asked.u[channel] - wanted.u[channel]);
     }
     for (std::size_t channel = kVelocityChannels; channel < kChannels; ++channel) {
@@ -254,15 +277,15 @@ class Generator {
   /// q_ref and its time derivative; gains and offsets by their backward difference, so that dq_ref is what q_ref really
   /// does.
   void blend(const Mixture& mixture, double dt_s) noexcept {
-    PerDirection<double> gain_rate_per_s;
+    PerCorner<double> gain_rate_per_s;
     double gain_sum_rate_per_s = 0.0;
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
       gain_rate_per_s[d] = (mixture.gain[d] - gain_[d]) / dt_s;
       gain_sum_rate_per_s += gain_rate_per_s[d];
     }
     reference_.q.noalias() = (1.0 - mixture.gain_sum) * q_stand_ + q_s_;
     reference_.dq.noalias() = (q_s_ - previous_q_s_) * (1.0 / dt_s) - gain_sum_rate_per_s * q_stand_;
-    for (std::size_t d = 0; d < kDirections; ++d) {
+    for (std::size_t d = 0; d < kCorners; ++d) {
       if (mixture.gain[d] == 0.0 && gain_rate_per_s[d] == 0.0) continue;
       curve_[d].add_blended(phase_.phase(), phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
                             reference_.dq);
@@ -274,8 +297,9 @@ class Generator {
   GeneratorOptions options_;
   CommandLimits limits_;  ///< of the options, less what no clip can show
   CommandInverse inverse_;
+  Blend blend_ = Blend::kGain;
   JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]
-  PerDirection<ClipCurve> curve_;            ///< empty where there is no clip
+  PerCorner<ClipCurve> curve_;               ///< empty where there is no clip
   PerDirection<double> scale_{};             ///< u_max of each direction
   GaitTimings timings_;
   Posture posture_;
@@ -284,8 +308,8 @@ class Generator {
   CommandLimiter limiter_;
   GaitPhase phase_;
   StanceRamp stance_;
-  GaitTiming timing_;            ///< of the last motion; held at rest
-  PerDirection<double> gain_{};  ///< of the previous tick
+  GaitTiming timing_;         ///< of the last motion; held at rest
+  PerCorner<double> gain_{};  ///< of the previous tick
   JointVector q_s_, previous_q_s_;
   Reference reference_;
 };

@@ -22,8 +22,15 @@ inline void require(bool condition, const std::string& message) {
   if (!condition) throw std::invalid_argument(message);
 }
 
-inline std::string direction_name(std::size_t d) {
-  return std::string("clip ") + kChannelNames[d / 2] + (d % 2 == 0 ? " > 0" : " < 0");
+/// As "clip vx_m_s > 0, omega_rad_s < 0".
+inline std::string corner_name(std::size_t c) {
+  std::string name;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    const int sign = kCornerTable[c].sign[channel];
+    if (sign == 0) continue;
+    name += (name.empty() ? "clip " : ", ") + std::string(kChannelNames[channel]) + (sign > 0 ? " > 0" : " < 0");
+  }
+  return name;
 }
 
 inline void joint_vector(const JointVector& q, Eigen::Index joints, const std::string& name) {
@@ -62,14 +69,14 @@ inline void dynamic_clip(const DynamicClip& clip, Eigen::Index joints, const std
   }
 }
 
-inline void contact_centers(const PerDirection<std::optional<DynamicClip>>& clips) {
-  for (std::size_t a = 0; a < kDirections; ++a) {
-    for (std::size_t b = a + 1; b < kDirections; ++b) {
+inline void contact_centers(const PerCorner<std::optional<DynamicClip>>& clips) {
+  for (std::size_t a = 0; a < kCorners; ++a) {
+    for (std::size_t b = a + 1; b < kCorners; ++b) {
       if (!clips[a] || !clips[b]) continue;
       for (const Foot foot : {kLeft, kRight}) {
         const double apart = std::abs(wrap_half_cycle(clips[a]->contact_center[foot] - clips[b]->contact_center[foot]));
         require(apart <= kMaxContactCenterSpread,
-                direction_name(a) + " and " + direction_name(b) + ": contact centres of one foot differ by " +
+                corner_name(a) + " and " + corner_name(b) + ": contact centres of one foot differ by " +
                     std::to_string(apart) + " cycles; expected at most " + std::to_string(kMaxContactCenterSpread));
       }
     }

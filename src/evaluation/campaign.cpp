@@ -86,17 +86,25 @@ std::string film_case(const Case& filmed, const runtime::Scenario& scenario, con
 
 CaseSummary summarise(const std::vector<TrialResult>& runs) {
   CaseSummary summary;
-  std::array<std::vector<double>, kErrors> samples;
+  std::array<std::vector<double>, kErrors> samples, raw, beyond;
   for (const TrialResult& run : runs) {
     if (!run.complete) continue;
     ++summary.trials;
     summary.falls += run.fell ? 1 : 0;
     summary.survived += run.survived() ? 1 : 0;
     if (run.judged_s <= 0.0) continue;
-    for (std::size_t e = 0; e < kErrors; ++e) samples[e].push_back(run.errors[e]);
+    for (std::size_t e = 0; e < kErrors; ++e) {
+      samples[e].push_back(run.errors[e]);
+      raw[e].push_back(run.errors_raw[e]);
+      if (run.errors_beyond_reach) beyond[e].push_back((*run.errors_beyond_reach)[e]);
+    }
     summary.step_errors.resize(std::max(summary.step_errors.size(), run.step_errors.size()), Errors{});
   }
-  for (std::size_t e = 0; e < kErrors; ++e) summary.errors[e] = mean_interval(samples[e]);
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    summary.errors[e] = mean_interval(samples[e]);
+    summary.errors_raw[e] = mean_interval(raw[e]);
+    summary.errors_beyond_reach[e] = mean_interval(beyond[e]);
+  }
   for (std::size_t step = 0; step < summary.step_errors.size(); ++step) {
     int count = 0;
     for (const TrialResult& run : runs) {
@@ -120,17 +128,23 @@ ordered_json to_json(const TrialResult& trial) {
           {"fell_at_s", trial.fell ? ordered_json(trial.fell_at_s) : ordered_json(nullptr)},
           {"faults", trial.faults},
           {"judged_s", trial.judged_s},
-          {"errors", errors_json(trial.errors)}};
+          {"errors", errors_json(trial.errors)},
+          {"errors_raw", errors_json(trial.errors_raw)}};
 }
 
 ordered_json to_json(const CaseSummary& summary, const runtime::Scenario& scenario) {
   ordered_json json = {{"trials", summary.trials}, {"falls", summary.falls}, {"survived", summary.survived}};
-  for (std::size_t e = 0; e < kErrors; ++e) json["errors"][kErrorKeys[e]] = to_json(summary.errors[e]);
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    json["errors"][kErrorKeys[e]] = to_json(summary.errors[e]);
+    json["errors_raw"][kErrorKeys[e]] = to_json(summary.errors_raw[e]);
+    json["errors_beyond_reach"][kErrorKeys[e]] = to_json(summary.errors_beyond_reach[e]);
+  }
   json["segments"] = ordered_json::array();
   for (std::size_t step = 0; step < summary.step_errors.size() && step < scenario.steps.size(); ++step) {
     json["segments"].push_back({{"text", scenario.steps[step].text},
                                 {"for_s", scenario.steps[step].duration_s},
                                 {"command", scenario.steps[step].command.u},
+                                {"beyond_reach", scenario.steps[step].beyond_reach},
                                 {"errors", errors_json(summary.step_errors[step])}});
   }
   return json;

@@ -55,7 +55,9 @@ std::string film_case(const Case& filmed, const runtime::Scenario& scenario, con
 struct CaseSummary {
   int trials = 0, falls = 0, survived = 0;
   std::array<Estimate, kErrors> errors;
-  std::vector<Errors> step_errors;  ///< means over seeds, by step of the scenario
+  std::array<Estimate, kErrors> errors_raw;           ///< velocities not averaged over a gait period
+  std::array<Estimate, kErrors> errors_beyond_reach;  ///< of the steps that ask for more than clips give together
+  std::vector<Errors> step_errors;                    ///< means over seeds, by step of the scenario
 };
 CaseSummary summarise(const std::vector<TrialResult>& runs);
 

@@ -22,6 +22,11 @@ ordered_json policy_json(const Table1& table, std::size_t c) {
   ordered_json json = {{"name", table.cases[c].name}, {"policy", table.cases[c].candidate.control.policy}};
   json.update(to_json(table.summaries[c], table.scenario));
   const std::optional<Errors> published = published_errors(table.cases[c].name);
+  json["nothing"] = by_error(table.yardsticks[c].nothing.errors);
+  json["follower"] = by_error(table.yardsticks[c].follower.errors);
+  json["share"] = by_error(table.shares(c));
+  json["nothing_raw"] = by_error(table.yardsticks[c].nothing.errors_raw);
+  json["follower_raw"] = by_error(table.yardsticks[c].follower.errors_raw);
   json["paper"] = published ? by_error(*published) : ordered_json(nullptr);
   json["runs"] = ordered_json::array();
   for (std::size_t seed = 0; seed < table.campaign.runs[c].size(); ++seed) {
@@ -43,7 +48,21 @@ std::optional<Errors> published_errors(const std::string& policy) {
   return std::nullopt;
 }
 
-bool Table1::reached(std::size_t error) const { return summaries[judged].errors[error].mean <= kErrorLimits[error]; }
+Errors Table1::shares(std::size_t c) const {
+  Errors mean{};
+  for (std::size_t e = 0; e < kErrors; ++e) mean[e] = summaries[c].errors[e].mean;
+  return share_left(mean, yardsticks[c]);
+}
+
+double Table1::figure(std::size_t error) const {
+  return gentle() ? summaries[judged].errors[error].mean : shares(judged)[error];
+}
+
+/// A channel of which the scenario asks nothing has no share to be judged.
+bool Table1::reached(std::size_t error) const {
+  const double value = figure(error);
+  return value <= limit(error) || (!gentle() && std::isnan(value) && summaries[judged].trials > 0);
+}
 
 bool Table1::all_reached() const {
   bool all = summaries[judged].falls == 0;
@@ -65,6 +84,15 @@ Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, con
   }
   for (std::size_t e = 0; e < kErrors; ++e) comparison.difference[e] = paired_difference(a[e], b[e]);
   return comparison;
+}
+
+void measure_yardsticks(Table1& table, const Supervision& supervision) {
+  table.yardsticks.assign(table.cases.size(), {});
+  for_each_piece(table.cases.size(), supervision, [&](std::size_t c) {
+    table.yardsticks[c] = yardstick(table.cases[c].candidate, table.scenario, supervision.interrupted);
+  });
+  for (const Yardstick& one : table.yardsticks)
+    table.campaign.complete = table.campaign.complete && one.nothing.complete;
 }
 
 void evaluate(Table1& table) {
@@ -89,9 +117,10 @@ ordered_json to_json(const Table1& table) {
       {"duration_s", table.scenario.duration_s()},
       {"variation", table.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(table.ranges_file)},
       {"seeds", table.seeds},
-      {"limits", {{"policy", table.cases[table.judged].name}, {"falls", 0}}}};
+      {"limits",
+       {{"policy", table.cases[table.judged].name}, {"of", table.gentle() ? "errors" : "share"}, {"falls", 0}}}};
   for (std::size_t e = 0; e < kErrors; ++e) {
-    json["limits"][kErrorKeys[e]] = {{"limit", kErrorLimits[e]}, {"reached", table.reached(e)}};
+    json["limits"][kErrorKeys[e]] = {{"limit", table.limit(e)}, {"reached", table.reached(e)}};
   }
   json["limits"]["all_reached"] = table.all_reached();
   for (std::size_t c = 0; c < table.cases.size(); ++c) json["policies"].push_back(policy_json(table, c));
@@ -133,14 +162,29 @@ std::vector<std::string> text_of(const Table1& table) {
           return fmt::format("{:.4f} +-{:.4f}", error.mean, error.upper - error.mean);
         },
         fmt::format("{}/{}", summary.falls, summary.trials));
+    const auto figures = [&add](const std::string& name, const Errors& values) {
+      add(
+          name, [&](std::size_t e) { return fmt::format("{:.4f}        ", values[e]); }, "");
+    };
+    Errors raw{};
+    for (std::size_t e = 0; e < kErrors; ++e) raw[e] = summary.errors_raw[e].mean;
+    figures("  raw velocities", raw);
+    figures("  doing nothing", table.yardsticks[c].nothing.errors);
+    figures("  perfect follower", table.yardsticks[c].follower.errors);
+    figures("  share left", table.shares(c));
+    if (std::isfinite(summary.errors_beyond_reach[0].mean)) {
+      Errors beyond{};
+      for (std::size_t e = 0; e < kErrors; ++e) beyond[e] = summary.errors_beyond_reach[e].mean;
+      figures("  beyond reach", beyond);
+    }
     if (const auto published = published_errors(table.cases[c].name)) {
       add(
           "  paper", [&](std::size_t e) { return fmt::format("{:.4f}        ", (*published)[e]); }, "");
     }
   }
   add(
-      fmt::format("limit for {}", table.cases[table.judged].name),
-      [&](std::size_t e) { return fmt::format("{:.4f} {:<7}", kErrorLimits[e], table.reached(e) ? "ok" : "MISSED"); },
+      fmt::format("limit for {}{}", table.cases[table.judged].name, table.gentle() ? "" : "'s share"),
+      [&](std::size_t e) { return fmt::format("{:.4f} {:<7}", table.limit(e), table.reached(e) ? "ok" : "MISSED"); },
       table.summaries[table.judged].falls == 0 ? "ok" : "MISSED");
   for (const Comparison& comparison : table.comparisons) {
     add(

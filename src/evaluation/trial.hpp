@@ -34,11 +34,13 @@ struct TrialResult {
   bool complete = false;  ///< false: it was interrupted
   bool fell = false;      ///< or the simulation diverged
   double fell_at_s = -1.0;
-  std::vector<std::string> faults;  ///< that latched, in words
-  double judged_s = 0.0;            ///< over which errors were taken
-  Errors errors{};                  ///< over the whole run
-  std::vector<Errors> step_errors;  ///< by step of the scenario; NaN for one that wasn't judged
-  double duration_s = 0.0;          ///< simulated
+  std::vector<std::string> faults;            ///< that latched, in words
+  double judged_s = 0.0;                      ///< over which errors were taken
+  Errors errors{};                            ///< over the steps that aren't beyond reach
+  Errors errors_raw{};                        ///< the same, velocities not averaged over a gait period
+  std::optional<Errors> errors_beyond_reach;  ///< over the steps that are
+  std::vector<Errors> step_errors;            ///< by step of the scenario; NaN for one that wasn't judged
+  double duration_s = 0.0;                    ///< simulated
 
   bool survived() const { return complete && !fell && faults.empty(); }
 };

@@ -62,15 +62,15 @@ class Measurement {
 
 /// The command itself, or what is well within reach in its direction: velocities that together ask for more than the
 /// generator gives share it, and a correction there would only be shared out again.
-Command within_reach(const model::RobotModel& robot, const Command& command) {
-  constexpr double kReach = 0.9;
+Command within_reach(const model::RobotModel& robot, Blend blend, const Command& command) {
+  const double reach = 0.9 * (blend == Blend::kCorners ? kCornerReach : 1.0);
   double asked = 0.0;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     asked += std::abs(command.u[c]) /
              (command.u[c] < 0.0 ? robot.velocity_scale_negative[c] : robot.velocity_scale_positive[c]);
   }
   Command target = command;
-  for (std::size_t c = 0; c < kVelocityChannels; ++c) target.u[c] /= std::max(1.0, asked / kReach);
+  for (std::size_t c = 0; c < kVelocityChannels; ++c) target.u[c] /= std::max(1.0, asked / reach);
   return target;
 }
 
@@ -140,7 +140,7 @@ CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLi
       index /= axis[a].size();
     }
     const bool rest = command[kVx] == 0.0 && command[kVy] == 0.0 && command[kOmega] == 0.0;
-    if (!rest) correction[i] = correction_at(robot, within_reach(robot, command), measurement);
+    if (!rest) correction[i] = correction_at(robot, within_reach(robot, library.blend, command), measurement);
     progress(static_cast<double>(i + 1) / static_cast<double>(nodes));
   }
   return {axis, correction};

@@ -10,6 +10,7 @@ ClipLibrary forward_clip_only(ClipLibrary library) {
     if (channel != kVx) library.positive[channel].reset();
     library.negative[channel].reset();
   }
+  library.corners.clear();
   return library;
 }
 

@@ -91,6 +91,16 @@ std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain) {
   return base;
 }
 
+std::vector<BaseMotion> hiking_base(const GaitTask& task, const Scenario& scenario) {
+  std::vector<BaseMotion> base = hiking_base(task, scenario.gain);
+  for (std::size_t k = 0; k < scenario.addition.roll.size(); ++k) {
+    const Roll& added = scenario.addition.roll[k];
+    base[k].R_HB = Eigen::AngleAxisd(added.angle_rad, Eigen::Vector3d::UnitX()) * base[k].R_HB;
+    base[k].omega_HB += added.slope_rad / task.period_s * Eigen::Vector3d::UnitX();
+  }
+  return base;
+}
+
 LegTrajectory blend(const RobotLegs& legs, const LegTrajectory& clip, const Scenario& scenario) {
   LegTrajectory out = clip;
   const Addition& addition = scenario.addition;

@@ -31,6 +31,9 @@ struct BaseMotion {
 /// The base of a task's clip at this gain, one entry a sample.
 std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain);
 
+/// The base in a scenario: with the addition's roll.
+std::vector<BaseMotion> hiking_base(const GaitTask& task, const Scenario& scenario);
+
 struct GroundMeasure {
   Eigen::Vector3d mean_velocity =
       Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]

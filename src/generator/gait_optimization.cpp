@@ -296,7 +296,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
     const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
     lifted_[foot] = std::abs(s) > 0.5 * r ? 1.0 - 2.0 * contact_[foot] : 0.0;
-    clearance_m_[foot] = std::pow(scenario.gain, kClearanceGrowth) * task.clearance_m * raised(swing);
+    clearance_m_[foot] = std::pow(scenario.lift > 0.0 ? scenario.lift : scenario.gain, kClearanceGrowth) *
+                         task.clearance_m * raised(swing);
   }
   const Roll own = hike(task, phase);
   const Roll added = scenario.addition.roll.empty() ? Roll{} : scenario.addition.roll[sample];
@@ -309,7 +310,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
   velocity_ = scenario.gain * task.velocity + scenario.addition.velocity + velocity_correction;
   // The base sways towards the left foot in the middle of its stance, and to the right half a cycle later.
   const double angle = 2.0 * std::numbers::pi * (phase - 0.5 * r);
-  velocity_.y() -= scenario.gain * task.sway_m * 2.0 * std::numbers::pi / task.period_s * std::sin(angle);
+  velocity_.y() -= (scenario.gain * task.sway_m + scenario.addition.sway_m) * 2.0 * std::numbers::pi / task.period_s *
+                   std::sin(angle);
 }
 
 PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample,
@@ -346,11 +348,12 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const st
     solution.legs = sample_legs(legs, task.symmetric, table);
     for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
       const Scenario& scenario = task.scenarios[s];
-      if (scenario.addition.q.empty()) {  // under a posture or in a mixture the mean is wished for, not promised
+      // Under a posture the mean is wished for, not promised.
+      if (scenario.addition.q.empty() || scenario.promised) {
         const Eigen::Vector3d mean = measure(legs, blend(legs, solution.legs, scenario),
-                                             timing(task.period_s, task.duty_factor), hiking_base(task, scenario.gain))
+                                             timing(task.period_s, task.duty_factor), hiking_base(task, scenario))
                                          .mean_velocity;
-        targets[s].correct(scenario.gain * task.velocity - mean);
+        targets[s].correct(scenario.gain * task.velocity + scenario.addition.velocity - mean);
       }
     }
   }

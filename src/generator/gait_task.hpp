@@ -29,6 +29,7 @@ struct Roll {
 struct Addition {
   std::vector<LegPose> q, dq_dphi;                     ///< one entry (constant) or one a sample; deviation from stand
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s]
+  double sway_m = 0.0;                                 ///< what it does to the base's sway
   double height_m = 0.0;                               ///< what it does to the base height
   std::vector<Roll> roll;                              ///< what it does to the base's, one a sample
 };
@@ -46,6 +47,8 @@ struct Scenario {
   double gain = 1.0;
   double weight = 1.0;
   Addition addition;
+  double lift = 0.0;      ///< of how large a gait the clearance is asked; 0: of the gain
+  bool promised = false;  ///< the mean velocity shall be met with the addition too; without one it always is
 };
 
 struct GaitWeights {

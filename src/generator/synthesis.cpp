@@ -1,73 +1,21 @@
 #include "generator/synthesis.hpp"
 
 #include <cmath>
+#include <functional>
+#include <future>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
-#include "generator/gait_measure.hpp"
+#include "generator/corner_synthesis.hpp"
+#include "generator/gait_parts.hpp"
 #include "generator/gait_reference.hpp"
 #include "generator/static_clips.hpp"
-#include "generator/upper_body.hpp"
 
 namespace pmg::generator {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-struct Making {
-  const model::RobotModel& robot;
-  JointRoles roles;
-  RobotLegs legs;
-  std::array<StaticClip, 3> posture;  // pitch, roll, height
-};
-
-Addition posture_addition(const Making& making, Channel channel, double command) {
-  Addition addition;
-  const StaticClip& clip = making.posture[channel - kPitch];
-  addition.q = {leg_offset(clip, making.roles, making.legs, command)};
-  if (channel == kPitch) {
-    // The optimisation sees a level base; the pelvis' part of the pitch is undone by the hips, the chain's first
-    // joints.
-    const double pelvis_pitch = kPelvisShareOfPitch * command;
-    for (const Foot foot : {kLeft, kRight}) {
-      addition.q[0][foot][kHipPitch] += pelvis_pitch;
-    }
-  }
-  addition.height_m = channel == kHeight ? command : 0.0;
-  return addition;
-}
-
-/// A finished clip as a part of a mixture.
-Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain,
-                       double period_s) {
-  Addition addition;
-  for (std::size_t k = 0; k < kClipSamples; ++k) {
-    LegPose q;
-    LegPose dq;
-    for (const Foot foot : {kLeft, kRight}) {
-      q[foot] = gain * (legs.q[k][foot] - making.legs.stand[foot]);
-      dq[foot] = gain * legs.dq_dphi[k][foot];
-    }
-    addition.q.push_back(q);
-    addition.dq_dphi.push_back(dq);
-    const Roll roll = hike(task, static_cast<double>(k) / static_cast<double>(kClipSamples));
-    addition.roll.push_back({gain * roll.angle_rad, gain * roll.slope_rad});
-  }
-  addition.velocity = gain * task.velocity * (task.period_s / period_s);
-  addition.height_m = gain * task.height_m;
-  return addition;
-}
-
-/// posture_weight: of walking in a posture against plain walking.
-std::vector<Scenario> scenarios(const Making& making, double posture_weight) {
-  std::vector<Scenario> list;
-  for (const double gain : {0.12, 0.3, 0.55, 0.8, 1.0}) {
-    list.push_back({gain, 1.0, {}});
-  }
-  list.push_back({0.3, posture_weight, posture_addition(making, kHeight, -0.09)});
-  list.push_back({0.6, posture_weight, posture_addition(making, kHeight, -0.09)});
-  list.push_back({0.5, posture_weight, posture_addition(making, kRoll, 0.12)});
-  return list;
-}
 
 GaitTask forward_task(const Making& making) {
   GaitTask task;
@@ -177,44 +125,10 @@ GaitTask turn_task(const Making& making) {
   return task;
 }
 
-DynamicClip assemble(const Making& making, const GaitTask& task, const LegTrajectory& legs, UpperBody body) {
-  body.pelvis_roll_rad = [&task](double phase) { return hike(task, phase).angle_rad; };
-  DynamicClip clip;
-  clip.period_s = task.period_s;
-  const GaitTiming when = timing(task.period_s, task.duty_factor);
-  clip.contact_center = when.contact_center;
-  clip.duty_factor = when.duty_factor;
-  const JointVector q_stand = making.robot.q_stand();
-  for (std::size_t k = 0; k < kClipSamples; ++k) {
-    const double phase = static_cast<double>(k) / static_cast<double>(kClipSamples);
-    JointVector q = q_stand;
-    JointVector dq = JointVector::Zero(q_stand.size());
-    move_upper_body(making.roles, body, phase, q);
-    constexpr double kStep = 1e-5;  // cycles; the upper body's curves are smooth
-    JointVector before = q_stand;
-    JointVector after = q_stand;
-    move_upper_body(making.roles, body, phase - kStep, before);
-    move_upper_body(making.roles, body, phase + kStep, after);
-    dq = (after - before) / (2.0 * kStep);
-    for (const Foot foot : {kLeft, kRight}) {
-      for (std::size_t role = 0; role < kLegJoints; ++role) {
-        const auto i = static_cast<Eigen::Index>(role);
-        const int joint = making.roles.leg[foot][role];
-        q[joint] += legs.q[k][foot][i] - making.legs.stand[foot][i];
-        dq[joint] += legs.dq_dphi[k][foot][i];
-      }
-    }
-    clip.q.push_back(q);
-    clip.dq_dphi.push_back(dq);
-  }
-  const Eigen::Vector3d mean = measure(making.legs, legs, when, hiking_base(task, 1.0)).mean_velocity;
-  clip.mean_velocity = {mean.x(), mean.y(), mean.z()};
-  return clip;
-}
-
 }  // namespace
 
-ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(const std::string&)>& progress) {
+ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
+                       const std::function<void(const std::string&)>& progress) {
   const JointRoles roles = find_joint_roles(robot);
   Making making{robot, roles, robot_legs(robot, roles), {}};
   ClipLibrary library;
@@ -231,29 +145,39 @@ ClipLibrary synthesize(const model::RobotModel& robot, const std::function<void(
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 
-  const auto during = [&progress](const char* clip) { return [&progress, clip] { progress(clip); }; };
-  const GaitTask forward = forward_task(making);
-  const LegTrajectory forward_legs = optimize_gait(making.legs, forward, during("forward")).legs;
-  library.positive[kVx] =
-      assemble(making, forward, forward_legs,
-               {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+  std::mutex one_at_a_time;  // several clips are made at once
+  const std::function<void(const std::string&)> tell = [&](const std::string& name) {
+    const std::lock_guard lock(one_at_a_time);
+    progress(name);
+  };
+  const auto during = [&tell](const char* name) { return [&tell, name] { tell(name); }; };
+  const auto make = [&](const char* name, const GaitTask& task, UpperBody body) {
+    return MadeGait{task, optimize_gait(making.legs, task, during(name)).legs, std::move(body)};
+  };
+  const auto clip = [&making](const MadeGait& gait) { return assemble(making, gait.task, gait.legs, gait.body); };
 
-  const GaitTask backward = backward_task(making, forward_legs, forward);
-  const LegTrajectory backward_legs = optimize_gait(making.legs, backward, during("backward")).legs;
-  library.negative[kVx] =
-      assemble(making, backward, backward_legs,
-               {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+  const MadeGait forward =
+      make("forward", forward_task(making), {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+  library.positive[kVx] = clip(forward);
 
-  GaitTask lateral = lateral_task(making);
-  lateral.scenarios.push_back({0.53, 3.0, clip_addition(making, forward_legs, forward, 0.47, lateral.period_s)});
-  const LegTrajectory lateral_legs = optimize_gait(making.legs, lateral, during("lateral")).legs;
-  library.positive[kVy] = assemble(making, lateral, lateral_legs, {.pelvis_tilt_rad = 2.0 * kDegree});
+  GaitTask lateral_wanted = lateral_task(making), turn_wanted = turn_task(making);
+  lateral_wanted.scenarios.push_back(
+      {0.53, 3.0, clip_addition(making, forward.legs, forward.task, 0.47, lateral_wanted.period_s)});
+  turn_wanted.scenarios.push_back(
+      {0.45, 4.0, clip_addition(making, forward.legs, forward.task, 0.55, turn_wanted.period_s)});
+  auto backward_made = std::async(std::launch::async, [&] {
+    return make("backward", backward_task(making, forward.legs, forward.task),
+                {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+  });
+  auto lateral_made =
+      std::async(std::launch::async, [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
+  const MadeGait turn = make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
+  library.negative[kVx] = clip(backward);
+  library.positive[kVy] = clip(lateral);
+  library.positive[kOmega] = clip(turn);
 
-  GaitTask turn = turn_task(making);
-  turn.scenarios.push_back({0.45, 4.0, clip_addition(making, forward_legs, forward, 0.55, turn.period_s)});
-  const LegTrajectory turn_legs = optimize_gait(making.legs, turn, during("turn")).legs;
-  library.positive[kOmega] =
-      assemble(making, turn, turn_legs, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  if (with_corners) library.corners = make_corners(making, library, {forward, backward, lateral, turn}, tell);
   return library;
 }
 
@@ -266,6 +190,9 @@ std::string clip_source(const std::string& name) {
   }
   if (name == "lateral" || name == "turn") {
     return "synthesised: flat-footed stepping; timing of CMU mocap subject 69 (mocap.cs.cmu.edu)";
+  }
+  if (name.find('_') != std::string::npos) {
+    return "synthesised: the single clips' sum, feet lifted once, fitted to the ground over the mixtures of both";
   }
   return "synthesised: feet in place, centre of mass over them";
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include "model/clip_table.hpp"
 #include "model/command_inverse_file.hpp"
 #include "model/config_reader.hpp"
+#include "pmg/blending.hpp"
 
 namespace pmg::model {
 namespace {
@@ -40,19 +42,19 @@ void check_limits(const ClipTable& table, const RobotModel& robot) {
   }
 }
 
-void read_mean_velocity(DynamicClip& clip, ConfigReader reader, std::size_t channel, double direction) {
+void read_mean_velocity(DynamicClip& clip, ConfigReader reader, const Corner& corner) {
   for (std::size_t i = 0; i < kVelocityChannels; ++i) {
     clip.mean_velocity[i] = reader.required<double>(kChannelNames[i]);
-  }
-  if (!(clip.mean_velocity[channel] * direction > 0.0)) {
-    reader.fail(kChannelNames[channel], fmt::format("is {}", clip.mean_velocity[channel]),
-                direction > 0.0 ? "a number above 0" : "a number below 0");
+    if (corner.sign[i] != 0 && !(clip.mean_velocity[i] * corner.sign[i] > 0.0)) {
+      reader.fail(kChannelNames[i], fmt::format("is {}", clip.mean_velocity[i]),
+                  corner.sign[i] > 0 ? "a number above 0" : "a number below 0");
+    }
   }
   reader.finish();
 }
 
 DynamicClip read_dynamic(const fs::path& directory, const std::string& name, const RobotModel& robot,
-                         std::size_t channel, double direction) {
+                         const Corner& corner) {
   DynamicClip clip;
   ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
   reader.one_of("kind", {"dynamic"});
@@ -66,7 +68,7 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
     side.finish();
   }
   contact.finish();
-  read_mean_velocity(clip, reader.map("mean_velocity"), channel, direction);
+  read_mean_velocity(clip, reader.map("mean_velocity"), corner);
   reader.finish();
 
   const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, false);
@@ -142,6 +144,9 @@ std::vector<NamedClip> blended_clips(const ClipLibrary& library) {
                        {wrap(positive->contact_center[kRight] + 0.5), wrap(positive->contact_center[kLeft] + 0.5)}});
     }
   }
+  for (const CornerClip& corner : library.corners) {
+    clips.push_back({corner_clip_name({corner.sign}), corner.clip.contact_center});
+  }
   return clips;
 }
 
@@ -166,17 +171,18 @@ void check_contact_centers(const fs::path& directory, const ClipLibrary& library
 
 void check_total(const fs::path& directory, const ClipLibrary& library) {
   double total_s = 0.0;
+  const auto add = [&](const DynamicClip& clip, const std::string& name) {
+    total_s += clip.period_s;
+    if (total_s < kMaxDynamicTotal_s) return;
+    ConfigReader::from_file(yaml(directory, name))
+        .fail("period_s", fmt::format("brings the dynamic clips to {} s", total_s),
+              fmt::format("less than {} s in total", kMaxDynamicTotal_s));
+  };
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-    for (const auto& [clip, name] : {std::pair(&library.positive[channel], kPositiveNames[channel]),
-                                     std::pair(&library.negative[channel], kNegativeNames[channel])}) {
-      if (!*clip) continue;
-      total_s += (*clip)->period_s;
-      if (total_s < kMaxDynamicTotal_s) continue;
-      ConfigReader::from_file(yaml(directory, name))
-          .fail("period_s", fmt::format("brings the dynamic clips to {} s", total_s),
-                fmt::format("less than {} s in total", kMaxDynamicTotal_s));
-    }
+    if (library.positive[channel]) add(*library.positive[channel], kPositiveNames[channel]);
+    if (library.negative[channel]) add(*library.negative[channel], kNegativeNames[channel]);
   }
+  for (const CornerClip& corner : library.corners) add(corner.clip, corner_clip_name({corner.sign}));
 }
 
 void write_file(const fs::path& file, const std::string& text) {
@@ -185,6 +191,16 @@ void write_file(const fs::path& file, const std::string& text) {
   stream << text;
   stream.close();
   if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
+}
+
+fs::path library_yaml(const fs::path& directory) { return directory / "library.yaml"; }
+
+Blend read_blend(const fs::path& directory) {
+  if (!fs::exists(library_yaml(directory))) return Blend::kGain;
+  ConfigReader reader = ConfigReader::from_file(library_yaml(directory));
+  const std::string name = reader.one_of("blend", {kBlendNames.begin(), kBlendNames.end()});
+  reader.finish();
+  return static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
 }
 
 /// A YAML double-quoted string.
@@ -218,10 +234,20 @@ std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& 
   return result;
 }
 
+std::string corner_clip_name(const Corner& corner) {
+  std::string name;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    if (corner.sign[channel] == 0) continue;
+    if (!name.empty()) name += '_';
+    name += corner.sign[channel] > 0 ? kPositiveNames[channel] : kNegativeNames[channel];
+  }
+  return name;
+}
+
 std::vector<fs::path> clip_library_files(const fs::path& directory) {
   std::vector<fs::path> files;
   const auto add_all = [&](const auto& names) {
-    for (const char* name : names) {
+    for (const auto& name : names) {
       for (const fs::path& file : {csv(directory, name), yaml(directory, name)}) {
         if (fs::exists(file)) files.push_back(file);
       }
@@ -230,7 +256,12 @@ std::vector<fs::path> clip_library_files(const fs::path& directory) {
   add_all(kPositiveNames);
   add_all(kNegativeNames);
   add_all(kPostureNames);
-  if (fs::exists(command_inverse_file(directory))) files.push_back(command_inverse_file(directory));
+  for (std::size_t c = kDirections; c < kCorners; ++c) {
+    add_all(std::array{corner_clip_name(kCornerTable[c])});
+  }
+  for (const fs::path& file : {command_inverse_file(directory), library_yaml(directory)}) {
+    if (fs::exists(file)) files.push_back(file);
+  }
   return files;
 }
 
@@ -238,15 +269,22 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   if (!fs::is_directory(directory)) raise({directory.string()}, "", "isn't a directory", "a directory of clips");
   ClipLibrary library;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-    library.positive[channel] = read_dynamic(directory, kPositiveNames[channel], robot, channel, 1.0);
+    library.positive[channel] =
+        read_dynamic(directory, kPositiveNames[channel], robot, kCornerTable[direction_of(channel, false)]);
     const char* negative = kNegativeNames[channel];
     if (fs::exists(csv(directory, negative)) || fs::exists(yaml(directory, negative))) {
-      library.negative[channel] = read_dynamic(directory, negative, robot, channel, -1.0);
+      library.negative[channel] = read_dynamic(directory, negative, robot, kCornerTable[direction_of(channel, true)]);
     }
+  }
+  for (std::size_t c = kDirections; c < kCorners; ++c) {
+    const std::string name = corner_clip_name(kCornerTable[c]);
+    if (!fs::exists(csv(directory, name)) && !fs::exists(yaml(directory, name))) continue;
+    library.corners.push_back({kCornerTable[c].sign, read_dynamic(directory, name, robot, kCornerTable[c])});
   }
   for (std::size_t i = 0; i < library.posture.size(); ++i) {
     library.posture[i] = read_static(directory, kPostureNames[i], robot, kVelocityChannels + i);
   }
+  library.blend = read_blend(directory);
   if (fs::exists(command_inverse_file(directory))) library.inverse = read_command_inverse(directory);
   library.q_stand = robot.q_stand();
   library.q_lower = robot.q_lower();
@@ -270,6 +308,10 @@ void write_dynamic_clip(const fs::path& directory, const std::string& name, cons
   }
   write_file(csv(directory, name), format_clip_table(robot.joint_index, {}, clip.q));
   write_file(yaml(directory, name), text);
+}
+
+void write_blend(const fs::path& directory, Blend blend) {
+  write_file(library_yaml(directory), fmt::format("blend: {}\n", kBlendNames[static_cast<std::size_t>(blend)]));
 }
 
 void write_static_clip(const fs::path& directory, const std::string& name, Channel channel, const StaticClip& clip,

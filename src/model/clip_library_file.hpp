@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/robot_model.hpp"
+#include "pmg/blending.hpp"
 #include "pmg/clip.hpp"
 
 namespace pmg::model {
@@ -16,11 +17,15 @@ inline constexpr double kMaxContactCenterSpread = 0.15;
 inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< the periods of all dynamic clips together stay below
 
 /// Reads DIRECTORY/{forward,backward,lateral,turn}.{csv,yaml} (backward, lateral_right and turn_right optional) and
-/// {bend,lean,squat}.{csv,yaml} for this robot, and inverse.csv where there is one. Throws ConfigError with file and
+/// {bend,lean,squat}.{csv,yaml} for this robot, and, where they are, clips of several velocities (corner_clip_name),
+/// inverse.csv and library.yaml (which blend they were made for; gain without it). Throws ConfigError with file and
 /// line: wrong or missing joint columns, NaN, contact centres of one foot that differ by more than 0.15, static
 /// commands that don't increase, dynamic clips of ten seconds or more in total, samples outside joint limits, mean
 /// velocities in the wrong direction, a posture that at command 0 isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
+
+/// What a clip of several velocities is called: each channel's name in turn, as in forward_turn or lateral_turn_right.
+std::string corner_clip_name(const Corner& corner);
 
 /// Those of the files named above that are there.
 std::vector<std::filesystem::path> clip_library_files(const std::filesystem::path& directory);
@@ -32,6 +37,7 @@ std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& 
 /// isn't written: it is periodic_spline_slopes of q). Throws ConfigError when a file can't be written.
 void write_dynamic_clip(const std::filesystem::path& directory, const std::string& name, const DynamicClip& clip,
                         const RobotModel& robot, const std::string& source);
+void write_blend(const std::filesystem::path& directory, Blend blend);  ///< library.yaml
 void write_static_clip(const std::filesystem::path& directory, const std::string& name, Channel channel,
                        const StaticClip& clip, const RobotModel& robot, const std::string& source);
 

@@ -1,6 +1,6 @@
 #include "runtime/control_setup.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -61,10 +61,14 @@ std::string robots_own_policy(const model::RobotModel& robot) {
   return reader.has("policy") ? reader.required<std::string>("policy") : "none";
 }
 
-Blend blend_named(const std::string& name) {
-  if (name == "gain") return Blend::kGain;
-  if (name == "paper") return Blend::kPaper;
-  throw std::invalid_argument(fmt::format("--blend {}: expected gain or paper", name));
+Blend blend_named(const std::string& name, const ClipLibrary& library) {
+  if (name == "library") return library.blend;
+  const auto found = std::ranges::find(kBlendNames, name);
+  if (found == kBlendNames.end()) {
+    throw std::invalid_argument(
+        fmt::format("--blend {}: expected library or one of {}", name, fmt::join(kBlendNames, ", ")));
+  }
+  return static_cast<Blend>(found - kBlendNames.begin());
 }
 
 /// Every option of the tick that a configuration shows, by its place there. Options: TickOptions, const or not.
@@ -132,7 +136,7 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.clips = setup.clips.empty() ? loaded.robot.directory / "clips" : setup.clips;
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   loaded.options = tick_options(loaded.robot);
-  loaded.options.generator.blend = blend_named(setup.blend);
+  loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
   loaded.policy_name = setup.policy.empty() ? robots_own_policy(loaded.robot) : setup.policy;
   const std::optional<fs::path> policy =
       policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
@@ -166,7 +170,7 @@ nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedContr
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
                                  {"policy", loaded.policy_name},
-                                 {"blend", setup.blend},
+                                 {"blend", kBlendNames[static_cast<std::size_t>(*loaded.options.generator.blend)]},
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
   if (loaded.policy_name != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));

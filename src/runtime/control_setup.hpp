@@ -18,7 +18,7 @@ struct ControlSetup {
   std::string robot = "z1";     ///< name below config/robots, or a folder
   std::filesystem::path clips;  ///< empty: the robot's own
   std::string policy;  ///< name below the robot's policies/, or none: drives follow the reference; empty: robot.yaml's
-  std::string blend = "gain";  ///< how clips are mixed: gain or paper
+  std::string blend = "library";  ///< how clips are mixed: as the library says, or gain, paper or corners
 };
 
 /// What a setup names, read from its files and checked. The tick refers to nothing of it but robot.

@@ -42,6 +42,7 @@ Scenario load_scenario(const std::filesystem::path& file) {
     if (entry.has("mode")) step.mode = mode_named(entry.one_of("mode", kModeNames));
     step.command = entry.has("command") ? read_command(entry.map("command")) : Command{};
     step.hoist_without_policy = entry.optional<bool>("hoist_without_policy", step.hoist_without_policy);
+    step.beyond_reach = entry.optional<bool>("beyond_reach", false);
     step.steady_without_policy = entry.optional<bool>("steady_without_policy", step.steady_without_policy);
     entry.finish();
     scenario.steps.push_back(step);

@@ -21,6 +21,7 @@ struct ScenarioStep {
   /// The gantry carries the robot through this step unless a policy balances it.
   bool hoist_without_policy = false;
   bool steady_without_policy = false;  ///< or steadies it; hoisting goes before
+  bool beyond_reach = false;           ///< asks for more than clips give together: evaluations report it apart
   Support support_without_policy() const {
     return hoist_without_policy ? Support::kLifted : steady_without_policy ? Support::kSteady : Support::kNone;
   }

@@ -192,6 +192,8 @@ TEST(Push, SixteenTrialsMeetEveryDirectionStandingAndWalking) {
 TEST(Table1, LimitsAndThePapersFiguresAreThoseOfThePolicyByName) {
   Table1 table;
   table.scenario = standing(1.0);
+  table.scenario.name = kGentleScenario;
+  table.yardsticks.resize(2);
   table.cases = {{.name = "without_gco", .candidate = without_policy(), .plants = {}},
                  {.name = "pmg", .candidate = without_policy(), .plants = {}}};
   TrialResult good;

@@ -124,7 +124,7 @@ TEST(Blending, PaperBlendAtZeroIsTheStandingPostureNotTheZeroPosture) {
 
 TEST(GaitTimings, AverageWithTheirWeightsAndOnTheCircle) {
   const ClipLibrary library = constant_library();
-  PerDirection<std::optional<DynamicClip>> clips;
+  PerCorner<std::optional<DynamicClip>> clips;
   clips[0] = library.positive[kVx];
   clips[2] = library.positive[kVy];
   clips[0]->contact_center = {0.98, 0.48};

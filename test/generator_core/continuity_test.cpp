@@ -50,13 +50,17 @@ JointVector speed_bound(const ClipLibrary& library, const GeneratorOptions& opti
 
 TEST(Generator, ReferenceIsContinuousUnderArbitraryCommands) {
   for (const int joints : {3, 31}) {
-    for (const Blend blend : {Blend::kGain, Blend::kPaper}) {
+    for (const Blend blend : {Blend::kGain, Blend::kPaper, Blend::kCorners}) {
       const ClipLibrary library = make_library(joints, 11);
       GeneratorOptions options = make_options();
       options.blend = blend;
       // The paper's weights are shares of the summed speeds: near zero they turn over within 1e-6 m/s, but there the
       // amplitudes are as small; elsewhere w_i alpha_i changes at most three times as fast as alpha_i.
-      const JointVector bound = (blend == Blend::kPaper ? 3.0 : 1.0) * speed_bound(library, options);
+      // A corner's superposition is at most as fast as its three directions and the two lifts taken off together.
+      const JointVector bound = (blend == Blend::kGain    ? 1.0
+                                 : blend == Blend::kPaper ? 3.0
+                                                          : 5.0) *
+                                speed_bound(library, options);
       Generator generator(library, options);
       std::mt19937_64 random(23);
       std::uniform_real_distribution<double> any(-1.0, 1.0), toss(0.0, 1.0);

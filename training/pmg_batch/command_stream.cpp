@@ -23,7 +23,23 @@ double CommandStream::value(std::size_t channel) {
   return channel < kVelocityChannels && std::abs(drawn) < kSmallestShare * range ? 0.0 : drawn;
 }
 
+/// Every velocity at one of its ends or none.
+void CommandStream::jump() {
+  left_s_ = 0.5;
+  command_ = Command{};
+  for (std::size_t c = 0; c < kVelocityChannels; ++c) {
+    const double end = uniform(0.0, 3.0);
+    command_.u[c] = end < 1.0 ? limits_.lower[c] : end < 2.0 ? limits_.upper[c] : 0.0;
+  }
+}
+
 void CommandStream::draw() {
+  if (jumps_left_ == 0 && uniform(0.0, 1.0) < 0.02) jumps_left_ = 10;
+  if (jumps_left_ > 0) {
+    --jumps_left_;
+    jump();
+    return;
+  }
   left_s_ = uniform(0.0, 1.0) < 0.15 ? uniform(0.4, 1.5) : uniform(2.0, 7.0);
   command_ = Command{};
   const double kind = uniform(0.0, 1.0);

@@ -8,7 +8,8 @@
 
 namespace pmg::training {
 
-/// Piecewise constant commands: every channel alone, pairs, all six, standing in postures, pauses, and hasty changes.
+/// Piecewise constant commands: every channel alone, pairs, all six, standing in postures, pauses, hasty changes, and
+/// now and then five seconds of jumps between the ends of the ranges.
 /// Ranges are stretched, so that the edges of what is evaluated lie inside what was trained.
 class CommandStream {
  public:
@@ -20,6 +21,7 @@ class CommandStream {
 
  private:
   void draw();
+  void jump();
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   double value(std::size_t channel);
 
@@ -27,6 +29,7 @@ class CommandStream {
   std::mt19937_64 random_;
   Command command_;
   double left_s_ = 0.0;
+  int jumps_left_ = 0;
 };
 
 }  // namespace pmg::training

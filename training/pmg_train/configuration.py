@@ -77,6 +77,7 @@ CONFIG = {
             "clip": Number, "learning_rate": Range, "kl_target": Number, "entropy": Pair, "entropy_iterations": Number,
             "initial_std": Number, "gradient_norm": Number, "hidden": Widths},
     "symmetry": {"weight": Number},
+    "strictness": {"from_share": Number, "iterations": Range},
     "rewards": dict.fromkeys(("velocity_slow", "velocity_fast", "yaw_rate", "height", "attitude", "joint_position",
                               "joint_velocity"), _EXPONENTIAL)
     | {"joint_position_linear": Numbers}

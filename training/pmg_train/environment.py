@@ -83,6 +83,7 @@ class Environment:
         self.tick = torch.zeros(n, dtype=torch.int64, device=self.device)
         self.row = zeros(n, self.pool.rows.shape[1])
         self.time_s, self.kick_in_s, self.kick_share = zeros(n), zeros(n), torch.ones((), device=self.device)
+        self.strictness = torch.ones((), device=self.device)  # of the linear errors, see rewards.py
         self.episode_length_s = zeros(n)
         self.action, self.action_1, self.action_2 = zeros(n, actions), zeros(n, actions), zeros(n, actions)
         self.targets = zeros(self.shares.shape[1], n, joints)  # newest first
@@ -272,7 +273,7 @@ class Environment:
             slow_error=self.velocity - self.asked, fast_error=now - optimised[:, :3],
             attitude_error=attitude - command[:, 3:5], height_error=height - command[:, 5],
             q_error=leg_q - self.q_ref[:, :legs], dq_error=leg_dq - self.get("dq_ref")[:, :legs],
-            leg_weight=self.leg_weight, leg_linear_weight=self.leg_linear_weight, gain=self.row[:, self.fields["phase"]][:, 2],
+            strictness=self.strictness, leg_weight=self.leg_weight, leg_linear_weight=self.leg_linear_weight, gain=self.row[:, self.fields["phase"]][:, 2],
             touching=(torch.nan_to_num(w.sole_force) > 5.0).float(), contact=self.get("contact"),
             sole_velocity=sole_velocity, sole_tilt=2 * (sole_quat[..., 1] ** 2 + sole_quat[..., 2] ** 2),
             vertical_velocity=qvel[:, 2] - self.get("base_velocity_H")[:, 2], gyro=qvel[:, 3:6],

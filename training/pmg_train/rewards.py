@@ -4,7 +4,9 @@ import torch
 
 
 def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) -> dict[str, torch.Tensor]:
-    """One tensor (worlds,) a term, per second. m: the environment's measurements, see Environment.measure()."""
+    """One tensor (worlds,) a term, per second. m: the environment's measurements, see Environment.measure().
+
+    Linear errors of what is followed count m["strictness"] of their weight: all of it early would pay a beginner for falling."""
     terms = {}
 
     def exponential(name, squared_error):
@@ -12,6 +14,9 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
 
     def linear(name, value):
         terms[name] = weights[name] * value
+
+    def strict(name, value):
+        terms[name] = m["strictness"] * weights[name] * value
 
     slow, fast, attitude = m["slow_error"], m["fast_error"], m["attitude_error"]
     exponential("velocity_slow", (slow[:, :2] ** 2).sum(1))
@@ -22,12 +27,12 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     exponential("joint_position", (m["leg_weight"] * m["q_error"] ** 2).sum(1))
     exponential("joint_velocity", (m["leg_weight"] * m["dq_error"] ** 2).sum(1))
     # Sharp where the exponential is flat; bounded, so that a pushed robot isn't held to its reference.
-    terms["joint_position_linear"] = (m["leg_linear_weight"] * m["q_error"].abs().clamp(max=0.3)).sum(1)
+    terms["joint_position_linear"] = m["strictness"] * (m["leg_linear_weight"] * m["q_error"].abs().clamp(max=0.3)).sum(1)
     terms["alive"] = torch.full_like(m["gain"], weights["alive"])
-    linear("velocity_linear", slow[:, :2].abs().sum(1))
-    linear("yaw_rate_linear", slow[:, 2].abs())
-    linear("attitude_linear", attitude.abs().sum(1))
-    linear("height_linear", m["height_error"].abs())
+    strict("velocity_linear", slow[:, :2].abs().sum(1))
+    strict("yaw_rate_linear", slow[:, 2].abs())
+    strict("attitude_linear", attitude.abs().sum(1))
+    strict("height_linear", m["height_error"].abs())
 
     # A disturbed robot that should stand may step: what asks it to stand still fades while it is pushed about.
     standing = 1 - (m["gain"] > 0).float()

@@ -205,6 +205,7 @@ class Training:
             kicks = self.ranges["kicks"]
             ramp = min(1.0, self.iteration / kicks["ramp_iterations"])
             env.kick_share.fill_(kicks["from_share"] + (1 - kicks["from_share"]) * ramp)
+            env.strictness.fill_(self._strictness())
             for t in range(ppo["steps"]):
                 r.seen[t].copy_(env.observation)
                 r.critic_seen[t].copy_(env.critic_observation)
@@ -237,6 +238,13 @@ class Training:
         if self.rank == 0:
             self.save_actor(a.out / "actor.pt")
         self.log(f"done: {self.iteration} iterations, {self.steps / 1e6:.0f} M steps, {self.learned_s / 60:.1f} min")
+
+    def _strictness(self) -> float:
+        """Share of the linear errors' weight in this iteration."""
+        ramp = self.config["strictness"]
+        first, last = ramp["iterations"]
+        done = min(1.0, max(0.0, (self.iteration - first) / max(1.0, last - first)))
+        return ramp["from_share"] + (1 - ramp["from_share"]) * done
 
     def _any_rank(self, true_here: bool) -> bool:
         """All ranks end and save together."""

@@ -1,0 +1,78 @@
+#include "evaluation/step_measure.hpp"
+
+#include <limits>
+
+#include "runtime/control_cycle.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+
+Errors over(const Errors& sums, double seconds) {
+  Errors mean{};
+  for (std::size_t e = 0; e < kErrors && seconds > 0.0; ++e) mean[e] = sums[e] / seconds;
+  return mean;
+}
+
+}  // namespace
+
+void StepMeasure::add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted,
+                      const runtime::ScenarioStep& step) {
+  if (&step != step_) close_step();
+  step_ = &step;
+  measure_.add(result, truth, hoisted, step.command);
+}
+
+void StepMeasure::count_as_fallen(double from_s, const runtime::TickResult& result, sim::Truth last) {
+  last.p_WB.setZero();
+  runtime::TickResult held = result;
+  if (held.mode != runtime::Mode::kStand) held.mode = runtime::Mode::kWalk;
+  for (double time_s = from_s; time_s < scenario_.duration_s() - 1e-9; time_s += kTickPeriod_s) {
+    add(held, last, false, scenario_.at(time_s));
+  }
+}
+
+void StepMeasure::report(TrialResult& result) {
+  close_step();
+  step_ = nullptr;
+  result.judged_s = measure_.outcome().tracking.followed_s;
+  result.errors = over(within_.errors, within_.seconds);
+  result.errors_raw = over(within_.raw, within_.seconds);
+  if (beyond_.seconds > 0.0) result.errors_beyond_reach = over(beyond_.errors, beyond_.seconds);
+  result.step_errors = step_errors_;
+}
+
+StepMeasure::Sums StepMeasure::total() const {
+  const runtime::TrackingSummary now = measure_.outcome().tracking;
+  Sums sums{{now.lin_vel_mae_m_s, now.yaw_vel_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
+            {now.lin_vel_raw_mae_m_s, now.yaw_vel_raw_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
+            now.followed_s};
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    sums.errors[e] *= sums.seconds;
+    sums.raw[e] *= sums.seconds;
+  }
+  return sums;
+}
+
+void StepMeasure::close_step() {
+  if (step_ == nullptr) return;
+  const Sums now = total();
+  const double seconds = now.seconds - before_.seconds;
+  Errors mean;
+  mean.fill(std::numeric_limits<double>::quiet_NaN());
+  if (seconds > 0.5 * kTickPeriod_s) {
+    Sums& group = step_->beyond_reach ? beyond_ : within_;
+    for (std::size_t e = 0; e < kErrors; ++e) {
+      mean[e] = (now.errors[e] - before_.errors[e]) / seconds;
+      group.errors[e] += now.errors[e] - before_.errors[e];
+      group.raw[e] += now.raw[e] - before_.raw[e];
+    }
+    group.seconds += seconds;
+  }
+  step_errors_.push_back(mean);
+  before_ = now;
+}
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,45 @@
+// What a run measured, by step of its scenario.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "evaluation/trial.hpp"
+#include "runtime/run_measure.hpp"
+#include "runtime/scenario.hpp"
+
+namespace pmg::evaluation {
+
+/// A run's measure, and the same by step of the scenario and by whether a step is beyond the clips' reach.
+class StepMeasure {
+ public:
+  StepMeasure(const model::RobotModel& robot, const runtime::Scenario& scenario)
+      : measure_(robot.standing_height_m), scenario_(scenario) {}
+
+  void add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted, const runtime::ScenarioStep& step);
+
+  /// What is left of a run whose simulation diverged: the robot counts as fallen.
+  void count_as_fallen(double from_s, const runtime::TickResult& result, sim::Truth last);
+
+  runtime::RunOutcome outcome() const { return measure_.outcome(); }
+
+  /// Fills judged_s and all errors of a result.
+  void report(TrialResult& result);
+
+ private:
+  /// Sums over ticks: errors times seconds.
+  struct Sums {
+    Errors errors{}, raw{};
+    double seconds = 0.0;
+  };
+  Sums total() const;
+  void close_step();
+
+  runtime::RunMeasure measure_;
+  const runtime::Scenario& scenario_;
+  const runtime::ScenarioStep* step_ = nullptr;
+  Sums before_, within_, beyond_;
+  std::vector<Errors> step_errors_;
+};
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,78 @@
+#include "evaluation/yardstick.hpp"
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <utility>
+
+#include "evaluation/step_measure.hpp"
+#include "gco/motion_composition.hpp"
+#include "pmg/command_limiter.hpp"
+#include "runtime/control_cycle.hpp"
+
+namespace pmg::evaluation {
+
+namespace {
+
+constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+
+/// A body that moves exactly as commanded.
+class IdealRobot {
+ public:
+  explicit IdealRobot(double standing_height_m) : standing_height_m_(standing_height_m) {}
+
+  sim::Truth move(const Command& command) {
+    yaw_rad_ += command[kOmega] * kTickPeriod_s;
+    const Eigen::AngleAxisd turn(yaw_rad_, Eigen::Vector3d::UnitZ());
+    sim::Truth truth;
+    truth.p_WB.z() = standing_height_m_ + command[kHeight];
+    truth.q_WB = turn;
+    truth.v_WB_W = turn * Eigen::Vector3d(command[kVx], command[kVy], 0.0);
+    truth.omega_WB_B.z() = command[kOmega];
+    truth.q_WT = turn * Eigen::AngleAxisd(command[kPitch], Eigen::Vector3d::UnitY()) *
+                 Eigen::AngleAxisd(command[kRoll], Eigen::Vector3d::UnitX());
+    return truth;
+  }
+
+ private:
+  double standing_height_m_;
+  double yaw_rad_ = 0.0;
+};
+
+}  // namespace
+
+Yardstick yardstick(const Candidate& candidate, const runtime::Scenario& scenario,
+                    const std::function<bool()>& interrupted) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(candidate.control.robot));
+  const GeneratorOptions options = gco::generator_options(robot);
+  StepMeasure nothing(robot, scenario), follower(robot, scenario);
+  IdealRobot still(robot.standing_height_m), moving(robot.standing_height_m);
+  CommandLimiter limiter(options.limits, options.double_support_rate, options.stop_within_s);
+  double double_support = 1.0;
+  const auto judge = [&](const runtime::RunProgress& now, sim::World&) {
+    const Command asked = now.result.mode == runtime::Mode::kWalk ? now.step.command : Command{};
+    const Command& limited = limiter.step(asked, double_support, kTickPeriod_s);
+    const PerFoot<double>& weight = now.result.reference.contact_weight;
+    double_support = weight[kLeft] * weight[kRight];
+    nothing.add(now.result, still.move({}), false, now.step);
+    follower.add(now.result, moving.move(limited), false, now.step);
+    return true;
+  };
+  const TrialResult hung =
+      run_trial(candidate, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
+  Yardstick result;
+  nothing.report(result.nothing);
+  follower.report(result.follower);
+  result.nothing.complete = result.follower.complete = hung.complete;
+  return result;
+}
+
+Errors share_left(const Errors& errors, const Yardstick& between) {
+  Errors share{};
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    const double span = between.nothing.errors[e] - between.follower.errors[e];
+    share[e] = span > 0.0 ? (errors[e] - between.follower.errors[e]) / span : std::numeric_limits<double>::quiet_NaN();
+  }
+  return share;
+}
+
+}  // namespace pmg::evaluation

@@ -1,0 +1,43 @@
+// What the making of all dynamic clips shares: mixtures to be good in, and the way from legs to a whole body.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "generator/gait_optimization.hpp"
+#include "generator/gait_task.hpp"
+#include "generator/joint_roles.hpp"
+#include "generator/upper_body.hpp"
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+
+namespace pmg::generator {
+
+struct Making {
+  const model::RobotModel& robot;
+  JointRoles roles;
+  RobotLegs legs;
+  std::array<StaticClip, 3> posture;  ///< pitch, roll, height
+};
+
+/// A finished gait: what was asked, what came of it.
+struct MadeGait {
+  GaitTask task;
+  LegTrajectory legs;
+  UpperBody body;
+};
+
+/// A posture command as a part of a mixture.
+Addition posture_addition(const Making& making, Channel channel, double command);
+
+/// A finished clip as a part of a mixture whose cycle takes period_s.
+Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain,
+                       double period_s);
+
+/// Gains from 0.12 to 1, and some with postures; posture_weight: of walking in a posture against plain walking.
+std::vector<Scenario> scenarios(const Making& making, double posture_weight);
+
+/// The clip of legs and the rest of the body together.
+DynamicClip assemble(const Making& making, const GaitTask& task, const LegTrajectory& legs, UpperBody body);
+
+}  // namespace pmg::generator

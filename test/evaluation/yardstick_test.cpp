@@ -1,0 +1,171 @@
+// What errors are between, and what is counted apart.
+#include "evaluation/yardstick.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/step_measure.hpp"
+#include "evaluation/table1.hpp"
+#include "pmg/blending.hpp"
+
+namespace pmg::evaluation {
+namespace {
+
+constexpr double kTick_s = 0.01;
+
+runtime::ScenarioStep step(double start_s, double duration_s, runtime::Mode mode, const Command& command,
+                           bool beyond_reach = false) {
+  runtime::ScenarioStep made;
+  made.start_s = start_s;
+  made.duration_s = duration_s;
+  made.text = "step";
+  made.mode = mode;
+  made.command = command;
+  made.beyond_reach = beyond_reach;
+  return made;
+}
+
+Command of(Channel channel, double value) {
+  Command command;
+  command[channel] = value;
+  return command;
+}
+
+TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
+  Command both = of(kVx, 0.4);
+  both[kPitch] = 0.2;
+  const runtime::Scenario scenario{
+      .name = "hand", .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 4.0, runtime::Mode::kWalk, both)}};
+  const Yardstick between = yardstick({"none", {}}, scenario, {});
+  ASSERT_TRUE(between.nothing.complete);
+  // Walking begins some ticks into the second step (entry into the mode): the first one has 4 s less that.
+  const double judged_s = between.nothing.judged_s;
+  EXPECT_NEAR(judged_s, 5.0, 0.05);
+  const double walked_s = judged_s * between.nothing.errors_raw[kLinVel] / 0.4;
+  EXPECT_NEAR(walked_s, 4.0, 0.05) << "raw: 0.4 m/s in every tick of walking, nothing in standing";
+  EXPECT_NEAR(between.nothing.errors[kPitchError], 0.2 * walked_s / judged_s, 1e-9);
+  EXPECT_NEAR(between.nothing.errors[kHeightError], 0.0, 1e-12);
+  // 0.2 rad at 0.4 rad/s: 50 ticks, the first of which is 0.004 rad short of 0.2 already.
+  EXPECT_NEAR(between.follower.errors[kPitchError] * judged_s, 0.2 * 0.5 - 0.004 * kTick_s * (50 * 51 / 2), 1e-6);
+  // 0.4 m/s at 0.8 m/s^2 is 0.1 m short, and up to 1 / 0.15 of that for both feet on the ground.
+  const double short_m = between.follower.errors_raw[kLinVel] * judged_s;
+  EXPECT_GT(short_m, 0.099);
+  EXPECT_LT(short_m, 0.35);
+  // Averaged over a gait period errors come and go over one period: the sum stays, less what the end cuts off.
+  EXPECT_NEAR(between.nothing.errors[kLinVel] * judged_s, 0.4 * (walked_s - 0.5 * 1.1), 0.03);
+}
+
+TEST(Yardstick, AFollowerThatTurnsIsJudgedInItsOwnHeading) {
+  Command circle = of(kVx, 0.5);
+  circle[kOmega] = 0.5;
+  const runtime::Scenario scenario{
+      .name = "circle",
+      .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 12.0, runtime::Mode::kWalk, circle)}};
+  const Yardstick between = yardstick({"none", {}}, scenario, {});
+  // The heading averaged over a period lags by half a period's turn: 0.28 rad of 0.5 m/s are 0.14 m/s, no more.
+  EXPECT_LT(between.follower.errors[kLinVel], 0.17);
+  EXPECT_LT(between.follower.errors[kYawVel], 0.06);
+}
+
+TEST(Yardstick, ShareLeftIsZeroForAFollowerAndOneForDoingNothing) {
+  Yardstick between;
+  between.nothing.errors = {0.5, 0.4, 0.1, 0.2, 0.0};
+  between.follower.errors = {0.1, 0.1, 0.0, 0.05, 0.0};
+  const Errors follower = share_left(between.follower.errors, between),
+               nothing = share_left(between.nothing.errors, between);
+  for (const std::size_t e : {kLinVel, kYawVel, kRollError, kPitchError}) {
+    EXPECT_NEAR(follower[e], 0.0, 1e-15);
+    EXPECT_NEAR(nothing[e], 1.0, 1e-15);
+  }
+  EXPECT_NEAR(share_left({0.2, 0.0, 0.0, 0.0, 0.0}, between)[kLinVel], 0.25, 1e-12);
+  EXPECT_TRUE(std::isnan(share_left({}, between)[kHeightError])) << "nothing was asked of it";
+}
+
+/// A body that goes forward at a speed that changes from tick to tick by +-0.1 m/s, wherever it looks.
+sim::Truth going(double speed_m_s, int tick, double height_m) {
+  sim::Truth truth;
+  truth.p_WB.z() = height_m;
+  truth.v_WB_W.x() = speed_m_s + (tick % 2 == 0 ? 0.1 : -0.1);
+  return truth;
+}
+
+TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
+  const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
+  const runtime::Scenario scenario{.name = "hand",
+                                   .steps = {step(0.0, 10.0, runtime::Mode::kWalk, of(kVx, 0.3)),
+                                             step(10.0, 10.0, runtime::Mode::kWalk, of(kVx, 0.8), true)}};
+  StepMeasure measure(robot, scenario);
+  runtime::TickResult result;
+  result.mode = runtime::Mode::kWalk;
+  for (int tick = 0; tick < 2000; ++tick) {
+    measure.add(result, going(0.3, tick, robot.standing_height_m), false, scenario.at(tick * kTick_s + 1e-6));
+  }
+  TrialResult report;
+  measure.report(report);
+  EXPECT_NEAR(report.judged_s, 20.0, 1e-9);
+  // Averaged over an even number of ticks the +-0.1 m/s go; the first period is an average over fewer.
+  EXPECT_LT(report.errors[kLinVel], 0.003);
+  EXPECT_NEAR(report.errors_raw[kLinVel], 0.1, 1e-9) << "each tick is 0.1 m/s off";
+  ASSERT_TRUE(report.errors_beyond_reach.has_value());
+  EXPECT_NEAR((*report.errors_beyond_reach)[kLinVel], 0.5 * (1.0 - 0.5 * 0.1), 0.01) << "but for the averaging's start";
+  ASSERT_EQ(report.step_errors.size(), 2U);
+  EXPECT_EQ(report.step_errors[1][kLinVel], (*report.errors_beyond_reach)[kLinVel]);
+}
+
+TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
+  Table1 table;
+  table.scenario = {.name = "full", .steps = {step(0.0, 1.0, runtime::Mode::kWalk, of(kVx, 0.5))}};
+  table.cases = {{.name = "pmg", .candidate = {"none", {}}, .plants = {}}};
+  Yardstick between;
+  between.nothing.errors = {0.5, 0.5, 0.1, 0.1, 0.1};
+  between.follower.errors = {0.1, 0.1, 0.02, 0.02, 0.02};
+  table.yardsticks = {between};
+  TrialResult run;
+  run.complete = true;
+  run.judged_s = 1.0;
+  run.errors = {0.15, 0.15, 0.035, 0.031, 0.031};  // shares 0.125, 0.125, 0.1875, 0.1375, 0.1375
+  run.errors_raw = {0.2, 0.2, 0.035, 0.031, 0.031};
+  table.campaign.runs = {{run, run}};
+  evaluate(table);
+  EXPECT_TRUE(table.all_reached());
+  const nlohmann::ordered_json json = to_json(table);
+  const nlohmann::ordered_json& policy = json["policies"][0];
+  EXPECT_NEAR(policy["share"]["lin_vel_m_s"].get<double>(), 0.125, 1e-12);
+  EXPECT_EQ(policy["nothing"]["yaw_vel_rad_s"], 0.5);
+  EXPECT_EQ(policy["follower"]["roll_rad"], 0.02);
+  EXPECT_NEAR(policy["errors_raw"]["lin_vel_m_s"]["mean"].get<double>(), 0.2, 1e-12);
+  EXPECT_EQ(json["limits"]["of"], "share");
+  table.campaign.runs[0][0].errors[kPitchError] = table.campaign.runs[0][1].errors[kPitchError] = 0.034;  // 0.175
+  evaluate(table);
+  EXPECT_FALSE(table.reached(kPitchError));
+  EXPECT_TRUE(table.reached(kRollError)) << "its limit is 0.2";
+}
+
+TEST(Scenario, TheFullTableStaysWithinReachButForWhatSaysSo) {
+  const runtime::Scenario scenario = runtime::load_scenario("config/scenarios/table1_full.yaml");
+  const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
+  int beyond = 0;
+  std::array<bool, 2 * kChannels> end_met{};
+  for (const runtime::ScenarioStep& one : scenario.steps) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      const double u = one.command.u[c];
+      const double end = u < 0.0 ? robot.command_limits.lower[c] : robot.command_limits.upper[c];
+      if (c < kVelocityChannels && u != 0.0) sum += u / end;
+      if (u != 0.0 && std::abs(u - end) < 1e-9) end_met[2 * c + (u < 0.0 ? 1U : 0U)] = true;
+    }
+    EXPECT_EQ(one.beyond_reach, sum > kCornerReach + 1e-9) << one.text;
+    beyond += one.beyond_reach ? 1 : 0;
+  }
+  EXPECT_GE(beyond, 5);
+  for (std::size_t i = 0; i < end_met.size(); ++i) {
+    const double end = i % 2 == 0 ? robot.command_limits.upper[i / 2] : robot.command_limits.lower[i / 2];
+    EXPECT_TRUE(end_met[i] || end == 0.0) << kChannelNames[i / 2] << (i % 2 == 0 ? " up" : " down");
+  }
+}
+
+}  // namespace
+}  // namespace pmg::evaluation
