@@ -71,14 +71,14 @@ TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
     const Finished done = run({out, "--out", page_, "--json"});
     const auto report = nlohmann::json::parse(done.out)["runs"][0];
     EXPECT_EQ(report["fell"], summary["fell"]) << policy;
-    EXPECT_GT(summary["tracking"]["followed_s"], 1.0) << policy;
+    EXPECT_GT(summary["tracking"]["followed_s"].get<double>(), 1.0) << policy;
     EXPECT_EQ(report["tracking"], summary["tracking"]) << policy;
-    EXPECT_GT(summary["reference_slip"]["before_mean_m_s"], 0.0) << policy;
+    EXPECT_GT(summary["reference_slip"]["before_mean_m_s"].get<double>(), 0.0) << policy;
     EXPECT_EQ(report["reference_slip"], summary["reference_slip"]) << policy;
     EXPECT_EQ(report["scenario"], "walk");
     EXPECT_EQ(report["steps"].size(), 2U);
     EXPECT_EQ(report["steps"][1]["text"], "go");
-    EXPECT_NEAR(report["steps"][1]["from_s"], 1.5, 0.011);
+    EXPECT_NEAR(report["steps"][1]["from_s"].get<double>(), 1.5, 0.011);
   }
 }
 

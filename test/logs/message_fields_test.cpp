@@ -11,10 +11,12 @@
 
 #include "log_surgery.hpp"
 #include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "recorded_run.hpp"
 
@@ -24,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_info_t"},
+                                                        {"SCENARIO", "scenario_step_t"},
                                                         {"STATE", "robot_state_t"},
                                                         {"COMMAND", "command_t"},
                                                         {"MODE", "mode_t"},
@@ -31,6 +34,7 @@ const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_in
                                                         {"REFERENCE", "reference_t"},
                                                         {"STATUS", "status_t"},
                                                         {"MOTOR_COMMAND", "motor_command_t"},
+                                                        {"LIMITED", "limited_t"},
                                                         {"FAULT", "fault_t"},
                                                         {"TIMING", "timing_t"},
                                                         {"GROUND_TRUTH", "ground_truth_t"},
@@ -74,6 +78,8 @@ class MessageFields : public testing::Test {
     for (const test::LogEvent& event : test::read_events(file)) examples_.emplace(event.channel, event.data);
     fs::remove(file);
     // What that run has none of.
+    examples_.emplace("SCENARIO", bytes_of(pmg_msgs::scenario_step_t{}));
+    examples_.emplace("LIMITED", bytes_of(pmg_msgs::limited_t{}));
     examples_.emplace("TIMING", bytes_of(pmg_msgs::timing_t{}));
     examples_.emplace("GROUND_TRUTH", bytes_of(pmg_msgs::ground_truth_t{}));
     examples_.emplace("ACK", bytes_of(pmg_msgs::ack_t{}));
