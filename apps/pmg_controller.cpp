@@ -122,7 +122,7 @@ nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
 /// bench: null without --bench.
 nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
                                    const apps::BenchSession* bench) {
-  nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
+  nlohmann::ordered_json json = runtime::control_json(loaded);
   json["name"] = arguments.name;
   json["hal"] = arguments.hal;
   json["lcm_url"] = arguments.lcm_url;

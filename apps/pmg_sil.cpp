@@ -114,7 +114,7 @@ void require(const fs::path& value, const char* option) {
 /// bench: null without --bench.
 nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
                                    const apps::BenchSession* bench) {
-  nlohmann::ordered_json json = runtime::control_json(arguments.control, loaded);
+  nlohmann::ordered_json json = runtime::control_json(loaded);
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;

@@ -168,7 +168,7 @@ class Replay {
       report_.notes.push_back(
           fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
     }
-    note_options(logged, runtime::control_json(setup, loaded_), report_.notes);
+    note_options(logged, runtime::control_json(loaded_), report_.notes);
     runtime::restore_options(logged, loaded_.options);
     if (logged.contains("bench")) take_excitation(logged["bench"]);
     run_.robot = reference_.robot = motor_command_.robot = info.robot;

@@ -10,6 +10,7 @@
 
 #include "operator/words.hpp"
 #include "pmg/command.hpp"
+#include "pmg/types.hpp"
 #include "pmg/variant.hpp"
 
 namespace pmg::ops {

@@ -166,7 +166,7 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
   });
 }
 
-nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded) {
+nlohmann::ordered_json control_json(const LoadedControl& loaded) {
   nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
                                  {"clips", loaded.clips.string()},
                                  {"policy", loaded.policy_name},

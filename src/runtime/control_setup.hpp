@@ -44,7 +44,7 @@ std::string told_bundle(const ControlSetup& setup);
 std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch);
 
 /// The configuration in force, as --print-config shows it and a log's ROBOT_INFO keeps it.
-nlohmann::ordered_json control_json(const ControlSetup& setup, const LoadedControl& loaded);
+nlohmann::ordered_json control_json(const LoadedControl& loaded);
 
 /// Back: the options of the tick that such a configuration names; what it doesn't name stays. Throws
 /// nlohmann::json::exception when a value is of another type.

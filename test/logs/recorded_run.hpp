@@ -29,7 +29,7 @@ inline runtime::RunInfo recorded_run_info() {
   runtime::RunInfo run;
   run.robot = "biped-7";
   run.session = kRecordedSession;
-  run.options = runtime::control_json(setup, loaded).dump();
+  run.options = runtime::control_json(loaded).dump();
   run.bundle = loaded.bundle;
   run.files = loaded.files;
   return run;
