@@ -26,7 +26,7 @@ runtime::Scenario standing(double duration_s) {
 }
 
 /// Nobody balances: the drives follow the reference, which stands but doesn't walk.
-Candidate without_policy() { return {"none", {.policy = "none"}}; }
+Candidate without_policy() { return {"none", {.clips = {}, .policy = "none"}}; }
 
 Plants varied() {
   Plants plants;

@@ -212,7 +212,9 @@ TEST_F(OperatorTest, WhoeverStopsTheRobotDuringThatWaitKeepsItStopped) {
   const ModeWish stop(passer_by, "biped", Goal::kStop, 2.0);
   for (int k = 0; k < 300; ++k) {
     progress = step(mine);
-    if (k > 10) EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+    if (k > 10) {
+      EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+    }
   }
   EXPECT_EQ(progress, Progress::kFailed);
 }
