@@ -192,7 +192,12 @@ void Tick::watch_feet(const model::RobotState& state) noexcept {
 
 void Tick::change_over() noexcept {
   result_.hanging = feet_->hangs();
-  if (!result_.hanging) begin_policy();
+  if (result_.hanging) {
+    motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
+    gco_held_ticks_ = 0;
+  } else {
+    begin_policy();
+  }
   // From the targets in force, so that no torque jumps. Where the policy will want to go isn't known yet; it stays near
   // the reference.
   change_over_.start(result_.command.q, motion_.reference().q);

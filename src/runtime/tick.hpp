@@ -76,8 +76,7 @@ struct TickResult {
   ExcitationProgress excitation;  ///< what the command belongs to
   bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
-  /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand, and in
-  /// Walk while it comes to its end.
+  /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand.
   bool hanging = false;
   /// What each foot carries, of the robot's weight; nothing where no policy needs to know it, and before Stand.
   std::optional<PerFoot<double>> foot_load;
