@@ -85,13 +85,13 @@ TEST_F(FootLoadWatchTest, OneFootIsEnough) {
   stand();
   EXPECT_EQ(ticks_until(true, {1.0, 0.0}), -1);
   EXPECT_EQ(ticks_until(true, {0.0, 1.0}), -1);
-  EXPECT_EQ(ticks_until(true, {0.0, 0.2}), -1) << "most of it in a rope";
+  EXPECT_EQ(ticks_until(true, {0.0, 0.35}), -1) << "most of it in a rope";
 }
 
 TEST_F(FootLoadWatchTest, BetweenItsTwoThresholdsNothingChanges) {
-  EXPECT_EQ(ticks_until(false, {0.1, 0.1}), -1);
+  EXPECT_EQ(ticks_until(false, {0.15, 0.15}), -1);
   stand();
-  EXPECT_EQ(ticks_until(true, {0.1, 0.1}), -1);
+  EXPECT_EQ(ticks_until(true, {0.15, 0.15}), -1);
 }
 
 TEST_F(FootLoadWatchTest, TorqueReadingsThatVanishChangeNothingWhileTheDrivesAreAskedToCarry) {
@@ -132,7 +132,7 @@ TEST_F(FootLoadWatchTest, ATiltedRobotIsWeighedAlongGravity) {
 
 TEST_F(FootLoadWatchTest, RefusesThresholdsThatCanNotBe) {
   for (const auto& spoil :
-       {+[](FootLoadOptions& o) { o.lost_share = 0.3; }, +[](FootLoadOptions& o) { o.lost_s = 0.0; },
+       {+[](FootLoadOptions& o) { o.lost_share = 0.4; }, +[](FootLoadOptions& o) { o.lost_s = 0.0; },
         +[](FootLoadOptions& o) { o.found_s = -1.0; }, +[](FootLoadOptions& o) { o.filter_s = std::nan(""); }}) {
     FootLoadOptions options;
     spoil(options);
