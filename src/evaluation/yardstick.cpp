@@ -57,8 +57,10 @@ Yardstick yardstick(const Candidate& candidate, const runtime::Scenario& scenari
     follower.add(now.result, moving.move(limited), false, now.step);
     return true;
   };
+  Candidate hanging = candidate;
+  hanging.control.policy = "none";  // a policy isn't run in the air
   const TrialResult hung =
-      run_trial(candidate, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
+      run_trial(hanging, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
   Yardstick result;
   nothing.report(result.nothing);
   follower.report(result.follower);

@@ -13,6 +13,8 @@
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
 #include "pmg_msgs/limited_t.hpp"
+#include "pmg_msgs/hoist_state_t.hpp"
+#include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
@@ -274,6 +276,27 @@ void gather(const pmg_msgs::link_t& m, Gatherer& to) {
   to.number("late", m.late);
   to.number("not_finite", m.not_finite);
   to.number("no_lease", m.no_lease);
+  to.number("no_hoist", m.no_hoist);
+}
+
+void gather(const pmg_msgs::hoist_t& m, Gatherer& to) {
+  to.number("version", m.version);
+  to.text("robot", m.robot);
+  to.number("stamp_ns", m.stamp_ns);
+  to.text("source", m.source);
+  to.number("session", m.session);
+  to.number("sequence", m.sequence);
+  to.number("request", m.request);
+}
+
+void gather(const pmg_msgs::hoist_state_t& m, Gatherer& to) {
+  to.number("stamp_ns", m.stamp_ns);
+  to.text("robot", m.robot);
+  to.number("state", m.state);
+  to.number("stays_up", m.stays_up);
+  to.text("source", m.source);
+  to.number("session", m.session);
+  to.number("sequence", m.sequence);
 }
 
 using Bytes = std::vector<std::uint8_t>;
@@ -293,15 +316,17 @@ bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& field
 }
 
 using Read = bool (*)(const Bytes&, const Names&, std::vector<Field>&);
-constexpr std::array<std::string_view, 15> kChannelsInOrder = {
+constexpr std::array<std::string_view, 17> kChannelsInOrder = {
     "ROBOT_INFO", "SCENARIO", "STATE", "COMMAND", "MODE",         "TICK", "REFERENCE", "MOTOR_COMMAND",
-    "STATUS",     "LIMITED",  "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK"};
-constexpr std::array<Read, 15> kReads = {
+    "STATUS",     "LIMITED",  "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK",
+    "HOIST",      "HOIST_STATE"};
+constexpr std::array<Read, 17> kReads = {
     read<pmg_msgs::robot_info_t>,   read<pmg_msgs::scenario_step_t>, read<pmg_msgs::robot_state_t>,
     read<pmg_msgs::command_t>,      read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,
     read<pmg_msgs::reference_t>,    read<pmg_msgs::motor_command_t>, read<pmg_msgs::status_t>,
     read<pmg_msgs::limited_t>,      read<pmg_msgs::fault_t>,         read<pmg_msgs::timing_t>,
-    read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,           read<pmg_msgs::link_t>};
+    read<pmg_msgs::ground_truth_t>, read<pmg_msgs::ack_t>,           read<pmg_msgs::link_t>,
+    read<pmg_msgs::hoist_t>,        read<pmg_msgs::hoist_state_t>};
 
 struct ToText {
   std::string operator()(std::int64_t value) const { return std::to_string(value); }

@@ -90,30 +90,36 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
 
 INSTANTIATE_TEST_SUITE_P(OfALimb, KnownMotor,
                          testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15), {"--repeats", "1"}},
-                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1"}},
+                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1", "--angle", "0.1:1.3"}},
                                          Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
                          [](const auto& known) {
                            return std::string(known.param.joint) +
                                   (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
                          });
 
-// The example of README.md: a knee that wear has given play and friction under load is recorded, and diagnosed against
-// the knee that it was.
+// The example of README.md: a knee is recorded and calibrated; one that wear has given play and friction under load is
+// recorded, and diagnosed against it.
 TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   const fs::path hidden_file = PMG_SOURCE_DIR "/config/examples/worn_knee.yaml";
   const sim::ActuatorParameters hidden = sim::read_motor_file(hidden_file).at("left_knee");
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
-  const model::Joint& knee = robot.joints[static_cast<std::size_t>(robot.joint_index.at("left_knee"))];
-  std::ofstream(at("knee.yaml")) << sim::motor_yaml({{"left_knee", sim::actuator_in_force(knee, {})}});
   ASSERT_EQ(run("pmg_calibrate_motor", {"--make-excitation", "--robot", "z1", "--joint", "left_knee", "--angle",
                                         "0.1:1.3", "--seconds", "5", "--out", at("excitation")}),
+            0)
+      << err_;
+  ASSERT_EQ(
+      run("pmg_sil",
+          {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--out", at("knee")}),
+      0)
+      << err_;
+  ASSERT_EQ(run("pmg_calibrate_motor", {at("knee"), "--also", "friction", "damping", "--threads", "2", "--out",
+                                        at("calibrated")}),
             0)
       << err_;
   ASSERT_EQ(run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--motor",
                             hidden_file.string(), "--out", at("worn")}),
             0)
       << err_;
-  ASSERT_EQ(run("pmg_diagnose", {at("worn"), "--model", at("knee.yaml"), "--fit", "repeat == 0", "--score",
+  ASSERT_EQ(run("pmg_diagnose", {at("worn"), "--model", at("calibrated/motor.yaml"), "--fit", "repeat == 0", "--score",
                                  "repeat == 1", "--threads", "2", "--out", at("why")}),
             0)
       << err_;

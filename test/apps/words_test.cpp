@@ -113,10 +113,10 @@ TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
   expect_line("pmg_log inof out", "pmg_log: inof: unknown command; did you mean info?");
   expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
   expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
-  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert");
+  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk");
   expect_line(
       "pmg_clips",
-      "pmg_clips: a command is missing; expected one of synth, show, invert (pmg_clips --help shows an example)");
+      "pmg_clips: a command is missing; expected one of synth, show, invert, walk (pmg_clips --help shows an example)");
 }
 
 TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
@@ -144,7 +144,7 @@ TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
   expect_line("pmg_diagnose --step 1", "pmg_diagnose: --step: '1' isn't a number from 1e-05 to 0.01");
   expect_line("pmg_sil --seed many", "pmg_sil: --seed: 'many' isn't a whole number of at least 0");
   expect_line("pmg_sil --blend papre", "pmg_sil: --blend: 'papre' isn't known; did you mean paper?");
-  expect_line("pmg_sil --blend both", "pmg_sil: --blend: 'both' isn't known; expected one of gain, paper");
+  expect_line("pmg_sil --blend both", "pmg_sil: --blend: 'both' isn't known; expected one of library, gain, paper, corners");
 }
 
 TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {

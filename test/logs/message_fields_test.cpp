@@ -11,6 +11,8 @@
 
 #include "log_surgery.hpp"
 #include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/hoist_state_t.hpp"
+#include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
@@ -39,7 +41,9 @@ const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_in
                                                         {"TIMING", "timing_t"},
                                                         {"GROUND_TRUTH", "ground_truth_t"},
                                                         {"ACK", "ack_t"},
-                                                        {"LINK", "link_t"}};
+                                                        {"LINK", "link_t"},
+                                                        {"HOIST", "hoist_t"},
+                                                        {"HOIST_STATE", "hoist_state_t"}};
 
 /// Names of a type's fields, lengths of others left out. Read word by word: GCC 12 sees ghosts in std::regex under
 /// sanitizers.
@@ -84,6 +88,8 @@ class MessageFields : public testing::Test {
     examples_.emplace("GROUND_TRUTH", bytes_of(pmg_msgs::ground_truth_t{}));
     examples_.emplace("ACK", bytes_of(pmg_msgs::ack_t{}));
     examples_.emplace("LINK", bytes_of(pmg_msgs::link_t{}));
+    examples_.emplace("HOIST", bytes_of(pmg_msgs::hoist_t{}));
+    examples_.emplace("HOIST_STATE", bytes_of(pmg_msgs::hoist_state_t{}));
   }
   std::map<std::string, std::vector<std::uint8_t>> examples_;
   const std::vector<std::string> joints_ = model::load_robot(test::kRecordedRobot).joint_index.names();

@@ -38,7 +38,7 @@ inline runtime::RunInfo recorded_run_info() {
 /// after_tick is called with the seconds so far and may steer the log into another file.
 inline void record_run(io::LogWriter& writer, const std::function<void(runtime::TickLog&, double)>& after_tick = {}) {
   const model::RobotModel robot = model::load_robot(kRecordedRobot);
-  ControlRig rig(robot);
+  ControlRig rig(robot, false);
   runtime::TickLog log(writer, robot, recorded_run_info(), 100.0);
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 4e-4);

@@ -53,10 +53,13 @@ class SpoiltBus final : public hal::Hal {
 
 class ControlRig {
  public:
-  explicit ControlRig(const model::RobotModel& robot) : ControlRig(robot, clips(robot), runtime::tick_options(robot)) {}
-  ControlRig(const model::RobotModel& robot, ClipLibrary library, const runtime::TickOptions& options)
+  /// balances: false for what `--policy none` is.
+  explicit ControlRig(const model::RobotModel& robot, bool balances = true)
+      : ControlRig(robot, clips(robot), runtime::tick_options(robot), balances) {}
+  ControlRig(const model::RobotModel& robot, ClipLibrary library, const runtime::TickOptions& options,
+             bool balances = true)
       : bus(robot),
-        policy(new BreakablePolicy),
+        policy(new BreakablePolicy(balances)),
         inbox(link.stop),
         tick(robot, library, std::unique_ptr<policy::Policy>(policy), clock, options),
         bus_cycle(bus, link, robot, clock),

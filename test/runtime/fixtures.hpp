@@ -123,6 +123,7 @@ class ScriptedPlant final : public runtime::Plant {
 class BreakablePolicy final : public policy::Policy {
  public:
   enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
+  explicit BreakablePolicy(bool needs_the_ground = true) : balances(needs_the_ground) {}
   policy::Status act(const model::RobotState&, const Reference& reference, const Command& optimised,
                      JointVector& q_des) noexcept override {
     ++calls;
@@ -141,7 +142,7 @@ class BreakablePolicy final : public policy::Policy {
   bool needs_ground() const override { return balances; }
 
   Break how = Break::kNone;
-  bool balances = true;
+  bool balances;
   int calls = 0;
   std::function<void()> meanwhile;  ///< what the world does while the policy thinks
   std::optional<policy::DriveGains> own_gains;
