@@ -1,6 +1,7 @@
 // pmg_sil --viewer where there is nothing to view on. The window itself: test/sim/viewer_test.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void expect_refusal_in_one_line() {
-  const fs::path folder = fs::path(testing::TempDir()) / "pmg_sil viewer";
+  const fs::path folder = fs::path(testing::TempDir()) / ("pmg_sil viewer " + std::to_string(getpid()));  // tests run side by side
   fs::create_directories(folder);
   unsetenv("WAYLAND_DISPLAY");
   unsetenv("XDG_RUNTIME_DIR");

