@@ -140,6 +140,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   EXPECT_GT(diagnosis["held_out_error_before"].get<double>(), 8.0 * floor) << "something was wrong";
   EXPECT_LT(diagnosis["held_out_error_after"].get<double>(), 1.5 * floor) << "and little of it is left";
   // What was found drives the simulation.
+  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   EXPECT_NO_THROW(sim::read_motor_file(at("why/motor.yaml"), robot.joint_index));
 }
 
