@@ -38,11 +38,12 @@ class AdmissibleSet {
     return (q_s - room_up_).maxCoeff() <= 0.0 && (q_s + room_down_).minCoeff() >= 0.0;
   }
 
-  /// The largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s.
-  double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s) const noexcept {
+  /// The largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s. size: gains behind it are 0.
+  double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s,
+                        std::size_t size = kCorners) const noexcept {
     JointVector rise = JointVector::Zero(q_s.size());
     JointVector fall = JointVector::Zero(q_s.size());
-    for (std::size_t d = 0; d < kCorners; ++d) {
+    for (std::size_t d = 0; d < size; ++d) {
       if (gain[d] == 0.0) continue;
       rise.noalias() += gain[d] * up_[d];
       fall.noalias() += gain[d] * down_[d];

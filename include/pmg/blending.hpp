@@ -72,7 +72,8 @@ struct Mixture {
   PerCorner<double> gain{};    ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
   PerCorner<double> weight{};  ///< for T, mu and r; sums to 1, or all 0 for a zero command
   double gain_sum = 0.0;       ///< at most 1
-  bool normalised = false;     ///< the amplitudes asked for were more than the clips give together
+  std::size_t size = kDirections;  ///< corners that the blend can ask for; the others' gains and weights are 0
+  bool normalised = false;         ///< the amplitudes asked for were more than the clips give together
 };
 
 /// kCorners: by how much the amplitudes n_i = |u_i| / u_max_i may add up. Two channels at 90 % of their ranges, or all
@@ -86,6 +87,7 @@ inline constexpr double kCornerReach = 1.8;
 /// together until each is at most 1 and their sum at most kCornerReach: the direction of the command stays.
 inline Mixture mix_corners(const Command& command, const PerDirection<double>& scale) noexcept {
   Mixture mixture;
+  mixture.size = kCorners;
   std::array<double, kVelocityChannels> amplitude{};
   Corner sign;
   double sum = 0.0, largest = 0.0;
@@ -146,10 +148,12 @@ inline Mixture mix(Blend blend, const Command& command, const PerDirection<doubl
   }
   if (speed_sum == 0.0) return mixture;
   if (blend == Blend::kGain) mixture.normalised = amplitude_sum > 1.0;
+  const bool paper = blend == Blend::kPaper;
+  const double whole = 1.0 / std::max(1.0, amplitude_sum);
   for (std::size_t d = 0; d < kDirections; ++d) {
-    const bool paper = blend == Blend::kPaper;
+    if (speed[d] == 0.0) continue;
     mixture.weight[d] = paper ? speed[d] / speed_sum : amplitude[d] / amplitude_sum;
-    mixture.gain[d] = amplitude[d] * (paper ? speed[d] / (speed_sum + kEpsilon) : 1.0 / std::max(1.0, amplitude_sum));
+    mixture.gain[d] = amplitude[d] * (paper ? speed[d] / (speed_sum + kEpsilon) : whole);
     mixture.gain_sum += mixture.gain[d];
   }
   return mixture;
@@ -186,9 +190,9 @@ class GaitTimings {
   const GaitTiming& first() const noexcept { return origin_; }
 
   /// weight: sums to 1 over corners that have a clip.
-  GaitTiming average(const PerCorner<double>& weight) const noexcept {
+  GaitTiming average(const PerCorner<double>& weight, std::size_t size = kCorners) const noexcept {
     GaitTiming mean{0.0, origin_.contact_center, {}};
-    for (std::size_t d = 0; d < kCorners; ++d) {
+    for (std::size_t d = 0; d < size; ++d) {
       if (weight[d] == 0.0) continue;
       mean.period_s += weight[d] * from_origin_[d].period_s;
       for (const Foot foot : {kLeft, kRight}) {

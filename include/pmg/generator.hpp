@@ -117,8 +117,8 @@ class Generator {
     const double posture_share = posture_scale(
         admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
     Mixture mixture = mix(blend_, asked, scale_);
-    const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_);
-    for (double& g : mixture.gain) g *= velocity_share;
+    const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_, mixture.size);
+    for (std::size_t c = 0; c < mixture.size; ++c) mixture.gain[c] *= velocity_share;
     mixture.gain_sum *= velocity_share;
 
     report_command(wanted, asked, mixture, posture_share, dt_s);
@@ -235,10 +235,11 @@ class Generator {
                       double dt_s) noexcept {
     const Command previous = reference_.command;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-      double given = 0.0;
-      for (std::size_t c = 0; c < kCorners; ++c) {
+      const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
+      double given = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
+      for (std::size_t c = kDirections; c < mixture.size; ++c) {
         const int sign = kCornerTable[c].sign[channel];
-        if (sign != 0) given += sign * mixture.gain[c] * scale_[direction_of(channel, sign < 0)];
+        if (sign != 0) given += sign * mixture.gain[c] * scale_[sign < 0 ? back : forward];
       }
       reference_.command.u[channel] = given - (asked.u[channel] - wanted.u[channel]);
     }
@@ -252,7 +253,7 @@ class Generator {
 
   void advance_gait(const Mixture& mixture, double dt_s) noexcept {
     const bool at_rest = mixture.gain_sum == 0.0;
-    if (!at_rest) timing_ = timings_.average(mixture.weight);
+    if (!at_rest) timing_ = timings_.average(mixture.weight, mixture.size);
     stance_.step(at_rest, options_.stance_ramp_s, dt_s);
     phase_.advance(timing_.period_s, at_rest, dt_s);
     set_contacts(mixture.gain_sum);
@@ -279,13 +280,13 @@ class Generator {
   void blend(const Mixture& mixture, double dt_s) noexcept {
     PerCorner<double> gain_rate_per_s;
     double gain_sum_rate_per_s = 0.0;
-    for (std::size_t d = 0; d < kCorners; ++d) {
+    for (std::size_t d = 0; d < mixture.size; ++d) {
       gain_rate_per_s[d] = (mixture.gain[d] - gain_[d]) / dt_s;
       gain_sum_rate_per_s += gain_rate_per_s[d];
     }
     reference_.q.noalias() = (1.0 - mixture.gain_sum) * q_stand_ + q_s_;
     reference_.dq.noalias() = (q_s_ - previous_q_s_) * (1.0 / dt_s) - gain_sum_rate_per_s * q_stand_;
-    for (std::size_t d = 0; d < kCorners; ++d) {
+    for (std::size_t d = 0; d < mixture.size; ++d) {
       if (mixture.gain[d] == 0.0 && gain_rate_per_s[d] == 0.0) continue;
       curve_[d].add_blended(phase_.phase(), phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
                             reference_.dq);
