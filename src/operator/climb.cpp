@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kHoistAnswer_s = 0.5;
 
-bool upright(std::int8_t mode) { return mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK; }
-
 }  // namespace
 
 std::optional<pmg_msgs::hoist_state_t> carrying_hoist(const OperatorSource& source, const std::string& robot) {
@@ -75,7 +73,7 @@ Progress Climb::follow_wish() {
 
 Progress Climb::wait_for_ground() {
   const std::int8_t mode = *source_.heard(robot_)->mode();
-  if (!upright(mode)) return fail(fmt::format("ended by another request or a fault: mode is {}", mode_name(mode)));
+  if (!is_upright(mode)) return fail(fmt::format("ended by another request or a fault: mode is {}", mode_name(mode)));
   const auto hoist = carrying_hoist(source_, robot_);
   if (!hoist) {
     if (to_ == Goal::kStand) return Progress::kReached;

@@ -13,8 +13,6 @@ namespace {
 
 using Modes = pmg_msgs::mode_t;
 
-bool upright(std::int8_t mode) { return mode == Modes::STAND || mode == Modes::WALK; }
-
 constexpr const char* kRises = "Enter makes it stand up";
 
 }  // namespace
@@ -117,9 +115,9 @@ void KeyboardDriver::watch_mode() {
   const bool first = !mode_, restarted = mode_ && session_ != heard->status->session;
   mode_ = heard->mode();
   session_ = heard->status->session;
-  const bool fell = upright(before) && !upright(*mode_);
+  const bool fell = is_upright(before) && !is_upright(*mode_);
   const bool low = *mode_ == Modes::DAMPING || *mode_ == Modes::FAULT;
-  if (held_back_ || upright(*mode_)) return;
+  if (held_back_ || is_upright(*mode_)) return;
   if (*mode_ == Modes::FAULT) {
     hold_back("fault: " + heard->status->fault + "; R resets it, then " + kRises);
   } else if (restarted) {

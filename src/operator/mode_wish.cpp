@@ -43,8 +43,6 @@ std::string fault_words(const HeardRobot& heard) {
 
 bool refused(const HeardRobot& heard) { return heard.ack && heard.ack->verdict == pmg_msgs::ack_t::NOT_YOURS; }
 
-bool upright(std::int8_t mode) { return mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK; }
-
 bool lease_is_over(const HeardRobot& heard, const std::string& me) {
   return heard.status && heard.status->stamp_ns >= heard.ack->stamp_ns &&
          (heard.status->driving_source.empty() || heard.status->driving_source == me);
@@ -76,7 +74,7 @@ bool ModeWish::final(const HeardRobot& heard) const {
 }
 
 bool ModeWish::stopped_meanwhile(const HeardRobot& heard) const {
-  return upright_when_refused_ && goal_ != Goal::kReset && !upright(heard.status->mode);
+  return upright_when_refused_ && goal_ != Goal::kReset && !is_upright(heard.status->mode);
 }
 
 void ModeWish::ask_again_after_lease() {
@@ -85,7 +83,7 @@ void ModeWish::ask_again_after_lease() {
   const std::int64_t now_ns = source_.clock().now_ns();
   if (refused_ns_ < 0) {
     refused_ns_ = now_ns;
-    upright_when_refused_ = heard->status && upright(heard->status->mode);
+    upright_when_refused_ = heard->status && is_upright(heard->status->mode);
   }
   if (final(*heard) || !lease_is_over(*heard, source_.name()) || now_ns < repeat_at_ns_) return;
   repeat_at_ns_ = now_ns + kRepeat_ns;

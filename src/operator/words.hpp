@@ -10,6 +10,7 @@ inline constexpr const char* kHangs =
     "the robot hangs: its feet carry nothing, so its policy isn't run and it doesn't walk; set it down and ask again";
 
 const char* mode_name(std::int8_t mode) noexcept;         ///< of pmg_msgs::mode_t: "stand"
+bool is_upright(std::int8_t mode) noexcept;               ///< of pmg_msgs::mode_t: Stand or Walk
 const char* verdict_words(std::int8_t verdict) noexcept;  ///< of pmg_msgs::ack_t: why a request was not taken
 
 /// Text from the network, fit for a terminal: control characters, which could move the cursor, become '?'.
