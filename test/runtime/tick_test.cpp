@@ -234,8 +234,10 @@ TEST(Tick, APolicyIsNotRunInTheAirAndWalkingAgainNeedsANewRequest) {
   ASSERT_FALSE(driven.tick.result().hanging);
   driven.asking = false;  // one request is enough to walk on
   driven.carried = {0.0, 0.0};
-  driven.run(0.15);
+  for (int k = 0; k < 20 && !driven.tick.result().hanging; ++k) driven.step();
   ASSERT_TRUE(driven.tick.result().hanging);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << "nobody steps in the air";
+  EXPECT_EQ(driven.tick.result().reference.gain, 0.0);
   const int calls = driven.policy->calls, resets = driven.policy->resets;
   driven.run(0.6);
   EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
@@ -254,6 +256,20 @@ TEST(Tick, APolicyIsNotRunInTheAirAndWalkingAgainNeedsANewRequest) {
   driven.asking = true;
   driven.run(0.1);
   EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
+}
+
+TEST(Tick, LegsThatAreStillBroughtToRestAreNotTakenForFeetThatCarry) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kStand;
+  driven.run(2.0);
+  driven.carried = {0.0, 0.0};
+  for (int k = 0; k < 20 && !driven.tick.result().hanging; ++k) driven.step();
+  ASSERT_TRUE(driven.tick.result().hanging);
+  driven.carried = {0.5, 0.5};
+  driven.run(0.15);
+  EXPECT_TRUE(driven.tick.result().hanging) << "the change-over takes 0.2 s at least";
+  driven.run(0.45);
+  EXPECT_FALSE(driven.tick.result().hanging);
 }
 
 TEST(Tick, FaultsStayInForceInTheAir) {
