@@ -102,7 +102,7 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.samples, found.residual_Nm));
-  page.paragraph(fmt::format("Dry friction {:.4g} forwards, {:.4g} backwards.", found.coulomb_forward_Nm(),
+  page.paragraph(fmt::format("Dry friction {:.4g} Nm forwards, {:.4g} Nm backwards (N on a linear axis).", found.coulomb_forward_Nm(),
                              found.coulomb_backward_Nm()));
   if (const std::string meaning = meaning_of_negative(found); !meaning.empty()) page.paragraph(meaning);
   page.table({.header = {"parameter", "value", "one standard deviation"},
@@ -166,7 +166,7 @@ pages::Page fit_report(const FitResults& results) {
     const NoiseFloor& floor = results.noise_floor;
     page.paragraph(
         fmt::format("The noise floor: {} pairs of repeats stray by {:.3g} {} about what they have in common "
-                    "({:.3g} to {:.3g}), and differ by {:.3g}. No model explains that.",
+                    "({:.3g} to {:.3g}), and differ from each other by {:.3g}. No model explains that.",
                     floor.pairs.size(), 1e3 * floor.mean_absolute_rad, unit, 1e3 * floor.mean_absolute_low_rad,
                     1e3 * floor.mean_absolute_high_rad, 1e3 * floor.difference_mean_absolute_rad));
   }

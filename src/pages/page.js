@@ -125,8 +125,16 @@
       let row = rows.findIndex((end) => end < begin);
       if (row < 0) row = rows.length;
       rows[row] = begin + width;
+      const y = spec.lanes ? box.top + box.height - (8 + 13 * row) * px : box.top + (12 + 13 * row) * px;
       ctx.textAlign = 'left';
-      ctx.fillText(words, begin, spec.lanes ? box.top + box.height - (8 + 13 * row) * px : box.top + (12 + 13 * row) * px);
+      // Lines below stay off the words.
+      ctx.save();
+      ctx.strokeStyle = 'rgba(255, 255, 255, 0.85)';
+      ctx.lineWidth = 4 * px;
+      ctx.lineJoin = 'round';
+      ctx.strokeText(words, begin, y);
+      ctx.restore();
+      ctx.fillText(words, begin, y);
     }
   });
   const fitted = (ctx, words, width) => {
