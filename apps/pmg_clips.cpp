@@ -24,8 +24,8 @@
 #include "model/command_inverse_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
-#include "pmg/blending.hpp"
 #include "option_checks.hpp"
+#include "pmg/blending.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 
@@ -341,9 +341,7 @@ int main(int argc, char** argv) {
   walk_command->add_option("--blend", walking.blend, "as for invert")
       ->check(apps::one_of({"library", "gain", "paper", "corners"}))
       ->capture_default_str();
-  walk_command->add_option("--commands", walking.commands, "how many")
-      ->check(apps::positive())
-      ->capture_default_str();
+  walk_command->add_option("--commands", walking.commands, "how many")->check(apps::positive())->capture_default_str();
   walk_command->add_option("--seed", walking.seed, "of the commands")->capture_default_str();
   walk_command->add_option("--postures", walking.posture_share, "share of the posture ranges, for half of the commands")
       ->check(apps::in_range(0.0, 1.0))

@@ -129,8 +129,8 @@ nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::Lo
 
 void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
   const std::string of = std::isfinite(progress.duration_s) ? fmt::format(" / {:.1f}", progress.duration_s) : "";
-  line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of, runtime::mode_text(progress.result.mode, progress.result.hanging),
-                        progress.step.text));
+  line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of,
+                        runtime::mode_text(progress.result.mode, progress.result.hanging), progress.step.text));
 }
 
 void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {

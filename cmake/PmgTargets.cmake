@@ -50,5 +50,5 @@ function(pmg_add_test name)
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300
-                       ENVIRONMENT "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/test/lsan.supp")
+                       ENVIRONMENT "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/test/lsan.supp:print_suppressions=0")
 endfunction()

@@ -102,8 +102,8 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.samples, found.residual_Nm));
-  page.paragraph(fmt::format("Dry friction {:.4g} Nm forwards, {:.4g} Nm backwards (N on a linear axis).", found.coulomb_forward_Nm(),
-                             found.coulomb_backward_Nm()));
+  page.paragraph(fmt::format("Dry friction {:.4g} Nm forwards, {:.4g} Nm backwards (N on a linear axis).",
+                             found.coulomb_forward_Nm(), found.coulomb_backward_Nm()));
   if (const std::string meaning = meaning_of_negative(found); !meaning.empty()) page.paragraph(meaning);
   page.table({.header = {"parameter", "value", "one standard deviation"},
               .rows = {row("transmission.armature_kg_m2", found.armature_kg_m2),

@@ -98,7 +98,8 @@ std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::Wor
 /// Plays the stances; false when it was stopped.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
                   const std::function<bool()>& stop) {
-  runtime::LoadedControl loaded = runtime::load_control({.robot = (folder / "stances").string(), .clips = {}, .policy = "none"});
+  runtime::LoadedControl loaded =
+      runtime::load_control({.robot = (folder / "stances").string(), .clips = {}, .policy = "none"});
   const runtime::Scenario scenario = runtime::load_scenario(folder / "stances/scenario.yaml");
   sim::WorldOptions options = runtime::world_with_noise(seed, false);
   options.motors = plant;

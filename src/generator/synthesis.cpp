@@ -156,8 +156,8 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
   };
   const auto clip = [&making](const MadeGait& gait) { return assemble(making, gait.task, gait.legs, gait.body); };
 
-  const MadeGait forward =
-      make("forward", forward_task(making), {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+  const MadeGait forward = make("forward", forward_task(making),
+                                {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
   library.positive[kVx] = clip(forward);
 
   GaitTask lateral_wanted = lateral_task(making), turn_wanted = turn_task(making);
@@ -169,9 +169,10 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
     return make("backward", backward_task(making, forward.legs, forward.task),
                 {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
   });
-  auto lateral_made =
-      std::async(std::launch::async, [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
-  const MadeGait turn = make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+  auto lateral_made = std::async(std::launch::async,
+                                 [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
+  const MadeGait turn =
+      make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
   const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
   library.negative[kVx] = clip(backward);
   library.positive[kVy] = clip(lateral);

@@ -12,9 +12,9 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
-#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/hoist_t.hpp"
+#include "pmg_msgs/limited_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
@@ -197,6 +197,7 @@ void gather(const pmg_msgs::status_t& m, Gatherer& to) {
   to.flag("gco_held", m.gco_held);
   to.flag("policy_held", m.policy_held);
   to.flag("hanging", m.hanging);
+  to.flag("footing_unknown", m.footing_unknown);
   to.vector("foot_load", m.foot_load, kFeet);
   to.flag("realtime", m.realtime);
 }
@@ -317,9 +318,8 @@ bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& field
 
 using Read = bool (*)(const Bytes&, const Names&, std::vector<Field>&);
 constexpr std::array<std::string_view, 17> kChannelsInOrder = {
-    "ROBOT_INFO", "SCENARIO", "STATE", "COMMAND", "MODE",         "TICK", "REFERENCE", "MOTOR_COMMAND",
-    "STATUS",     "LIMITED",  "FAULT", "TIMING",  "GROUND_TRUTH", "ACK",  "LINK",
-    "HOIST",      "HOIST_STATE"};
+    "ROBOT_INFO", "SCENARIO", "STATE",  "COMMAND",      "MODE", "TICK", "REFERENCE", "MOTOR_COMMAND", "STATUS",
+    "LIMITED",    "FAULT",    "TIMING", "GROUND_TRUTH", "ACK",  "LINK", "HOIST",     "HOIST_STATE"};
 constexpr std::array<Read, 17> kReads = {
     read<pmg_msgs::robot_info_t>,   read<pmg_msgs::scenario_step_t>, read<pmg_msgs::robot_state_t>,
     read<pmg_msgs::command_t>,      read<pmg_msgs::mode_t>,          read<pmg_msgs::tick_input_t>,

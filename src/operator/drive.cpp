@@ -132,6 +132,7 @@ std::string Drive::trouble() const {
   }
   if (status.mode != pmg_msgs::mode_t::WALK) {
     if (status.hanging) return kHangs;
+    if (status.footing_unknown) return kFootingUnknown;
     const char* mode = mode_name(status.mode);
     return options_.climb ? fmt::format("walk was ended by another request: mode is {}", mode)
                           : fmt::format("mode is {}: commands move a robot in walk only", mode);

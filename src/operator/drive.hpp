@@ -14,8 +14,9 @@ namespace pmg::ops {
 
 struct DriveOptions {
   double duration_s = 0.0;
-  bool climb = false;     ///< ask for Walk first, and for Stand at the end
-  double timeout_s = 10;  ///< for each of the two, for a hoist to set the robot down, for a crashed source's lease to end
+  bool climb = false;  ///< ask for Walk first, and for Stand at the end
+  double timeout_s =
+      10;  ///< for each of the two, for a hoist to set the robot down, for a crashed source's lease to end
 };
 
 /// Sends at 50 Hz from construction on, so that Walk finds a fresh command.

@@ -43,7 +43,10 @@ std::string variant(const pmg_msgs::robot_info_t& info) {
 }
 
 std::string mode_text(const pmg_msgs::status_t& status) {
-  return fmt::format("{}{}", mode_name(status.mode), status.hanging ? ", hanging" : "");
+  return fmt::format("{}{}", mode_name(status.mode),
+                     status.hanging           ? ", hanging"
+                     : status.footing_unknown ? ", feet not judged yet"
+                                              : "");
 }
 
 std::string driver(const pmg_msgs::status_t& status) {
@@ -141,7 +144,8 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   }
   if (status.foot_load[kLeft] != kNotEstimated) {
     add("feet carry", fmt::format("left {:.0f} %  right {:.0f} % of the weight{}", 100.0 * status.foot_load[kLeft],
-                                  100.0 * status.foot_load[kRight], status.hanging ? ": the policy isn't run" : ""));
+                                  100.0 * status.foot_load[kRight],
+                                  status.hanging || status.footing_unknown ? ": the policy isn't run" : ""));
   }
   add("limited", limits_text(news));
   if (const auto hot = hottest(news))
@@ -174,6 +178,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"gco_held", status.gco_held != 0},
       {"policy_held", status.policy_held != 0},
       {"hanging", status.hanging != 0},
+      {"footing_unknown", status.footing_unknown != 0},
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
   if (news.info) {

@@ -8,9 +8,7 @@
 
 namespace pmg::ops {
 
-bool is_upright(std::int8_t mode) noexcept {
-  return mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK;
-}
+bool is_upright(std::int8_t mode) noexcept { return mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK; }
 
 const char* mode_name(std::int8_t mode) noexcept {
   switch (mode) {

@@ -37,7 +37,7 @@ FootLoadWatch::FootLoadWatch(const model::RobotModel& robot, const FootLoadOptio
       found_ticks_needed_(ticks(options.found_s, dt_s)) {}
 
 void FootLoadWatch::start() noexcept {
-  hangs_ = true;
+  footing_ = Footing::kUnknown;
   begun_ = false;
   lost_ticks_ = found_ticks_ = 0;
   measured_ = asked_ = {};
@@ -53,8 +53,8 @@ void FootLoadWatch::update(const model::RobotState& state, const model::JointCom
   const double carried = sum(share());
   lost_ticks_ = carried < options_.lost_share && held_ > options_.held_share ? lost_ticks_ + 1 : 0;
   found_ticks_ = carried > options_.found_share ? found_ticks_ + 1 : 0;
-  if (lost_ticks_ >= lost_ticks_needed_) hangs_ = true;
-  if (found_ticks_ >= found_ticks_needed_) hangs_ = false;
+  if (lost_ticks_ >= lost_ticks_needed_) footing_ = Footing::kHangs;
+  if (found_ticks_ >= found_ticks_needed_) footing_ = Footing::kStands;
 }
 
 bool FootLoadWatch::can_be_judged(const model::RobotState& state, const model::JointCommand& in_force) const noexcept {

@@ -29,19 +29,22 @@ struct FootLoadOptions {
   double blind_share = 0.25;
 };
 
+/// What the loads of the feet say.
+enum class Footing { kUnknown, kStands, kHangs };
+
 class FootLoadWatch {
  public:
   /// Keeps no reference. Throws std::invalid_argument unless lost_share < found_share and times are above 0.
   FootLoadWatch(const model::RobotModel& robot, const FootLoadOptions& options, double dt_s);
 
-  /// Nothing is known: the robot counts as hanging until its feet are seen to carry it.
+  /// Nothing is known until the feet were seen to carry the robot, or to carry nothing.
   void start() noexcept;
 
   /// One tick: what the state shows of the loads while this command was in force. A state that isn't finite and whole,
   /// and a posture that tells nothing, change nothing. No heap.
   void update(const model::RobotState& state, const model::JointCommand& in_force) noexcept;
 
-  bool hangs() const noexcept { return hangs_; }
+  Footing footing() const noexcept { return footing_; }
   /// Filtered; of what the measured torques mean and what the torques mean that the command asks for, the pair with the
   /// larger sum: torque readings that vanish must not take the ground from under a robot that stands.
   const PerFoot<double>& share() const noexcept;
@@ -56,7 +59,7 @@ class FootLoadWatch {
   FootLoadOptions options_;
   double weight_N_, filter_gain_;
   int lost_ticks_needed_, found_ticks_needed_;
-  bool hangs_ = true;
+  Footing footing_ = Footing::kUnknown;
   bool begun_ = false;  // the filter has a value
   int lost_ticks_ = 0, found_ticks_ = 0;
   PerFoot<double> measured_{}, asked_{};

@@ -105,7 +105,7 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
 
 bool Supervisor::may_walk(const SupervisorInput& input) const noexcept {
   return input.command_age_s <= options_.stale_command_s && input.gco_held_ticks < options_.gco_held_ticks &&
-         !input.hanging;
+         !input.policy_waits;
 }
 
 void Supervisor::stop_walking_if_due(const SupervisorInput& input) noexcept {

@@ -21,10 +21,10 @@ struct SupervisorOptions {
 struct SupervisorInput {
   FaultEvidence evidence;
   double command_age_s = 0.0;
-  bool entry_done = false;  ///< the ramp from the measured posture into Stand has ended
-  bool at_rest = false;     ///< the reference moves no foot
-  int gco_held_ticks = 0;   ///< ticks in a row in which the ground-aware optimisation held an old solution
-  bool hanging = false;     ///< the feet carry nothing of a robot whose policy needs the ground
+  bool entry_done = false;    ///< the ramp from the measured posture into Stand has ended
+  bool at_rest = false;       ///< the reference moves no foot
+  int gco_held_ticks = 0;     ///< ticks in a row in which the ground-aware optimisation held an old solution
+  bool policy_waits = false;  ///< the policy needs the ground, and the feet aren't known to carry the robot
 };
 
 class Supervisor {

@@ -171,7 +171,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                         .entry_done = entry_.done(),
                         .at_rest = motion_.reference().gain == 0.0,
                         .gco_held_ticks = gco_held_ticks_,
-                        .hanging = result_.hanging};
+                        .policy_waits = policy_waits()};
   // On its way from the posture in which it was found the torso may be anywhere.
   if (drives(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
@@ -187,11 +187,11 @@ void Tick::watch_feet(const model::RobotState& state) noexcept {
   if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
   feet_->update(state, result_.command);
   result_.foot_load = feet_->share();
-  if (feet_->hangs() != result_.hanging) change_over();
+  if (feet_->footing() != footing()) change_over();
 }
 
 void Tick::change_over() noexcept {
-  result_.hanging = feet_->hangs();
+  take_footing();
   if (result_.hanging) {
     motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
     gco_held_ticks_ = 0;
@@ -201,6 +201,16 @@ void Tick::change_over() noexcept {
   // From the targets in force, so that no torque jumps. Where the policy will want to go isn't known yet; it stays near
   // the reference.
   change_over_.start(result_.command.q, motion_.reference().q);
+}
+
+void Tick::take_footing() noexcept {
+  result_.hanging = feet_->footing() == Footing::kHangs;
+  result_.footing_unknown = feet_->footing() == Footing::kUnknown;
+}
+
+Footing Tick::footing() const noexcept {
+  if (result_.hanging) return Footing::kHangs;
+  return result_.footing_unknown ? Footing::kUnknown : Footing::kStands;
 }
 
 void Tick::begin_policy() noexcept {
@@ -216,9 +226,9 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   entry_.start(state.q, target_);
   change_over_.finish();
   limiter_.start_from(state.q);
-  result_.hanging = feet_.has_value();
   if (feet_) {
     feet_->start();
+    take_footing();
   } else {
     begin_policy();
   }
@@ -227,7 +237,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
 Fault Tick::drive(const model::RobotState& state) noexcept {
   Fault fault = make_reference();
   if (fault.code == FaultCode::kNone) {
-    if (result_.hanging) {
+    if (policy_waits()) {
       target_ = result_.reference.q;
     } else {
       fault = ask_policy(state);
@@ -290,7 +300,7 @@ Fault Tick::ask_policy(const model::RobotState& state) noexcept {
 }
 
 void Tick::release(const model::RobotState& state) noexcept {
-  result_.hanging = false;
+  result_.hanging = result_.footing_unknown = false;
   result_.foot_load.reset();
   model::JointCommand& command = result_.command;
   // The drives multiply it by zero; but zero times NaN is NaN, so a broken measurement must not pass through.

@@ -78,6 +78,8 @@ struct TickResult {
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
   /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand.
   bool hanging = false;
+  /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
+  bool footing_unknown = false;
   /// What each foot carries, of the robot's weight; nothing where no policy needs to know it, and before Stand.
   std::optional<PerFoot<double>> foot_load;
   LimitReport limited;
@@ -107,6 +109,9 @@ class Tick {
   void watch_feet(const model::RobotState& state) noexcept;
   void enter_stand(const model::RobotState& state) noexcept;
   void change_over() noexcept;
+  void take_footing() noexcept;
+  Footing footing() const noexcept;
+  bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
   void begin_policy() noexcept;
   /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
   Fault drive(const model::RobotState& state) noexcept;

@@ -158,6 +158,7 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
   message.gco_held = result.optimised.status == gco::Status::kNotConverged;
   message.policy_held = result.policy_held;
   message.hanging = result.hanging;
+  message.footing_unknown = result.footing_unknown;
   copy(result.foot_load.value_or(PerFoot<double>{-1.0, -1.0}), message.foot_load);
   message.realtime = run.realtime;
 }

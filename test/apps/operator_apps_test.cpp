@@ -91,8 +91,8 @@ class OperatorApps : public testing::Test {
   std::unique_ptr<Background> controller(const std::string& name) {
     auto started = std::make_unique<Background>(
         "pmg_controller",
-        std::vector<std::string>{"--hal", "sil", "--robot", "z1", "--policy", "none", "--gantry", "--no-realtime", "--name", name, "--log",
-                                 (folder_ / ("log_" + name)).string()},
+        std::vector<std::string>{"--hal", "sil", "--robot", "z1", "--policy", "none", "--gantry", "--no-realtime",
+                                 "--name", name, "--log", (folder_ / ("log_" + name)).string()},
         folder_ / (name + ".txt"));
     EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0) << text(folder_ / (name + ".txt"));
     return started;

@@ -88,14 +88,15 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   EXPECT_NEAR(found.friction.viscous_Nm_s_per_rad / truth.friction.viscous_Nm_s_per_rad, 1.0, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfALimb, KnownMotor,
-                         testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15), {"--repeats", "1"}},
-                                         Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1", "--angle", "0.1:1.3"}},
-                                         Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
-                         [](const auto& known) {
-                           return std::string(known.param.joint) +
-                                  (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    OfALimb, KnownMotor,
+    testing::Values(Known{"head_pitch", motor(0.85, 1.2, 0.012, 0.15, 0.15), {"--repeats", "1"}},
+                    Known{"left_knee", motor(0.85, 1.2, 0.055, 1.0, 2.0), {"--repeats", "1", "--angle", "0.1:1.3"}},
+                    Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
+    [](const auto& known) {
+      return std::string(known.param.joint) +
+             (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
+    });
 
 // The example of README.md: a knee is recorded and calibrated; one that wear has given play and friction under load is
 // recorded, and diagnosed against it.
@@ -107,12 +108,11 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
             0)
       << err_;
   ASSERT_EQ(
-      run("pmg_sil",
-          {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--out", at("knee")}),
+      run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--out", at("knee")}),
       0)
       << err_;
-  ASSERT_EQ(run("pmg_calibrate_motor", {at("knee"), "--also", "friction", "damping", "--threads", "2", "--out",
-                                        at("calibrated")}),
+  ASSERT_EQ(run("pmg_calibrate_motor",
+                {at("knee"), "--also", "friction", "damping", "--threads", "2", "--out", at("calibrated")}),
             0)
       << err_;
   ASSERT_EQ(run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--motor",

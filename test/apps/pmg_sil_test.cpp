@@ -108,7 +108,8 @@ TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
   const fs::path file =
       scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
   for (const char* name : {"a", "b"}) {
-    const Finished walk = run("--policy none --gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
+    const Finished walk =
+        run("--policy none --gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
     ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
   }
   ASSERT_GT(fs::file_size(folder_ / "a/log.lcm"), 100'000u);
@@ -198,7 +199,8 @@ TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
   const fs::path file = scenario(
       "name: walk\nsteps:\n  - {for_s: 1.0, text: up, mode: stand}\n"
       "  - {for_s: 1.5, text: walk, mode: walk, command: {vx_m_s: 0.4}}\n");
-  const Finished walk = run("--realtime --policy none --gantry --json --scenario " + file.string() + " --out " + out_folder());
+  const Finished walk =
+      run("--realtime --policy none --gantry --json --scenario " + file.string() + " --out " + out_folder());
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(walk.exit_code, 0) << summary["faults"].dump();
   // Ticks that ran; a shared host may have taken some.

@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void expect_refusal_in_one_line() {
-  const fs::path folder = fs::path(testing::TempDir()) / ("pmg_sil viewer " + std::to_string(getpid()));  // tests run side by side
+  const fs::path folder =
+      fs::path(testing::TempDir()) / ("pmg_sil viewer " + std::to_string(getpid()));  // tests run side by side
   fs::create_directories(folder);
   unsetenv("WAYLAND_DISPLAY");
   unsetenv("XDG_RUNTIME_DIR");

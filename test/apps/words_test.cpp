@@ -144,7 +144,8 @@ TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
   expect_line("pmg_diagnose --step 1", "pmg_diagnose: --step: '1' isn't a number from 1e-05 to 0.01");
   expect_line("pmg_sil --seed many", "pmg_sil: --seed: 'many' isn't a whole number of at least 0");
   expect_line("pmg_sil --blend papre", "pmg_sil: --blend: 'papre' isn't known; did you mean paper?");
-  expect_line("pmg_sil --blend both", "pmg_sil: --blend: 'both' isn't known; expected one of library, gain, paper, corners");
+  expect_line("pmg_sil --blend both",
+              "pmg_sil: --blend: 'both' isn't known; expected one of library, gain, paper, corners");
 }
 
 TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {

@@ -123,7 +123,8 @@ TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToThe
   const Outcome outcome = stand_for_10_s(std::make_unique<BreaksDown>(kSoundTicks));
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
   EXPECT_EQ(outcome.lockstep.faults[0].code, FaultCode::kPolicyNotFinite);
-  // Every tick but the first few asks the policy: it is not yet standing, then its feet must be seen to carry for 0.05 s.
+  // Every tick but the first few asks the policy: it is not yet standing, then its feet must be seen to carry for 0.05
+  // s.
   EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.1);
   EXPECT_EQ(outcome.mode, Mode::kFault);
   EXPECT_TRUE(outcome.command.q.allFinite());

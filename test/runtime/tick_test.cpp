@@ -272,6 +272,23 @@ TEST(Tick, LegsThatAreStillBroughtToRestAreNotTakenForFeetThatCarry) {
   EXPECT_FALSE(driven.tick.result().hanging);
 }
 
+TEST(Tick, BeforeTheFeetAreJudgedTheReferenceDrivesAndNobodySaysThatTheRobotHangs) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kStand;
+  int unknown_ticks = 0;
+  for (int k = 0; k < 100; ++k) {
+    driven.step();
+    const TickResult& result = driven.tick.result();
+    EXPECT_FALSE(result.hanging) << k;
+    if (!result.footing_unknown) continue;
+    ++unknown_ticks;
+    EXPECT_EQ(driven.policy->calls, 0) << k;
+  }
+  EXPECT_GE(unknown_ticks, 5);
+  EXPECT_LE(unknown_ticks, 10) << "0.05 s and the filter";
+  EXPECT_GT(driven.policy->calls, 0);
+}
+
 TEST(Tick, FaultsStayInForceInTheAir) {
   const model::RobotModel& robot = test::z1();
   test::DrivenTick driven(robot);
