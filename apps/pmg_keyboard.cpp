@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <string>
@@ -39,17 +38,12 @@ struct Arguments {
 
 enum ExitCode { kOk = 0, kNotHeard = 1 };
 
-std::int64_t session_number() {
-  using std::chrono::system_clock;
-  return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
-}
-
 int drive(const Arguments& arguments) {
   constexpr int kWait_ms = 5;
   constexpr std::int64_t kPicture_ns = 100'000'000;
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
-  ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, session_number(), clock);
+  ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, ops::session_number(), clock);
   const std::vector<std::string> keys = ops::key_lines();
   {
     apps::RawTerminal terminal;

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -99,7 +98,7 @@ class Session {
   explicit Session(const Arguments& arguments)
       : arguments_(arguments),
         link_(io::choose_lcm_url(arguments.lcm_url)),
-        source_(link_, fmt::format("pmg_send.{}", getpid()), session_number(), clock_),
+        source_(link_, fmt::format("pmg_send.{}", getpid()), ops::session_number(), clock_),
         board_(link_, clock_),
         taken_(arguments.command) {}
 
@@ -111,12 +110,6 @@ class Session {
   }
 
  private:
-  /// Larger at every start.
-  static std::int64_t session_number() {
-    using std::chrono::system_clock;
-    return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
-  }
-
   double timeout_s(double otherwise) const { return arguments_.timeout_s > 0.0 ? arguments_.timeout_s : otherwise; }
 
   /// The robot that is meant. Empty when there is none, which is then reported.

@@ -69,9 +69,9 @@ template <typename T>
 using PerCorner = std::array<T, kCorners>;
 
 struct Mixture {
-  PerCorner<double> gain{};    ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
-  PerCorner<double> weight{};  ///< for T, mu and r; sums to 1, or all 0 for a zero command
-  double gain_sum = 0.0;       ///< at most 1
+  PerCorner<double> gain{};        ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
+  PerCorner<double> weight{};      ///< for T, mu and r; sums to 1, or all 0 for a zero command
+  double gain_sum = 0.0;           ///< at most 1
   std::size_t size = kDirections;  ///< corners that the blend can ask for; the others' gains and weights are 0
   bool normalised = false;         ///< the amplitudes asked for were more than the clips give together
 };

@@ -47,8 +47,10 @@ struct GeneratorOptions {
   StanceRule stance_rule = StanceRule::kRestRamp;
   double stance_ramp_s = 0.2;
   double double_support_rate =
-      0.15;                    ///< velocity channels' rate while both feet are loaded, as a share of the full rate, > 0
-  double stop_within_s = 0.5;  ///< from the command of zero velocity to zero gains, whatever the phase
+      0.15;  ///< velocity channels' rate while both feet are loaded, as a share of the full rate, > 0
+  /// From the command of zero velocity to zero gains, whatever the phase: a key that is let go has 0.05 s to be heard
+  /// of, and the robot is told to rest within 0.5 s.
+  double stop_within_s = 0.45;
 };
 
 /// q_ref(phi) = q_d + q_s with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand, and everything that goes with it.

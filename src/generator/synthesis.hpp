@@ -9,8 +9,8 @@
 
 namespace pmg::generator {
 
-/// with_corners: clips of two velocities too (corner_synthesis.hpp). progress is told the name of the clip that is being
-/// made, many times a second and one call at a time, but from several threads; it may throw to stop.
+/// with_corners: clips of two velocities too (corner_synthesis.hpp). progress is told the name of the clip that is
+/// being made, many times a second and one call at a time, but from several threads; it may throw to stop.
 ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
                        const std::function<void(const std::string&)>& progress);
 

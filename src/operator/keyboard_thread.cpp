@@ -1,6 +1,5 @@
 #include "operator/keyboard_thread.hpp"
 
-#include <chrono>
 #include <utility>
 
 namespace pmg::ops {
@@ -8,12 +7,6 @@ namespace pmg::ops {
 namespace {
 
 constexpr int kWait_ms = 5;
-
-/// Larger at every start.
-std::int64_t session_number() {
-  using std::chrono::system_clock;
-  return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "operator/operator_source.hpp"
 
+#include <chrono>
+
 namespace pmg::ops {
 
 std::optional<std::int8_t> HeardRobot::mode() const {
@@ -12,6 +14,11 @@ std::string HeardRobot::silent_driver(const std::string& me) const {
   constexpr double kSilent_s = 0.2;  // who drives sends oftener: the controller takes older commands for stale
   const bool another = status && !status->driving_source.empty() && status->driving_source != me;
   return another && status->command_age_s > kSilent_s ? status->driving_source : "";
+}
+
+std::int64_t session_number() {
+  using std::chrono::system_clock;
+  return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
 }
 
 OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock)

@@ -34,6 +34,9 @@ struct HeardRobot {
   std::string silent_driver(const std::string& me) const;
 };
 
+/// A source's session: larger at every start, as long as this computer's clock isn't set back.
+std::int64_t session_number();
+
 /// For one thread. Hears only while somebody calls link.receive().
 class OperatorSource {
  public:

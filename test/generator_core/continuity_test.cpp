@@ -29,7 +29,7 @@ JointVector speed_bound(const ClipLibrary& library, const GeneratorOptions& opti
     }
   }
   double gain_rate =
-      0.0;  // a stop takes 0.5 s; sharing one whole gait at most doubles it, since d(n/S) = dn/S - n dS/S^2
+      0.0;  // a stop takes 0.45 s; sharing one whole gait at most doubles it, since d(n/S) = dn/S - n dS/S^2
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     const double scale = std::min(options.scale_positive[c], options.scale_negative[c]);
     const double full = std::max(options.limits.upper[c], -options.limits.lower[c]) / options.stop_within_s;
