@@ -13,26 +13,26 @@
 #include "calib/excitation.hpp"
 #include "model/nearest_name.hpp"
 #include "runtime/excitation_recorder.hpp"
-#include "runtime/tick.hpp"
+#include "control/tick.hpp"
 #include "sim/joint_load.hpp"
 
 namespace pmg::apps {
 
 /// Every run of an excitation for this joint. Throws std::invalid_argument when the joint's range or gains forbid it.
-inline runtime::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,
+inline control::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,
                                                const calib::Excitation& excitation) {
   const auto index = robot.joint_index.find(joint);
   if (!index) {
     throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint; {}", joint, robot.name,
                                             model::expected_name(joint, robot.joint_index.names())));
   }
-  runtime::ExcitationPlan plan;
+  control::ExcitationPlan plan;
   plan.joint = *index;
   for (const calib::ExcitationRow& row : excitation.rows) {
     plan.runs.push_back(
         {excitation.trajectory(row.trajectory).q_cmd_rad, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad});
   }
-  runtime::check(plan, robot);
+  control::check(plan, robot);
   return plan;
 }
 
@@ -56,7 +56,7 @@ class BenchSession {
     load_ = sim::hanging_load(robot, joint);
   }
 
-  const runtime::ExcitationPlan& plan() const { return plan_; }
+  const control::ExcitationPlan& plan() const { return plan_; }
   const model::Joint& joint() const { return robot_.joints[static_cast<std::size_t>(plan_.joint)]; }
   /// What a log says of it, so that it can be replayed.
   nlohmann::ordered_json json() const {
@@ -66,14 +66,14 @@ class BenchSession {
   }
 
   double duration_s(double control_period_s) const {
-    return runtime::ExcitationPlayer(plan_, robot_, {joint().stand_rad, joint().kp_Nm_per_rad, joint().kd_Nm_s_per_rad},
+    return control::ExcitationPlayer(plan_, robot_, {joint().stand_rad, joint().kp_Nm_per_rad, joint().kd_Nm_s_per_rad},
                                      control_period_s)
         .duration_s();
   }
 
   runtime::ExcitationRecorder recorder() const {
     std::vector<std::size_t> samples;
-    for (const runtime::ExcitationRun& run : plan_.runs) samples.push_back(run.q_cmd_rad.size());
+    for (const control::ExcitationRun& run : plan_.runs) samples.push_back(run.q_cmd_rad.size());
     return {plan_.joint, std::move(samples)};
   }
 
@@ -109,7 +109,7 @@ class BenchSession {
   const model::RobotModel& robot_;
   std::filesystem::path folder_, out_;
   calib::Excitation excitation_;
-  runtime::ExcitationPlan plan_;
+  control::ExcitationPlan plan_;
   sim::HangingLoad load_;
 };
 

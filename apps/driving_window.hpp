@@ -7,7 +7,7 @@
 
 #include "operator/keyboard_text.hpp"
 #include "operator/keyboard_thread.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/simulated_robot.hpp"
 #include "sim/viewer.hpp"
 
 namespace pmg::apps {
@@ -22,7 +22,7 @@ class DrivingWindow {
         keyboard_(url, robot) {}
 
   /// From now on the window shows where the robot is, at most thirty times a second. Keeps a reference.
-  void show(runtime::SimulatedRobot& robot) {
+  void show(sil::SimulatedRobot& robot) {
     viewer_.release();  // pictures are the painter's from now on
     painter_ = std::jthread([this, &robot](const std::stop_token& stop) { paint(robot, stop); });
   }
@@ -44,9 +44,9 @@ class DrivingWindow {
  private:
   static constexpr std::chrono::milliseconds kFrame{33}, kPoll{10}, kLongestCalm{2500};
 
-  void paint(runtime::SimulatedRobot& robot, const std::stop_token& stop) {
+  void paint(sil::SimulatedRobot& robot, const std::stop_token& stop) {
     const ops::DrivingTable keys = ops::key_table();
-    runtime::PoseSample pose;
+    sil::PoseSample pose;
     for (auto next = std::chrono::steady_clock::now(); !stop.stop_requested();) {
       std::this_thread::sleep_until(next);
       next = std::chrono::steady_clock::now() + kFrame;

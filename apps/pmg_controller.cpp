@@ -19,13 +19,13 @@
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/control_setup.hpp"
+#include "control/control_setup.hpp"
 #include "runtime/controller.hpp"
 #include "runtime/controller_report.hpp"
-#include "runtime/mode_text.hpp"
+#include "control/mode_text.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/simulated_robot.hpp"
 #include "sim/motors_in_force.hpp"
 
 namespace {
@@ -57,7 +57,7 @@ was damped), 2 bad input, or a network, name or log folder that can't be used.)"
 
 struct Arguments {
   std::string hal;
-  runtime::ControlSetup control;
+  control::ControlSetup control;
   std::string name, lcm_url;
   fs::path log, motor, excitation, bench_out;
   std::string bench;
@@ -120,9 +120,9 @@ nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
 }
 
 /// bench: null without --bench.
-nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
+nlohmann::ordered_json config_json(const Arguments& arguments, const control::LoadedControl& loaded,
                                    const apps::BenchSession* bench) {
-  nlohmann::ordered_json json = runtime::control_json(loaded);
+  nlohmann::ordered_json json = control::control_json(loaded);
   json["name"] = arguments.name;
   json["hal"] = arguments.hal;
   json["lcm_url"] = arguments.lcm_url;
@@ -173,20 +173,20 @@ class Console {
     if (news.mode == mode_ && news.hanging == hanging_) return;
     mode_ = news.mode;
     hanging_ = news.hanging;
-    if (news.mode == runtime::Mode::kFault) {
-      spdlog::error("FAULT, damping: {}", runtime::describe(news.fault, robot_));
-      spdlog::error("{} Then: pmg_send reset --robot {}", runtime::advice(news.fault.code), name_);
+    if (news.mode == control::Mode::kFault) {
+      spdlog::error("FAULT, damping: {}", control::describe(news.fault, robot_));
+      spdlog::error("{} Then: pmg_send reset --robot {}", control::advice(news.fault.code), name_);
       return;
     }
     const char* driving = news.driving.name.data();
-    spdlog::info("mode: {}{}{}", runtime::mode_text(news.mode, news.hanging), *driving == '\0' ? "" : ", driven by ",
+    spdlog::info("mode: {}{}{}", control::mode_text(news.mode, news.hanging), *driving == '\0' ? "" : ", driven by ",
                  driving);
   }
 
  private:
   const model::RobotModel& robot_;
   std::string name_;
-  runtime::Mode mode_ = runtime::Mode::kPassive;
+  control::Mode mode_ = control::Mode::kPassive;
   bool hanging_ = false;
 };
 
@@ -202,7 +202,7 @@ void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant v
 
 /// The simulated robot, and the window on it if there is one.
 struct Stage {
-  runtime::SimulatedRobot& robot;
+  sil::SimulatedRobot& robot;
   apps::DrivingWindow* window;  // may be null
 };
 
@@ -228,7 +228,7 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   }
 }
 
-runtime::RunInfo run_info(const Arguments& arguments, const runtime::LoadedControl& loaded,
+runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded,
                           const runtime::Controller& controller, const apps::BenchSession* bench) {
   return {.robot = arguments.name,
           .session = std::chrono::system_clock::now().time_since_epoch().count(),
@@ -274,7 +274,7 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
   std::cout << json.dump(2) << '\n';
 }
 
-int control(Arguments& arguments) {
+int run_controller(Arguments& arguments) {
   if (arguments.hal != "sil") {
     throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil, the one that it has",
                                             arguments.hal, arguments.hal == "can" ? "CAN" : "EtherCAT"));
@@ -286,9 +286,9 @@ int control(Arguments& arguments) {
     }
     arguments.gantry = true;
   }
-  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  control::LoadedControl loaded = control::load_control(arguments.control);
   arguments.control.policy = loaded.policy_name;
-  runtime::expect_shared_host(loaded.options);
+  sil::expect_shared_host(loaded.options);
   std::optional<apps::BenchSession> bench;
   std::optional<runtime::ExcitationRecorder> excited;
   if (!arguments.bench.empty()) {
@@ -308,15 +308,15 @@ int control(Arguments& arguments) {
   const EndSignals signals;
   const io::WallClock clock;
   io::LcmLink link(arguments.lcm_url);
-  sim::WorldOptions world_options = runtime::world_with_noise(arguments.seed, true);
+  sim::WorldOptions world_options = sil::world_with_noise(arguments.seed, true);
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   world_options.benched_joint = arguments.bench;
   sim::World world(loaded.robot, world_options);
-  runtime::SimulatedRobot robot(world, arguments.gantry ? runtime::HoistedBy::kGantry : runtime::HoistedBy::kCrane,
+  sil::SimulatedRobot robot(world, arguments.gantry ? sil::HoistedBy::kGantry : sil::HoistedBy::kCrane,
                                 !arguments.no_log);
   std::optional<apps::DrivingWindow> window;
   if (arguments.viewer) window.emplace(world.mj_model(), arguments.name, arguments.lcm_url);
-  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, clock);
+  const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
   const runtime::RunInfo info = run_info(arguments, loaded, controller, bench ? &*bench : nullptr);
   announce(arguments, info, loaded.variant);
@@ -330,8 +330,8 @@ int control(Arguments& arguments) {
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
   std::atomic<bool> bench_over{false};
-  recorder.after_record = [&](const runtime::TickRecord& record) {
-    const runtime::TruthSample* truth = robot.take_truth(record.state.bus_sample);
+  recorder.after_record = [&](const control::TickRecord& record) {
+    const sil::TruthSample* truth = robot.take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
     if (!excited) return;
     excited->add(record);
@@ -355,7 +355,7 @@ int main(int argc, char** argv) {
   const auto body = [&]() -> int {
     spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
-    return control(arguments);
+    return run_controller(arguments);
   };
-  return apps::run_program(app, argc, argv, body, [&] { return runtime::told_bundle(arguments.control); });
+  return apps::run_program(app, argc, argv, body, [&] { return control::told_bundle(arguments.control); });
 }

@@ -18,7 +18,7 @@
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
-#include "runtime/summary.hpp"
+#include "sil/summary.hpp"
 #include "sim/video_writer.hpp"
 
 namespace {
@@ -94,7 +94,7 @@ evaluation::Candidate candidate(const std::string& text, const Arguments& argume
   candidate.control.robot = arguments.robot;
   candidate.control.clips = arguments.clips;
   candidate.control.policy = policy;
-  runtime::load_control(candidate.control);  // what doesn't fit is told before hours of work
+  control::load_control(candidate.control);  // what doesn't fit is told before hours of work
   return candidate;
 }
 
@@ -147,7 +147,7 @@ template <typename Result>
 int hand_over(const Arguments& arguments, const Result& result, bool complete, bool reached) {
   const nlohmann::ordered_json json = to_json(result);
   fs::create_directories(arguments.out);
-  runtime::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
+  sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
   page_of(result).write(arguments.out / "report.html");
   if (arguments.json) {
     std::cout << json.dump(2) << '\n';
@@ -184,7 +184,7 @@ int table1(const Arguments& arguments) {
   table.robot = arguments.robot;
   table.scenario_file = arguments.scenario.string();
   table.ranges_file = arguments.ranges_file();
-  table.scenario = runtime::load_scenario(arguments.scenario);
+  table.scenario = sil::load_scenario(arguments.scenario);
   table.seeds = arguments.seeds;
   for (const evaluation::Candidate& c : candidates(arguments))
     table.cases.push_back({.name = c.name, .candidate = c, .plants = plants(arguments)});
@@ -212,7 +212,7 @@ int table2(const Arguments& arguments) {
   table.plants_file = arguments.plants.string();
   table.scenario_file = arguments.scenario.string();
   table.ranges = evaluation::load_plant_ranges(arguments.plants);
-  table.scenario = runtime::load_scenario(arguments.scenario);
+  table.scenario = sil::load_scenario(arguments.scenario);
   fs::create_directories(arguments.out);
   run_table2(table, arguments.out, Watch(arguments).supervision());
   return hand_over(arguments, table, table.complete, table.complete && table.all_reached());
@@ -235,7 +235,7 @@ int robust(const Arguments& arguments) {
   test.robot = arguments.robot;
   test.scenario_file = arguments.scenario.string();
   test.ranges_file = arguments.ranges_file();
-  test.scenario = runtime::load_scenario(arguments.scenario);
+  test.scenario = sil::load_scenario(arguments.scenario);
   test.seeds = arguments.seeds;
   test.cases = evaluation::robustness_cases(candidate(arguments.policies.front(), arguments), plants(arguments));
   fs::create_directories(arguments.out);

@@ -11,20 +11,20 @@
 #include <optional>
 
 #include "bench_session.hpp"
-#include "hal/sil_hal.hpp"
+#include "sil/sil_hal.hpp"
 #include "io/lcm_link.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/control_setup.hpp"
+#include "control/control_setup.hpp"
 #include "runtime/controller_report.hpp"
-#include "runtime/film.hpp"
-#include "runtime/live_view.hpp"
-#include "runtime/lockstep.hpp"
-#include "runtime/mode_text.hpp"
-#include "runtime/realtime_run.hpp"
-#include "runtime/summary.hpp"
+#include "sil/film.hpp"
+#include "sil/live_view.hpp"
+#include "sil/lockstep.hpp"
+#include "control/mode_text.hpp"
+#include "sil/realtime_run.hpp"
+#include "sil/summary.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/video_writer.hpp"
 
@@ -53,7 +53,7 @@ Exit codes: 0 the scenario (the bench) ran to its end, or operators drove until 
 output (a film that fails leaves the other results whole), 130 interrupted or the viewer's window closed (what was done until then is kept).)";
 
 struct Arguments {
-  runtime::ControlSetup control;
+  control::ControlSetup control;
   fs::path scenario, out, export_mjcf, motor, vary, excitation;
   std::string bench, lcm_url;
   std::uint64_t seed = 0;
@@ -112,29 +112,29 @@ void require(const fs::path& value, const char* option) {
 }
 
 /// bench: null without --bench.
-nlohmann::ordered_json config_json(const Arguments& arguments, const runtime::LoadedControl& loaded,
+nlohmann::ordered_json config_json(const Arguments& arguments, const control::LoadedControl& loaded,
                                    const apps::BenchSession* bench) {
-  nlohmann::ordered_json json = runtime::control_json(loaded);
+  nlohmann::ordered_json json = control::control_json(loaded);
   json["scenario"] = arguments.scenario.string();
   json["seed"] = arguments.seed;
   json["gantry"] = arguments.gantry;
   if (bench != nullptr) json["bench"] = bench->json();
   if (!arguments.vary.empty()) json["vary"] = arguments.vary.string();
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
-  json["sensor_noise"] = {{"gyro_rad_s", runtime::kGyroNoise_rad_s},
-                          {"encoder_rad", runtime::kEncoderNoise_rad},
-                          {"orientation_rad", runtime::kOrientationNoise_rad}};
+  json["sensor_noise"] = {{"gyro_rad_s", sil::kGyroNoise_rad_s},
+                          {"encoder_rad", sil::kEncoderNoise_rad},
+                          {"orientation_rad", sil::kOrientationNoise_rad}};
   return json;
 }
 
-void show(apps::ProgressLine& line, const runtime::RunProgress& progress) {
+void show(apps::ProgressLine& line, const sil::RunProgress& progress) {
   const std::string of = std::isfinite(progress.duration_s) ? fmt::format(" / {:.1f}", progress.duration_s) : "";
   line.show(fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of,
-                        runtime::mode_text(progress.result.mode, progress.result.hanging), progress.step.text));
+                        control::mode_text(progress.result.mode, progress.result.hanging), progress.step.text));
 }
 
-void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
-  const runtime::TrackingSummary& tracking = outcome.tracking;
+void report(const sil::RunOutcome& outcome, const nlohmann::ordered_json& summary, const fs::path& out) {
+  const sil::TrackingSummary& tracking = outcome.tracking;
   std::cout
       << fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}{}\n",
                      summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
@@ -171,8 +171,8 @@ void report(const runtime::RunOutcome& outcome, const nlohmann::ordered_json& su
 
 /// A scenario that was played, either way.
 struct Played {
-  runtime::RunOutcome outcome;
-  runtime::StageTiming timing;
+  sil::RunOutcome outcome;
+  sil::StageTiming timing;
   nlohmann::ordered_json realtime;  // null in lockstep
   std::string film_failure;         // empty: none, or no film
 };
@@ -180,12 +180,12 @@ struct Played {
 /// What both ways of playing need.
 struct Stage {
   const Arguments& arguments;
-  const runtime::LoadedControl& loaded;
-  const runtime::Scenario& scenario;
+  const control::LoadedControl& loaded;
+  const sil::Scenario& scenario;
   sim::World& world;
   io::LogWriter& log_file;
-  runtime::Tick& tick;
-  runtime::LiveView* view;                  // may be null
+  control::Tick& tick;
+  sil::LiveView* view;                  // may be null
   const apps::BenchSession* bench;          // may be null
   runtime::ExcitationRecorder* excitation;  // null without a bench
   bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
@@ -203,20 +203,20 @@ runtime::RunInfo run_info(const Stage& stage) {
 Played play_lockstep(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  hal::SilHal bus(stage.world);
-  runtime::WorldPlant plant(stage.world);
+  sil::SilHal bus(stage.world);
+  sil::WorldPlant plant(stage.world);
   runtime::TickLog log(stage.log_file, robot, run_info(stage), rate_Hz);
-  std::optional<runtime::Film> film;
+  std::optional<sil::Film> film;
   if (stage.arguments.video) film.emplace(stage.world, stage.arguments.out / "video.mp4");
   apps::ProgressLine progress;
-  runtime::Lockstep lockstep(
+  sil::Lockstep lockstep(
       robot, bus, plant, stage.tick, stage.scenario, &log,
       {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
   lockstep.interrupted = [&stage] { return stage.over(); };
   if (stage.excitation != nullptr) {
-    lockstep.after_record = [&stage](const runtime::TickRecord& record) { stage.excitation->add(record); };
+    lockstep.after_record = [&stage](const control::TickRecord& record) { stage.excitation->add(record); };
   }
-  lockstep.after_tick = [&](const runtime::RunProgress& now) {
+  lockstep.after_tick = [&](const sil::RunProgress& now) {
     if (film) {
       const bool rolling = film->failure().empty();
       film->after_tick(now);
@@ -228,7 +228,7 @@ Played play_lockstep(const Stage& stage) {
     if (stage.view != nullptr) stage.view->after_tick(now);
     show(progress, now);
   };
-  const runtime::RunOutcome outcome = lockstep.run();
+  const sil::RunOutcome outcome = lockstep.run();
   progress.clear();
   if (film && film->failure().empty()) {
     film->close();
@@ -242,7 +242,7 @@ class Operators {
  public:
   /// Keeps references. Throws std::runtime_error when there is no such network, or a controller of this name on it.
   Operators(const Stage& stage, const runtime::RunInfo& info, runtime::Controller& controller,
-            runtime::SimulatedRobot& simulated)
+            sil::SimulatedRobot& simulated)
       : link_(io::choose_lcm_url(stage.arguments.lcm_url)),
         comms_(link_, controller.inbox(), controller.outbox(), stage.loaded.robot, info,
                1.0 / stage.loaded.options.dt_s, clock_) {
@@ -266,10 +266,10 @@ class Operators {
 Played play_realtime(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  runtime::SimulatedRobot simulated(stage.world,
-                                    stage.arguments.gantry           ? runtime::HoistedBy::kGantry
-                                    : stage.arguments.by_operators() ? runtime::HoistedBy::kCrane
-                                                                     : runtime::HoistedBy::kScenario,
+  sil::SimulatedRobot simulated(stage.world,
+                                    stage.arguments.gantry           ? sil::HoistedBy::kGantry
+                                    : stage.arguments.by_operators() ? sil::HoistedBy::kCrane
+                                                                     : sil::HoistedBy::kScenario,
                                     true);
   runtime::Controller controller(robot, simulated, stage.tick);
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
@@ -279,7 +279,7 @@ Played play_realtime(const Stage& stage) {
   info.refused = controller.refused();
   runtime::TickLog log(stage.log_file, robot, info, rate_Hz);
   apps::ProgressLine progress;
-  runtime::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
+  sil::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
                            !stage.balanced_by_policy() && !stage.arguments.gantry);
   std::optional<Operators> operators;
   if (stage.arguments.by_operators()) {
@@ -290,31 +290,31 @@ Played play_realtime(const Stage& stage) {
     if (stage.view != nullptr) stage.view->draw(simulated);
     return stage.over();
   };
-  run.after_tick = [&](const runtime::RunProgress& now) {
+  run.after_tick = [&](const sil::RunProgress& now) {
     if (stage.view != nullptr) stage.view->note(now);
     show(progress, now);
   };
-  const runtime::RunOutcome outcome = run.run();
+  const sil::RunOutcome outcome = run.run();
   progress.clear();
   return {outcome, run.timing(), runtime::punctuality_json(controller), ""};
 }
 
 /// Stands for as long as the excitation takes, then damps.
-runtime::Scenario bench_scenario(const apps::BenchSession& bench, double control_period_s) {
+sil::Scenario bench_scenario(const apps::BenchSession& bench, double control_period_s) {
   constexpr double kEntry_s = 2.0, kDamping_s = 0.5;
   const double stand_s = bench.duration_s(control_period_s) + kEntry_s;
-  runtime::ScenarioStep stand, damping;
+  sil::ScenarioStep stand, damping;
   stand.duration_s = damping.start_s = stand_s;
   stand.text = "excite " + bench.joint().name;
   damping.duration_s = kDamping_s;
   damping.text = "damping";
-  damping.mode = runtime::Mode::kDamping;
+  damping.mode = control::Mode::kDamping;
   return {.name = "bench of " + bench.joint().name, .steps = {stand, damping}};
 }
 
 /// Names a run that operators drive until it is ended.
-runtime::Scenario endless_scenario() {
-  runtime::ScenarioStep step;
+sil::Scenario endless_scenario() {
+  sil::ScenarioStep step;
   step.duration_s = std::numeric_limits<double>::infinity();
   step.text = "operators drive";
   return {.name = "operators", .steps = {step}};
@@ -333,9 +333,9 @@ int simulate(Arguments arguments) {
     require(arguments.scenario, "--scenario");
   }
   // Everything that input can spoil comes first: nothing is written for bad input.
-  runtime::LoadedControl loaded = runtime::load_control(arguments.control);
+  control::LoadedControl loaded = control::load_control(arguments.control);
   arguments.control.policy = loaded.policy_name;
-  if (arguments.realtime) runtime::expect_shared_host(loaded.options);
+  if (arguments.realtime) sil::expect_shared_host(loaded.options);
   std::optional<apps::BenchSession> bench;
   std::optional<runtime::ExcitationRecorder> recorder;
   if (benching) {
@@ -343,23 +343,23 @@ int simulate(Arguments arguments) {
     recorder.emplace(bench->recorder());
     loaded.options.excitation = bench->plan();
   }
-  const runtime::Scenario scenario = benching                   ? bench_scenario(*bench, loaded.options.dt_s)
+  const sil::Scenario scenario = benching                   ? bench_scenario(*bench, loaded.options.dt_s)
                                      : arguments.by_operators() ? endless_scenario()
-                                                                : runtime::load_scenario(arguments.scenario);
+                                                                : sil::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
   sim::WorldOptions world_options =
-      runtime::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
+      sil::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
   world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
     sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
   }
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   sim::World world(loaded.robot, world_options);
-  std::optional<runtime::LiveView> view;
+  std::optional<sil::LiveView> view;
   if (arguments.viewer) view.emplace(world, loaded.robot);
   if (arguments.video) sim::expect_ffmpeg();
   fs::create_directories(arguments.out);
@@ -368,7 +368,7 @@ int simulate(Arguments arguments) {
     std::cerr << fmt::format("baseline {}: this policy is there for comparison\n", to_string(loaded.variant));
   }
   const io::WallClock wall_clock;
-  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, wall_clock);
+  const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, wall_clock);
   const Stage stage{arguments,
                     loaded,
                     scenario,
@@ -385,13 +385,13 @@ int simulate(Arguments arguments) {
   log_file.flush();
   played.timing.write_csv(arguments.out / "timing.csv");
   nlohmann::ordered_json summary =
-      runtime::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s,
+      sil::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s,
                              arguments.control.policy == "none" ? "" : to_string(loaded.variant)},
                             played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   if (bench) summary["bench"] = bench->write(*recorder);
   if (!played.film_failure.empty()) summary["film_failure"] = played.film_failure;
-  runtime::write_json(arguments.out / "summary.json", summary);
+  sil::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
     std::cout << summary.dump(2) << '\n';
   } else if (bench) {
@@ -399,7 +399,7 @@ int simulate(Arguments arguments) {
   } else {
     report(played.outcome, summary, arguments.out);
   }
-  const runtime::RunOutcome& outcome = played.outcome;
+  const sil::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted && !arguments.by_operators()) return kInterrupted;
   if (!played.film_failure.empty()) return kBadInput;
   if (bench && !bench->whole(*recorder)) return kFellOrFault;
@@ -408,7 +408,7 @@ int simulate(Arguments arguments) {
 
 int export_mjcf(const Arguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.control.robot));
-  const std::string text = sim::mjcf(robot, runtime::world_with_noise(arguments.seed, arguments.gantry));
+  const std::string text = sim::mjcf(robot, sil::world_with_noise(arguments.seed, arguments.gantry));
   std::ofstream out(arguments.export_mjcf);
   out << text;
   if (!out.flush()) throw std::runtime_error(arguments.export_mjcf.string() + ": can't be written");
@@ -429,5 +429,5 @@ int main(int argc, char** argv) {
     apps::notice({SIGINT, SIGTERM}, "closing film and log, then the summary");
     return simulate(arguments);
   };
-  return apps::run_program(app, argc, argv, body, [&] { return runtime::told_bundle(arguments.control); });
+  return apps::run_program(app, argc, argv, body, [&] { return control::told_bundle(arguments.control); });
 }

@@ -12,7 +12,7 @@
 #include "diagnosis/robot_report.hpp"
 #include "io/whole_file.hpp"
 #include "model/clip_library_file.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::apps {
 
@@ -33,11 +33,11 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
   std::filesystem::create_directories(out);
   std::string kept = "nothing was written";
   try {
-    sim::World gantry(robot, runtime::world_with_noise(seed, true));
+    sim::World gantry(robot, sil::world_with_noise(seed, true));
     diagnosis::write_robot_log(diagnosis::play(gantry, diagnosis::hanging_excitation(robot), "hanging", progress),
                                robot, out / "hanging.lcm");
     kept = "hanging.lcm is written, standing.lcm isn't";
-    sim::World ground(robot, runtime::world_with_noise(seed, false));
+    sim::World ground(robot, sil::world_with_noise(seed, false));
     diagnosis::write_robot_log(
         diagnosis::play(ground, diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
         out / "standing.lcm");

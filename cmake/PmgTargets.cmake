@@ -24,13 +24,13 @@ if(PMG_WARNINGS_AS_ERRORS)
   target_compile_options(pmg_warnings INTERFACE -Werror)
 endif()
 
-# pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_NAME from src/NAME. Includes are written from
+# pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_room_NAME from src/NAME. Includes are written from
 # src/: #include "model/robot_model.hpp".
 function(pmg_add_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
-  add_library(pmg_${name} STATIC ${ROOM_SOURCES})
-  target_include_directories(pmg_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
-  target_link_libraries(pmg_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
+  add_library(pmg_room_${name} STATIC ${ROOM_SOURCES})
+  target_include_directories(pmg_room_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+  target_link_libraries(pmg_room_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
 endfunction()
 
 # pmg_add_app(NAME LINK targets...): the executable bin/NAME from apps/NAME.cpp. The target `programs` builds all of these.

@@ -18,7 +18,7 @@ namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kTickPeriod_s = 0.01;  // of the controller: runtime::ControlCycle
+constexpr double kTickPeriod_s = 0.01;  // of the controller: control::ControlCycle
 constexpr int kBusCyclesPerTick = 5;
 constexpr double kShortest_s = 1.0;
 constexpr const char* kState = "STATE";
@@ -147,7 +147,7 @@ void write_ticks(const RobotRecording& recording, const model::RobotModel& robot
   runtime::fill(run, robot, 1.0 / recording.period_s, 0, info);
   writer.write("ROBOT_INFO", 0, info);
   const int joints = robot.joint_index.size();
-  runtime::TickRecord record{};
+  control::TickRecord record{};
   pmg_msgs::robot_state_t state;
   pmg_msgs::motor_command_t command;
   state.robot = command.robot = robot.name;

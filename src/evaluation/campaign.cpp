@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "runtime/film.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/film.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::evaluation {
 
@@ -23,7 +23,7 @@ ordered_json errors_json(const Errors& errors) {
 }  // namespace
 
 sim::WorldOptions Plants::of(const model::RobotModel& robot, std::uint64_t seed) const {
-  sim::WorldOptions world = runtime::world_with_noise(seed, false);
+  sim::WorldOptions world = sil::world_with_noise(seed, false);
   if (ranges) sim::vary(world, *ranges, robot, seed);
   if (fixed) fixed(world);
   return world;
@@ -39,7 +39,7 @@ ordered_json plant_json(const sim::WorldOptions& world) {
           {"delay_s", v.delay_s}};
 }
 
-CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenario& scenario, int seeds, bool gantry,
+CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,
                           const Supervision& supervision) {
   CampaignRuns campaign;
   campaign.runs.assign(cases.size(), std::vector<TrialResult>(static_cast<std::size_t>(seeds)));
@@ -52,7 +52,7 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenari
     TrialOptions options{.gantry = gantry, .interrupted = supervision.interrupted, .observer = {}};
     if (seed == 0) {
       options.observer = [recorder = CourseRecorder(campaign.courses[c], robots[c].standing_height_m)](
-                             const runtime::RunProgress& now, sim::World& world) mutable {
+                             const sil::RunProgress& now, sim::World& world) mutable {
         recorder.add(now, world.truth());
         return true;
       };
@@ -65,11 +65,11 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenari
   return campaign;
 }
 
-std::string film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+std::string film_case(const Case& filmed, const sil::Scenario& scenario, const std::filesystem::path& file,
                       const Supervision& supervision) {
   const model::RobotModel robot = model::load_robot(model::find_robot(filmed.candidate.control.robot));
-  std::optional<runtime::Film> film;
-  const auto shoot = [&](const runtime::RunProgress& now, sim::World& world) {
+  std::optional<sil::Film> film;
+  const auto shoot = [&](const sil::RunProgress& now, sim::World& world) {
     if (!film) film.emplace(world, file);
     film->after_tick(now);
     return film->failure().empty();
@@ -132,7 +132,7 @@ ordered_json to_json(const TrialResult& trial) {
           {"errors_raw", errors_json(trial.errors_raw)}};
 }
 
-ordered_json to_json(const CaseSummary& summary, const runtime::Scenario& scenario) {
+ordered_json to_json(const CaseSummary& summary, const sil::Scenario& scenario) {
   ordered_json json = {{"trials", summary.trials}, {"falls", summary.falls}, {"survived", summary.survived}};
   for (std::size_t e = 0; e < kErrors; ++e) {
     json["errors"][kErrorKeys[e]] = to_json(summary.errors[e]);

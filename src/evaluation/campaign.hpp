@@ -43,12 +43,12 @@ struct CampaignRuns {
 };
 
 /// Seeds 1 .. seeds. The result doesn't depend on how many jobs there are.
-CampaignRuns run_campaign(const std::vector<Case>& cases, const runtime::Scenario& scenario, int seeds, bool gantry,
+CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,
                           const Supervision& supervision);
 
 /// Films a case's first seed, as far as the supervision lets it. Returns what went wrong with the film, one line;
 /// empty: nothing.
-std::string film_case(const Case& filmed, const runtime::Scenario& scenario, const std::filesystem::path& file,
+std::string film_case(const Case& filmed, const sil::Scenario& scenario, const std::filesystem::path& file,
                       const Supervision& supervision);
 
 /// Of the complete trials of one case.
@@ -63,6 +63,6 @@ CaseSummary summarise(const std::vector<TrialResult>& runs);
 
 nlohmann::ordered_json to_json(const Estimate& estimate);  ///< {"mean", "ci95": [lower, upper]}
 nlohmann::ordered_json to_json(const TrialResult& trial);
-nlohmann::ordered_json to_json(const CaseSummary& summary, const runtime::Scenario& scenario);
+nlohmann::ordered_json to_json(const CaseSummary& summary, const sil::Scenario& scenario);
 
 }  // namespace pmg::evaluation

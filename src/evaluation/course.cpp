@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/control_cycle.hpp"
-#include "runtime/metrics.hpp"
+#include "control/control_cycle.hpp"
+#include "sil/metrics.hpp"
 
 namespace pmg::evaluation {
 
-void CourseRecorder::add(const runtime::RunProgress& now, const sim::Truth& truth) {
-  constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+void CourseRecorder::add(const sil::RunProgress& now, const model::GroundTruth& truth) {
+  constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
   if (now.result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / now.result.reference.phase_rate_per_s;
   const Eigen::Matrix3d R_WB = truth.q_WB.toRotationMatrix();
   const double heading_rad = std::atan2(R_WB(1, 0), R_WB(0, 0)), c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -27,7 +27,7 @@ void CourseRecorder::add(const runtime::RunProgress& now, const sim::Truth& trut
     const auto window = std::min(sum.size() - 1, static_cast<std::size_t>(std::lround(gait_period_s_ / kTickPeriod_s)));
     course_.did[channel].push_back((sum.back() - sum[sum.size() - 1 - window]) / static_cast<double>(window));
   }
-  const runtime::RollPitch torso = runtime::roll_pitch(truth.q_WT);
+  const sil::RollPitch torso = sil::roll_pitch(truth.q_WT);
   course_.did[kPitch].push_back(torso.pitch_rad);
   course_.did[kRoll].push_back(torso.roll_rad);
   course_.did[kHeight].push_back(truth.p_WB.z() - standing_height_m_);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pmg/command.hpp"
-#include "runtime/run_measure.hpp"
+#include "sil/run_measure.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::evaluation {
@@ -21,7 +21,7 @@ class CourseRecorder {
  public:
   /// Keeps a reference to course.
   CourseRecorder(Course& course, double standing_height_m) : course_(course), standing_height_m_(standing_height_m) {}
-  void add(const runtime::RunProgress& now, const sim::Truth& truth);
+  void add(const sil::RunProgress& now, const model::GroundTruth& truth);
 
  private:
   Course& course_;

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "generator/joint_roles.hpp"
-#include "runtime/control_cycle.hpp"
+#include "control/control_cycle.hpp"
 
 namespace pmg::evaluation {
 
@@ -17,24 +17,24 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 constexpr double kStand_s = 1.5, kUntilSteady_s = 4.0;
 constexpr double kLoadedFoot_N = 20.0;
 constexpr double kShortestSwing_s = 0.1;  // a shorter one is a foot that bounces
 constexpr const char* kSideNames[] = {"left", "right"};
 
-runtime::Scenario gait_scenario(const GaitTest& test) {
-  runtime::ScenarioStep stand{.start_s = 0.0,
+sil::Scenario gait_scenario(const GaitTest& test) {
+  sil::ScenarioStep stand{.start_s = 0.0,
                               .duration_s = kStand_s,
                               .text = "stand",
-                              .mode = runtime::Mode::kStand,
+                              .mode = control::Mode::kStand,
                               .command = {},
                               .hoist_without_policy = false};
-  runtime::ScenarioStep walk = stand;
+  sil::ScenarioStep walk = stand;
   walk.start_s = kStand_s;
   walk.duration_s = kUntilSteady_s + test.steady_s;
   walk.text = "walk";
-  walk.mode = runtime::Mode::kWalk;
+  walk.mode = control::Mode::kWalk;
   walk.command[kVx] = test.speed_m_s;
   return {.name = "gait", .steps = {stand, walk}};
 }
@@ -124,9 +124,9 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
   model::RobotState state;
   Eigen::Vector3d start_W = Eigen::Vector3d::Zero(), end_W = start_W;
   double duty_sum = 0.0;
-  const TrialObserver observer = [&](const runtime::RunProgress& now, sim::World& world) {
+  const TrialObserver observer = [&](const sil::RunProgress& now, sim::World& world) {
     if (now.time_s < kStand_s + kUntilSteady_s) return true;
-    const sim::Truth truth = world.truth();
+    const model::GroundTruth truth = world.truth();
     world.read(state);
     if (recordings[kLeft].loaded.empty()) start_W = truth.p_WB;
     end_W = truth.p_WB;
@@ -140,7 +140,7 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
         recordings[foot].reference_deg[joint].push_back(reference[joint]);
       }
     }
-    return now.result.mode != runtime::Mode::kFault;
+    return now.result.mode != control::Mode::kFault;
   };
   test.trial = run_trial(test.evaluated.candidate, gait_scenario(test), test.evaluated.plants.of(robot, 1),
                          {.gantry = false, .interrupted = supervision.interrupted, .observer = observer});

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "runtime/control_cycle.hpp"
+#include "control/control_cycle.hpp"
 
 namespace pmg::evaluation {
 
@@ -19,9 +19,9 @@ using nlohmann::ordered_json;
 constexpr double kStand_s = 1.5, kEarliestPush_s = 4.0;
 constexpr double kPushWindow_s = 1.0;  // about a gait period, so that every phase is met
 constexpr double kAfterPush_s = 4.0, kWalking_m_s = 0.5;
-constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
-double heading_rad(const sim::Truth& truth) {
+double heading_rad(const model::GroundTruth& truth) {
   const Eigen::Vector3d forward_W = truth.q_WB * Eigen::Vector3d::UnitX();
   return std::atan2(forward_W.y(), forward_W.x());
 }
@@ -56,12 +56,12 @@ PushPlan PushPlan::of(int trial) {
 
 double PushPlan::direction_rad() const { return direction * 2.0 * std::numbers::pi / kPushDirections; }
 
-runtime::Scenario push_scenario(const PushPlan& plan) {
-  runtime::Scenario scenario{.name = "push", .steps = {}};
-  runtime::ScenarioStep step{.start_s = 0.0,
+sil::Scenario push_scenario(const PushPlan& plan) {
+  sil::Scenario scenario{.name = "push", .steps = {}};
+  sil::ScenarioStep step{.start_s = 0.0,
                              .duration_s = kStand_s,
                              .text = "stand",
-                             .mode = runtime::Mode::kStand,
+                             .mode = control::Mode::kStand,
                              .command = {},
                              .hoist_without_policy = false};
   scenario.steps.push_back(step);
@@ -69,7 +69,7 @@ runtime::Scenario push_scenario(const PushPlan& plan) {
   step.duration_s = plan.at_s + kAfterPush_s - kStand_s;
   if (plan.walking) {
     step.text = "walk";
-    step.mode = runtime::Mode::kWalk;
+    step.mode = control::Mode::kWalk;
     step.command[kVx] = kWalking_m_s;
   }
   scenario.steps.push_back(step);
@@ -77,7 +77,7 @@ runtime::Scenario push_scenario(const PushPlan& plan) {
 }
 
 // Between two ticks the world makes whole steps, so so many ticks are the push's time exactly.
-bool Pusher::operator()(const runtime::RunProgress& now, sim::World& world) {
+bool Pusher::operator()(const sil::RunProgress& now, sim::World& world) {
   const bool pushing = now.time_s >= plan_.at_s && ticks_pushed_ < std::lround(kPush_s / kTickPeriod_s);
   if (pushing) {
     if (ticks_pushed_++ == 0) {
@@ -87,7 +87,7 @@ bool Pusher::operator()(const runtime::RunProgress& now, sim::World& world) {
   } else if (ticks_pushed_ > 0) {
     world.set_push(Eigen::Vector3d::Zero());
   }
-  return now.result.mode != runtime::Mode::kFault;
+  return now.result.mode != control::Mode::kFault;
 }
 
 std::optional<bool> PushTest::reached() const {

@@ -30,13 +30,13 @@ struct PushPlan {
 };
 
 /// Stands, walks at 0.5 m/s if the plan says so, and goes on for 4 s after the push.
-runtime::Scenario push_scenario(const PushPlan& plan);
+sil::Scenario push_scenario(const PushPlan& plan);
 
 /// Applies the impulse at the torso's centre of mass and ends a trial that is lost.
 class Pusher {
  public:
   Pusher(const PushPlan& plan, double impulse_N_s) : plan_(plan), force_N_(impulse_N_s / kPush_s) {}
-  bool operator()(const runtime::RunProgress& now, sim::World& world);
+  bool operator()(const sil::RunProgress& now, sim::World& world);
 
  private:
   PushPlan plan_;

@@ -17,7 +17,7 @@ std::vector<Case> robustness_cases(const Candidate& candidate, const Plants& pla
 
 struct RobustnessTest {
   std::string robot, scenario_file, ranges_file;
-  runtime::Scenario scenario;
+  sil::Scenario scenario;
   std::vector<Case> cases;
   int seeds = 0;
   CampaignRuns campaign;

@@ -2,13 +2,13 @@
 
 #include <limits>
 
-#include "runtime/control_cycle.hpp"
+#include "control/control_cycle.hpp"
 
 namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
 Errors over(const Errors& sums, double seconds) {
   Errors mean{};
@@ -18,17 +18,17 @@ Errors over(const Errors& sums, double seconds) {
 
 }  // namespace
 
-void StepMeasure::add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted,
-                      const runtime::ScenarioStep& step) {
+void StepMeasure::add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+                      const sil::ScenarioStep& step) {
   if (&step != step_) close_step();
   step_ = &step;
   measure_.add(result, truth, hoisted, step.command);
 }
 
-void StepMeasure::count_as_fallen(double from_s, const runtime::TickResult& result, sim::Truth last) {
+void StepMeasure::count_as_fallen(double from_s, const control::TickResult& result, model::GroundTruth last) {
   last.p_WB.setZero();
-  runtime::TickResult held = result;
-  if (held.mode != runtime::Mode::kStand) held.mode = runtime::Mode::kWalk;
+  control::TickResult held = result;
+  if (held.mode != control::Mode::kStand) held.mode = control::Mode::kWalk;
   for (double time_s = from_s; time_s < scenario_.duration_s() - 1e-9; time_s += kTickPeriod_s) {
     add(held, last, false, scenario_.at(time_s));
   }
@@ -45,7 +45,7 @@ void StepMeasure::report(TrialResult& result) {
 }
 
 StepMeasure::Sums StepMeasure::total() const {
-  const runtime::TrackingSummary now = measure_.outcome().tracking;
+  const sil::TrackingSummary now = measure_.outcome().tracking;
   Sums sums{{now.lin_vel_mae_m_s, now.yaw_vel_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
             {now.lin_vel_raw_mae_m_s, now.yaw_vel_raw_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
             now.followed_s};

@@ -5,23 +5,23 @@
 #include <vector>
 
 #include "evaluation/trial.hpp"
-#include "runtime/run_measure.hpp"
-#include "runtime/scenario.hpp"
+#include "sil/run_measure.hpp"
+#include "sil/scenario.hpp"
 
 namespace pmg::evaluation {
 
 /// A run's measure, and the same by step of the scenario and by whether a step is beyond the clips' reach.
 class StepMeasure {
  public:
-  StepMeasure(const model::RobotModel& robot, const runtime::Scenario& scenario)
+  StepMeasure(const model::RobotModel& robot, const sil::Scenario& scenario)
       : measure_(robot.standing_height_m), scenario_(scenario) {}
 
-  void add(const runtime::TickResult& result, const sim::Truth& truth, bool hoisted, const runtime::ScenarioStep& step);
+  void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const sil::ScenarioStep& step);
 
   /// What is left of a run whose simulation diverged: the robot counts as fallen.
-  void count_as_fallen(double from_s, const runtime::TickResult& result, sim::Truth last);
+  void count_as_fallen(double from_s, const control::TickResult& result, model::GroundTruth last);
 
-  runtime::RunOutcome outcome() const { return measure_.outcome(); }
+  sil::RunOutcome outcome() const { return measure_.outcome(); }
 
   /// Fills judged_s and all errors of a result.
   void report(TrialResult& result);
@@ -35,9 +35,9 @@ class StepMeasure {
   Sums total() const;
   void close_step();
 
-  runtime::RunMeasure measure_;
-  const runtime::Scenario& scenario_;
-  const runtime::ScenarioStep* step_ = nullptr;
+  sil::RunMeasure measure_;
+  const sil::Scenario& scenario_;
+  const sil::ScenarioStep* step_ = nullptr;
   Sums before_, within_, beyond_;
   std::vector<Errors> step_errors_;
 };

@@ -33,7 +33,7 @@ struct Comparison {
 
 struct Table1 {
   std::string robot, scenario_file, ranges_file;  ///< as the user named them; ranges_file empty: as the model says
-  runtime::Scenario scenario;
+  sil::Scenario scenario;
   std::vector<Case> cases;
   int seeds = 0;
   CampaignRuns campaign;

@@ -44,7 +44,7 @@ pages::Bars overall_bars(const Table1& table, std::size_t error) {
 
 pages::Bars step_bars(const Table1& table, std::size_t error) {
   pages::Bars bars{.title = titled(error), .unit = kErrorUnits[error], .names = {}, .sets = {}};
-  for (const runtime::ScenarioStep& step : table.scenario.steps) bars.names.push_back(step.text);
+  for (const sil::ScenarioStep& step : table.scenario.steps) bars.names.push_back(step.text);
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     pages::Bars::Set set{.name = table.cases[c].name, .values = {}, .colour = kColours[c % kColours.size()]};
     for (const Errors& errors : table.summaries[c].step_errors) set.values.push_back(errors[error]);

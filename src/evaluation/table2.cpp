@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "policy/policy.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::evaluation {
 
@@ -28,13 +28,13 @@ std::vector<int> policy_joints(const model::RobotModel& robot) {
 /// Takes the policy's joints out of a walking simulation: where they truly are, not what their encoders say.
 class WalkObserver {
  public:
-  WalkObserver(Walk& walk, const model::RobotModel& robot, const runtime::Scenario& scenario)
+  WalkObserver(Walk& walk, const model::RobotModel& robot, const sil::Scenario& scenario)
       : walk_(walk), robot_(robot), scenario_(scenario), joints_(policy_joints(robot)) {
     walk_.curves = WalkCurves(scenario.steps.size(), joints_.size());
   }
-  bool operator()(const runtime::RunProgress& now, sim::World& world) {
+  bool operator()(const sil::RunProgress& now, sim::World& world) {
     const auto step = static_cast<std::size_t>(&now.step - scenario_.steps.data());
-    if (now.result.mode != runtime::Mode::kWalk || now.result.reference.gain <= 0.0) return true;
+    if (now.result.mode != control::Mode::kWalk || now.result.reference.gain <= 0.0) return true;
     if (now.time_s < now.step.start_s + WalkCurves::kSettle_s) return true;
     const auto count = static_cast<Eigen::Index>(joints_.size());
     JointVector q(count), q_ref(count);
@@ -51,7 +51,7 @@ class WalkObserver {
  private:
   Walk& walk_;
   const model::RobotModel& robot_;
-  const runtime::Scenario& scenario_;
+  const sil::Scenario& scenario_;
   std::vector<int> joints_;
 };
 
@@ -86,7 +86,7 @@ double worst_offset_rad(const sim::ActuatorsByJoint& plant) {
   return worst;
 }
 
-Gains gains_of(const runtime::LoadedControl& loaded) {
+Gains gains_of(const control::LoadedControl& loaded) {
   const auto count = static_cast<Eigen::Index>(loaded.robot.joints.size());
   Gains gains{JointVector(count), JointVector(count)};
   for (Eigen::Index j = 0; j < count; ++j) {
@@ -238,7 +238,7 @@ std::array<double, 2> published(Configuration configuration) {
 
 void run_table2(Table2& table, const std::filesystem::path& folder, const Supervision& supervision) {
   const Candidate candidate{table.policy, {.robot = table.robot, .clips = {}, .policy = table.policy}};
-  const runtime::LoadedControl loaded = runtime::load_control(candidate.control);
+  const control::LoadedControl loaded = control::load_control(candidate.control);
   const model::RobotModel& robot = loaded.robot;
   const Gains gains = gains_of(loaded), informed = informed_gains(robot, gains);
   for (const int joint : policy_joints(robot)) table.joints.push_back(robot.joint_index.name(joint));
@@ -267,7 +267,7 @@ void run_table2(Table2& table, const std::filesystem::path& folder, const Superv
     for (std::size_t s = 0; s < seeds; ++s) errands.push_back({&walks.fitted[k][s], plant.motors, s + 1});
   }
   for_each_piece(errands.size(), supervision, [&](std::size_t e) {
-    sim::WorldOptions world = runtime::world_with_noise(errands[e].seed, false);
+    sim::WorldOptions world = sil::world_with_noise(errands[e].seed, false);
     world.motors = errands[e].motors;
     const TrialResult trial = run_trial(candidate, table.scenario, world,
                                         {.gantry = false,

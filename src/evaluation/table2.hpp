@@ -74,7 +74,7 @@ struct CalibratedPlant {
 
 struct Table2 {
   std::string robot, policy, plants_file, scenario_file;
-  runtime::Scenario scenario;
+  sil::Scenario scenario;
   PlantRanges ranges;
   int simulation_seeds = 2;
   bool complete = true;

@@ -10,12 +10,12 @@
 #include "calib/motor_fit.hpp"
 #include "calib/zero_calibration.hpp"
 #include "calib/zero_stances.hpp"
-#include "hal/sil_hal.hpp"
+#include "sil/sil_hal.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/config_reader.hpp"
-#include "runtime/lockstep.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/lockstep.hpp"
+#include "sil/simulated_robot.hpp"
 #include "sim/joint_load.hpp"
 #include "sim/sensor_noise.hpp"
 
@@ -84,7 +84,7 @@ std::vector<calib::SingleJoint> record(const calib::Bench& bench, const sim::Act
     run.recording = excitation(number);
     const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
     run.recording.q_rad = joint.rollout(plant);
-    for (double& q_rad : run.recording.q_rad) q_rad += runtime::kEncoderNoise_rad * noise.next();
+    for (double& q_rad : run.recording.q_rad) q_rad += sil::kEncoderNoise_rad * noise.next();
     runs.emplace_back(bench, run, calib::simulation_step_s(bench));
   }
   return runs;
@@ -98,19 +98,19 @@ std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::Wor
 /// Plays the stances; false when it was stopped.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
                   const std::function<bool()>& stop) {
-  runtime::LoadedControl loaded =
-      runtime::load_control({.robot = (folder / "stances").string(), .clips = {}, .policy = "none"});
-  const runtime::Scenario scenario = runtime::load_scenario(folder / "stances/scenario.yaml");
-  sim::WorldOptions options = runtime::world_with_noise(seed, false);
+  control::LoadedControl loaded =
+      control::load_control({.robot = (folder / "stances").string(), .clips = {}, .policy = "none"});
+  const sil::Scenario scenario = sil::load_scenario(folder / "stances/scenario.yaml");
+  sim::WorldOptions options = sil::world_with_noise(seed, false);
   options.motors = plant;
   const std::unique_ptr<sim::World> world = build(loaded.robot, options);
   const io::WallClock stopwatch;
-  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, stopwatch);
-  hal::SilHal bus(*world);
-  runtime::WorldPlant truth(*world);
+  const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
+  sil::SilHal bus(*world);
+  sil::WorldPlant truth(*world);
   io::LogWriter file(folder / "log.lcm");
   runtime::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
-  runtime::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
+  sil::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
   lockstep.interrupted = stop;
   const bool interrupted = lockstep.run().interrupted;
   file.flush();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/robot_model.hpp"
-#include "runtime/control_setup.hpp"
+#include "control/control_setup.hpp"
 #include "sim/motor_file.hpp"
 #include "sim/variation.hpp"
 

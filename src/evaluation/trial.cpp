@@ -6,15 +6,15 @@
 #include <utility>
 
 #include "evaluation/step_measure.hpp"
-#include "hal/sil_hal.hpp"
+#include "sil/sil_hal.hpp"
 #include "io/clock.hpp"
-#include "runtime/lockstep.hpp"
+#include "sil/lockstep.hpp"
 
 namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
 /// MuJoCo 2.2.2's XML reader and error handlers are global.
 std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::WorldOptions& options) {
@@ -25,25 +25,25 @@ std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::Wor
 
 }  // namespace
 
-TrialResult run_trial(const Candidate& candidate, const runtime::Scenario& scenario, const sim::WorldOptions& world,
+TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario, const sim::WorldOptions& world,
                       const TrialOptions& options) {
-  runtime::LoadedControl loaded = runtime::load_control(candidate.control);
+  control::LoadedControl loaded = control::load_control(candidate.control);
   const model::RobotModel& robot = loaded.robot;
   sim::WorldOptions world_options = world;
   world_options.gantry = options.gantry;
   const std::unique_ptr<sim::World> simulated = build(robot, world_options);
   const io::WallClock stopwatch;
-  const std::unique_ptr<runtime::Tick> tick = runtime::make_tick(loaded, stopwatch);
-  hal::SilHal bus(*simulated);
-  runtime::WorldPlant plant(*simulated);
+  const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
+  sil::SilHal bus(*simulated);
+  sil::WorldPlant plant(*simulated);
   // Nobody carries a robot that is evaluated, whether or not a policy balances it.
-  runtime::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
+  sil::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
                              {.balanced_by_policy = true, .always_hoisted = options.gantry});
   StepMeasure measure(robot, scenario);
   bool ended = false, interrupted = false;
-  sim::Truth truth;
+  model::GroundTruth truth;
   double next_s = 0.0;
-  lockstep.after_tick = [&](const runtime::RunProgress& now) {
+  lockstep.after_tick = [&](const sil::RunProgress& now) {
     truth = simulated->truth();
     measure.add(now.result, truth, options.gantry, now.step);
     next_s = now.time_s + kTickPeriod_s;
@@ -55,14 +55,14 @@ TrialResult run_trial(const Candidate& candidate, const runtime::Scenario& scena
   };
   const bool diverged = lockstep.run().diverged;
   if (diverged) measure.count_as_fallen(next_s, tick->result(), truth);
-  const runtime::RunOutcome outcome = measure.outcome();
+  const sil::RunOutcome outcome = measure.outcome();
   TrialResult result;
   result.complete = !interrupted;
   result.fell = outcome.fell || diverged;
   result.fell_at_s = outcome.fell_at_s;
   result.duration_s = outcome.duration_s;
   measure.report(result);
-  for (const runtime::Fault& fault : outcome.faults) result.faults.push_back(runtime::describe(fault, robot));
+  for (const control::Fault& fault : outcome.faults) result.faults.push_back(control::describe(fault, robot));
   return result;
 }
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "runtime/control_setup.hpp"
-#include "runtime/run_measure.hpp"
-#include "runtime/scenario.hpp"
+#include "control/control_setup.hpp"
+#include "sil/run_measure.hpp"
+#include "sil/scenario.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::evaluation {
@@ -18,7 +18,7 @@ namespace pmg::evaluation {
 /// A policy under evaluation.
 struct Candidate {
   std::string name;               ///< as shown
-  runtime::ControlSetup control;  ///< robot, clips and policy
+  control::ControlSetup control;  ///< robot, clips and policy
 };
 
 /// Mean absolute errors against the user's command, in the paper's order of columns.
@@ -46,7 +46,7 @@ struct TrialResult {
 };
 
 /// Who looks on: after every tick, when the world shows what the tick saw. Returns false to end the trial there.
-using TrialObserver = std::function<bool(const runtime::RunProgress&, sim::World&)>;
+using TrialObserver = std::function<bool(const sil::RunProgress&, sim::World&)>;
 
 struct TrialOptions {
   bool gantry = false;                ///< the robot hangs in it throughout, and nothing is judged
@@ -56,7 +56,7 @@ struct TrialOptions {
 
 /// Plays the scenario. Nobody intervenes after a fall: it runs to the end, velocity and height count as zero and
 /// attitude as measured, and so for the rest of a simulation that diverged. Throws what loading throws.
-TrialResult run_trial(const Candidate& candidate, const runtime::Scenario& scenario, const sim::WorldOptions& world,
+TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario, const sim::WorldOptions& world,
                       const TrialOptions& options);
 
 }  // namespace pmg::evaluation

@@ -7,23 +7,23 @@
 #include "evaluation/step_measure.hpp"
 #include "gco/motion_composition.hpp"
 #include "pmg/command_limiter.hpp"
-#include "runtime/control_cycle.hpp"
+#include "control/control_cycle.hpp"
 
 namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kTickPeriod_s = static_cast<double>(runtime::ControlCycle::kPeriod_ns) * 1e-9;
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
 /// A body that moves exactly as commanded.
 class IdealRobot {
  public:
   explicit IdealRobot(double standing_height_m) : standing_height_m_(standing_height_m) {}
 
-  sim::Truth move(const Command& command) {
+  model::GroundTruth move(const Command& command) {
     yaw_rad_ += command[kOmega] * kTickPeriod_s;
     const Eigen::AngleAxisd turn(yaw_rad_, Eigen::Vector3d::UnitZ());
-    sim::Truth truth;
+    model::GroundTruth truth;
     truth.p_WB.z() = standing_height_m_ + command[kHeight];
     truth.q_WB = turn;
     truth.v_WB_W = turn * Eigen::Vector3d(command[kVx], command[kVy], 0.0);
@@ -40,7 +40,7 @@ class IdealRobot {
 
 }  // namespace
 
-Yardstick yardstick(const Candidate& candidate, const runtime::Scenario& scenario,
+Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
                     const std::function<bool()>& interrupted) {
   const model::RobotModel robot = model::load_robot(model::find_robot(candidate.control.robot));
   const GeneratorOptions options = gco::generator_options(robot);
@@ -48,8 +48,8 @@ Yardstick yardstick(const Candidate& candidate, const runtime::Scenario& scenari
   IdealRobot still(robot.standing_height_m), moving(robot.standing_height_m);
   CommandLimiter limiter(options.limits, options.double_support_rate, options.stop_within_s);
   double double_support = 1.0;
-  const auto judge = [&](const runtime::RunProgress& now, sim::World&) {
-    const Command asked = now.result.mode == runtime::Mode::kWalk ? now.step.command : Command{};
+  const auto judge = [&](const sil::RunProgress& now, sim::World&) {
+    const Command asked = now.result.mode == control::Mode::kWalk ? now.step.command : Command{};
     const Command& limited = limiter.step(asked, double_support, kTickPeriod_s);
     const PerFoot<double>& weight = now.result.reference.contact_weight;
     double_support = weight[kLeft] * weight[kRight];

@@ -15,7 +15,7 @@ struct Yardstick {
 /// robot does there doesn't matter. The follower's command is limited as the generator limits the user's (ranges,
 /// rates, slower in double support, stops within their time); what the clips can't give together isn't taken off, so a
 /// blend that cuts a command is counted against the policy.
-Yardstick yardstick(const Candidate& candidate, const runtime::Scenario& scenario,
+Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
                     const std::function<bool()>& interrupted);
 
 /// (error - follower) / (nothing - follower): 0 a perfect follower, 1 a robot that does nothing. NaN where the scenario

@@ -32,8 +32,8 @@ constexpr std::array<std::pair<const char*, std::int64_t pmg_msgs::timing_t::*>,
 }};
 
 std::string mode_name(std::int8_t mode) {
-  return mode >= 0 && mode <= static_cast<std::int8_t>(runtime::Mode::kFault)
-             ? runtime::to_string(static_cast<runtime::Mode>(mode))
+  return mode >= 0 && mode <= static_cast<std::int8_t>(control::Mode::kFault)
+             ? control::to_string(static_cast<control::Mode>(mode))
              : fmt::format("mode {}", mode);
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pmg_msgs/robot_info_t.hpp"
-#include "runtime/mode.hpp"
+#include "control/mode.hpp"
 
 namespace pmg::logs {
 

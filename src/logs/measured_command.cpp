@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/metrics.hpp"
+#include "sil/metrics.hpp"
 
 namespace pmg::logs {
 
@@ -43,7 +43,7 @@ std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_
   const double share = 1.0 / static_cast<double>(samples_.size());
   const double scale = std::max(std::hypot(sum.cos_yaw, sum.sin_yaw), 1e-12);
   const double c = sum.cos_yaw / scale, s = sum.sin_yaw / scale;
-  const runtime::RollPitch torso = runtime::roll_pitch(quaternion(truth.q_WT));
+  const sil::RollPitch torso = sil::roll_pitch(quaternion(truth.q_WT));
   std::array<double, kChannels> measured{};
   measured[kVx] = share * (c * sum.vx_W_m_s + s * sum.vy_W_m_s);
   measured[kVy] = share * (c * sum.vy_W_m_s - s * sum.vx_W_m_s);
@@ -56,8 +56,8 @@ std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_
 
 bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m) {
   const Eigen::Vector3d up_W = quaternion(truth.q_WT) * Eigen::Vector3d::UnitZ();
-  return truth.p_WB_m[2] < runtime::Metrics::kFallenHeightShare * standing_height_m ||
-         up_W.z() < std::cos(runtime::Metrics::kFallenTilt_rad);
+  return truth.p_WB_m[2] < sil::Metrics::kFallenHeightShare * standing_height_m ||
+         up_W.z() < std::cos(sil::Metrics::kFallenTilt_rad);
 }
 
 }  // namespace pmg::logs

@@ -14,7 +14,7 @@
 #include "io/log_series.hpp"
 #include "logs/message_fields.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
-#include "runtime/control_setup.hpp"
+#include "control/control_setup.hpp"
 #include "runtime/tick_messages.hpp"
 
 namespace pmg::logs {
@@ -31,9 +31,9 @@ std::string text_of(const ordered_json& options, const char* key, const std::str
   return options.contains(key) && options[key].is_string() ? options[key].get<std::string>() : otherwise;
 }
 
-runtime::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
+control::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
                                const ReplayOptions& options) {
-  runtime::ControlSetup setup;
+  control::ControlSetup setup;
   setup.robot = options.robot;
   setup.clips = options.clips;
   if (options.robot.empty()) {
@@ -49,7 +49,7 @@ runtime::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered
 }
 
 /// Files that differ, by name.
-void note_bundle(const pmg_msgs::robot_info_t& info, const runtime::LoadedControl& loaded,
+void note_bundle(const pmg_msgs::robot_info_t& info, const control::LoadedControl& loaded,
                  std::vector<std::string>& notes) {
   if (info.bundle.empty()) {
     notes.push_back("the log doesn't say which files it ran with");
@@ -157,8 +157,8 @@ class Replay {
       throw std::runtime_error("these logs are of more than one run; name the files of one");
     }
     const ordered_json logged = ordered_json::parse(info.options, nullptr, false);
-    const runtime::ControlSetup setup = setup_of(info, logged, options_);
-    loaded_ = runtime::load_control(setup);
+    const control::ControlSetup setup = setup_of(info, logged, options_);
+    loaded_ = control::load_control(setup);
     if (loaded_.robot.joint_index.names() != info.joint_names) {
       throw std::runtime_error(
           fmt::format("the log's robot {} has other joints than {}", info.model, loaded_.robot.directory.string()));
@@ -168,13 +168,13 @@ class Replay {
       report_.notes.push_back(
           fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
     }
-    note_options(logged, runtime::control_json(loaded_), report_.notes);
-    runtime::restore_options(logged, loaded_.options);
+    note_options(logged, control::control_json(loaded_), report_.notes);
+    control::restore_options(logged, loaded_.options);
     if (logged.contains("bench")) take_excitation(logged["bench"]);
     run_.robot = reference_.robot = motor_command_.robot = info.robot;
     run_.session = info.session;
     joint_count_ = loaded_.robot.joint_index.size();
-    tick_ = runtime::make_tick(loaded_, stopwatch_);
+    tick_ = control::make_tick(loaded_, stopwatch_);
   }
 
   void take_excitation(const ordered_json& bench) {
@@ -252,7 +252,7 @@ class Replay {
     }
     const bool whole = has_state_ && commands_.size() == input.command_received_ns.size() &&
                        requests_.size() == input.request_received_ns.size() &&
-                       commands_.size() <= runtime::kMaxDrives && requests_.size() <= runtime::kMaxRequests;
+                       commands_.size() <= control::kMaxDrives && requests_.size() <= control::kMaxRequests;
     if (!whole) throw std::runtime_error(fmt::format("the messages before tick {} are not all in the log", input.tick));
   }
 
@@ -305,16 +305,16 @@ class Replay {
   const ReplayOptions& options_;
   const std::function<void(double)>& progress_;
   const io::SimulationClock stopwatch_;  // nothing is timed
-  runtime::LoadedControl loaded_;
+  control::LoadedControl loaded_;
   runtime::RunInfo run_;
-  std::unique_ptr<runtime::Tick> tick_;
+  std::unique_ptr<control::Tick> tick_;
   int joint_count_ = 0;
   std::optional<std::int64_t> first_ns_;
   std::int64_t last_ns_ = 0;
   bool has_state_ = false;
   std::vector<pmg_msgs::command_t> commands_;
   std::vector<pmg_msgs::mode_t> requests_;
-  runtime::TickRecord record_;
+  control::TickRecord record_;
   pmg_msgs::reference_t reference_;
   pmg_msgs::motor_command_t motor_command_;
   pmg_msgs::status_t status_;

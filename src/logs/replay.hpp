@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "runtime/excitation_player.hpp"
+#include "control/excitation_player.hpp"
 
 namespace pmg::logs {
 
 /// What a run with --bench played.
 struct PlayedExcitation {
-  runtime::ExcitationPlan plan;
+  control::ExcitationPlan plan;
   std::string sha256;  ///< of its files
 };
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pages/histogram.hpp"
-#include "runtime/mode.hpp"
-#include "runtime/summary.hpp"
+#include "control/mode.hpp"
+#include "sil/summary.hpp"
 
 namespace pmg::logs {
 
@@ -39,7 +39,7 @@ std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s) {
     while (at + 1 < run.modes.size() && run.modes[at + 1].from_s <= t_s[i]) ++at;
     const std::string& mode = run.modes[at].text;
     held[i] = run.modes[at].from_s <= t_s[i] &&
-              (mode == to_string(runtime::Mode::kStand) || mode == to_string(runtime::Mode::kWalk));
+              (mode == to_string(control::Mode::kStand) || mode == to_string(control::Mode::kWalk));
   }
   return held;
 }
@@ -71,7 +71,7 @@ std::vector<JointTracking> joint_tracking(const RunSeries& run) {
 }
 
 std::string tracking_text(const RunSeries& run) {
-  const runtime::TrackingSummary& t = run.tracking;
+  const sil::TrackingSummary& t = run.tracking;
   if (t.followed_s <= 0.0) return "";
   return fmt::format(
       "Mean absolute errors over {:.1f} s{}: velocity {:.3f} m/s, yaw rate {:.3f} rad/s, roll {:.3f} rad, "
@@ -167,8 +167,8 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"modes_s", modes},
           {"hanging_s", hanging_s(run)},
           {"tracking_rms_rad", errors},
-          {"tracking", judged ? runtime::tracking_json(run.tracking) : ordered_json(nullptr)},
-          {"reference_slip", runtime::reference_slip_json(run.reference_slip)},
+          {"tracking", judged ? sil::tracking_json(run.tracking) : ordered_json(nullptr)},
+          {"reference_slip", sil::reference_slip_json(run.reference_slip)},
           {"scenario", run.scenario.empty() ? ordered_json(nullptr) : ordered_json(run.scenario)},
           {"steps", steps},
           {"limited_joints", limited},

@@ -8,8 +8,8 @@ namespace {
 
 Eigen::Quaterniond quaternion(const double (&wxyz)[4]) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
 
-sim::Truth truth_of(const pmg_msgs::ground_truth_t& message) {
-  sim::Truth truth;
+model::GroundTruth truth_of(const pmg_msgs::ground_truth_t& message) {
+  model::GroundTruth truth;
   truth.p_WB = Eigen::Map<const Eigen::Vector3d>(message.p_WB_m);
   truth.q_WB = quaternion(message.q_WB);
   truth.v_WB_W = Eigen::Map<const Eigen::Vector3d>(message.v_WB_W_m_s);
@@ -46,7 +46,7 @@ void RunJudgement::reference(const pmg_msgs::reference_t& message) {
 }
 
 void RunJudgement::status(const pmg_msgs::status_t& message) {
-  tick_.mode = static_cast<runtime::Mode>(message.mode);
+  tick_.mode = static_cast<control::Mode>(message.mode);
   driving_ = message.driving_source;
   if (!driving_.empty()) last_driving_ = driving_;
   has_status_ = true;
@@ -58,16 +58,16 @@ void RunJudgement::truth(const pmg_msgs::ground_truth_t& message) {
 }
 
 Command RunJudgement::asked() const {
-  const std::string& source = tick_.mode == runtime::Mode::kFault ? last_driving_ : driving_;
+  const std::string& source = tick_.mode == control::Mode::kFault ? last_driving_ : driving_;
   const auto found = commands_.find(source);
   return found != commands_.end() ? found->second : Command{};
 }
 
-runtime::TrackingSummary errors_between(const runtime::TrackingSummary& before, const runtime::TrackingSummary& after) {
-  runtime::TrackingSummary mean;
+sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const sil::TrackingSummary& after) {
+  sil::TrackingSummary mean;
   mean.followed_s = after.followed_s - before.followed_s;
   if (mean.followed_s <= 0.0) return mean;
-  using Summary = runtime::TrackingSummary;
+  using Summary = sil::TrackingSummary;
   for (double Summary::*error :
        {&Summary::lin_vel_mae_m_s, &Summary::lin_vel_raw_mae_m_s, &Summary::yaw_vel_mae_rad_s,
         &Summary::yaw_vel_raw_mae_rad_s, &Summary::roll_mae_rad, &Summary::pitch_mae_rad, &Summary::height_mae_m}) {

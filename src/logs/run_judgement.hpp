@@ -9,7 +9,7 @@
 #include "pmg_msgs/ground_truth_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/status_t.hpp"
-#include "runtime/run_measure.hpp"
+#include "sil/run_measure.hpp"
 
 namespace pmg::logs {
 
@@ -24,14 +24,14 @@ class RunJudgement {
   void truth(const pmg_msgs::ground_truth_t& message);
 
   /// Of the ticks so far. Without GROUND_TRUTH followed_s is 0, without REFERENCE all of slip.
-  runtime::RunOutcome outcome() const { return measure_.outcome(); }
+  sil::RunOutcome outcome() const { return measure_.outcome(); }
 
  private:
   /// What the driving source wants; in a fault what the last one that drove wants; without a source nothing.
   Command asked() const;
 
-  runtime::RunMeasure measure_;
-  runtime::TickResult tick_;  ///< what the measure reads of it
+  sil::RunMeasure measure_;
+  control::TickResult tick_;  ///< what the measure reads of it
   std::int64_t reference_ns_ = -1;
   std::string driving_, last_driving_;
   std::map<std::string, Command> commands_;  ///< newest of each source
@@ -39,6 +39,6 @@ class RunJudgement {
 };
 
 /// Mean errors of the time between two sums of one run; foot_slip_mean_m_s is left 0.
-runtime::TrackingSummary errors_between(const runtime::TrackingSummary& before, const runtime::TrackingSummary& after);
+sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const sil::TrackingSummary& after);
 
 }  // namespace pmg::logs

@@ -8,7 +8,7 @@
 
 #include "logs/report_sections.hpp"
 #include "logs/run_figures.hpp"
-#include "runtime/mode.hpp"
+#include "control/mode.hpp"
 
 namespace pmg::logs {
 
@@ -19,10 +19,10 @@ namespace {
 using pages::Lanes;
 
 const char* mode_colour(const std::string& mode) {
-  if (mode == to_string(runtime::Mode::kDamping)) return "#f3d9a6";
-  if (mode == to_string(runtime::Mode::kStand)) return "#b9dcf2";
-  if (mode == to_string(runtime::Mode::kWalk)) return "#a8dcc8";
-  if (mode == to_string(runtime::Mode::kFault)) return "#f2a58c";
+  if (mode == to_string(control::Mode::kDamping)) return "#f3d9a6";
+  if (mode == to_string(control::Mode::kStand)) return "#b9dcf2";
+  if (mode == to_string(control::Mode::kWalk)) return "#a8dcc8";
+  if (mode == to_string(control::Mode::kFault)) return "#f2a58c";
   return "#e3e7ec";
 }
 
@@ -68,7 +68,7 @@ void steps_table(pages::Page& page, const Runs& runs) {
     for (const RunSeries::Step& step : run.steps) {
       std::vector<std::string> row = {std::to_string(step.number), fmt::format("{:.1f}", step.from_s),
                                       fmt::format("{:.1f}", step.to_s), step.text, asked_text(step)};
-      const runtime::TrackingSummary& t = step.tracking;
+      const sil::TrackingSummary& t = step.tracking;
       for (const double error :
            {t.lin_vel_mae_m_s, t.yaw_vel_mae_rad_s, t.roll_mae_rad, t.pitch_mae_rad, t.height_mae_m})
         row.push_back(t.followed_s > 0.0 ? fmt::format("{:.3f}", error) : "-");
@@ -104,7 +104,7 @@ std::vector<pages::Band> fault_bands(const Runs& runs) {
   std::vector<pages::Band> bands;
   for (const RunSeries& run : runs) {
     for (const RunSeries::Stretch& mode : run.modes) {
-      if (mode.text == to_string(runtime::Mode::kFault))
+      if (mode.text == to_string(control::Mode::kFault))
         bands.push_back({mode.from_s, mode.to_s, "rgba(213,94,0,0.10)"});
     }
   }

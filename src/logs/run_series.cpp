@@ -23,7 +23,7 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
-#include "runtime/mode.hpp"
+#include "control/mode.hpp"
 
 namespace pmg::logs {
 
@@ -95,7 +95,7 @@ class Gathering {
     run_.limited = limited_.most_first();
     std::erase_if(run_.limited, [this](const LimitedJoint& one) { return one.joint >= run_.joint_names.size(); });
     if (judgement_) {
-      const runtime::RunOutcome outcome = judgement_->outcome();
+      const sil::RunOutcome outcome = judgement_->outcome();
       run_.tracking = outcome.tracking;
       run_.reference_slip = outcome.reference_slip;
     }
@@ -229,9 +229,9 @@ class Gathering {
 
   bool status(const pmg_msgs::status_t& message) {
     if (message.mode < 0 || message.mode > pmg_msgs::mode_t::FAULT) return false;
-    const auto mode = static_cast<runtime::Mode>(message.mode);
-    const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(runtime::Mode::kFault);
-    if (mode == runtime::Mode::kFault && !was_fault) {
+    const auto mode = static_cast<control::Mode>(message.mode);
+    const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(control::Mode::kFault);
+    if (mode == control::Mode::kFault && !was_fault) {
       latched_.push_back(
           {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
     }
@@ -313,7 +313,7 @@ class Gathering {
   RunSeries run_;
   MeasuredCommand measured_command_;
   std::optional<RunJudgement> judgement_;  // once the robot is known
-  runtime::TrackingSummary before_step_;
+  sil::TrackingSummary before_step_;
   LimitedJoints limited_;
   std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;

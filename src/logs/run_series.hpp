@@ -12,7 +12,7 @@
 #include "logs/limited_joints.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
-#include "runtime/metrics.hpp"
+#include "sil/metrics.hpp"
 
 namespace pmg::logs {
 
@@ -78,12 +78,12 @@ struct RunSeries {
     int number;
     std::string text;
     std::array<double, kChannels> asked;
-    runtime::TrackingSummary tracking;  ///< within it
+    sil::TrackingSummary tracking;  ///< within it
   };
   std::string scenario;
   std::vector<Step> steps;
 
-  runtime::TrackingSummary tracking;  ///< followed_s is 0 without a simulation's truth
+  sil::TrackingSummary tracking;  ///< followed_s is 0 without a simulation's truth
   gco::SlipSummary reference_slip;    ///< as in summary.json
   std::vector<LimitedJoint> limited;  ///< most often limited first
 

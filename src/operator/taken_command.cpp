@@ -16,7 +16,7 @@ constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the 
 constexpr std::array<const char*, kChannels> kNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
 constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
 
-/// As ROBOT_INFO's configuration has it (runtime::control_json); nothing where it doesn't.
+/// As ROBOT_INFO's configuration has it (control::control_json); nothing where it doesn't.
 std::optional<std::pair<double, double>> range_of(const RobotNews& news, std::size_t channel) {
   if (!news.info) return std::nullopt;
   const auto options = nlohmann::json::parse(news.info->options, nullptr, false);

@@ -4,7 +4,7 @@
 
 namespace pmg::runtime {
 
-void BusTiming::add(const CycleTiming& cycle) noexcept {
+void BusTiming::add(const control::CycleTiming& cycle) noexcept {
   ++cycles;
   wake_max_ns = std::max(wake_max_ns, cycle.woke_ns - cycle.planned_ns);
   exchange_max_ns = std::max(exchange_max_ns, cycle.done_ns - cycle.woke_ns);

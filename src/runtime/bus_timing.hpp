@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "runtime/controller_outbox.hpp"
-#include "runtime/tick_record.hpp"
+#include "control/controller_outbox.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -14,21 +14,21 @@ struct BusTiming {
   std::int64_t wake_max_ns = 0, exchange_max_ns = 0;
   std::int64_t missed = 0;  ///< since the start
 
-  void add(const CycleTiming& cycle) noexcept;
+  void add(const control::CycleTiming& cycle) noexcept;
   void start_anew() noexcept;  ///< all but missed
 };
 
 /// Takes the bus cycles out of the outbox, tick by tick. One reader.
 class BusCycleReader {
  public:
-  explicit BusCycleReader(ControllerOutbox& outbox) : outbox_(outbox) {}
+  explicit BusCycleReader(control::ControllerOutbox& outbox) : outbox_(outbox) {}
 
   /// Adds the cycles that had ended by then; younger ones stay for a later call.
   void take_until(std::int64_t until_ns, BusTiming& into) noexcept;
 
  private:
-  ControllerOutbox& outbox_;
-  CycleTiming cycle_;  // taken out of the queue, but too young
+  control::ControllerOutbox& outbox_;
+  control::CycleTiming cycle_;  // taken out of the queue, but too young
   bool held_ = false;
 };
 

@@ -17,7 +17,7 @@ constexpr std::size_t kMostOthers = 16;  // names that are told at start: a floo
 
 }  // namespace
 
-Comms::Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, const model::RobotModel& robot,
+Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox, const model::RobotModel& robot,
              const RunInfo& run, double control_rate_Hz, const io::Clock& clock)
     : link_(link),
       outbox_(outbox),
@@ -109,7 +109,7 @@ void Comms::warn() {
 }
 
 void Comms::publish_acks() {
-  outbox_.acks.consume_all([&](const ModeAck& ack) {
+  outbox_.acks.consume_all([&](const control::ModeAck& ack) {
     fill(ack, run_, clock_.now_ns(), ack_);
     link_.publish("ACK", ack_);
   });
@@ -131,9 +131,9 @@ void Comms::publish_newest() {
   fill(newest_, BusTiming{}, outbox_.dropped_records, timing_);
   link_.publish("TIMING", timing_);
 
-  const Fault& fault = newest_.result.fault;
+  const control::Fault& fault = newest_.result.fault;
   const bool told = fault.code == published_fault_.code && fault.stamp_ns == published_fault_.stamp_ns;
-  if (newest_.result.mode == Mode::kFault && !told) {
+  if (newest_.result.mode == control::Mode::kFault && !told) {
     fill(newest_, run_, robot_, fault_);
     link_.publish("FAULT", fault_);
   }
@@ -154,7 +154,7 @@ void Comms::publish_each_second() {
   link_.publish("ROBOT_INFO", info_);
 
   const GateCounts gate = gate_.counts() + hoist_gate_.counts();
-  const IgnoredCommands& intake = newest_.result.ignored;
+  const control::IgnoredCommands& intake = newest_.result.ignored;
   counts_.stamp_ns = now_ns;
   counts_.robot = run_.robot;
   counts_.accepted = intake.accepted;

@@ -20,12 +20,12 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
-#include "runtime/controller_outbox.hpp"
+#include "control/controller_outbox.hpp"
 #include "runtime/hoist_gate.hpp"
 #include "runtime/operator_gate.hpp"
-#include "runtime/operator_inbox.hpp"
+#include "control/operator_inbox.hpp"
 #include "runtime/run_info.hpp"
-#include "runtime/tick_record.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -35,7 +35,7 @@ class Comms {
  public:
   /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
   /// subscribe.
-  Comms(io::LcmLink& link, OperatorInbox& inbox, ControllerOutbox& outbox, const model::RobotModel& robot,
+  Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox, const model::RobotModel& robot,
         const RunInfo& run, double control_rate_Hz, const io::Clock& clock);
 
   /// One line for the console when something is wrong for the first time. Called from step().
@@ -68,7 +68,7 @@ class Comms {
   void warn();
 
   io::LcmLink& link_;
-  ControllerOutbox& outbox_;
+  control::ControllerOutbox& outbox_;
   const model::RobotModel& robot_;
   const RunInfo& run_;
   double control_rate_Hz_;
@@ -81,8 +81,8 @@ class Comms {
   std::array<bool, 5> warned_{};  // by Warning
   std::int64_t next_second_ns_, next_hoist_ns_;
 
-  TickRecord newest_;
-  Fault published_fault_;
+  control::TickRecord newest_;
+  control::Fault published_fault_;
   pmg_msgs::ack_t ack_;
   pmg_msgs::status_t status_;
   pmg_msgs::robot_state_t state_;

@@ -31,17 +31,17 @@ ThreadSchedule scheduled(ThreadSchedule schedule, bool realtime) {
 
 }  // namespace
 
-Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, Tick& tick, const ControllerOptions& options)
+Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options)
     : options_(options),
       inbox_(link_.stop),
       bus_cycle_(bus, link_, robot, clock_, options.guard),
       control_cycle_(tick, link_, inbox_, clock_) {
   if (options.realtime) refused_ = lock_memory();
   bus_thread_ = std::make_unique<PeriodicThread>(scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
-                                                 [this](const CycleTiming& timing) { run_bus(timing); });
+                                                 [this](const control::CycleTiming& timing) { run_bus(timing); });
   control_thread_ =
-      std::make_unique<PeriodicThread>(scheduled(options.control, options.realtime), ControlCycle::kPeriod_ns,
-                                       [this](const CycleTiming& timing) { run_control(timing); });
+      std::make_unique<PeriodicThread>(scheduled(options.control, options.realtime), control::ControlCycle::kPeriod_ns,
+                                       [this](const control::CycleTiming& timing) { run_control(timing); });
   for (const PeriodicThread* thread : {bus_thread_.get(), control_thread_.get()}) {
     refused_.insert(refused_.end(), thread->refused().begin(), thread->refused().end());
   }
@@ -50,21 +50,21 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, Tick& tick
 
 Controller::~Controller() { stop(); }
 
-void Controller::run_bus(const CycleTiming& timing) noexcept {
+void Controller::run_bus(const control::CycleTiming& timing) noexcept {
   bus_cycle_.run();
   if (bus_cycle_.sample().status == hal::BusStatus::kOk) drives_answered_.store(true, std::memory_order_release);
-  CycleTiming done = timing;
+  control::CycleTiming done = timing;
   done.done_ns = clock_.now_ns();
   if (!outbox_.bus_cycles.push(done)) outbox_.dropped_bus_cycles.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Controller::run_control(const CycleTiming& timing) noexcept {
+void Controller::run_control(const control::CycleTiming& timing) noexcept {
   control_cycle_.run(timing.planned_ns);
   record_ = control_cycle_.record();
   record_.timing = timing;
   record_.timing.done_ns = clock_.now_ns();
   if (!outbox_.records.push(record_)) outbox_.dropped_records.fetch_add(1, std::memory_order_relaxed);
-  const TickResult& result = record_.result;
+  const control::TickResult& result = record_.result;
   for (std::size_t i = 0; i < result.ack_count; ++i) outbox_.acks.push(result.acks[i]);
   outbox_.newest.put(record_);
   news_.put({.now_ns = record_.now_ns,
@@ -150,16 +150,16 @@ bool Controller::stop() {
 
 bool Controller::await_damping() {
   // With comms gone this thread is the inbox's only writer, and nobody can ask for another mode.
-  ModeRequest damping;
-  damping.source = Source::make("controller", 1);
+  control::ModeRequest damping;
+  damping.source = control::Source::make("controller", 1);
   damping.sequence = 1;
-  damping.mode = Mode::kDamping;
+  damping.mode = control::Mode::kDamping;
   damping.received_ns = damping.stamp_ns = clock_.now_ns();
   inbox_.put(damping);
   const std::int64_t deadline_ns = clock_.now_ns() + ns(options_.confirm_stop_within_s);
   const auto damps = [this] {
-    const Mode mode = mode_.load(std::memory_order_acquire);
-    return mode == Mode::kDamping || mode == Mode::kFault;
+    const control::Mode mode = mode_.load(std::memory_order_acquire);
+    return mode == control::Mode::kDamping || mode == control::Mode::kFault;
   };
   while (!damps() && clock_.now_ns() < deadline_ns) std::this_thread::sleep_for(kPoll);
   std::this_thread::sleep_for(std::chrono::nanoseconds(ns(options_.damp_s)));

@@ -14,9 +14,9 @@
 #include "hal/bus_cycle.hpp"
 #include "io/clock.hpp"
 #include "io/mailbox.hpp"
-#include "runtime/control_cycle.hpp"
-#include "runtime/controller_outbox.hpp"
-#include "runtime/operator_inbox.hpp"
+#include "control/control_cycle.hpp"
+#include "control/controller_outbox.hpp"
+#include "control/operator_inbox.hpp"
 #include "runtime/periodic_thread.hpp"
 
 namespace pmg::runtime {
@@ -35,10 +35,10 @@ struct ControllerOptions {
 /// What a console or a screen shows of a tick.
 struct ControllerNews {
   std::int64_t now_ns = 0;
-  Mode mode = Mode::kPassive;
+  control::Mode mode = control::Mode::kPassive;
   bool hanging = false;
-  Fault fault;
-  Source driving;
+  control::Fault fault;
+  control::Source driving;
 };
 
 class Controller {
@@ -48,12 +48,12 @@ class Controller {
 
   /// Keeps references. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
   /// threads to be had.
-  Controller(const model::RobotModel& robot, hal::Hal& bus, Tick& tick, const ControllerOptions& options = {});
+  Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options = {});
   ~Controller();  ///< stops
 
-  OperatorInbox& inbox() noexcept { return inbox_; }  ///< to be written by comms alone, and by others before start()
-  ControllerOutbox& outbox() noexcept { return outbox_; }
-  const ControllerOutbox& outbox() const noexcept { return outbox_; }
+  control::OperatorInbox& inbox() noexcept { return inbox_; }  ///< to be written by comms alone, and by others before start()
+  control::ControllerOutbox& outbox() noexcept { return outbox_; }
+  const control::ControllerOutbox& outbox() const noexcept { return outbox_; }
   /// What the system refused of real-time scheduling, in words; known before start().
   const std::vector<std::string>& refused() const noexcept { return refused_; }
   pid_t bus_thread() const noexcept { return bus_thread_->id(); }
@@ -80,8 +80,8 @@ class Controller {
   const hal::BusCycle& bus_cycle() const noexcept { return bus_cycle_; }  ///< after stop()
 
  private:
-  void run_bus(const CycleTiming& timing) noexcept;
-  void run_control(const CycleTiming& timing) noexcept;
+  void run_bus(const control::CycleTiming& timing) noexcept;
+  void run_control(const control::CycleTiming& timing) noexcept;
   void await_first_sample();
   std::jthread repeat(const char* name, Pass& pass, int pause_ms);
   bool try_pass(const char* name, Pass& pass);  // false: it threw
@@ -90,14 +90,14 @@ class Controller {
   ControllerOptions options_;
   io::WallClock clock_;
   hal::BusLink link_;
-  OperatorInbox inbox_;
-  ControllerOutbox outbox_;
+  control::OperatorInbox inbox_;
+  control::ControllerOutbox outbox_;
   hal::BusCycle bus_cycle_;
-  ControlCycle control_cycle_;
-  TickRecord record_;  // the control thread's
+  control::ControlCycle control_cycle_;
+  control::TickRecord record_;  // the control thread's
   io::Mailbox<ControllerNews> news_;
   std::atomic<bool> drives_answered_{false};
-  std::atomic<Mode> mode_{Mode::kPassive};
+  std::atomic<control::Mode> mode_{control::Mode::kPassive};
   Pass comms_, recorder_;
   std::vector<std::string> refused_;
   std::unique_ptr<PeriodicThread> bus_thread_, control_thread_;

@@ -55,7 +55,7 @@ void add_delayed_line(const char* name, const CycleStatistics& statistics, std::
 }  // namespace
 
 nlohmann::ordered_json punctuality_json(const Controller& controller) {
-  const ControllerOutbox& outbox = controller.outbox();
+  const control::ControllerOutbox& outbox = controller.outbox();
   return {{"realtime", controller.refused().empty()},
           {"refused", controller.refused()},
           {"control", thread_json(controller.control_statistics(), "tick_us")},

@@ -40,7 +40,7 @@ double TimeHistogram::percentile_us(double share) const noexcept {
   return 0.0;
 }
 
-void CycleStatistics::add(const CycleTiming& cycle) noexcept {
+void CycleStatistics::add(const control::CycleTiming& cycle) noexcept {
   if (cycles() == 0) first_ns_ = cycle.planned_ns;
   missed_ = cycle.missed;
   wake_.add(cycle.woke_ns - cycle.planned_ns);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/tick_record.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -43,7 +43,7 @@ class CycleStatistics {
   explicit CycleStatistics(std::int64_t period_ns) : period_ns_(period_ns) { delayed_.reserve(kDelayedKept); }
 
   /// One cycle that ended. No heap.
-  void add(const CycleTiming& cycle) noexcept;
+  void add(const control::CycleTiming& cycle) noexcept;
 
   std::int64_t first_ns() const noexcept { return first_ns_; }  ///< when the first cycle was planned
   std::int64_t cycles() const noexcept { return wake_.count(); }

@@ -13,7 +13,7 @@ constexpr double kLongestGap_s = 0.05;  // five commands: what a bench's recordi
 ExcitationRecorder::ExcitationRecorder(int joint, std::vector<std::size_t> samples_of_run)
     : joint_(joint), samples_of_run_(std::move(samples_of_run)) {}
 
-void ExcitationRecorder::add(const TickRecord& record) {
+void ExcitationRecorder::add(const control::TickRecord& record) {
   progress_ = record.result.excitation;
   if (progress_.run < 0) {
     current_ = {};

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runtime/tick_record.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -18,12 +18,12 @@ class ExcitationRecorder {
   /// samples_of_run: how many commands each run of the plan has.
   ExcitationRecorder(int joint, std::vector<std::size_t> samples_of_run);
 
-  void add(const TickRecord& record);
+  void add(const control::TickRecord& record);
 
   /// Runs that were recorded from their first to their last sample; one that was cut off, or that has a hole (a tick is
   /// missing, the bus gave nothing new, the host stopped for more than 0.05 s), isn't among them.
   const std::vector<RecordedRun>& complete() const { return complete_; }
-  const ExcitationProgress& progress() const { return progress_; }
+  const control::ExcitationProgress& progress() const { return progress_; }
 
  private:
   int joint_;
@@ -31,7 +31,7 @@ class ExcitationRecorder {
   RecordedRun current_;
   std::int64_t start_ns_ = 0;
   std::vector<RecordedRun> complete_;
-  ExcitationProgress progress_;
+  control::ExcitationProgress progress_;
 };
 
 }  // namespace pmg::runtime

@@ -41,11 +41,11 @@ std::string utc(std::int64_t utc_ns, const char* format) {
 }
 
 /// A request's mode is whatever came in.
-std::string mode_name(Mode mode) {
-  return mode <= Mode::kFault ? to_string(mode) : fmt::format("mode {}", static_cast<int>(mode));
+std::string mode_name(control::Mode mode) {
+  return mode <= control::Mode::kFault ? to_string(mode) : fmt::format("mode {}", static_cast<int>(mode));
 }
 
-bool same(const Fault& a, const Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
+bool same(const control::Fault& a, const control::Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
 
 }  // namespace
 
@@ -68,7 +68,7 @@ const FlightRecorder::Row& FlightRecorder::row(std::size_t age) const {
   return ring_[(next_ + ring_.size() - 1 - age) % ring_.size()];
 }
 
-void FlightRecorder::add(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
+void FlightRecorder::add(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
   Row& row = ring_[next_];
   row.record = record;
   row.bus = bus;
@@ -78,11 +78,11 @@ void FlightRecorder::add(const TickRecord& record, const BusTiming& bus, std::in
   note_fault(record);
 }
 
-void FlightRecorder::note_fault(const TickRecord& record) {
-  const Fault& fault = record.result.fault;
-  const bool latched = fault.code != FaultCode::kNone && !same(fault, last_fault_);
+void FlightRecorder::note_fault(const control::TickRecord& record) {
+  const control::Fault& fault = record.result.fault;
+  const bool latched = fault.code != control::FaultCode::kNone && !same(fault, last_fault_);
   last_fault_ = fault;
-  const Mode mode_before = std::exchange(last_mode_, record.result.mode);
+  const control::Mode mode_before = std::exchange(last_mode_, record.result.mode);
   if (!latched) return;
   if (waiting_.size() == kWaiting) {
     say_(fmt::format("flight recorder: {} incidents wait for the disk; this fault's records are not kept: {}", kWaiting,
@@ -201,8 +201,8 @@ void FlightRecorder::remove_oldest() const {
 
 std::string FlightRecorder::text(const Incident& incident, const std::vector<const Row*>& rows,
                                  const fs::path& log) const {
-  const TickRecord& record = incident.record;
-  const Fault& fault = record.result.fault;
+  const control::TickRecord& record = incident.record;
+  const control::Fault& fault = record.result.fault;
   std::string text = describe(fault, robot_) + "\n\n";
   text += fmt::format("When         {} UTC, tick {}, {:.3f} s by the controller's clock\n",
                       utc(incident.utc_ns, "%Y-%m-%d %H:%M:%S"), record.tick, seconds(record.now_ns));
@@ -216,10 +216,10 @@ std::string FlightRecorder::text(const Incident& incident, const std::vector<con
   std::string commands, requests;
   std::size_t command_count = 0, request_count = 0;
   for (auto held = rows.rbegin(); held != rows.rend(); ++held) {
-    const TickRecord& earlier = (*held)->record;
+    const control::TickRecord& earlier = (*held)->record;
     if (earlier.now_ns > record.now_ns) continue;
     const double ago_s = seconds(record.now_ns - earlier.now_ns);
-    const TickInput input = earlier.input();
+    const control::TickInput input = earlier.input();
     for (auto drive = input.drives.rbegin(); drive != input.drives.rend() && command_count < kMessagesInText; ++drive) {
       const Command& u = drive->command;
       commands += fmt::format(
@@ -242,7 +242,7 @@ std::string FlightRecorder::text(const Incident& incident, const std::vector<con
       "\nWhat you can do\n  {}\n  The drives are damping and stay so. When the cause is gone, reset the fault (the "
       "mode "
       "is then Damping) and ask\n  for Stand.\n",
-      advice(fault.code));
+      control::advice(fault.code));
   text += fmt::format("\nRecords      {}: {} ticks, from {:.2f} s before the fault to {:.2f} s after\n",
                       log.filename().string(), rows.size(), seconds(record.now_ns - rows.front()->record.now_ns),
                       seconds(rows.back()->record.now_ns - record.now_ns));

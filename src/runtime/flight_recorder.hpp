@@ -12,7 +12,7 @@
 #include "model/robot_model.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_messages.hpp"
-#include "runtime/tick_record.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -34,7 +34,7 @@ class FlightRecorder {
   FlightRecorder(std::filesystem::path directory, const model::RobotModel& robot, const RunInfo& run,
                  double control_rate_Hz, const io::Clock& clock, const FlightRecorderOptions& options, Say say);
 
-  void add(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  void add(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
 
   /// Writes what is due. What the disk refuses is kept, and tried again in a later pass.
   void pass();
@@ -46,14 +46,14 @@ class FlightRecorder {
 
  private:
   struct Row {
-    TickRecord record;
+    control::TickRecord record;
     BusTiming bus;
     std::int64_t dropped_records = 0;
   };
   /// A fault that is not on the disk yet.
   struct Incident {
-    TickRecord record;  // of the tick that latched it
-    Mode mode_before = Mode::kPassive;
+    control::TickRecord record;  // of the tick that latched it
+    control::Mode mode_before = control::Mode::kPassive;
     std::int64_t utc_ns = 0;
     std::int64_t try_ns = 0;   // not before, by the clock
     std::vector<Row> rescued;  // after a refusal: the ring moves on
@@ -61,7 +61,7 @@ class FlightRecorder {
   };
 
   const Row& row(std::size_t age) const;  // 0: the newest
-  void note_fault(const TickRecord& record);
+  void note_fault(const control::TickRecord& record);
   bool complete(const Incident& incident) const;
   bool try_writing(Incident& incident);
   void write(const Incident& incident, const std::filesystem::path& stem) const;
@@ -80,8 +80,8 @@ class FlightRecorder {
   Say say_;
   std::vector<Row> ring_;
   std::size_t next_ = 0, held_ = 0;
-  Fault last_fault_;
-  Mode last_mode_ = Mode::kPassive;
+  control::Fault last_fault_;
+  control::Mode last_mode_ = control::Mode::kPassive;
   std::vector<Incident> waiting_;
   int written_ = 0;
 };

@@ -8,7 +8,7 @@
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "runtime/hoist_line.hpp"
 #include "runtime/operator_gate.hpp"
-#include "runtime/tick.hpp"
+#include "control/tick.hpp"
 
 namespace pmg::runtime {
 
@@ -21,7 +21,7 @@ class HoistGate {
   bool there() const noexcept { return line_ != nullptr; }
 
   void take(io::Bytes message);  ///< channel HOIST
-  void see(const TickResult& result) noexcept {
+  void see(const control::TickResult& result) noexcept {
     if (line_ != nullptr) line_->see(result.mode, result.entering);
   }
 

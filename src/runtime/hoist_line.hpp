@@ -2,11 +2,21 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 
-#include "runtime/crane.hpp"
-#include "runtime/mode.hpp"
+#include "control/mode.hpp"
 
 namespace pmg::runtime {
+
+/// What the hoist does; the numbers are those of pmg_msgs::hoist_state_t.
+enum class CraneState : std::uint8_t {
+  kFree = 0,       ///< straps off: the robot is on its own
+  kCatching = 1,   ///< straps are tightened, from where the torso is on the way up
+  kLifting = 2,    ///< up, and upright
+  kHolding = 3,    ///< feet clear of the ground
+  kLowering = 4,   ///< down, then slack
+  kLettingGo = 5,  ///< straps are loosened
+};
 
 /// Wait-free. One thread tells, the bus thread reads and shows.
 class HoistLine {
@@ -14,8 +24,8 @@ class HoistLine {
   /// Up, and stay there; or down as soon as the robot stands.
   void ask(bool up) noexcept { stays_up_.store(up, std::memory_order_relaxed); }
   /// The controller's newest tick. Standing up anew ends a wish to stay up; entering: the ramp into Stand isn't over.
-  void see(Mode mode, bool entering) noexcept {
-    const bool upright = mode == Mode::kStand || mode == Mode::kWalk;
+  void see(control::Mode mode, bool entering) noexcept {
+    const bool upright = mode == control::Mode::kStand || mode == control::Mode::kWalk;
     if (upright && !upright_) ask(false);
     upright_ = upright;
     stands_.store(upright && !entering, std::memory_order_relaxed);

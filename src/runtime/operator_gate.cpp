@@ -10,11 +10,11 @@
 namespace pmg::runtime {
 
 bool presentable(const std::string& name) {
-  return !name.empty() && name.size() < Source{}.name.size() &&
+  return !name.empty() && name.size() < control::Source{}.name.size() &&
          std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-OperatorGate::OperatorGate(OperatorInbox& inbox, std::string robot, const io::Clock& clock)
+OperatorGate::OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock)
     : inbox_(inbox), robot_(std::move(robot)), clock_(clock) {}
 
 void OperatorGate::take_command(io::Bytes bytes) {
@@ -26,8 +26,8 @@ void OperatorGate::take_command(io::Bytes bytes) {
   } else if (message->robot != robot_) {
     ++counts_.other_robot;
   } else {
-    const DriveMessage drive = drive_message(*message, clock_.now_ns());
-    const bool taken = rates_.admit(drive.source, MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
+    const control::DriveMessage drive = drive_message(*message, clock_.now_ns());
+    const bool taken = rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
     if (!taken) ++counts_.flooded;
   }
 }
@@ -42,16 +42,16 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     ++counts_.other_version;
     return;
   }
-  ModeRequest request = mode_request(*message, clock_.now_ns());
+  control::ModeRequest request = mode_request(*message, clock_.now_ns());
   if (message->mode < pmg_msgs::mode_t::PASSIVE || message->mode > pmg_msgs::mode_t::WALK) {
-    request.mode = Mode::kFault;  // answered with NO_MODE
+    request.mode = control::Mode::kFault;  // answered with NO_MODE
   }
   const bool for_every_robot = message->robot.empty() && request.stops();
   if (message->robot != robot_ && !for_every_robot) {
     ++counts_.other_robot;
     return;
   }
-  const MessageKind kind = request.stops() ? MessageKind::kStop : MessageKind::kRequest;
+  const control::MessageKind kind = request.stops() ? control::MessageKind::kStop : control::MessageKind::kRequest;
   const bool admitted = rates_.admit(request.source, kind, request.received_ns);
   // A stop beyond its source's rate stops all the same; it only isn't acknowledged one by one.
   if (!admitted && request.stops()) inbox_.stop();

@@ -7,8 +7,8 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "runtime/operator_inbox.hpp"
-#include "runtime/source_rates.hpp"
+#include "control/operator_inbox.hpp"
+#include "control/source_rates.hpp"
 
 namespace pmg::runtime {
 
@@ -33,7 +33,7 @@ bool presentable(const std::string& name);
 class OperatorGate {
  public:
   /// Keeps references. robot: the controller's name.
-  OperatorGate(OperatorInbox& inbox, std::string robot, const io::Clock& clock);
+  OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock);
 
   void take_command(io::Bytes message);  ///< channel COMMAND
   void take_mode(io::Bytes message);     ///< channel MODE
@@ -41,10 +41,10 @@ class OperatorGate {
   const GateCounts& counts() const noexcept { return counts_; }
 
  private:
-  OperatorInbox& inbox_;
+  control::OperatorInbox& inbox_;
   std::string robot_;
   const io::Clock& clock_;
-  SourceRates rates_;
+  control::SourceRates rates_;
   GateCounts counts_;
 };
 

@@ -63,7 +63,7 @@ void PeriodicThread::prepare() {
 
 void PeriodicThread::loop() noexcept {
   const io::WallClock clock;
-  CycleTiming timing;
+  control::CycleTiming timing;
   timing.planned_ns = first_ns_;
   while (true) {
     if (!stopping_.load()) sleep_until(timing.planned_ns);

@@ -19,7 +19,7 @@ namespace pmg::runtime {
 class PeriodicThread {
  public:
   /// Called once a period; must not throw: the process would end. timing.done_ns is not known yet.
-  using Cycle = std::function<void(const CycleTiming& timing)>;
+  using Cycle = std::function<void(const control::CycleTiming& timing)>;
 
   /// Makes the thread, scheduled as wanted as far as the system allows, and lets it wait for start(). Throws
   /// std::system_error when the system refuses a thread altogether.

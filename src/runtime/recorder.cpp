@@ -27,7 +27,7 @@ fs::path made(const fs::path& directory) {
 
 }  // namespace
 
-Recorder::Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
+Recorder::Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
                    const RecorderOptions& options, Say say)
     : outbox_(outbox),
       robot_(robot),
@@ -86,7 +86,7 @@ void Recorder::close() noexcept {
 void Recorder::take_records() {
   note_queue_losses();
   // Bounded: a disk slower than the ticks must not keep this pass for ever.
-  for (std::size_t taken = 0; taken < ControllerOutbox::kRecords && outbox_.records.pop(record_); ++taken) {
+  for (std::size_t taken = 0; taken < control::ControllerOutbox::kRecords && outbox_.records.pop(record_); ++taken) {
     bus_cycles_.take_until(record_.timing.woke_ns, bus_);
     guarded([this] { flight_.add(record_, bus_, lost()); });
     if (options_.log) log_record();
@@ -189,7 +189,7 @@ void Recorder::remove_oldest() const {
   }
 }
 
-void Recorder::write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) noexcept {
+void Recorder::write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted) noexcept {
   guarded([&] {
     if (!writer_) return;
     try {

@@ -10,12 +10,12 @@
 
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
+#include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
-#include "runtime/controller_outbox.hpp"
+#include "control/controller_outbox.hpp"
 #include "runtime/flight_recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_log.hpp"
-#include "sim/world.hpp"
 
 namespace pmg::runtime {
 
@@ -40,17 +40,17 @@ class Recorder {
 
   /// Keeps references to outbox, robot and clock, which is the one that stamps the records. Throws std::runtime_error
   /// when the folder or the first file can't be made.
-  Recorder(ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
+  Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
            const RecorderOptions& options, Say say);
   ~Recorder();  ///< closes
 
   /// Called with every record, in order, after it was logged; in drain().
-  std::function<void(const TickRecord&)> after_record;
+  std::function<void(const control::TickRecord&)> after_record;
 
   /// One pass: everything that waits goes to the disk and survives the end of this process. Every 20 ms or so.
   void drain() noexcept;
   /// A simulation's truth, after the record that it belongs to; the log alone has it.
-  void write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) noexcept;
+  void write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted) noexcept;
   /// The last pass, after the real-time threads have ended. Once more does nothing.
   void close() noexcept;
 
@@ -73,7 +73,7 @@ class Recorder {
   template <typename Action>
   void guarded(Action&& action) noexcept;
 
-  ControllerOutbox& outbox_;
+  control::ControllerOutbox& outbox_;
   const model::RobotModel& robot_;
   RunInfo run_;
   const io::Clock& clock_;
@@ -84,7 +84,7 @@ class Recorder {
   std::unique_ptr<io::LogWriter> writer_;  // null: no log wanted, or the disk refused
   std::optional<TickLog> log_;
   FlightRecorder flight_;
-  TickRecord record_;
+  control::TickRecord record_;
   BusTiming bus_;
   BusCycleReader bus_cycles_;
   std::int64_t unflushed_ = 0, written_ = 0, queue_lost_ = 0, disk_lost_ = 0;

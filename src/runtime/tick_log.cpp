@@ -3,7 +3,7 @@
 namespace pmg::runtime {
 
 namespace {
-bool same(const Fault& a, const Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
+bool same(const control::Fault& a, const control::Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
 }  // namespace
 
 TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz,
@@ -20,7 +20,7 @@ void TickLog::continue_in(io::LogWriter& writer, std::int64_t stamp_ns) {
   writer_->write("ROBOT_INFO", stamp_ns, info_);
 }
 
-void TickLog::write(const TickRecord& record) {
+void TickLog::write(const control::TickRecord& record) {
   const std::int64_t stamp_ns = record.now_ns;
   fill(record, joint_count_, state_);
   writer_->write("STATE", stamp_ns, state_);
@@ -36,12 +36,12 @@ void TickLog::write(const TickRecord& record) {
   write_fault_once(record);
 }
 
-void TickLog::write_input(const TickRecord& record) {
-  for (const DriveMessage& drive : record.input().drives) {
+void TickLog::write_input(const control::TickRecord& record) {
+  for (const control::DriveMessage& drive : record.input().drives) {
     fill(drive, run_, command_);
     writer_->write("COMMAND", record.now_ns, command_);
   }
-  for (const ModeRequest& request : record.input().requests) {
+  for (const control::ModeRequest& request : record.input().requests) {
     fill(request, run_, mode_);
     writer_->write("MODE", record.now_ns, mode_);
   }
@@ -49,34 +49,29 @@ void TickLog::write_input(const TickRecord& record) {
   writer_->write("TICK", record.now_ns, input_);
 }
 
-void TickLog::announce_fault(std::int64_t stamp_ns, const TickRecord& record) {
+void TickLog::announce_fault(std::int64_t stamp_ns, const control::TickRecord& record) {
   announced_fault_ = record.result.fault;
   fill(record, run_, robot_, fault_);
   writer_->write("FAULT", stamp_ns, fault_);
 }
 
-void TickLog::write_fault_once(const TickRecord& record) {
-  const Fault& fault = record.result.fault;
-  const bool latched = fault.code != FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
+void TickLog::write_fault_once(const control::TickRecord& record) {
+  const control::Fault& fault = record.result.fault;
+  const bool latched = fault.code != control::FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
   last_fault_ = fault;
   if (!latched) return;
   fill(record, run_, robot_, fault_);
   writer_->write("FAULT", record.now_ns, fault_);
 }
 
-void TickLog::write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
+void TickLog::write_timing(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
   fill(record, bus, dropped_records, timing_);
   writer_->write("TIMING", record.now_ns, timing_);
 }
 
-void TickLog::write_step(std::int64_t stamp_ns, const Scenario& scenario, std::size_t number) {
-  if (number == last_step_) return;
-  last_step_ = number;
-  fill(scenario, number, stamp_ns, step_);
-  writer_->write("SCENARIO", stamp_ns, step_);
-}
+void TickLog::write_step(const pmg_msgs::scenario_step_t& step) { writer_->write("SCENARIO", step.stamp_ns, step); }
 
-void TickLog::write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted) {
+void TickLog::write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted) {
   fill(stamp_ns, truth, hoisted, truth_);
   writer_->write("GROUND_TRUTH", stamp_ns, truth_);
 }

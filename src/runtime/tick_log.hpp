@@ -4,11 +4,12 @@
 #include <cstdint>
 
 #include "io/log_writer.hpp"
+#include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
+#include "pmg_msgs/scenario_step_t.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_messages.hpp"
-#include "runtime/tick_record.hpp"
-#include "sim/world.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -27,24 +28,22 @@ class TickLog {
 
   /// FAULT now, with the stamp of the fault itself, instead of after the tick that latched it: a file that is about one
   /// fault begins with it.
-  void announce_fault(std::int64_t stamp_ns, const TickRecord& record);
+  void announce_fault(std::int64_t stamp_ns, const control::TickRecord& record);
 
-  void write(const TickRecord& record);
-  void write_timing(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
-  /// Once where the scenario's step changes; number counts from 1. Before the step's first tick.
-  void write_step(std::int64_t stamp_ns, const Scenario& scenario, std::size_t number);
-  void write_truth(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted);
+  void write(const control::TickRecord& record);
+  void write_timing(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  void write_step(const pmg_msgs::scenario_step_t& step);
+  void write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted);
 
  private:
-  void write_input(const TickRecord& record);
-  void write_fault_once(const TickRecord& record);
+  void write_input(const control::TickRecord& record);
+  void write_fault_once(const control::TickRecord& record);
 
   io::LogWriter* writer_;
   const model::RobotModel& robot_;
   const RunInfo run_;
   const int joint_count_;
-  std::size_t last_step_ = 0;
-  Fault last_fault_, announced_fault_;
+  control::Fault last_fault_, announced_fault_;
   pmg_msgs::robot_info_t info_;
   pmg_msgs::tick_input_t input_;
   pmg_msgs::command_t command_;
@@ -56,7 +55,6 @@ class TickLog {
   pmg_msgs::timing_t timing_;
   pmg_msgs::ground_truth_t truth_;
   pmg_msgs::limited_t limited_;
-  pmg_msgs::scenario_step_t step_;
   pmg_msgs::fault_t fault_;
 };
 

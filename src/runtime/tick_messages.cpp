@@ -38,7 +38,7 @@ void copy_sender(const From& from, const RunInfo& run, Message& message) {
 
 template <typename Message, typename To>
 void take_sender(const Message& message, std::int64_t received_ns, To& to) {
-  to.source = Source::make(message.source, message.session);
+  to.source = control::Source::make(message.source, message.session);
   to.sequence = message.sequence;
   to.stamp_ns = message.stamp_ns;
   to.received_ns = received_ns;
@@ -82,7 +82,7 @@ void fill(const RunInfo& run, const model::RobotModel& robot, double control_rat
   message.control_rate_hz = control_rate_Hz;
 }
 
-void fill(const TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message) {
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message) {
   const model::RobotState& state = record.state;
   message.stamp_ns = state.stamp_ns;
   message.bus_sample = static_cast<std::int64_t>(state.bus_sample);
@@ -96,7 +96,7 @@ void fill(const TickRecord& record, int joint_count, pmg_msgs::robot_state_t& me
   copy(state.orientation_WI, message.orientation_WI);
 }
 
-void fill(const TickRecord& record, int joint_count, pmg_msgs::reference_t& message) {
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::reference_t& message) {
   const Reference& reference = record.result.reference;
   const gco::Result& optimised = record.result.optimised;
   message.stamp_ns = record.now_ns;
@@ -126,7 +126,7 @@ void fill(const TickRecord& record, int joint_count, pmg_msgs::reference_t& mess
   message.joint_clamped = reference.joint_clamped;
 }
 
-void fill(const TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message) {
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message) {
   const model::JointCommand& command = record.result.command;
   message.stamp_ns = record.now_ns;
   message.bus_sample = static_cast<std::int64_t>(command.bus_sample);
@@ -138,14 +138,14 @@ void fill(const TickRecord& record, int joint_count, pmg_msgs::motor_command_t& 
   copy(command.tau_ff, joint_count, message.torque_ff_Nm);
 }
 
-void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message) {
-  const TickResult& result = record.result;
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message) {
+  const control::TickResult& result = record.result;
   message.stamp_ns = record.now_ns;
   message.robot = run.robot;
   message.session = run.session;
   message.mode = static_cast<std::int8_t>(result.mode);
   message.fault_code = static_cast<std::int32_t>(result.fault.code);
-  if (result.fault.code == FaultCode::kNone) {
+  if (result.fault.code == control::FaultCode::kNone) {
     message.fault.clear();
   } else {
     message.fault = describe(result.fault, robot);
@@ -163,7 +163,7 @@ void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel&
   message.realtime = run.realtime;
 }
 
-void fill(const TickRecord& record, pmg_msgs::limited_t& message) {
+void fill(const control::TickRecord& record, pmg_msgs::limited_t& message) {
   const auto& by = record.result.limited.by;
   message.stamp_ns = record.now_ns;
   message.joint.clear();
@@ -176,8 +176,8 @@ void fill(const TickRecord& record, pmg_msgs::limited_t& message) {
   message.count = static_cast<std::int32_t>(message.joint.size());
 }
 
-void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
-  const TickInput input = record.input();
+void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
+  const control::TickInput input = record.input();
   message.stamp_ns = input.now_ns;
   message.tick = record.tick;
   message.bus = static_cast<std::int8_t>(input.bus);
@@ -187,15 +187,15 @@ void fill(const TickRecord& record, pmg_msgs::tick_input_t& message) {
   message.policy_late = input.policy_late;
   message.command_count = static_cast<std::int32_t>(input.drives.size());
   message.command_received_ns.clear();
-  for (const DriveMessage& drive : input.drives) message.command_received_ns.push_back(drive.received_ns);
+  for (const control::DriveMessage& drive : input.drives) message.command_received_ns.push_back(drive.received_ns);
   message.request_count = static_cast<std::int32_t>(input.requests.size());
   message.request_received_ns.clear();
-  for (const ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
+  for (const control::ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
 }
 
-void fill(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message) {
-  const CycleTiming& timing = record.timing;
-  const StageTimes& times = record.result.times;
+void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message) {
+  const control::CycleTiming& timing = record.timing;
+  const control::StageTimes& times = record.result.times;
   message.stamp_ns = record.now_ns;
   message.wake_ns = timing.woke_ns - timing.planned_ns;
   message.tick_ns = times.tick_ns;
@@ -210,15 +210,15 @@ void fill(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_r
   message.dropped_records = dropped_records;
 }
 
-void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message) {
-  const Fault& fault = record.result.fault;
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message) {
+  const control::Fault& fault = record.result.fault;
   message.robot = run.robot;
   message.stamp_ns = fault.stamp_ns;
   message.code = static_cast<std::int32_t>(fault.code);
   message.text = describe(fault, robot);
 }
 
-void fill(const DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message) {
+void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message) {
   copy_sender(drive, run, message);
   message.lease_s = drive.lease_s;
   const Command& u = drive.command;
@@ -230,13 +230,13 @@ void fill(const DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& me
   message.height_m = u[kHeight];
 }
 
-void fill(const ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message) {
+void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message) {
   copy_sender(request, run, message);
   message.mode = static_cast<std::int8_t>(request.mode);
   message.reset_fault = request.reset_fault;
 }
 
-void fill(const ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message) {
+void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message) {
   message.stamp_ns = stamp_ns;
   message.robot = run.robot;
   message.source = ack.source.name.data();
@@ -246,19 +246,7 @@ void fill(const ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msg
   message.mode = static_cast<std::int8_t>(ack.mode);
 }
 
-void fill(const Scenario& scenario, std::size_t number, std::int64_t stamp_ns, pmg_msgs::scenario_step_t& message) {
-  const ScenarioStep& step = scenario.steps.at(number - 1);
-  message.stamp_ns = stamp_ns;
-  message.scenario = scenario.name;
-  message.number = static_cast<std::int32_t>(number);
-  message.step_count = static_cast<std::int32_t>(scenario.steps.size());
-  message.duration_s = step.duration_s;
-  message.text = step.text;
-  message.mode = static_cast<std::int8_t>(step.mode);
-  copy(step.command, message.command);
-}
-
-void fill(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted, pmg_msgs::ground_truth_t& message) {
+void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message) {
   message.stamp_ns = stamp_ns;
   copy(truth.p_WB, message.p_WB_m);
   copy(truth.q_WB, message.q_WB);
@@ -270,8 +258,8 @@ void fill(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted, pmg_msgs
   message.hoisted = hoisted;
 }
 
-DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns) {
-  DriveMessage drive;
+control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns) {
+  control::DriveMessage drive;
   take_sender(message, received_ns, drive);
   drive.lease_s = message.lease_s;
   drive.command = {.u = {message.vx_m_s, message.vy_m_s, message.omega_rad_s, message.pitch_rad, message.roll_rad,
@@ -279,10 +267,10 @@ DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t rece
   return drive;
 }
 
-ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns) {
-  ModeRequest request;
+control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns) {
+  control::ModeRequest request;
   take_sender(message, received_ns, request);
-  request.mode = static_cast<Mode>(message.mode);
+  request.mode = static_cast<control::Mode>(message.mode);
   request.reset_fault = message.reset_fault != 0;
   return request;
 }

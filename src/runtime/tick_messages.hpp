@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
@@ -16,40 +17,35 @@
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
-#include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "runtime/bus_timing.hpp"
 #include "runtime/run_info.hpp"
-#include "runtime/scenario.hpp"
-#include "runtime/tick_record.hpp"
-#include "sim/world.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
 void fill(const RunInfo& run, const model::RobotModel& robot, double control_rate_Hz, std::int64_t stamp_ns,
           pmg_msgs::robot_info_t& message);
 /// joint_count is the robot's: a vector that a broken state left short is filled up with NaN.
-void fill(const TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message);
-void fill(const TickRecord& record, int joint_count, pmg_msgs::reference_t& message);
-void fill(const TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message);
-void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message);
-void fill(const TickRecord& record, pmg_msgs::limited_t& message);
-void fill(const TickRecord& record, pmg_msgs::tick_input_t& message);
-void fill(const TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message);
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message);
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::reference_t& message);
+void fill(const control::TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message);
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message);
+void fill(const control::TickRecord& record, pmg_msgs::limited_t& message);
+void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message);
+void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
-void fill(const TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message);
-void fill(const DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message);
-void fill(const ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message);
-void fill(const ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
-/// number counts from 1.
-void fill(const Scenario& scenario, std::size_t number, std::int64_t stamp_ns, pmg_msgs::scenario_step_t& message);
-void fill(std::int64_t stamp_ns, const sim::Truth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message);
+void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message);
+void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message);
+void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
+void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
 
 /// The other way: the values as they are, unchecked; who hears strangers validates first.
-DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns);
-ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns);
+control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns);
+control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns);
 /// False when the message's vectors don't have joint_count entries each.
 bool robot_state(const pmg_msgs::robot_state_t& message, int joint_count, model::RobotState& state);
 

@@ -254,9 +254,9 @@ void World::read(model::RobotState& state) noexcept {
   state.orientation_WI = quaternion(data_->sensordata + w.orientation_address) * w.noise.orientation();
 }
 
-Truth World::truth() const noexcept {
+model::GroundTruth World::truth() const noexcept {
   const Impl& w = *impl_;
-  Truth truth;
+  model::GroundTruth truth;
   truth.p_WB = Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * w.base_body);
   truth.q_WB = quaternion(data_->xquat + 4 * w.base_body);
   truth.v_WB_W = Eigen::Map<const Eigen::Vector3d>(data_->qvel);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "model/ground_truth.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 #include "sim/motor_file.hpp"
@@ -27,17 +28,6 @@ struct WorldOptions {
   double velocity_noise_rad_s = 0.0;  ///< of measured joint velocities, likewise
   ActuatorsByJoint motors;            ///< what a motor.yaml says of some joints; robot.yaml says the rest
   Variation variation;                ///< what else is not as the model says
-};
-
-/// What only a simulation knows; for metrics and pictures, never for control.
-struct Truth {
-  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
-  Eigen::Vector3d omega_WB_B = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  ///< torso link
-  std::array<double, 2> foot_force_N{};                      ///< normal force, left and right
-  std::array<double, 2> foot_slip_m_s{};  ///< horizontal speed of the contact point, 0 when in the air
 };
 
 /// The gantry's rope, for pictures.
@@ -66,7 +56,7 @@ class World {
   /// first arrives the drives are limp. After divergence nothing moves any more until reset().
   void step(const model::JointCommand& command) noexcept;
   void read(model::RobotState& state) noexcept;  ///< sensors of the current step
-  Truth truth() const noexcept;
+  model::GroundTruth truth() const noexcept;
   bool diverged() const noexcept;  ///< MuJoCo warned of NaN, a bad state, or a reset of its own
   double time_s() const noexcept;
 

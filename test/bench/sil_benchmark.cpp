@@ -11,13 +11,13 @@
 
 #include "bench/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
-#include "hal/sil_hal.hpp"
+#include "sil/sil_hal.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
 #include "policy/policy.hpp"
-#include "runtime/lockstep.hpp"
+#include "sil/lockstep.hpp"
 #include "runtime/tick_log.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
@@ -34,14 +34,14 @@ double thread_cpu_s() {
 }
 
 /// On the ground, where contacts cost the most, in Walk mode, with every part of the tick at work.
-runtime::Scenario scenario() {
-  runtime::ScenarioStep step;
+sil::Scenario scenario() {
+  sil::ScenarioStep step;
   step.duration_s = kDuration_s;
   step.text = "crouch and bend";
-  step.mode = runtime::Mode::kWalk;
+  step.mode = control::Mode::kWalk;
   step.command[kHeight] = -0.05;
   step.command[kPitch] = 0.1;
-  runtime::Scenario scenario;
+  sil::Scenario scenario;
   scenario.name = "benchmark";
   scenario.steps = {step};
   return scenario;
@@ -52,23 +52,23 @@ using MakePolicy = std::unique_ptr<policy::Policy> (*)(const model::RobotModel&)
 void sil(benchmark::State& state, MakePolicy make_policy) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
-  const runtime::Scenario played = scenario();
-  const runtime::TickOptions options = runtime::tick_options(robot);
+  const sil::Scenario played = scenario();
+  const control::TickOptions options = control::tick_options(robot);
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "pmg_sil_benchmark.lcm";
   const io::WallClock clock;
   constexpr int kSettledTicks = 100;
   long least = 1L << 30, most = 0;
   for (auto _ : state) {
     sim::World world(robot, {});
-    runtime::Tick tick(robot, library, make_policy(robot), clock, options);
-    hal::SilHal bus(world);
-    runtime::WorldPlant plant(world);
+    control::Tick tick(robot, library, make_policy(robot), clock, options);
+    sil::SilHal bus(world);
+    sil::WorldPlant plant(world);
     io::LogWriter writer(file);
     runtime::TickLog log(writer, robot, {.robot = robot.name}, 1.0 / options.dt_s);
-    runtime::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
+    sil::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
     int ticks = 0;
     long before = 0;
-    lockstep.after_tick = [&](const runtime::RunProgress&) {
+    lockstep.after_tick = [&](const sil::RunProgress&) {
       const long now = allocation_count();
       if (++ticks > kSettledTicks) {
         least = std::min(least, now - before);
@@ -77,7 +77,7 @@ void sil(benchmark::State& state, MakePolicy make_policy) {
       before = now;
     };
     const double start_s = thread_cpu_s();
-    const runtime::RunOutcome outcome = lockstep.run();
+    const sil::RunOutcome outcome = lockstep.run();
     state.SetIterationTime(thread_cpu_s() - start_s);
     if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
   }

@@ -10,10 +10,10 @@
 
 #include "bench/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
-#include "hal/sil_hal.hpp"
+#include "sil/sil_hal.hpp"
 #include "model/clip_library_file.hpp"
-#include "runtime/lockstep.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/lockstep.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::test {
 namespace {
@@ -28,18 +28,18 @@ class ThreadCpuClock final : public io::Clock {
   }
 };
 
-runtime::Scenario walking() {
-  runtime::Scenario scenario;
+sil::Scenario walking() {
+  sil::Scenario scenario;
   scenario.name = "benchmark";
   const std::array<Command, 4> commands = {Command{{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}},
                                            Command{{0.3, 0.0, 0.4, 0.1, 0.0, 0.0}},
                                            Command{{0.2, 0.1, 0.2, 0.1, 0.05, -0.04}}, Command{}};
   for (const Command& command : commands) {
-    runtime::ScenarioStep step;
+    sil::ScenarioStep step;
     step.duration_s = 3.0;
     step.start_s = step.duration_s * static_cast<double>(scenario.steps.size());
     step.text = "walk";
-    step.mode = runtime::Mode::kWalk;
+    step.mode = control::Mode::kWalk;
     step.command = command;
     scenario.steps.push_back(step);
   }
@@ -69,40 +69,40 @@ class AllocationsPerTick {
 void BM_tick(benchmark::State& state) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
-  const runtime::Scenario played = walking();
+  const sil::Scenario played = walking();
   const ThreadCpuClock stopwatch;
-  runtime::TickOptions options = runtime::tick_options(robot);
+  control::TickOptions options = control::tick_options(robot);
   options.action_monitor.persist_ticks = 1'000'000;  // feet that find no ground make a policy reach for it
   options.foot_load.lost_share = -2e9;               // and it is run all the same
   options.foot_load.found_share = -1e9;
   for (auto _ : state) {
-    sim::World world(robot, runtime::world_with_noise(1, true));
-    runtime::Tick tick(robot, library, trained_policy(robot), stopwatch, options);
-    hal::SilHal bus(world);
-    runtime::WorldPlant plant(world);
-    runtime::Lockstep lockstep(robot, bus, plant, tick, played, nullptr,
+    sim::World world(robot, sil::world_with_noise(1, true));
+    control::Tick tick(robot, library, trained_policy(robot), stopwatch, options);
+    sil::SilHal bus(world);
+    sil::WorldPlant plant(world);
+    sil::Lockstep lockstep(robot, bus, plant, tick, played, nullptr,
                                {.balanced_by_policy = true, .always_hoisted = true});
     AllocationsPerTick allocations;
     int walked = 0;
-    lockstep.after_tick = [&](const runtime::RunProgress& now) {
-      const bool walks = now.result.mode == runtime::Mode::kWalk;
+    lockstep.after_tick = [&](const sil::RunProgress& now) {
+      const bool walks = now.result.mode == control::Mode::kWalk;
       walked += walks;
       allocations.tick(walks);
     };
-    const runtime::RunOutcome outcome = lockstep.run();
+    const sil::RunOutcome outcome = lockstep.run();
     if (walked < 1000) {
       state.SkipWithError(outcome.faults.empty() ? "the robot hardly walked" : to_string(outcome.faults[0].code));
       break;
     }
-    const auto report = [&](const std::string& stage, std::int64_t runtime::StageTimes::*time) {
-      const runtime::Percentiles times = lockstep.timing().percentiles(time);
+    const auto report = [&](const std::string& stage, std::int64_t control::StageTimes::*time) {
+      const sil::Percentiles times = lockstep.timing().percentiles(time);
       state.counters[stage + "_p50_ns"] = 1e3 * times.p50_us;
       state.counters[stage + "_p99_ns"] = 1e3 * times.p99_us;
     };
-    report("tick", &runtime::StageTimes::tick_ns);
-    report("generator", &runtime::StageTimes::generator_ns);
-    report("gco", &runtime::StageTimes::gco_ns);
-    report("policy", &runtime::StageTimes::policy_ns);
+    report("tick", &control::StageTimes::tick_ns);
+    report("generator", &control::StageTimes::generator_ns);
+    report("gco", &control::StageTimes::gco_ns);
+    report("policy", &control::StageTimes::policy_ns);
     state.counters["allocations_per_call"] = static_cast<double>(allocations.most);
     state.counters["allocations_vary_by"] = static_cast<double>(allocations.most - allocations.least);
   }

@@ -7,7 +7,7 @@
 
 #include "diagnosis/robot_excitation.hpp"
 #include "model/clip_library_file.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::diagnosis {
 
@@ -104,7 +104,7 @@ HiddenRobot hide(const model::RobotModel& robot, std::uint64_t seed) {
   Draw draw(0x5eed0000 + seed);
   HiddenRobot result{.hidden = {}, .ground_friction = draw.between(0.3, 1.1), .robot = robot, .options = {}};
   sim::WorldOptions& options = result.options;
-  options = runtime::world_with_noise(seed, false);
+  options = sil::world_with_noise(seed, false);
   options.velocity_noise_rad_s = 0.01;
   options.floor_friction = result.ground_friction;
   vary_within_a_kind(draw, robot, options.variation);

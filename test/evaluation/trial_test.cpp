@@ -12,7 +12,7 @@
 namespace pmg::evaluation {
 namespace {
 
-runtime::ScenarioStep step(double start_s, double duration_s, runtime::Mode mode, const Command& command) {
+sil::ScenarioStep step(double start_s, double duration_s, control::Mode mode, const Command& command) {
   return {.start_s = start_s,
           .duration_s = duration_s,
           .text = "step",
@@ -21,8 +21,8 @@ runtime::ScenarioStep step(double start_s, double duration_s, runtime::Mode mode
           .hoist_without_policy = false};
 }
 
-runtime::Scenario standing(double duration_s) {
-  return {.name = "standing", .steps = {step(0.0, duration_s, runtime::Mode::kStand, {})}};
+sil::Scenario standing(double duration_s) {
+  return {.name = "standing", .steps = {step(0.0, duration_s, control::Mode::kStand, {})}};
 }
 
 /// Nobody balances: the drives follow the reference, which stands but doesn't walk.
@@ -60,12 +60,12 @@ TEST(Trial, AfterAFallVelocityAndHeightAreZeroAndTheRunGoesOnToItsEnd) {
   command[kVy] = -0.1;
   command[kOmega] = 0.2;
   command[kHeight] = -0.05;
-  const runtime::Scenario scenario{
+  const sil::Scenario scenario{
       .name = "fall",
-      .steps = {step(0.0, 0.5, runtime::Mode::kStand, {}), step(0.5, 4.0, runtime::Mode::kWalk, command),
-                step(4.5, 1.0, runtime::Mode::kWalk, command)}};
+      .steps = {step(0.0, 0.5, control::Mode::kStand, {}), step(0.5, 4.0, control::Mode::kWalk, command),
+                step(4.5, 1.0, control::Mode::kWalk, command)}};
   double standing_height_m = 0.0;
-  const TrialObserver shove = [&](const runtime::RunProgress& now, sim::World& world) {
+  const TrialObserver shove = [&](const sil::RunProgress& now, sim::World& world) {
     if (now.time_s < 0.1) standing_height_m = world.truth().p_WB.z();
     world.set_push(Eigen::Vector3d(now.time_s > 0.6 && now.time_s < 0.9 ? 900.0 : 0.0, 0.0, 0.0));
     return true;
@@ -85,7 +85,7 @@ TEST(Trial, AfterAFallVelocityAndHeightAreZeroAndTheRunGoesOnToItsEnd) {
 }
 
 TEST(Trial, AnObserverEndsIt) {
-  const TrialObserver at_once = [](const runtime::RunProgress& now, sim::World&) { return now.time_s < 0.1; };
+  const TrialObserver at_once = [](const sil::RunProgress& now, sim::World&) { return now.time_s < 0.1; };
   const TrialResult result =
       run_trial(without_policy(), standing(5.0), {}, {.gantry = false, .interrupted = {}, .observer = at_once});
   EXPECT_TRUE(result.complete);
@@ -161,8 +161,8 @@ TEST(Push, TheImpulseAskedIsTheImpulseGiven) {
   const PushPlan plan{.direction = 1, .walking = false, .at_s = 0.05};
   constexpr double kImpulse_N_s = 20.0;
   Pusher pusher(plan, kImpulse_N_s);
-  const runtime::ScenarioStep scenario_step = step(0.0, 1.0, runtime::Mode::kStand, {});
-  const runtime::TickResult result;
+  const sil::ScenarioStep scenario_step = step(0.0, 1.0, control::Mode::kStand, {});
+  const control::TickResult result;
   for (int tick = 0; tick < 30; ++tick) {
     pusher({0.01 * tick, 1.0, scenario_step, result}, world);
     for (int s = 0; s < 5; ++s) world.step(limp);

@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kTick_s = 0.01;
 
-runtime::ScenarioStep step(double start_s, double duration_s, runtime::Mode mode, const Command& command,
+sil::ScenarioStep step(double start_s, double duration_s, control::Mode mode, const Command& command,
                            bool beyond_reach = false) {
-  runtime::ScenarioStep made;
+  sil::ScenarioStep made;
   made.start_s = start_s;
   made.duration_s = duration_s;
   made.text = "step";
@@ -37,8 +37,8 @@ Command of(Channel channel, double value) {
 TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
   Command both = of(kVx, 0.4);
   both[kPitch] = 0.2;
-  const runtime::Scenario scenario{
-      .name = "hand", .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 4.0, runtime::Mode::kWalk, both)}};
+  const sil::Scenario scenario{
+      .name = "hand", .steps = {step(0.0, 1.0, control::Mode::kStand, {}), step(1.0, 4.0, control::Mode::kWalk, both)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   ASSERT_TRUE(between.nothing.complete);
   // Walking begins some ticks into the second step (entry into the mode): the first one has 4 s less that.
@@ -61,9 +61,9 @@ TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
 TEST(Yardstick, AFollowerThatTurnsIsJudgedInItsOwnHeading) {
   Command circle = of(kVx, 0.5);
   circle[kOmega] = 0.5;
-  const runtime::Scenario scenario{
+  const sil::Scenario scenario{
       .name = "circle",
-      .steps = {step(0.0, 1.0, runtime::Mode::kStand, {}), step(1.0, 12.0, runtime::Mode::kWalk, circle)}};
+      .steps = {step(0.0, 1.0, control::Mode::kStand, {}), step(1.0, 12.0, control::Mode::kWalk, circle)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   // The heading averaged over a period lags by half a period's turn: 0.28 rad of 0.5 m/s are 0.14 m/s, no more.
   EXPECT_LT(between.follower.errors[kLinVel], 0.17);
@@ -85,8 +85,8 @@ TEST(Yardstick, ShareLeftIsZeroForAFollowerAndOneForDoingNothing) {
 }
 
 /// A body that goes forward at a speed that changes from tick to tick by +-0.1 m/s, wherever it looks.
-sim::Truth going(double speed_m_s, int tick, double height_m) {
-  sim::Truth truth;
+model::GroundTruth going(double speed_m_s, int tick, double height_m) {
+  model::GroundTruth truth;
   truth.p_WB.z() = height_m;
   truth.v_WB_W.x() = speed_m_s + (tick % 2 == 0 ? 0.1 : -0.1);
   return truth;
@@ -94,12 +94,12 @@ sim::Truth going(double speed_m_s, int tick, double height_m) {
 
 TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
-  const runtime::Scenario scenario{.name = "hand",
-                                   .steps = {step(0.0, 10.0, runtime::Mode::kWalk, of(kVx, 0.3)),
-                                             step(10.0, 10.0, runtime::Mode::kWalk, of(kVx, 0.8), true)}};
+  const sil::Scenario scenario{.name = "hand",
+                                   .steps = {step(0.0, 10.0, control::Mode::kWalk, of(kVx, 0.3)),
+                                             step(10.0, 10.0, control::Mode::kWalk, of(kVx, 0.8), true)}};
   StepMeasure measure(robot, scenario);
-  runtime::TickResult result;
-  result.mode = runtime::Mode::kWalk;
+  control::TickResult result;
+  result.mode = control::Mode::kWalk;
   for (int tick = 0; tick < 2000; ++tick) {
     measure.add(result, going(0.3, tick, robot.standing_height_m), false, scenario.at(tick * kTick_s + 1e-6));
   }
@@ -117,7 +117,7 @@ TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
 
 TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
   Table1 table;
-  table.scenario = {.name = "full", .steps = {step(0.0, 1.0, runtime::Mode::kWalk, of(kVx, 0.5))}};
+  table.scenario = {.name = "full", .steps = {step(0.0, 1.0, control::Mode::kWalk, of(kVx, 0.5))}};
   table.cases = {{.name = "pmg", .candidate = {"none", {}}, .plants = {}}};
   Yardstick between;
   between.nothing.errors = {0.5, 0.5, 0.1, 0.1, 0.1};
@@ -145,11 +145,11 @@ TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
 }
 
 TEST(Scenario, TheFullTableStaysWithinReachButForWhatSaysSo) {
-  const runtime::Scenario scenario = runtime::load_scenario("config/scenarios/table1_full.yaml");
+  const sil::Scenario scenario = sil::load_scenario("config/scenarios/table1_full.yaml");
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
   int beyond = 0;
   std::array<bool, 2 * kChannels> end_met{};
-  for (const runtime::ScenarioStep& one : scenario.steps) {
+  for (const sil::ScenarioStep& one : scenario.steps) {
     double sum = 0.0;
     for (std::size_t c = 0; c < kChannels; ++c) {
       const double u = one.command.u[c];

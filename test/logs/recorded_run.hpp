@@ -9,8 +9,8 @@
 #include <random>
 
 #include "io/log_writer.hpp"
-#include "runtime/control_rig.hpp"
-#include "runtime/control_setup.hpp"
+#include "control/control_rig.hpp"
+#include "control/control_setup.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_log.hpp"
 
@@ -23,13 +23,13 @@ inline constexpr double kRecordedFault_s = 1.6;  // when a drive gets hot
 inline constexpr std::int64_t kRecordedSession = 1;
 
 inline runtime::RunInfo recorded_run_info() {
-  runtime::ControlSetup setup;
+  control::ControlSetup setup;
   setup.robot = kRecordedRobot;
-  const runtime::LoadedControl loaded = runtime::load_control(setup);
+  const control::LoadedControl loaded = control::load_control(setup);
   runtime::RunInfo run;
   run.robot = "biped-7";
   run.session = kRecordedSession;
-  run.options = runtime::control_json(loaded).dump();
+  run.options = control::control_json(loaded).dump();
   run.bundle = loaded.bundle;
   run.files = loaded.files;
   return run;
@@ -48,22 +48,22 @@ inline void record_run(io::LogWriter& writer, const std::function<void(runtime::
     for (Eigen::Index i = 0; i < state.dq.size(); ++i) state.dq[i] += 10.0 * noise(random);
     if (hot) state.temperature_degC[2] = 95.0;
   };
-  const runtime::Source stranger = runtime::Source::make("stranger", 3);
+  const control::Source stranger = control::Source::make("stranger", 3);
   const auto at = [](int tick, double time_s) { return tick == static_cast<int>(time_s * 100.0 + 0.5); };
 
   rig.drive.command[kVx] = 0.3;
   for (int tick = 0; tick < static_cast<int>(kRecorded_s * 100.0); ++tick) {
-    if (at(tick, 0.05)) rig.ask(runtime::Mode::kWalk);
+    if (at(tick, 0.05)) rig.ask(control::Mode::kWalk);
     if (at(tick, 0.90)) rig.drive.command[kVy] = std::numeric_limits<double>::quiet_NaN();
     if (at(tick, 0.93)) rig.drive.command = {.u = {0.2, -0.05, 0.3, 0.05, 0.02, -0.02}};
-    if (at(tick, 1.10)) rig.ask(stranger, runtime::Mode::kWalk, false);
+    if (at(tick, 1.10)) rig.ask(stranger, control::Mode::kWalk, false);
     if (at(tick, 1.20)) rig.silent = true;
     if (at(tick, 1.30)) rig.silent = false;
     if (at(tick, 1.40)) rig.drive.sequence -= 20;  // old ones once more
     hot = tick >= 160 && tick < 170;
     if (at(tick, 1.80)) rig.reset();
-    if (at(tick, 1.90)) rig.ask(runtime::Mode::kStand);
-    if (at(tick, 2.50)) rig.ask(stranger, runtime::Mode::kDamping, false);
+    if (at(tick, 1.90)) rig.ask(control::Mode::kStand);
+    if (at(tick, 2.50)) rig.ask(stranger, control::Mode::kDamping, false);
     for (int cycle = 0; cycle < 5; ++cycle) rig.cycle();
     log.write(rig.control_cycle.record());
     if (after_tick) after_tick(log, 0.01 * (tick + 1));

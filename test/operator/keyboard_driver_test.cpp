@@ -14,7 +14,7 @@ namespace pmg::ops {
 namespace {
 
 using runtime::CraneState;
-using runtime::Mode;
+using control::Mode;
 using testing::HasSubstr;
 
 constexpr double kStep_s = 0.01;
@@ -81,7 +81,7 @@ TEST_F(KeyboardTest, OneHeldKeyTakesALimpRobotToWalking) {
   EXPECT_EQ(mode(), Mode::kPassive);
   EXPECT_THAT(driver_.text(), HasSubstr("makes it stand up"));
   walk();
-  EXPECT_EQ(robot_.result().driving, runtime::Source::make("keyboard.1", 1));
+  EXPECT_EQ(robot_.result().driving, control::Source::make("keyboard.1", 1));
 }
 
 TEST_F(KeyboardTest, AKeyThatIsLetGoBringsVelocityToZeroWithinHalfASecondThenStandAndNeverDamps) {
@@ -98,7 +98,7 @@ TEST_F(KeyboardTest, AKeyThatIsLetGoBringsVelocityToZeroWithinHalfASecondThenSta
     EXPECT_LE(zero_s + until([&] { return mode() == Mode::kStand; }), 1.0);
     run(2.0);
     EXPECT_EQ(mode(), Mode::kStand);
-    EXPECT_EQ(robot_.result().driving, runtime::Source{}) << "an idle keyboard is in nobody's way";
+    EXPECT_EQ(robot_.result().driving, control::Source{}) << "an idle keyboard is in nobody's way";
   }
   for (const auto& request : requests_) EXPECT_GE(request.mode, pmg_msgs::mode_t::STAND);
 }
@@ -208,7 +208,7 @@ TEST_F(KeyboardTest, WhileAnotherDrivesItWaitsAndSaysSo) {
     drive.step();
   }
   EXPECT_THAT(driver_.text(), HasSubstr("another source drives: pmg_send.2"));
-  EXPECT_EQ(robot_.result().driving, runtime::Source::make("pmg_send.2", 1));
+  EXPECT_EQ(robot_.result().driving, control::Source::make("pmg_send.2", 1));
 }
 
 TEST_F(KeyboardTest, AControllerThatFallsSilentIsSaidAndNotFollowed) {
@@ -228,7 +228,7 @@ TEST_F(KeyboardTest, LettingGoBringsItToRestAndFreesItForOthers) {
   EXPECT_LT(until([&] { return driver_.gone(); }), 2.0);
   EXPECT_EQ(mode(), Mode::kStand);
   run(0.05);  // its last command's lease, and some
-  EXPECT_EQ(robot_.result().driving, runtime::Source{});
+  EXPECT_EQ(robot_.result().driving, control::Source{});
 }
 
 TEST_F(KeyboardTest, OnAHoistItStandsIsSetDownAndOnlyThenWalks) {

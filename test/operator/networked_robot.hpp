@@ -10,8 +10,8 @@
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/control_cycle.hpp"
-#include "runtime/fixtures.hpp"
+#include "control/control_cycle.hpp"
+#include "control/fixtures.hpp"
 
 namespace pmg::test {
 
@@ -24,18 +24,18 @@ struct NetworkedRobot {
   /// One control tick. As in the controller's threads, what was sent is heard first.
   void control() {
     cycle.run(clock_.now_ns());
-    const runtime::TickRecord& record = cycle.record();
+    const control::TickRecord& record = cycle.record();
     for (std::size_t i = 0; i < record.result.ack_count && !acks_lost; ++i) outbox.acks.push(record.result.acks[i]);
     outbox.newest.put(record);
   }
-  const runtime::TickResult& result() const { return cycle.record().result; }
+  const control::TickResult& result() const { return cycle.record().result; }
 
   bool acks_lost = false;
   const model::RobotModel& robot = biped();
   runtime::RunInfo run;
   hal::BusLink bus_link;
-  runtime::OperatorInbox inbox{bus_link.stop};
-  runtime::ControllerOutbox outbox;
+  control::OperatorInbox inbox{bus_link.stop};
+  control::ControllerOutbox outbox;
   runtime::Comms comms;
 
  private:
@@ -45,9 +45,9 @@ struct NetworkedRobot {
   IdealBus bus{robot};
   hal::BusCycle bus_cycle{bus, bus_link, robot, clock_};
   BreakablePolicy* policy = new BreakablePolicy;
-  runtime::Tick tick{robot, clips(robot), std::unique_ptr<policy::Policy>(policy), clock_,
-                     runtime::tick_options(robot)};
-  runtime::ControlCycle cycle{tick, bus_link, inbox, clock_};
+  control::Tick tick{robot, clips(robot), std::unique_ptr<policy::Policy>(policy), clock_,
+                     control::tick_options(robot)};
+  control::ControlCycle cycle{tick, bus_link, inbox, clock_};
 };
 
 class Network {

@@ -14,7 +14,7 @@
 namespace pmg::ops {
 namespace {
 
-using runtime::Mode;
+using control::Mode;
 using test::Network;
 using test::NetworkedRobot;
 using testing::HasSubstr;
@@ -250,7 +250,7 @@ TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
   EXPECT_THAT(std::vector(speeds_sent_m_s_.end() - 25, speeds_sent_m_s_.end()), testing::Each(0.0)) << "and calms";
   EXPECT_EQ(robot_.result().mode, Mode::kStand);
   EXPECT_EQ(robot_.result().reference.command[kVx], 0.0);
-  EXPECT_EQ(robot_.result().driving, runtime::Source{}) << "whoever comes next need not wait for its lease";
+  EXPECT_EQ(robot_.result().driving, control::Source{}) << "whoever comes next need not wait for its lease";
 }
 
 TEST_F(OperatorTest, AnInterruptedWalkComesToRestToo) {

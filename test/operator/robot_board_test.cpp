@@ -81,7 +81,7 @@ TEST_F(RobotBoardTest, NewsOfTwoRobotsAreNotMixed) {
     network_.link.publish("REFERENCE", reference);
   }
   network_.link.receive(0);
-  EXPECT_EQ(second.result().mode, runtime::Mode::kPassive);
+  EXPECT_EQ(second.result().mode, control::Mode::kPassive);
   EXPECT_EQ(news("biped").reference->command[kVx], 0.1);
   EXPECT_EQ(news("second").reference->command[kVx], 0.2);
   EXPECT_THAT(one_line(news("second"), 0.0), AllOf(HasSubstr("second"), HasSubstr("vx +0.20")));

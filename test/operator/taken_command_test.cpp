@@ -30,7 +30,7 @@ class TakenCommandTest : public testing::Test {
       options["command"]["lower"][kChannelNames[i]] = limits.lower[i];
       options["command"]["upper"][kChannelNames[i]] = limits.upper[i];
     }
-    robot_.run.options = options.dump();  // as runtime::control_json tells it
+    robot_.run.options = options.dump();  // as control::control_json tells it
     for (int k = 0; k < 3; ++k) network_.advance();
   }
   /// Walks with this command; every line that is told, and how often.

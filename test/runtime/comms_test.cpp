@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pmg_msgs/mode_t.hpp"
-#include "runtime/fixtures.hpp"
+#include "control/fixtures.hpp"
 
 namespace pmg::runtime {
 namespace {
@@ -68,11 +68,11 @@ class CommsTest : public testing::Test {
   io::SimulationClock clock_;
   io::LcmLink link_{"memq://"};
   hal::StopLine stop_line_;
-  OperatorInbox inbox_{stop_line_};
-  ControllerOutbox outbox_;
+  control::OperatorInbox inbox_{stop_line_};
+  control::ControllerOutbox outbox_;
   RunInfo run_;
   Comms comms_{link_, inbox_, outbox_, robot_, run_, 100.0, clock_};
-  TickRecord record_;
+  control::TickRecord record_;
   std::map<std::string, int> heard_;
   std::vector<std::string> warnings_;
   pmg_msgs::ack_t ack_;
@@ -97,8 +97,8 @@ TEST_F(CommsTest, EveryTickIsToldOnceAndWhoRunsWhatOnceASecond) {
 }
 
 TEST_F(CommsTest, EveryAnswerIsSent) {
-  outbox_.acks.push({.source = Source::make("pendant", 5), .sequence = 3, .verdict = Verdict::kNotYours});
-  outbox_.acks.push({.source = Source::make("pendant", 5), .sequence = 4, .mode = Mode::kDamping});
+  outbox_.acks.push({.source = control::Source::make("pendant", 5), .sequence = 3, .verdict = control::Verdict::kNotYours});
+  outbox_.acks.push({.source = control::Source::make("pendant", 5), .sequence = 4, .mode = control::Mode::kDamping});
   tick();
   EXPECT_EQ(heard_["ACK"], 2);
   EXPECT_EQ(ack_.robot, "biped");
@@ -110,16 +110,16 @@ TEST_F(CommsTest, EveryAnswerIsSent) {
 
 TEST_F(CommsTest, AFaultIsToldOnceHoweverLongItIsLatched) {
   for (int k = 0; k < 5; ++k) tick();
-  record_.result.mode = Mode::kFault;
-  record_.result.fault = {.code = FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  record_.result.mode = control::Mode::kFault;
+  record_.result.fault = {.code = control::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
   for (int k = 0; k < 5; ++k) tick();
   EXPECT_EQ(heard_["FAULT"], 1);
   EXPECT_THAT(status_.fault, HasSubstr("tilt"));
-  record_.result.mode = Mode::kDamping;
-  record_.result.fault = Fault{};
+  record_.result.mode = control::Mode::kDamping;
+  record_.result.fault = control::Fault{};
   for (int k = 0; k < 5; ++k) tick();
-  record_.result.mode = Mode::kFault;
-  record_.result.fault = {.code = FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  record_.result.mode = control::Mode::kFault;
+  record_.result.fault = {.code = control::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
   for (int k = 0; k < 5; ++k) tick();
   EXPECT_EQ(heard_["FAULT"], 2) << "the same cause again is another fault";
 }
@@ -168,7 +168,7 @@ TEST_F(CommsTest, RobotsOfOtherNamesAreWelcomeAndNamed) {
 TEST_F(CommsTest, OperatorsAreNotHeardBeforeTheControllerRuns) {
   link_.publish("MODE", stop());
   comms_.listen_for_others(0.0);
-  ModeRequest request;
+  control::ModeRequest request;
   EXPECT_FALSE(inbox_.take(request)) << "a stale request would be the first tick's";
   EXPECT_EQ(stop_line_.pulls(), 0u);
 }

@@ -13,7 +13,7 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/realtime_run.hpp"
+#include "sil/realtime_run.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/threaded_controller.hpp"
 
@@ -71,8 +71,8 @@ TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
   Comms comms(link, run.controller.inbox(), run.controller.outbox(), test::z1(), info, 100.0, run.clock);
   NetworkOperator human(link);
   Recorder recorder(run.controller.outbox(), test::z1(), info, run.clock, {.directory = folder_}, [](const auto&) {});
-  recorder.after_record = [&](const TickRecord& record) {
-    const TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
+  recorder.after_record = [&](const control::TickRecord& record) {
+    const sil::TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
   };
   run.controller.start(
@@ -82,9 +82,9 @@ TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
       },
       [&] { recorder.drain(); });
   human.wanted = pmg_msgs::mode_t::WALK;
-  ASSERT_TRUE(run.sees(Mode::kWalk));
+  ASSERT_TRUE(run.sees(control::Mode::kWalk));
   run.bus.lost = true;
-  ASSERT_TRUE(run.sees(Mode::kFault));
+  ASSERT_TRUE(run.sees(control::Mode::kFault));
   EXPECT_TRUE(run.controller.stop());
   recorder.close();
   EXPECT_EQ(run.controller.failure(), "");
@@ -99,17 +99,17 @@ TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
 TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
   std::filesystem::create_directories(folder_);
   ThreadedRobot run(test::z1());
-  Scenario scenario{.name = "walk", .steps = {}};
-  scenario.steps.push_back({.start_s = 0.0, .duration_s = 0.8, .text = "stand", .mode = Mode::kStand, .command = {}});
-  scenario.steps.push_back({.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = Mode::kWalk, .command = {}});
+  sil::Scenario scenario{.name = "walk", .steps = {}};
+  scenario.steps.push_back({.start_s = 0.0, .duration_s = 0.8, .text = "stand", .mode = control::Mode::kStand, .command = {}});
+  scenario.steps.push_back({.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = control::Mode::kWalk, .command = {}});
   scenario.steps.back().command[kVx] = 0.4;
   io::LogWriter writer(folder_ / "log.lcm");
   const RunInfo info{.robot = "z1"};
   TickLog log(writer, test::z1(), info, 100.0);
-  RealtimeRun play(test::z1(), run.robot, run.controller, scenario, &log, false);
+  sil::RealtimeRun play(test::z1(), run.robot, run.controller, scenario, &log, false);
   std::atomic<int> observed{0};
-  play.after_tick = [&](const RunProgress&) { ++observed; };
-  const RunOutcome outcome = play.run();
+  play.after_tick = [&](const sil::RunProgress&) { ++observed; };
+  const sil::RunOutcome outcome = play.run();
   writer.flush();
   EXPECT_FALSE(outcome.interrupted);
   EXPECT_FALSE(outcome.fell);
@@ -121,13 +121,13 @@ TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
 
 TEST_F(Composition, AnInterruptedScenarioKeepsWhatWasDone) {
   ThreadedRobot run(test::z1());
-  Scenario scenario{.name = "long", .steps = {}};
-  scenario.steps.push_back({.start_s = 0.0, .duration_s = 600.0, .text = "stand", .mode = Mode::kStand, .command = {}});
-  RealtimeRun play(test::z1(), run.robot, run.controller, scenario, nullptr, false);
+  sil::Scenario scenario{.name = "long", .steps = {}};
+  scenario.steps.push_back({.start_s = 0.0, .duration_s = 600.0, .text = "stand", .mode = control::Mode::kStand, .command = {}});
+  sil::RealtimeRun play(test::z1(), run.robot, run.controller, scenario, nullptr, false);
   std::atomic<int> observed{0};
-  play.after_tick = [&](const RunProgress&) { ++observed; };
+  play.after_tick = [&](const sil::RunProgress&) { ++observed; };
   play.interrupted = [&] { return observed > 10; };
-  const RunOutcome outcome = play.run();
+  const sil::RunOutcome outcome = play.run();
   EXPECT_TRUE(outcome.interrupted);
   EXPECT_GT(outcome.duration_s, 0.1);
   EXPECT_EQ(run.bus.last_kp_sum, 0.0);

@@ -22,10 +22,10 @@ void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
 TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
   ThreadedRobot run(test::z1());
   std::vector<std::int64_t> indices;
-  std::vector<Mode> modes;
+  std::vector<control::Mode> modes;
   std::int64_t bus_cycles = 0;
   const auto record = [&] {
-    TickRecord tick;
+    control::TickRecord tick;
     while (run.controller.outbox().records.pop(tick)) {
       indices.push_back(tick.tick);
       if (modes.empty() || modes.back() != tick.result.mode) modes.push_back(tick.result.mode);
@@ -33,25 +33,25 @@ TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
       EXPECT_GE(tick.timing.woke_ns, tick.timing.planned_ns);
       EXPECT_GE(tick.timing.done_ns, tick.timing.woke_ns);
     }
-    CycleTiming cycle;
+    control::CycleTiming cycle;
     while (run.controller.outbox().bus_cycles.pop(cycle)) ++bus_cycles;
   };
   run.controller.start([&] { run.speaker(); }, record);
-  ASSERT_TRUE(run.sees(Mode::kPassive));
-  ASSERT_TRUE(run.reach(Mode::kStand));
-  ASSERT_TRUE(run.reach(Mode::kWalk));
+  ASSERT_TRUE(run.sees(control::Mode::kPassive));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kWalk));
   run.bus.lost = true;
-  ASSERT_TRUE(run.sees(Mode::kFault));
-  EXPECT_EQ(run.news.fault.code, FaultCode::kBusLost);
+  ASSERT_TRUE(run.sees(control::Mode::kFault));
+  EXPECT_EQ(run.news.fault.code, control::FaultCode::kBusLost);
   run.bus.lost = false;
-  ASSERT_TRUE(run.reach(Mode::kDamping, true));
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kDamping, true));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   EXPECT_TRUE(run.controller.stop());
 
   EXPECT_EQ(run.bus.last_kp_sum, 0.0) << "the drives' last command is damping";
   EXPECT_GT(run.bus.last_kd_sum, 0.0);
-  EXPECT_EQ(modes.front(), Mode::kPassive);
-  EXPECT_EQ(modes.back(), Mode::kDamping);
+  EXPECT_EQ(modes.front(), control::Mode::kPassive);
+  EXPECT_EQ(modes.back(), control::Mode::kDamping);
   EXPECT_EQ(run.controller.outbox().dropped_records, 0);
   EXPECT_EQ(run.controller.outbox().dropped_bus_cycles, 0);
   EXPECT_EQ(bus_cycles, run.controller.bus_statistics().cycles());
@@ -79,7 +79,7 @@ TEST(Controller, WithoutRealTimeItRunsAndSaysSo) {
   ASSERT_EQ(run.controller.refused().size(), 1u);
   EXPECT_THAT(run.controller.refused()[0], HasSubstr("not asked for"));
   run.controller.start(rest, [] {});
-  EXPECT_TRUE(run.sees(Mode::kPassive));
+  EXPECT_TRUE(run.sees(control::Mode::kPassive));
   EXPECT_TRUE(run.controller.stop());
 }
 
@@ -103,11 +103,11 @@ TEST(Controller, AThrowInAnOrdinaryThreadDampsAndIsTold) {
                        [&] {
                          if (broken) throw std::runtime_error("no paper");
                        });
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   EXPECT_EQ(run.controller.failure(), "");
   ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
   broken = true;
-  EXPECT_TRUE(run.sees(Mode::kDamping));
+  EXPECT_TRUE(run.sees(control::Mode::kDamping));
   EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0; }));
   EXPECT_TRUE(eventually([&] { return !run.controller.failure().empty(); }));
   EXPECT_EQ(run.controller.failure(), "thread recorder: no paper");
@@ -117,14 +117,14 @@ TEST(Controller, AThrowInAnOrdinaryThreadDampsAndIsTold) {
 TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
   ThreadedRobot run(test::z1());
   run.controller.start([&] { run.speaker(); }, [] {});
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
   run.policy->freeze = true;
   // Nobody asked for anything: the bus alone finds that no command comes.
   EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0 && run.bus.last_kd_sum > 0.0; }));
   run.policy->freeze = false;
-  EXPECT_TRUE(run.sees(Mode::kFault)) << "it does not go on as if nothing had been";
-  EXPECT_EQ(run.news.fault.code, FaultCode::kControlFrozen);
+  EXPECT_TRUE(run.sees(control::Mode::kFault)) << "it does not go on as if nothing had been";
+  EXPECT_EQ(run.news.fault.code, control::FaultCode::kControlFrozen);
   EXPECT_TRUE(run.controller.stop());
   EXPECT_EQ(run.bus.last_kp_sum, 0.0);
   EXPECT_GE(run.controller.bus_cycle().guard().trips(), 1u);

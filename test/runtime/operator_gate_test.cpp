@@ -50,18 +50,18 @@ class OperatorGateTest : public testing::Test {
   /// What the control cycle would take from the inbox: names of commands' sources.
   std::vector<std::string> take_commands() {
     std::vector<std::string> sources;
-    for (DriveMessage drive; inbox_.take(drive);) sources.emplace_back(drive.source.name.data());
+    for (control::DriveMessage drive; inbox_.take(drive);) sources.emplace_back(drive.source.name.data());
     return sources;
   }
-  std::vector<ModeRequest> take_requests() {
-    std::vector<ModeRequest> requests;
-    for (ModeRequest request; inbox_.take(request);) requests.push_back(request);
+  std::vector<control::ModeRequest> take_requests() {
+    std::vector<control::ModeRequest> requests;
+    for (control::ModeRequest request; inbox_.take(request);) requests.push_back(request);
     return requests;
   }
 
   io::SimulationClock clock_;
   hal::StopLine stop_line_;
-  OperatorInbox inbox_{stop_line_};
+  control::OperatorInbox inbox_{stop_line_};
   OperatorGate gate_{inbox_, "z1", clock_};
   pmg_msgs::command_t command_{};
   Modes mode_{};
@@ -79,9 +79,9 @@ TEST_F(OperatorGateTest, ACommandArrivesAsItWasSentWithOurClocksTime) {
   command_.roll_rad = 0.5;
   command_.height_m = -0.1;
   gate_.take_command(encoded(command_));
-  DriveMessage drive;
+  control::DriveMessage drive;
   ASSERT_TRUE(inbox_.take(drive));
-  EXPECT_EQ(drive.source, Source::make("gamepad", 9));
+  EXPECT_EQ(drive.source, control::Source::make("gamepad", 9));
   EXPECT_EQ(drive.sequence, 4);
   EXPECT_EQ(drive.stamp_ns, 77);
   EXPECT_EQ(drive.received_ns, 30 * kMillisecond_ns);
@@ -135,9 +135,9 @@ TEST_F(OperatorGateTest, AModeThatDoesNotExistIsAnsweredNotGuessed) {
   for (const int mode : {-128, -1, 4, 5, 127}) {
     pass_ms(100);
     send_mode("gamepad", static_cast<std::int8_t>(mode));
-    const std::vector<ModeRequest> requests = take_requests();
+    const std::vector<control::ModeRequest> requests = take_requests();
     ASSERT_EQ(requests.size(), 1u);
-    EXPECT_EQ(requests[0].mode, Mode::kFault) << "which the intake answers with NO_MODE";
+    EXPECT_EQ(requests[0].mode, control::Mode::kFault) << "which the intake answers with NO_MODE";
   }
   EXPECT_EQ(stop_line_.pulls(), 0u);
 }
@@ -210,14 +210,14 @@ TEST_F(OperatorGateTest, AFloodOfRequestsLeavesRoomForAnothersStopToBeAcknowledg
   }
   take_requests();
   send_mode("pendant", Modes::DAMPING);
-  const std::vector<ModeRequest> requests = take_requests();
+  const std::vector<control::ModeRequest> requests = take_requests();
   ASSERT_EQ(requests.size(), 1u);
-  EXPECT_EQ(requests[0].source, Source::make("pendant", 0));
+  EXPECT_EQ(requests[0].source, control::Source::make("pendant", 0));
 }
 
 TEST_F(OperatorGateTest, AFullQueueIsCountedAndAStopGetsThroughAllTheSame) {
-  ModeRequest request;
-  request.mode = Mode::kStand;
+  control::ModeRequest request;
+  request.mode = control::Mode::kStand;
   int filled = 0;
   while (inbox_.put(request)) ++filled;
   EXPECT_EQ(filled, 32);

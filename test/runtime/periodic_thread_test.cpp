@@ -27,7 +27,7 @@ const io::WallClock wall;
 
 TEST(PeriodicThread, WhatTheKernelSaysIsWhatWasGranted) {
   const ThreadSchedule wanted{.name = "punctual", .priority = 50, .cpu = kernel_schedule(getpid()).cpus.front()};
-  PeriodicThread thread(wanted, kPeriod_ns, [](const CycleTiming&) {});
+  PeriodicThread thread(wanted, kPeriod_ns, [](const control::CycleTiming&) {});
   const KernelSchedule granted = kernel_schedule(thread.id());
   if (thread.refused().empty()) {
     EXPECT_EQ(granted.policy, SCHED_FIFO);
@@ -40,7 +40,7 @@ TEST(PeriodicThread, WhatTheKernelSaysIsWhatWasGranted) {
 }
 
 TEST(PeriodicThread, WithoutAWishItIsScheduledOrdinarily) {
-  PeriodicThread thread({.name = "ordinary"}, kPeriod_ns, [](const CycleTiming&) {});
+  PeriodicThread thread({.name = "ordinary"}, kPeriod_ns, [](const control::CycleTiming&) {});
   EXPECT_TRUE(thread.refused().empty());
   EXPECT_EQ(kernel_schedule(thread.id()).policy, SCHED_OTHER);
   EXPECT_EQ(kernel_schedule(thread.id()).cpus, kernel_schedule(getpid()).cpus);
@@ -48,7 +48,7 @@ TEST(PeriodicThread, WithoutAWishItIsScheduledOrdinarily) {
 
 TEST(PeriodicThread, ACpuThatIsNotThereIsNamedAndTheThreadRunsOn) {
   std::atomic<int> cycles{0};
-  PeriodicThread thread({.name = "lost", .cpu = 1023}, kPeriod_ns, [&](const CycleTiming&) { ++cycles; });
+  PeriodicThread thread({.name = "lost", .cpu = 1023}, kPeriod_ns, [&](const control::CycleTiming&) { ++cycles; });
   ASSERT_EQ(thread.refused().size(), 1u);
   EXPECT_THAT(thread.refused()[0], HasSubstr("CPU 1023 for thread lost"));
   EXPECT_THAT(thread.refused()[0], HasSubstr("may use CPUs"));
@@ -70,7 +70,7 @@ int run_without_privilege() {
     return 2;
   }
   std::atomic<int> cycles{0};
-  PeriodicThread thread({.name = "poor", .priority = 80}, kPeriod_ns, [&](const CycleTiming&) { ++cycles; });
+  PeriodicThread thread({.name = "poor", .priority = 80}, kPeriod_ns, [&](const control::CycleTiming&) { ++cycles; });
   if (thread.refused().size() != 1) return 3;
   const std::string& sentence = thread.refused()[0];
   std::fprintf(stderr, "%s\n%s\n", memory[0].c_str(), sentence.c_str());
@@ -97,9 +97,9 @@ TEST(PeriodicThread, WhatTheSystemRefusesIsSaidAndTheThreadRunsOn) {
 }
 
 TEST(PeriodicThread, CyclesStayOnTheirGridAndMissedOnesAreCountedNotMadeUpFor) {
-  std::vector<CycleTiming> cycles;
+  std::vector<control::CycleTiming> cycles;
   const std::int64_t first_ns = wall.now_ns() + kPeriod_ns;
-  PeriodicThread thread({.name = "grid"}, kPeriod_ns, [&](const CycleTiming& timing) {
+  PeriodicThread thread({.name = "grid"}, kPeriod_ns, [&](const control::CycleTiming& timing) {
     cycles.push_back(timing);
     if (cycles.size() == 5) {  // one cycle takes ten periods
       while (wall.now_ns() < timing.planned_ns + 10 * kPeriod_ns) std::this_thread::yield();
@@ -124,7 +124,7 @@ TEST(PeriodicThread, CyclesStayOnTheirGridAndMissedOnesAreCountedNotMadeUpFor) {
 TEST(PeriodicThread, StopsWithoutEverHavingStarted) {
   std::atomic<int> cycles{0};
   {
-    PeriodicThread thread({.name = "idle"}, kPeriod_ns, [&](const CycleTiming&) { ++cycles; });
+    PeriodicThread thread({.name = "idle"}, kPeriod_ns, [&](const control::CycleTiming&) { ++cycles; });
     thread.stop();
     thread.stop();
   }

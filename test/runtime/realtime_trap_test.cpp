@@ -37,26 +37,26 @@ TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAnd
   ThreadedRobot run(test::z1());
   run.controller.start([&] { run.speaker(); },
                        [&] {
-                         TickRecord tick;
+                         control::TickRecord tick;
                          while (run.controller.outbox().records.pop(tick)) {
                          }
                        });
-  ASSERT_TRUE(run.sees(Mode::kPassive));
+  ASSERT_TRUE(run.sees(control::Mode::kPassive));
   arm(run);
-  ASSERT_TRUE(run.reach(Mode::kStand));
-  ASSERT_TRUE(run.reach(Mode::kWalk));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kWalk));
   ASSERT_TRUE(ticks(run, 60));  // half a gait cycle and more
   run.bus.lost = true;
-  ASSERT_TRUE(run.sees(Mode::kFault));
+  ASSERT_TRUE(run.sees(control::Mode::kFault));
   run.bus.lost = false;
-  ASSERT_TRUE(run.reach(Mode::kDamping, true));
-  ASSERT_TRUE(run.reach(Mode::kPassive));
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kDamping, true));
+  ASSERT_TRUE(run.reach(control::Mode::kPassive));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
   run.policy->freeze = true;
   ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0; })) << "the bus damps a frozen control thread";
   run.policy->freeze = false;
-  ASSERT_TRUE(run.sees(Mode::kFault));
+  ASSERT_TRUE(run.sees(control::Mode::kFault));
   test::disarm_trap();
   EXPECT_EQ(test::trapped().heap, 0) << test::first_trapped();
   EXPECT_EQ(test::trapped().locks, 0) << test::first_trapped();
@@ -101,18 +101,18 @@ TEST_F(RealtimeTrap, AnOnnxPolicyTakesNoLockAndAsManyAllocationsInEveryTickAndNo
   ThreadedRobot run(test::z1(), {}, std::move(own));
   run.controller.start([&] { run.speaker(); },
                        [&] {
-                         TickRecord tick;
+                         control::TickRecord tick;
                          while (run.controller.outbox().records.pop(tick)) {
                          }
                        });
-  ASSERT_TRUE(run.sees(Mode::kPassive));
+  ASSERT_TRUE(run.sees(control::Mode::kPassive));
   arm(run);
   onnx.counting = true;
-  ASSERT_TRUE(run.reach(Mode::kStand));
-  ASSERT_TRUE(run.reach(Mode::kWalk));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kWalk));
   ASSERT_TRUE(ticks(run, 200));
-  ASSERT_TRUE(run.reach(Mode::kDamping));
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kDamping));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(ticks(run, 20));
   onnx.counting = false;
   test::disarm_trap();
@@ -129,7 +129,7 @@ TEST_F(RealtimeTrap, AnOnnxPolicyTakesNoLockAndAsManyAllocationsInEveryTickAndNo
 TEST_F(RealtimeTrap, CatchesWhatItIsFor) {
   ThreadedRobot run(test::z1());
   run.controller.start([&] { run.speaker(); }, [] {});
-  ASSERT_TRUE(run.reach(Mode::kStand));
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
   arm(run);
   run.policy->use_heap = true;
   ASSERT_TRUE(eventually([] { return test::trapped().heap > 10; }));

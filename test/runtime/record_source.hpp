@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "fixtures.hpp"
+#include "control/fixtures.hpp"
 #include "io/clock.hpp"
-#include "runtime/controller_outbox.hpp"
-#include "runtime/tick_record.hpp"
+#include "control/controller_outbox.hpp"
+#include "control/tick_record.hpp"
 
 namespace pmg::test {
 
@@ -16,22 +16,22 @@ class RecordSource {
   explicit RecordSource(const model::RobotModel& robot) {
     record_.state = standing_state(robot);
     record_.result.command.q = robot.q_stand();
-    record_.result.mode = runtime::Mode::kWalk;
+    record_.result.mode = control::Mode::kWalk;
     record_.tick = -1;
-    record_.drives[0].source = runtime::Source::make("tester", 7);
+    record_.drives[0].source = control::Source::make("tester", 7);
     record_.drives[0].lease_s = 0.5;
     record_.drives[0].command[kVx] = 0.4;
     record_.drive_count = 1;
     record_.requests[0].source = record_.drives[0].source;
-    record_.requests[0].mode = runtime::Mode::kWalk;
+    record_.requests[0].mode = control::Mode::kWalk;
   }
 
   /// One tick and its five bus cycles into the outbox, as Controller does it.
-  void tick(runtime::ControllerOutbox& outbox) {
+  void tick(control::ControllerOutbox& outbox) {
     clock.advance_to(clock.now_ns() + 10'000'000);
     for (int cycle = 4; cycle >= 0; --cycle) {
       const std::int64_t planned_ns = clock.now_ns() - 2'000'000 * (cycle + 1);
-      const runtime::CycleTiming timing{planned_ns, planned_ns + 20'000 + 1000 * cycle, planned_ns + 150'000, missed};
+      const control::CycleTiming timing{planned_ns, planned_ns + 20'000 + 1000 * cycle, planned_ns + 150'000, missed};
       if (!outbox.bus_cycles.push(timing)) ++outbox.dropped_bus_cycles;
     }
     const std::int64_t now_ns = clock.now_ns();
@@ -44,18 +44,18 @@ class RecordSource {
     record_.timing = {now_ns - 30'000, now_ns, now_ns + 250'000, 0};
     if (!outbox.records.push(record_)) ++outbox.dropped_records;
   }
-  void ticks(int count, runtime::ControllerOutbox& outbox) {
+  void ticks(int count, control::ControllerOutbox& outbox) {
     for (int k = 0; k < count; ++k) tick(outbox);
   }
 
   /// In force from the next tick on, until reset().
-  void fault(runtime::FaultCode code, int joint = -1) {
-    record_.result.mode = runtime::Mode::kFault;
+  void fault(control::FaultCode code, int joint = -1) {
+    record_.result.mode = control::Mode::kFault;
     record_.result.fault = {
         .code = code, .joint = joint, .value = 95.0, .limit = 90.0, .stamp_ns = clock.now_ns() + 10'000'000};
   }
   void reset() {
-    record_.result.mode = runtime::Mode::kDamping;
+    record_.result.mode = control::Mode::kDamping;
     record_.result.fault = {};
   }
 
@@ -63,7 +63,7 @@ class RecordSource {
   std::int64_t missed = 0;
 
  private:
-  runtime::TickRecord record_;
+  control::TickRecord record_;
 };
 
 }  // namespace pmg::test

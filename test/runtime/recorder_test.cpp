@@ -92,7 +92,7 @@ class RecorderTest : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("pmg_recorder_test_" + std::to_string(getpid()));
   const model::RobotModel& robot_ = test::biped();
   RunInfo run_{.robot = "biped-2", .session = 42, .policy = "none", .bundle = "abc"};
-  std::unique_ptr<ControllerOutbox> outbox_ = std::make_unique<ControllerOutbox>();
+  std::unique_ptr<control::ControllerOutbox> outbox_ = std::make_unique<control::ControllerOutbox>();
   test::RecordSource source_{robot_};
   std::vector<std::string> said_;
 };
@@ -223,7 +223,7 @@ TEST_F(RecorderTest, AfterARefusalItWaitsForRoomToSpare) {
 
 TEST_F(RecorderTest, AStalledLogThreadCostsRecordsNeverTimeAndSaysSo) {
   const auto recorder = this->recorder(options());
-  source_.ticks(static_cast<int>(ControllerOutbox::kRecords) + 76, *outbox_);
+  source_.ticks(static_cast<int>(control::ControllerOutbox::kRecords) + 76, *outbox_);
   EXPECT_EQ(outbox_->dropped_records.load(), 76) << "the control thread counts and goes on";
   recorder->drain();
   run(10, *recorder);
@@ -231,8 +231,8 @@ TEST_F(RecorderTest, AStalledLogThreadCostsRecordsNeverTimeAndSaysSo) {
   ASSERT_GE(said_.size(), 1u);
   EXPECT_THAT(said_.front(), HasSubstr("76 ticks are missing"));
   const Contents log = read("log-0000.lcm");
-  std::vector<std::int64_t> expected = range(0, ControllerOutbox::kRecords);
-  const auto later = range(ControllerOutbox::kRecords + 76, ControllerOutbox::kRecords + 86);
+  std::vector<std::int64_t> expected = range(0, control::ControllerOutbox::kRecords);
+  const auto later = range(control::ControllerOutbox::kRecords + 76, control::ControllerOutbox::kRecords + 86);
   expected.insert(expected.end(), later.begin(), later.end());
   EXPECT_EQ(log.ticks, expected) << "order kept";
   EXPECT_EQ(log.timings.back().dropped_records, 76);
@@ -281,7 +281,7 @@ TEST_F(FlightRecorderTest, WritesHalfAMinuteBeforeAFaultAndASecondAfterIt) {
   const auto recorder = this->recorder(without_log());
   run(4000, *recorder);
   EXPECT_TRUE(files("").empty()) << "nothing without a fault";
-  source_.fault(FaultCode::kTemperature, 0);
+  source_.fault(control::FaultCode::kTemperature, 0);
   run(99, *recorder);
   EXPECT_TRUE(files("").empty()) << "the second after it is still awaited";
   run(100, *recorder);
@@ -300,7 +300,7 @@ TEST_F(FlightRecorderTest, WritesHalfAMinuteBeforeAFaultAndASecondAfterIt) {
 TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
   const auto recorder = this->recorder(without_log());
   run(200, *recorder);
-  source_.fault(FaultCode::kTemperature, 0);
+  source_.fault(control::FaultCode::kTemperature, 0);
   run(200, *recorder);
   const std::string name = only_flight();
   const std::string page = text(fs::path(name).replace_extension(".txt"));
@@ -309,7 +309,7 @@ TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
   EXPECT_THAT(first_line, HasSubstr("95.0"));
   for (const char* part :
        {"biped-2", "Mode before  walk", "Driven by    nobody", "tester #200: vx 0.40 m/s", "tester #0: walk",
-        advice(FaultCode::kTemperature), "reset", "301 ticks, from 2.00 s before the fault to 1.00 s after"}) {
+        control::advice(control::FaultCode::kTemperature), "reset", "301 ticks, from 2.00 s before the fault to 1.00 s after"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   EXPECT_THAT(page, HasSubstr(name));
@@ -318,7 +318,7 @@ TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
 TEST_F(FlightRecorderTest, EachFaultHasItsOwnFileAndNamesSortByTime) {
   const auto recorder = this->recorder(without_log());
   std::vector<std::string> in_order;
-  for (const FaultCode code : {FaultCode::kTilt, FaultCode::kBusLost, FaultCode::kTilt}) {
+  for (const control::FaultCode code : {control::FaultCode::kTilt, control::FaultCode::kBusLost, control::FaultCode::kTilt}) {
     source_.fault(code);
     run(50, *recorder);
     source_.reset();
@@ -336,11 +336,11 @@ TEST_F(FlightRecorderTest, EachFaultHasItsOwnFileAndNamesSortByTime) {
 TEST_F(FlightRecorderTest, ASecondFaultWithinTheFirstOnesSecondIsNotLost) {
   const auto recorder = this->recorder(without_log());
   run(50, *recorder);
-  source_.fault(FaultCode::kTilt);
+  source_.fault(control::FaultCode::kTilt);
   run(20, *recorder);
   source_.reset();
   run(5, *recorder);
-  source_.fault(FaultCode::kBusLost);
+  source_.fault(control::FaultCode::kBusLost);
   run(150, *recorder);
   EXPECT_EQ(files("fault-").size(), 4u);
 }
@@ -348,7 +348,7 @@ TEST_F(FlightRecorderTest, ASecondFaultWithinTheFirstOnesSecondIsNotLost) {
 TEST_F(FlightRecorderTest, AFullDiskDelaysItAndTheHalfMinuteIsKeptMeanwhile) {
   const auto recorder = this->recorder(without_log());
   run(3500, *recorder);
-  source_.fault(FaultCode::kTilt);
+  source_.fault(control::FaultCode::kTilt);
   {
     const test::FullDisk full;
     run(6000, *recorder);  // long enough for the ring to have forgotten it all
@@ -364,7 +364,7 @@ TEST_F(FlightRecorderTest, AFullDiskDelaysItAndTheHalfMinuteIsKeptMeanwhile) {
 TEST_F(FlightRecorderTest, WhatTheRunsEndInterruptsIsWrittenAtTheEnd) {
   const auto recorder = this->recorder(without_log());
   run(50, *recorder);
-  source_.fault(FaultCode::kTilt);
+  source_.fault(control::FaultCode::kTilt);
   run(3, *recorder);
   recorder->close();
   EXPECT_EQ(read(only_flight()).ticks, range(0, 53));
@@ -377,7 +377,7 @@ TEST_F(FlightRecorderTest, FilesAreBounded) {
   few.flight.after_s = 0.1;
   const auto recorder = this->recorder(few);
   for (int k = 0; k < 5; ++k) {
-    source_.fault(k < 3 ? FaultCode::kTilt : FaultCode::kBusLost);
+    source_.fault(k < 3 ? control::FaultCode::kTilt : control::FaultCode::kBusLost);
     run(20, *recorder);
     source_.reset();
     run(5, *recorder);

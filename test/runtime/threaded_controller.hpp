@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "runtime/controller.hpp"
-#include "runtime/fixtures.hpp"
-#include "runtime/simulated_robot.hpp"
+#include "control/fixtures.hpp"
+#include "sil/simulated_robot.hpp"
 
 namespace pmg::test {
 
@@ -69,8 +69,8 @@ class SwitchablePolicy final : public policy::Policy {
 /// The comms thread's work in a test: a command every 5 ms and, when told so, one request.
 class TestOperator {
  public:
-  explicit TestOperator(runtime::OperatorInbox& inbox) : inbox_(inbox) {
-    drive_.source = request_.source = runtime::Source::make("test", 1);
+  explicit TestOperator(control::OperatorInbox& inbox) : inbox_(inbox) {
+    drive_.source = request_.source = control::Source::make("test", 1);
     drive_.lease_s = 0.5;
     drive_.command[kVx] = 0.4;
   }
@@ -86,41 +86,41 @@ class TestOperator {
     inbox_.put(request_);
   }
   /// Any thread; the request goes out with the next message.
-  void ask(runtime::Mode mode, bool reset = false) {
+  void ask(control::Mode mode, bool reset = false) {
     wanted_ = mode;
     reset_ = reset;
     asked_ = true;
   }
 
  private:
-  runtime::OperatorInbox& inbox_;
+  control::OperatorInbox& inbox_;
   io::WallClock clock_;
-  runtime::DriveMessage drive_;
-  runtime::ModeRequest request_;
+  control::DriveMessage drive_;
+  control::ModeRequest request_;
   std::atomic<bool> asked_{false}, reset_{false};
-  std::atomic<runtime::Mode> wanted_{runtime::Mode::kPassive};
+  std::atomic<control::Mode> wanted_{control::Mode::kPassive};
 };
 
 /// A simulated robot on the gantry under the threaded controller.
 struct ThreadedRobot {
   explicit ThreadedRobot(const model::RobotModel& model, const runtime::ControllerOptions& options = {},
                          std::unique_ptr<policy::Policy> walker = nullptr)
-      : world(model, runtime::world_with_noise(1, true)),
-        robot(world, runtime::HoistedBy::kGantry, true),
+      : world(model, sil::world_with_noise(1, true)),
+        robot(world, sil::HoistedBy::kGantry, true),
         bus(robot),
         policy(new SwitchablePolicy(std::move(walker))),
         tick(model, clips(model), std::unique_ptr<policy::Policy>(policy), clock, tick_options(model)),
         controller(model, bus, tick, options),
         speaker(controller.inbox()) {}
 
-  static runtime::TickOptions tick_options(const model::RobotModel& model) {
-    runtime::TickOptions options = runtime::tick_options(model);
-    runtime::expect_shared_host(options);
+  static control::TickOptions tick_options(const model::RobotModel& model) {
+    control::TickOptions options = control::tick_options(model);
+    sil::expect_shared_host(options);
     return options;
   }
 
   /// Asks again until the mode is there: a request may meet a tick that has to refuse it.
-  bool reach(runtime::Mode mode, bool reset = false) {
+  bool reach(control::Mode mode, bool reset = false) {
     std::int64_t asked_ns = 0;
     return eventually([&] {
       runtime::ControllerNews newest;
@@ -133,7 +133,7 @@ struct ThreadedRobot {
       return false;
     });
   }
-  bool sees(runtime::Mode mode) {
+  bool sees(control::Mode mode) {
     return eventually([&] {
       runtime::ControllerNews newest;
       if (controller.news(newest)) news = newest;
@@ -143,10 +143,10 @@ struct ThreadedRobot {
 
   io::WallClock clock;
   sim::World world;
-  runtime::SimulatedRobot robot;
+  sil::SimulatedRobot robot;
   BreakableBus bus;
   SwitchablePolicy* policy;
-  runtime::Tick tick;
+  control::Tick tick;
   runtime::Controller controller;
   TestOperator speaker;
   runtime::ControllerNews news;

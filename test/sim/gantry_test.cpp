@@ -9,7 +9,7 @@
 namespace pmg {
 namespace {
 
-double torso_tilt_rad(const sim::Truth& truth) {
+double torso_tilt_rad(const model::GroundTruth& truth) {
   return std::acos(std::clamp((truth.q_WT * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
 }
 
@@ -23,7 +23,7 @@ TEST(Gantry, HoldsTheRobotStillInTheAir) {
       world.step(command);
       ASSERT_EQ(world.truth().foot_force_N[kLeft] + world.truth().foot_force_N[kRight], 0.0) << robot->name << " " << i;
     }
-    const sim::Truth truth = world.truth();
+    const model::GroundTruth truth = world.truth();
     EXPECT_LT(truth.v_WB_W.norm(), 0.005) << robot->name;
     EXPECT_LT(truth.omega_WB_B.norm(), 0.01) << robot->name;
     EXPECT_LT(torso_tilt_rad(truth), 0.15) << robot->name;

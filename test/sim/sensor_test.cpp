@@ -53,7 +53,7 @@ TEST(Sensors, BelongToTheStateOfTheSample) {
   model::RobotState state;
   for (int i = 0; i < 400; ++i) world.step(command);
   world.read(state);
-  const sim::Truth truth = world.truth();
+  const model::GroundTruth truth = world.truth();
   ASSERT_GT(truth.omega_WB_B.norm(), 0.05);
   const Eigen::Matrix3d R_BI = z1().imu.T_LI.linear();  // on the base link
   EXPECT_LT((R_BI * state.gyro_rad_s - truth.omega_WB_B).norm(), 1e-9);

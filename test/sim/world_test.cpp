@@ -84,7 +84,7 @@ TEST(World, StandsUnderItsOwnGainsForTenSeconds) {
 TEST(World, TheFloorCarriesTheWeightOfAStandingRobot) {
   sim::World world(z1(), {});
   for (int i = 0; i < 2500; ++i) world.step(standing_command(z1()));
-  const sim::Truth truth = world.truth();
+  const model::GroundTruth truth = world.truth();
   const double weight_N = z1().total_mass_kg * 9.81;
   EXPECT_NEAR(truth.foot_force_N[kLeft] + truth.foot_force_N[kRight], weight_N, 0.02 * weight_N);  // still settling
   EXPECT_NEAR(truth.foot_force_N[kLeft], truth.foot_force_N[kRight], 0.05 * weight_N);

@@ -10,7 +10,7 @@
 
 #include "pmg_batch.h"
 #include "policy/observation.hpp"
-#include "runtime/fixtures.hpp"
+#include "control/fixtures.hpp"
 
 namespace pmg::test {
 namespace {
@@ -122,22 +122,22 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
   auto own = std::make_unique<Witness>(robot, GetParam());
   Witness& witness = *own;
   const io::SimulationClock clock;
-  runtime::TickOptions options = runtime::tick_options(robot);
+  control::TickOptions options = control::tick_options(robot);
   // Random states don't follow their commands; what that means for a robot is not the matter here.
   options.supervisor.fault_limits.torso_error_rad = options.supervisor.fault_limits.tilt_rad = 10.0;
-  runtime::Tick tick(robot, clips(robot), std::move(own), clock, options);
+  control::Tick tick(robot, clips(robot), std::move(own), clock, options);
   Trained training(robot, GetParam());
 
-  runtime::DriveMessage drive;
-  runtime::ModeRequest request;
-  drive.source = request.source = runtime::Source::make("test", 1);
+  control::DriveMessage drive;
+  control::ModeRequest request;
+  drive.source = request.source = control::Source::make("test", 1);
   drive.lease_s = 0.5;
   model::RobotState state = standing_state(robot);
   std::int64_t now_ns = 0;
   int walked = 0;
   for (int k = 0; k < 1500; ++k) {
     // In the middle it is laid down and picked up again.
-    request.mode = k >= 800 && k < 820 ? runtime::Mode::kDamping : runtime::Mode::kWalk;
+    request.mode = k >= 800 && k < 820 ? control::Mode::kDamping : control::Mode::kWalk;
     if (k % 150 == 0) drive.command = random_command(robot);
     state = random_state(robot, state);
     now_ns += 10'000'000;
@@ -146,12 +146,12 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
     ++drive.sequence;
     ++request.sequence;
     const int calls = witness.calls, resets = witness.resets;
-    const runtime::TickResult& result =
+    const control::TickResult& result =
         tick.step({.state = state, .now_ns = now_ns, .drives = {&drive, 1}, .requests = {&request, 1}});
-    ASSERT_EQ(result.fault.code, runtime::FaultCode::kNone) << describe(result.fault, robot);
+    ASSERT_EQ(result.fault.code, control::FaultCode::kNone) << describe(result.fault, robot);
     if (witness.resets > resets) training.reset();
     if (witness.calls == calls) continue;
-    walked += result.mode == runtime::Mode::kWalk;
+    walked += result.mode == control::Mode::kWalk;
 
     training.step(result.user);
     SCOPED_TRACE("tick " + std::to_string(k));

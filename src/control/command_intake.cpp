@@ -1,0 +1,94 @@
+#include "control/command_intake.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace pmg::control {
+
+namespace {
+
+constexpr std::array kDriveCounters = {&IgnoredCommands::accepted,     &IgnoredCommands::other_source,
+                                       &IgnoredCommands::out_of_order, &IgnoredCommands::late,
+                                       &IgnoredCommands::not_finite,   &IgnoredCommands::no_lease};
+constexpr std::array kRequestCounters = {&IgnoredCommands::accepted, &IgnoredCommands::other_source,
+                                         &IgnoredCommands::out_of_order, &IgnoredCommands::late};
+
+/// When a message was received, by a clock that doesn't run backwards.
+std::int64_t receipt_ns(std::int64_t received_ns, std::int64_t now_ns) noexcept {
+  return std::min(std::max<std::int64_t>(received_ns, 0), now_ns);
+}
+
+}  // namespace
+
+CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, std::int64_t now_ns) noexcept {
+  const std::int64_t received_ns = receipt_ns(message.received_ns, now_ns);
+  const DriveVerdict verdict = check(message, received_ns, now_ns);
+  ++(ignored_.*kDriveCounters[static_cast<std::size_t>(verdict)]);
+  if (verdict != DriveVerdict::kAccepted) return verdict;
+  sources_.adopt(message.source, driving(now_ns), message.stamp_ns, received_ns).last_command = message.sequence;
+  any_ = true;
+  last_ = message;
+  received_ns_ = received_ns;
+  lease_end_ns_ = received_ns + static_cast<std::int64_t>(std::min(message.lease_s, kLongestLease_s) * 1e9);
+  return verdict;
+}
+
+CommandIntake::DriveVerdict CommandIntake::check(const DriveMessage& message, std::int64_t received_ns,
+                                                 std::int64_t now_ns) noexcept {
+  if (!std::ranges::all_of(message.command.u, [](double value) { return std::isfinite(value); })) {
+    return DriveVerdict::kNotFinite;
+  }
+  if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
+  SourceRecord* record = sources_.find(message.source);
+  if (record != nullptr && message.source.session < record->source.session) return DriveVerdict::kOutOfOrder;
+  if (record != nullptr && message.source == record->source) {
+    const bool late = SourceMemory::late(*record, message.stamp_ns, received_ns);
+    if (message.sequence <= record->last_command) return DriveVerdict::kOutOfOrder;
+    if (late) return DriveVerdict::kLate;
+  }
+  return leased(now_ns) && message.source != last_.source ? DriveVerdict::kOtherSourceDrives : DriveVerdict::kAccepted;
+}
+
+CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::int64_t now_ns) noexcept {
+  const std::int64_t received_ns = receipt_ns(request.received_ns, now_ns);
+  const Judgement judgement = check(request, received_ns, now_ns);
+  // One that names no mode is told so and counted by whoever decodes messages.
+  if (judgement.verdict != Verdict::kNoMode) {
+    ++(ignored_.*kRequestCounters[static_cast<std::size_t>(judgement.verdict)]);
+  }
+  if (request.stops() && judgement.verdict == Verdict::kTaken) stop(received_ns);
+  if (judgement.fresh) {
+    sources_.adopt(request.source, driving(now_ns), request.stamp_ns, received_ns).last_request = request.sequence;
+  }
+  return judgement;
+}
+
+CommandIntake::Judgement CommandIntake::check(const ModeRequest& request, std::int64_t received_ns,
+                                              std::int64_t now_ns) noexcept {
+  if (request.mode >= Mode::kFault) return {.verdict = Verdict::kNoMode};
+  if (!request.stops() && received_ns <= stopped_ns_) return {.verdict = Verdict::kLate};
+  const auto unless_stop = [&](Verdict verdict) {
+    return Judgement{.verdict = request.stops() ? Verdict::kTaken : verdict};
+  };
+  SourceRecord* record = sources_.find(request.source);
+  if (record != nullptr && request.source.session < record->source.session) return unless_stop(Verdict::kOutOfOrder);
+  if (record != nullptr && request.source == record->source) {
+    const bool late = SourceMemory::late(*record, request.stamp_ns, received_ns);
+    if (request.sequence == record->last_request) return {.verdict = Verdict::kTaken};
+    if (request.sequence < record->last_request) return unless_stop(Verdict::kOutOfOrder);
+    if (late) return unless_stop(Verdict::kLate);
+  }
+  const bool mine = !leased(now_ns) || request.source == last_.source;
+  return request.stops() || mine ? Judgement{.fresh = true} : Judgement{.verdict = Verdict::kNotYours};
+}
+
+double CommandIntake::age_s(std::int64_t now_ns) const noexcept {
+  if (!any_) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(now_ns - received_ns_) * 1e-9;
+}
+
+Source CommandIntake::driving(std::int64_t now_ns) const noexcept { return leased(now_ns) ? last_.source : Source{}; }
+
+}  // namespace pmg::control

@@ -1,0 +1,79 @@
+// Who drives: one source at a time, for as long as its lease lasts, its command's age counted by the receiver's clock.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "control/mode.hpp"
+#include "control/source_memory.hpp"
+
+namespace pmg::control {
+
+/// Operators' messages since the start, commands and requests alike, by what became of them. All but accepted are
+/// ignored.
+struct IgnoredCommands {
+  std::int64_t accepted = 0;
+  std::int64_t other_source = 0;
+  std::int64_t out_of_order = 0;
+  std::int64_t late = 0;
+  std::int64_t not_finite = 0;
+  std::int64_t no_lease = 0;
+};
+
+class CommandIntake {
+ public:
+  enum class DriveVerdict {
+    kAccepted,
+    kOtherSourceDrives,
+    kOutOfOrder,  ///< sequence not above the last one of this session, or an earlier session: repeated or overtaken
+    kLate,        ///< spent too long on the way
+    kNotFinite,
+    kNoLease,  ///< lease not positive
+  };
+
+  /// What becomes of a request.
+  struct Judgement {
+    Verdict verdict = Verdict::kTaken;
+    /// To be carried out; false for the repetition of a request that was, which is only acknowledged again. A stop that
+    /// isn't fresh (repeated, overtaken, late) is taken all the same: as a stop, not as a second wish for limp drives.
+    bool fresh = false;
+  };
+
+  /// Longest lease that is granted: a crashed operator station blocks the others for no longer.
+  static constexpr double kLongestLease_s = 2.0;
+
+  DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
+
+  /// Stopping is for everyone at any time; climbing and resetting for the driving source, or for anyone when none
+  /// drives.
+  Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
+
+  /// Everybody was told to stop: climbs and resets that were received until now are overtaken by it, wherever they
+  /// still wait.
+  void stop(std::int64_t now_ns) noexcept { stopped_ns_ = std::max(stopped_ns_, now_ns); }
+
+  const IgnoredCommands& ignored() const noexcept { return ignored_; }
+
+  const Command& command() const noexcept { return last_.command; }  ///< last accepted; zero before the first
+
+  /// Since the last accepted command was received; infinite before the first.
+  double age_s(std::int64_t now_ns) const noexcept;
+
+  /// Nobody drives: empty name.
+  Source driving(std::int64_t now_ns) const noexcept;
+
+ private:
+  bool leased(std::int64_t now_ns) const noexcept { return any_ && now_ns < lease_end_ns_; }
+  DriveVerdict check(const DriveMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+
+  SourceMemory sources_;
+  std::int64_t stopped_ns_ = -1;
+  IgnoredCommands ignored_;
+  bool any_ = false;
+  DriveMessage last_;
+  std::int64_t received_ns_ = 0;
+  std::int64_t lease_end_ns_ = 0;
+};
+
+}  // namespace pmg::control

@@ -1,0 +1,180 @@
+#include "control/control_setup.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "hal/bus_cycle.hpp"
+#include "model/bundle.hpp"
+#include "model/clip_library_file.hpp"
+#include "model/config_reader.hpp"
+#include "model/nearest_name.hpp"
+#include "policy/onnx_policy.hpp"
+
+namespace pmg::control {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What --policy may name of this robot, in order.
+std::vector<std::string> policy_names(const model::RobotModel& robot) {
+  std::vector<std::string> names{"none"};
+  std::error_code error;
+  for (fs::directory_iterator entry(robot.directory / "policies", error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".onnx") names.push_back(entry->path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+/// Below the robot's policies/, or the file itself. Nothing for none.
+std::optional<fs::path> policy_file(const std::string& name, const char* named_by, const model::RobotModel& robot) {
+  if (name == "none") return std::nullopt;
+  const fs::path file =
+      fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
+  if (!fs::exists(file)) {
+    const std::string meant = model::nearest_name(name, policy_names(robot));
+    throw std::invalid_argument(
+        meant.empty() ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none",
+                                    named_by, name, file.string())
+                      : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
+  }
+  return file;
+}
+
+std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file, const LoadedControl& loaded) {
+  if (!file) return std::make_unique<policy::ReferencePolicy>();
+  return std::make_unique<policy::OnnxPolicy>(*file, loaded.robot, model::clip_library_sha256(loaded.clips),
+                                              1.0 / loaded.options.dt_s);
+}
+
+/// The one that runs unless another is asked for; none where robot.yaml names none.
+std::string robots_own_policy(const model::RobotModel& robot) {
+  model::ConfigReader reader = model::ConfigReader::from_file(robot.directory / "robot.yaml");
+  return reader.has("policy") ? reader.required<std::string>("policy") : "none";
+}
+
+Blend blend_named(const std::string& name, const ClipLibrary& library) {
+  if (name == "library") return library.blend;
+  const auto found = std::ranges::find(kBlendNames, name);
+  if (found == kBlendNames.end()) {
+    throw std::invalid_argument(
+        fmt::format("--blend {}: expected library or one of {}", name, fmt::join(kBlendNames, ", ")));
+  }
+  return static_cast<Blend>(found - kBlendNames.begin());
+}
+
+/// Every option of the tick that a configuration shows, by its place there. Options: TickOptions, const or not.
+template <typename Options, typename Visit>
+void for_each_option(Options& tick, Visit&& visit) {
+  visit("/control_period_s", tick.dt_s);
+  auto& limits = tick.generator.limits;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const std::string channel = kChannelNames[i];
+    visit("/command/lower/" + channel, limits.lower[i]);
+    visit("/command/upper/" + channel, limits.upper[i]);
+    visit("/command/rate_per_s/" + channel, limits.rate_per_s[i]);
+  }
+  visit("/gco/prior_weight", tick.gco.prior_weight);
+  visit("/gco/optimise_roll_pitch", tick.gco.optimise_roll_pitch);
+  visit("/limiter/target_rate_factor", tick.limiter.target_rate_factor);
+  visit("/entry/speed_rad_s", tick.entry.speed_rad_s);
+  visit("/entry/shortest_s", tick.entry.shortest_s);
+  visit("/entry/longest_s", tick.entry.longest_s);
+  visit("/foot_load/lost_share", tick.foot_load.lost_share);
+  visit("/foot_load/lost_s", tick.foot_load.lost_s);
+  visit("/foot_load/found_share", tick.foot_load.found_share);
+  visit("/foot_load/found_s", tick.foot_load.found_s);
+  visit("/foot_load/held_share", tick.foot_load.held_share);
+  visit("/foot_load/filter_s", tick.foot_load.filter_s);
+  visit("/foot_load/blind_share", tick.foot_load.blind_share);
+  visit("/change_over/speed_rad_s", tick.change_over.speed_rad_s);
+  visit("/change_over/shortest_s", tick.change_over.shortest_s);
+  visit("/change_over/longest_s", tick.change_over.longest_s);
+  visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
+  visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
+  visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);
+  visit("/late_policy_ticks", tick.late_policy_ticks);
+  visit("/action_monitor/bound_rad", tick.action_monitor.bound_rad);
+  visit("/action_monitor/persist_ticks", tick.action_monitor.persist_ticks);
+  visit("/action_monitor/reversals", tick.action_monitor.reversals);
+  visit("/action_monitor/reversal_ticks", tick.action_monitor.reversal_ticks);
+  visit("/action_monitor/window_ticks", tick.action_monitor.window_ticks);
+  auto& faults = tick.supervisor.fault_limits;
+  visit("/faults/stale_state_s", faults.stale_state_s);
+  visit("/faults/stale_state_ticks", faults.stale_state_ticks);
+  visit("/faults/temperature_degC", faults.temperature_degC);
+  visit("/faults/joint_limit_margin_rad", faults.joint_limit_margin_rad);
+  visit("/faults/velocity_factor", faults.velocity_factor);
+  visit("/faults/torque_factor", faults.torque_factor);
+  visit("/faults/tilt_rad", faults.tilt_rad);
+  visit("/faults/torso_error_rad", faults.torso_error_rad);
+  visit("/faults/persist_ticks", faults.persist_ticks);
+  visit("/faults/overrun_ticks", faults.overrun_ticks);
+}
+
+nlohmann::ordered_json tick_json(const TickOptions& tick) {
+  nlohmann::ordered_json json;
+  for_each_option(tick, [&json](const std::string& place, const auto& value) {
+    json[nlohmann::ordered_json::json_pointer(place)] = value;
+  });
+  return json;
+}
+
+}  // namespace
+
+LoadedControl load_control(const ControlSetup& setup) {
+  LoadedControl loaded;
+  loaded.robot = model::load_robot(model::find_robot(setup.robot));
+  loaded.clips = setup.clips.empty() ? loaded.robot.directory / "clips" : setup.clips;
+  loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
+  loaded.options = tick_options(loaded.robot);
+  loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
+  loaded.policy_name = setup.policy.empty() ? robots_own_policy(loaded.robot) : setup.policy;
+  const std::optional<fs::path> policy =
+      policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
+  loaded.policy = load_policy(policy, loaded);
+  loaded.variant = loaded.policy->variant();
+  std::vector<fs::path> policies;
+  if (policy) policies.push_back(*policy);
+  model::Bundle bundle = model::bundle(loaded.robot, loaded.clips, policies);
+  loaded.bundle = std::move(bundle.sha256);
+  loaded.files = std::move(bundle.files);
+  return loaded;
+}
+
+std::string told_bundle(const ControlSetup& setup) {
+  const LoadedControl loaded = load_control(setup);
+  return fmt::format("{} (robot {}, policy {})", loaded.bundle, loaded.robot.name, loaded.policy_name);
+}
+
+std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch) {
+  return std::make_unique<Tick>(loaded.robot, loaded.library, std::move(loaded.policy), stopwatch, loaded.options);
+}
+
+void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
+  for_each_option(options, [&json](const std::string& place, auto& value) {
+    const nlohmann::ordered_json::json_pointer pointer(place);
+    if (json.is_object() && json.contains(pointer)) value = json[pointer].get<std::decay_t<decltype(value)>>();
+  });
+}
+
+nlohmann::ordered_json control_json(const LoadedControl& loaded) {
+  nlohmann::ordered_json json = {{"robot", loaded.robot.directory.string()},
+                                 {"clips", loaded.clips.string()},
+                                 {"policy", loaded.policy_name},
+                                 {"blend", kBlendNames[static_cast<std::size_t>(*loaded.options.generator.blend)]},
+                                 {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
+  if (loaded.policy_name != "none") json["variant"] = to_string(loaded.variant);
+  json.update(tick_json(loaded.options));
+  return json;
+}
+
+}  // namespace pmg::control

@@ -1,0 +1,53 @@
+// From what a user names (robot, clips, policy) to a tick: the one place, for the controller, simulation and replay.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "io/clock.hpp"
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+#include "policy/policy.hpp"
+#include "control/tick.hpp"
+
+namespace pmg::control {
+
+struct ControlSetup {
+  std::string robot = "z1";     ///< name below config/robots, or a folder
+  std::filesystem::path clips;  ///< empty: the robot's own
+  std::string policy;  ///< name below the robot's policies/, or none: drives follow the reference; empty: robot.yaml's
+  std::string blend = "library";  ///< how clips are mixed: as the library says, or gain, paper or corners
+};
+
+/// What a setup names, read from its files and checked. The tick refers to nothing of it but robot.
+struct LoadedControl {
+  model::RobotModel robot;
+  std::filesystem::path clips;
+  ClipLibrary library;
+  std::string policy_name;  ///< as ControlSetup's, and never empty
+  std::unique_ptr<policy::Policy> policy;
+  Variant variant = Variant::kPmg;  ///< the policy's
+  TickOptions options;
+  std::string bundle;                                      ///< as RunInfo's
+  std::vector<std::pair<std::string, std::string>> files;  ///< likewise
+};
+
+/// Throws model::ConfigError or std::invalid_argument.
+LoadedControl load_control(const ControlSetup& setup);
+
+/// For --version: the bundle that such a setup runs on, and what it is of. Throws as load_control does.
+std::string told_bundle(const ControlSetup& setup);
+
+/// Takes the policy out of loaded. Keeps a reference to the stopwatch.
+std::unique_ptr<Tick> make_tick(LoadedControl& loaded, const io::Clock& stopwatch);
+
+/// The configuration in force, as --print-config shows it and a log's ROBOT_INFO keeps it.
+nlohmann::ordered_json control_json(const LoadedControl& loaded);
+
+/// Back: the options of the tick that such a configuration names; what it doesn't name stays. Throws
+/// nlohmann::json::exception when a value is of another type.
+void restore_options(const nlohmann::ordered_json& json, TickOptions& options);
+
+}  // namespace pmg::control

@@ -1,0 +1,52 @@
+// Faults: what ends motion until the operator resets it, and how they are told. Limiting is not a fault (limiter.hpp).
+// Reactions: docs/safety.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "model/robot_model.hpp"
+
+namespace pmg::control {
+
+/// Of several in one tick the first one in this order is the cause.
+enum class FaultCode : std::uint8_t {
+  kNone = 0,
+  kBusLost,
+  kStaleState,
+  kStateNotFinite,
+  kTemperature,
+  kControlFrozen,
+  kCommandNotFinite,
+  kStalePolicy,
+  kOverrun,
+  kJointLimit,
+  kJointVelocity,
+  kJointTorque,
+  kTilt,
+  kTorsoAttitude,
+  kReferenceNotFinite,
+  kPolicyNotFinite,
+  kActionOutOfRange,
+};
+inline constexpr std::size_t kFaultCodes = 17;
+
+/// One detected fault. value and limit are in the unit of its code.
+struct Fault {
+  FaultCode code = FaultCode::kNone;
+  int joint = -1;  ///< -1: no particular joint
+  double value = 0.0;
+  double limit = 0.0;
+  std::int64_t stamp_ns = 0;
+};
+
+const char* to_string(FaultCode code) noexcept;
+const char* unit(FaultCode code) noexcept;    ///< of value and limit; empty when there are none
+const char* advice(FaultCode code) noexcept;  ///< one sentence for the operator: what to look at before the reset
+
+/// One line for people: "joint_limit: left_knee is at 2.612 rad, 0.112 rad beyond its range". Not for a real-time
+/// thread.
+std::string describe(const Fault& fault, const model::RobotModel& robot);
+
+}  // namespace pmg::control

@@ -1,0 +1,77 @@
+// What is wrong at the start of a tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "hal/command_guard.hpp"
+#include "hal/hal.hpp"
+#include "model/robot_io.hpp"
+#include "model/robot_model.hpp"
+#include "control/fault.hpp"
+#include "control/torso_attitude.hpp"
+
+namespace pmg::control {
+
+struct FaultLimits {
+  double stale_state_s = 0.02;     ///< two control ticks without news from the bus
+  double temperature_degC = 90.0;  ///< windings survive 120: assumption, no data sheet of these drives is published
+  double joint_limit_margin_rad = 0.10;  ///< beyond the URDF's range: what hard stops give under impact
+  double velocity_factor = 1.5;          ///< of the URDF's speed limit
+  double torque_factor = 1.2;            ///< of the URDF's effort limit
+  double tilt_rad = 1.0;                 ///< of the IMU's link from upright
+  double torso_error_rad = 0.6;          ///< of the torso from its commanded pitch and roll
+  int persist_ticks = 3;  ///< limit, velocity, torque and tilt must hold so long: one glitch of a sensor is no fault
+  int overrun_ticks = 3;  ///< ticks that end late, or whose policy does, must follow each other so long
+  /// A host that stops both threads for a while may run the control thread first: it finds an old state once.
+  int stale_state_ticks = 2;
+};
+
+/// What a tick can know of faults before it computes anything.
+struct FaultEvidence {
+  const model::RobotState& state;
+  hal::BusStatus bus = hal::BusStatus::kOk;
+  hal::TripCause guard_trip = hal::TripCause::kNone;  ///< since the last tick
+  std::int64_t late_ns = 0;                           ///< the last tick behind its deadline
+  bool policy_late = false;                           ///< because of its policy alone
+  std::int64_t now_ns = 0;
+  std::optional<RollPitchAim> torso =
+      std::nullopt;  ///< where the torso is to be; nothing while it need not be anywhere
+};
+
+class FaultDetector {
+ public:
+  enum class Scope {
+    kSensing,  ///< bus, state, temperature, guard, timing
+    kMotion,   ///< those, and joint limits, velocities, torques and attitude
+  };
+
+  FaultDetector(const model::RobotModel& robot, const FaultLimits& limits);
+
+  /// One call a tick. The first fault in the order of FaultCode.
+  std::optional<Fault> detect(const FaultEvidence& evidence, Scope scope) noexcept;
+
+  /// Forgets what has begun to persist.
+  void reset() noexcept { held_ticks_.fill(0); }
+
+ private:
+  Fault check_state(const FaultEvidence& evidence) noexcept;
+  Fault check_finite(const model::RobotState& state) const noexcept;
+  Fault check_temperature(const model::RobotState& state) const noexcept;
+  Fault check_timing(const FaultEvidence& evidence) noexcept;
+  Fault check_motion(const FaultEvidence& evidence) noexcept;
+  Fault check_joints(FaultCode code, const model::RobotState& state) const noexcept;
+  Fault check_tilt(const model::RobotState& state) const noexcept;
+  Fault check_torso(const FaultEvidence& evidence) noexcept;
+  /// The fault if it was found, or found in so many ticks in a row.
+  Fault persisting(FaultCode code, const Fault& found, int ticks) noexcept;
+
+  FaultLimits limits_;
+  JointVector q_lower_, q_upper_, velocity_limit_, effort_limit_;
+  Eigen::Vector3d up_I_ = Eigen::Vector3d::UnitZ();  // "up" of the IMU's link, seen in the IMU frame
+  TorsoAttitude torso_;
+  std::array<int, kFaultCodes> held_ticks_{};
+};
+
+}  // namespace pmg::control

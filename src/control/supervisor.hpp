@@ -1,0 +1,68 @@
+// The mode machine: Passive -> Damping -> Stand -> Walk, and Fault, latched. Its table is docs/safety.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "control/fault_detector.hpp"
+#include "control/mode.hpp"
+
+namespace pmg::control {
+
+struct SupervisorOptions {
+  FaultLimits fault_limits;
+  double stale_command_s = 0.2;  ///< an older driving command ends walking
+  double stop_within_s = 0.5;    ///< velocity is zero so long after, whatever the generator says
+  /// Ground-aware solutions held so many ticks in a row end walking: u' is then a second old.
+  int gco_held_ticks = 100;
+};
+
+/// What a tick knows when modes are decided.
+struct SupervisorInput {
+  FaultEvidence evidence;
+  double command_age_s = 0.0;
+  bool entry_done = false;    ///< the ramp from the measured posture into Stand has ended
+  bool at_rest = false;       ///< the reference moves no foot
+  int gco_held_ticks = 0;     ///< ticks in a row in which the ground-aware optimisation held an old solution
+  bool policy_waits = false;  ///< the policy needs the ground, and the feet aren't known to carry the robot
+};
+
+class Supervisor {
+ public:
+  Supervisor(const model::RobotModel& robot, const SupervisorOptions& options);
+
+  /// Remembers a request until update() has carried it out or refused it. A later request replaces it. A reset is
+  /// nothing but a reset: outside of Fault it changes no mode.
+  void request(const ModeRequest& request) noexcept;
+
+  /// Anyone's stop, whatever else this tick was asked for: Damping unless the mode is Passive or Fault.
+  void stop() noexcept { stop_wanted_ = true; }
+
+  /// Decides the mode of this tick: one step at most, upwards one mode at a time.
+  Mode update(const SupervisorInput& input) noexcept;
+
+  /// Latches a fault found later in the tick than update().
+  void raise(const Fault& fault) noexcept;
+
+  Mode mode() const noexcept { return mode_; }
+  const Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
+  /// Of the user's command: everything while walking, posture only while coming to a stop, nothing otherwise.
+  Command admit(const Command& user) const noexcept;
+
+ private:
+  void stop_now() noexcept;
+  void follow_request(const SupervisorInput& input) noexcept;
+  void climb(const SupervisorInput& input) noexcept;
+  bool may_walk(const SupervisorInput& input) const noexcept;
+  void stop_walking_if_due(const SupervisorInput& input) noexcept;
+
+  SupervisorOptions options_;
+  FaultDetector detector_;
+  Mode mode_ = Mode::kPassive;
+  Fault fault_;
+  std::optional<Mode> wanted_;
+  bool reset_wanted_ = false, stop_wanted_ = false;
+  std::optional<std::int64_t> stopping_since_ns_;
+};
+
+}  // namespace pmg::control

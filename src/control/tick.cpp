@@ -1,0 +1,323 @@
+#include "control/tick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace pmg::control {
+
+namespace {
+
+/// Time since it began.
+class Lap {
+ public:
+  explicit Lap(const io::Clock& stopwatch) : stopwatch_(stopwatch), start_ns_(stopwatch.now_ns()) {}
+  std::int64_t end_ns() noexcept { return stopwatch_.now_ns() - start_ns_; }
+
+ private:
+  const io::Clock& stopwatch_;
+  std::int64_t start_ns_;
+};
+
+policy::DriveGains own_gains(const model::RobotModel& robot) {
+  const Eigen::Index n = robot.joint_index.size();
+  policy::DriveGains gains{JointVector(n), JointVector(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    gains.kp_Nm_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
+    gains.kd_Nm_s_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
+  }
+  return gains;
+}
+
+/// The policy's gains, or robot.yaml's. The bus guard would clamp implausible ones in silence: they are refused here.
+policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy) {
+  const auto gains = policy.gains();
+  if (!gains) return own_gains(robot);
+  const auto plausible = [&](const JointVector& values, double largest) {
+    return values.size() == robot.joint_index.size() && (values.array() >= 0.0).all() &&
+           (values.array() <= largest).all();
+  };
+  const hal::GuardOptions guard;
+  if (!plausible(gains->kp_Nm_per_rad, guard.max_kp_Nm_per_rad) ||
+      !plausible(gains->kd_Nm_s_per_rad, guard.max_kd_Nm_s_per_rad)) {
+    throw std::invalid_argument("the policy's drive gains don't fit the robot; expected one of each for " +
+                                std::to_string(robot.joint_index.size()) +
+                                " joints, none negative, none above the bus guard's largest");
+  }
+  return *gains;
+}
+
+ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy::Policy& policy) {
+  options.bound_rad = policy.action_bound_rad().value_or(options.bound_rad);
+  return options;
+}
+
+bool drives(Mode mode) noexcept { return mode == Mode::kStand || mode == Mode::kWalk; }
+
+bool finite(const Command& command) noexcept {
+  return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
+}
+
+bool finite(const Reference& reference) noexcept {
+  return reference.q.allFinite() && reference.dq.allFinite() && std::isfinite(reference.phase) &&
+         std::isfinite(reference.phase_rate_per_s) && std::isfinite(reference.gain) && finite(reference.command);
+}
+
+}  // namespace
+
+TickOptions tick_options(const model::RobotModel& robot) {
+  TickOptions options;
+  options.generator = gco::generator_options(robot);
+  return options;
+}
+
+Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::unique_ptr<policy::Policy> policy,
+           const io::Clock& stopwatch, const TickOptions& options)
+    : stopwatch_(stopwatch),
+      dt_s_(options.dt_s),
+      policy_may_owe_ticks_(options.late_policy_ticks),
+      gains_(gains_in_force(robot, *policy)),
+      brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
+      motion_(robot, library, policy->variant(), options.generator, options.gco),
+      policy_(std::move(policy)),
+      supervisor_(robot, options.supervisor),
+      entry_(options.entry),
+      change_over_(options.change_over),
+      limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
+      action_monitor_(monitor_options(options.action_monitor, *policy_)),
+      target_(robot.q_stand()) {
+  model::JointCommand& command = result_.command;
+  command.q = robot.q_stand();
+  for (JointVector* values : {&command.dq, &command.kp, &command.kd, &command.tau_ff}) {
+    values->setZero(robot.joint_index.size());
+  }
+  result_.reference = motion_.reference();
+  if (policy_->needs_ground()) feet_.emplace(robot, options.foot_load, options.dt_s);
+  if (!options.excitation) return;
+  if (policy_->action_bound_rad()) throw std::invalid_argument("a joint is excited without a policy; expected none");
+  const Eigen::Index joint = options.excitation->joint;
+  if (joint < 0 || joint >= target_.size()) throw std::invalid_argument("excitation: no such joint");
+  excitation_.emplace(
+      *options.excitation, robot,
+      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s);
+}
+
+const TickResult& Tick::step(const TickInput& input) noexcept {
+  Lap tick(stopwatch_);
+  result_.times = StageTimes{};
+  result_.limited = LimitReport{};
+  result_.policy_held = false;
+  if (input.late_ns > 0) ++result_.late_ticks;
+  take_messages(input);
+
+  const Mode before = result_.mode;
+  watch_feet(input.state);
+  const Mode mode = supervisor_.update(supervisor_input(input));
+  result_.user = supervisor_.admit(intake_.command());
+  if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
+  if (drives(mode)) {
+    Fault fault = drive(input.state);
+    if (fault.code != FaultCode::kNone) {
+      fault.stamp_ns = input.now_ns;
+      supervisor_.raise(fault);
+    }
+  }
+  result_.mode = supervisor_.mode();
+  result_.fault = supervisor_.fault();
+  if (!drives(result_.mode)) release(input.state);
+  result_.entering = result_.mode == Mode::kStand && !entry_.done();
+  if (excitation_) {
+    if (result_.mode != Mode::kStand) excitation_->give_up();
+    result_.excitation = excitation_->progress();
+  }
+
+  for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
+  result_.command.bus_sample = input.state.bus_sample;
+  result_.times.tick_ns = tick.end_ns();
+  return result_;
+}
+
+void Tick::take_messages(const TickInput& input) noexcept {
+  if (input.stop) {
+    supervisor_.stop();
+    intake_.stop(input.now_ns);
+  }
+  for (const DriveMessage& drive : input.drives) intake_.accept(drive, input.now_ns);
+  result_.ack_count = 0;
+  for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
+    const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns);
+    const bool refused = excitation_ && request.mode == Mode::kWalk && !request.reset_fault;
+    if (judgement.fresh && !refused) supervisor_.request(request);
+    // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.
+    if (request.stops() && judgement.verdict == Verdict::kTaken) supervisor_.stop();
+    result_.acks[result_.ack_count++] = {.source = request.source,
+                                         .sequence = request.sequence,
+                                         .verdict = refused ? Verdict::kNoMode : judgement.verdict};
+  }
+  result_.ignored = intake_.ignored();
+  result_.command_age_s = intake_.age_s(input.now_ns);
+  result_.driving = intake_.driving(input.now_ns);
+}
+
+SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
+  SupervisorInput known{.evidence = {.state = input.state,
+                                     .bus = input.bus,
+                                     .guard_trip = input.guard_trip,
+                                     .late_ns = input.late_ns,
+                                     .policy_late = input.policy_late,
+                                     .now_ns = input.now_ns},
+                        .command_age_s = result_.command_age_s,
+                        .entry_done = entry_.done(),
+                        .at_rest = motion_.reference().gain == 0.0,
+                        .gco_held_ticks = gco_held_ticks_,
+                        .policy_waits = policy_waits()};
+  // On its way from the posture in which it was found the torso may be anywhere.
+  if (drives(result_.mode) && entry_.done()) {
+    const Command& aim = result_.reference.command;
+    known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
+  }
+  return known;
+}
+
+void Tick::watch_feet(const model::RobotState& state) noexcept {
+  if (!feet_ || !drives(result_.mode)) return;
+  result_.foot_load.reset();
+  // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
+  if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
+  feet_->update(state, result_.command);
+  result_.foot_load = feet_->share();
+  if (feet_->footing() != footing()) change_over();
+}
+
+void Tick::change_over() noexcept {
+  take_footing();
+  if (result_.hanging) {
+    motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
+    gco_held_ticks_ = 0;
+  } else {
+    begin_policy();
+  }
+  // From the targets in force, so that no torque jumps. Where the policy will want to go isn't known yet; it stays near
+  // the reference.
+  change_over_.start(result_.command.q, motion_.reference().q);
+}
+
+void Tick::take_footing() noexcept {
+  result_.hanging = feet_->footing() == Footing::kHangs;
+  result_.footing_unknown = feet_->footing() == Footing::kUnknown;
+}
+
+Footing Tick::footing() const noexcept {
+  if (result_.hanging) return Footing::kHangs;
+  return result_.footing_unknown ? Footing::kUnknown : Footing::kStands;
+}
+
+void Tick::begin_policy() noexcept {
+  policy_->reset();
+  action_monitor_.reset();
+  policy_owes_ticks_ = 0;
+}
+
+void Tick::enter_stand(const model::RobotState& state) noexcept {
+  motion_.reset();
+  target_ = motion_.reference().q;
+  gco_held_ticks_ = 0;
+  entry_.start(state.q, target_);
+  change_over_.finish();
+  limiter_.start_from(state.q);
+  if (feet_) {
+    feet_->start();
+    take_footing();
+  } else {
+    begin_policy();
+  }
+}
+
+Fault Tick::drive(const model::RobotState& state) noexcept {
+  Fault fault = make_reference();
+  if (fault.code == FaultCode::kNone) {
+    if (policy_waits()) {
+      target_ = result_.reference.q;
+    } else {
+      fault = ask_policy(state);
+    }
+  }
+  if (fault.code != FaultCode::kNone) return fault;
+
+  model::JointCommand& command = result_.command;
+  command.q = target_;
+  entry_.apply(dt_s_, command.q);
+  change_over_.apply(dt_s_, command.q);
+  command.kp = gains_.kp_Nm_per_rad;
+  command.kd = gains_.kd_Nm_s_per_rad;
+  if (excitation_ && entry_.done()) excite(command);
+  result_.limited = limiter_.apply(state, command.q);
+  command.dq.setZero();
+  command.tau_ff.setZero();
+  return {};
+}
+
+void Tick::excite(model::JointCommand& command) noexcept {
+  const ExcitationPlayer::Told& told = excitation_->step();
+  const Eigen::Index joint = excitation_->joint();
+  command.q[joint] = told.q_rad;
+  command.kp[joint] = told.kp_Nm_per_rad;
+  command.kd[joint] = told.kd_Nm_s_per_rad;
+  limiter_.set_gains(joint, told.kp_Nm_per_rad, told.kd_Nm_s_per_rad);
+}
+
+Fault Tick::make_reference() noexcept {
+  Lap generator(stopwatch_);
+  result_.reference = motion_.advance(result_.user, dt_s_);
+  result_.times.generator_ns = generator.end_ns();
+  if (!finite(result_.reference)) return {.code = FaultCode::kReferenceNotFinite};
+
+  Lap gco(stopwatch_);
+  result_.optimised = motion_.ground();
+  result_.times.gco_ns = gco.end_ns();
+  if (!finite(result_.optimised.command)) return {.code = FaultCode::kReferenceNotFinite};
+  gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;
+  return {};
+}
+
+Fault Tick::ask_policy(const model::RobotState& state) noexcept {
+  Lap lap(stopwatch_);
+  JointVector& q_des = result_.command.q;
+  const policy::Status status = policy_->act(state, result_.reference, result_.optimised.command, q_des);
+  result_.times.policy_ns = lap.end_ns();
+
+  result_.policy_held = status == policy::Status::kLate;
+  if (result_.policy_held) {
+    return ++policy_owes_ticks_ < policy_may_owe_ticks_ ? Fault{} : Fault{.code = FaultCode::kStalePolicy};
+  }
+  policy_owes_ticks_ = 0;
+  if (status != policy::Status::kOk || q_des.size() != target_.size() || !q_des.allFinite()) {
+    return {.code = FaultCode::kPolicyNotFinite};
+  }
+  target_ = q_des;
+  return action_monitor_.watch(target_, result_.reference.q);
+}
+
+void Tick::release(const model::RobotState& state) noexcept {
+  result_.hanging = result_.footing_unknown = false;
+  result_.foot_load.reset();
+  model::JointCommand& command = result_.command;
+  // The drives multiply it by zero; but zero times NaN is NaN, so a broken measurement must not pass through.
+  const bool usable = state.q.size() == target_.size() && state.q.allFinite();
+  if (usable) {
+    command.q = state.q;
+  } else {
+    command.q.setZero(target_.size());
+  }
+  command.dq.setZero();
+  command.kp.setZero();
+  if (result_.mode == Mode::kPassive) {
+    command.kd.setZero();
+  } else {
+    command.kd = brake_kd_;
+  }
+  command.tau_ff.setZero();
+}
+
+}  // namespace pmg::control

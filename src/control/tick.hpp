@@ -1,0 +1,142 @@
+// One control tick, 100 Hz: command -> supervisor -> generator -> GCO -> policy -> limiter -> drives. The same object
+// runs in lockstep with a simulation and in the robot's control thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "gco/motion_composition.hpp"
+#include "hal/command_guard.hpp"
+#include "hal/hal.hpp"
+#include "io/clock.hpp"
+#include "model/robot_io.hpp"
+#include "model/robot_model.hpp"
+#include "policy/policy.hpp"
+#include "control/action_monitor.hpp"
+#include "control/command_intake.hpp"
+#include "control/entry_ramp.hpp"
+#include "control/excitation_player.hpp"
+#include "control/foot_load_watch.hpp"
+#include "control/limiter.hpp"
+#include "control/mode.hpp"
+#include "control/supervisor.hpp"
+
+namespace pmg::control {
+
+struct TickOptions {
+  double dt_s = 0.01;
+  GeneratorOptions generator;
+  gco::Options gco;
+  SupervisorOptions supervisor;
+  LimiterOptions limiter;
+  EntryRampOptions entry;
+  FootLoadOptions foot_load;
+  /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
+  /// because a robot that is set down must be balanced.
+  EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
+  ActionMonitorOptions action_monitor;
+  /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
+  std::optional<ExcitationPlan> excitation{};
+  int late_policy_ticks = 3;  ///< results in a row that the policy may owe: so long its last target is held
+};
+
+/// The options that robot.yaml decides: command limits and scales; defaults for the rest.
+TickOptions tick_options(const model::RobotModel& robot);
+
+struct TickInput {
+  const model::RobotState& state;
+  hal::BusStatus bus = hal::BusStatus::kOk;
+  std::int64_t now_ns = 0;                ///< by the clock that stamps the state
+  std::span<const DriveMessage> drives;   ///< what arrived since the last tick, in its order; at most kMaxDrives
+  std::span<const ModeRequest> requests;  ///< likewise, at most kMaxRequests
+  bool stop = false;                      ///< the stop line was pulled since the last tick
+  hal::TripCause guard_trip = hal::TripCause::kNone;  ///< the bus guard took over since the last tick
+  std::int64_t late_ns = 0;  ///< how far behind its deadline the last tick ended; not positive: in time
+  bool policy_late = false;  ///< the last tick ended behind its deadline, and its policy alone took longer than a tick
+};
+
+/// Messages that one tick takes; the operator's inbox keeps the rest for the next.
+inline constexpr std::size_t kMaxDrives = 32, kMaxRequests = 8;
+
+/// Wall time that each stage took, by the stopwatch.
+struct StageTimes {
+  std::int64_t tick_ns = 0, generator_ns = 0, gco_ns = 0, policy_ns = 0;
+};
+
+struct TickResult {
+  model::JointCommand command;  ///< acts from the next bus cycle on
+  Mode mode = Mode::kPassive;
+  Fault fault;                    ///< kNone unless mode is kFault
+  Command user;                   ///< the driving source's command as far as the mode admits it
+  Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
+  gco::Result optimised;          ///< likewise; its command is what the policy observes
+  ExcitationProgress excitation;  ///< what the command belongs to
+  bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
+  bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
+  /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand.
+  bool hanging = false;
+  /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
+  bool footing_unknown = false;
+  /// What each foot carries, of the robot's weight; nothing where no policy needs to know it, and before Stand.
+  std::optional<PerFoot<double>> foot_load;
+  LimitReport limited;
+  IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
+  double command_age_s = 0.0;              ///< infinite before the first command
+  Source driving;                          ///< empty when nobody drives
+  std::array<ModeAck, kMaxRequests> acks;  ///< one for each of this tick's requests
+  std::size_t ack_count = 0;
+  std::int64_t late_ticks = 0;  ///< since the start, that ended behind their deadline
+  StageTimes times;
+};
+
+class Tick {
+ public:
+  /// Keeps a reference to the stopwatch, whose times are reported and decide nothing. Throws std::invalid_argument when
+  /// library, policy and robot don't fit together.
+  Tick(const model::RobotModel& robot, const ClipLibrary& library, std::unique_ptr<policy::Policy> policy,
+       const io::Clock& stopwatch, const TickOptions& options);
+
+  /// No exception, no lock, no I/O; no heap but the policy's own.
+  const TickResult& step(const TickInput& input) noexcept;
+  const TickResult& result() const noexcept { return result_; }
+
+ private:
+  void take_messages(const TickInput& input) noexcept;
+  SupervisorInput supervisor_input(const TickInput& input) const noexcept;
+  void watch_feet(const model::RobotState& state) noexcept;
+  void enter_stand(const model::RobotState& state) noexcept;
+  void change_over() noexcept;
+  void take_footing() noexcept;
+  Footing footing() const noexcept;
+  bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
+  void begin_policy() noexcept;
+  /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
+  Fault drive(const model::RobotState& state) noexcept;
+  Fault make_reference() noexcept;
+  void excite(model::JointCommand& command) noexcept;
+  Fault ask_policy(const model::RobotState& state) noexcept;
+  void release(const model::RobotState& state) noexcept;
+
+  const io::Clock& stopwatch_;
+  double dt_s_;
+  int policy_may_owe_ticks_;
+  policy::DriveGains gains_;
+  JointVector brake_kd_;
+  gco::MotionComposition motion_;
+  std::unique_ptr<policy::Policy> policy_;
+  CommandIntake intake_;
+  Supervisor supervisor_;
+  std::optional<FootLoadWatch> feet_;  // nothing for a policy that needs no ground
+  EntryRamp entry_, change_over_;
+  std::optional<ExcitationPlayer> excitation_;
+  Limiter limiter_;
+  ActionMonitor action_monitor_;
+  JointVector target_;  // the policy's last good one, before ramp and limits
+  int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
+  TickResult result_;
+};
+
+}  // namespace pmg::control

@@ -1,0 +1,80 @@
+#include "sil/lockstep.hpp"
+
+#include <cmath>
+
+namespace pmg::sil {
+
+namespace {
+constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
+}  // namespace
+
+Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick, const Scenario& scenario,
+                   runtime::TickLog* log, const LockstepOptions& options)
+    : plant_(plant),
+      tick_(tick),
+      scenario_(scenario),
+      log_(log),
+      options_(options),
+      inbox_(link_.stop),
+      bus_cycle_(bus, link_, robot, clock_),
+      control_cycle_(tick, link_, inbox_, clock_),
+      player_(scenario),
+      measure_(robot.standing_height_m) {
+  if (log_ != nullptr) scenario_log_.emplace(*log_, scenario_);
+}
+
+RunOutcome Lockstep::run() {
+  const auto ticks = static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / kTickPeriod_s - 1e-9));
+  timing_.reserve(static_cast<std::size_t>(ticks));
+  bool ended_early = false;
+  for (std::int64_t k = 0; k < ticks; ++k) {
+    ended_early = interrupted && interrupted();
+    if (ended_early) break;
+    advance();
+    if (plant_.diverged()) break;
+    const double time_s = static_cast<double>(k) * kTickPeriod_s;
+    control(time_s);
+    measure(time_s);
+    if (after_tick) after_tick({time_s, scenario_.duration_s(), player_.current(), tick_.result()});
+  }
+  RunOutcome outcome = measure_.outcome();
+  outcome.interrupted = ended_early;
+  outcome.diverged = plant_.diverged();
+  return outcome;
+}
+
+void Lockstep::advance() {
+  static_assert(control::ControlCycle::kPeriod_ns % hal::BusCycle::kPeriod_ns == 0);
+  for (std::int64_t step = 0; step < control::ControlCycle::kPeriod_ns / hal::BusCycle::kPeriod_ns; ++step) {
+    clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
+    bus_cycle_.run();
+  }
+}
+
+void Lockstep::control(double time_s) {
+  player_.step(time_s, clock_.now_ns());
+  inbox_.put(player_.drive());
+  inbox_.put(player_.request());
+  control_cycle_.run(clock_.now_ns());
+  timing_.add(time_s, tick_.result().times);
+  if (log_ != nullptr) {
+    scenario_log_->write(clock_.now_ns(), player_.number());
+    log_->write(control_cycle_.record());
+  }
+  if (after_record) after_record(control_cycle_.record());
+
+  if (!options_.always_hoisted) {
+    hoist_.step(options_.balanced_by_policy ? Support::kNone : player_.current().support_without_policy(),
+                kTickPeriod_s);
+    plant_.set_hoist(hoist_.lift_m(), hoist_.engaged());
+  }
+}
+
+void Lockstep::measure(double time_s) {
+  const model::GroundTruth truth = plant_.truth();
+  const bool hoisted = options_.always_hoisted || hoist_.carrying();
+  if (log_ != nullptr) log_->write_truth(static_cast<std::int64_t>(std::llround(time_s * 1e9)), truth, hoisted);
+  measure_.add(tick_.result(), truth, hoisted, player_.current().command);
+}
+
+}  // namespace pmg::sil

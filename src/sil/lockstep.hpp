@@ -1,0 +1,68 @@
+// The controller and a simulation in one thread: one bus step per 2 ms of simulation, one control tick per five.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
+#include "model/robot_model.hpp"
+#include "control/control_cycle.hpp"
+#include "sil/hoist.hpp"
+#include "sil/plant.hpp"
+#include "sil/run_measure.hpp"
+#include "sil/scenario.hpp"
+#include "sil/scenario_log.hpp"
+#include "sil/stage_timing.hpp"
+#include "control/tick.hpp"
+#include "runtime/tick_log.hpp"
+
+namespace pmg::sil {
+
+struct LockstepOptions {
+  bool balanced_by_policy = false;  ///< then the gantry stays away
+  bool always_hoisted = false;      ///< the world began on the gantry and stays there
+};
+
+class Lockstep {
+ public:
+  /// Keeps references to all of them. log may be null.
+  Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick, const Scenario& scenario,
+           runtime::TickLog* log, const LockstepOptions& options);
+
+  /// Called after every tick, for progress and pictures.
+  std::function<void(const RunProgress&)> after_tick;
+  /// Called after every tick, with all of it.
+  std::function<void(const control::TickRecord&)> after_record;
+  /// Asked before every tick: true ends the run and keeps what was done.
+  std::function<bool()> interrupted;
+
+  /// Plays the scenario once. A command computed from bus sample k acts from bus step k + 1.
+  RunOutcome run();
+
+  const StageTiming& timing() const { return timing_; }
+
+ private:
+  void advance();
+  void control(double time_s);
+  void measure(double time_s);
+
+  Plant& plant_;
+  control::Tick& tick_;
+  const Scenario& scenario_;
+  runtime::TickLog* log_;
+  std::optional<ScenarioLog> scenario_log_;
+  LockstepOptions options_;
+  io::SimulationClock clock_;
+  hal::BusLink link_;
+  control::OperatorInbox inbox_;
+  hal::BusCycle bus_cycle_;
+  control::ControlCycle control_cycle_;
+  ScenarioPlayer player_;
+  Hoist hoist_;
+  RunMeasure measure_;
+  StageTiming timing_;
+};
+
+}  // namespace pmg::sil

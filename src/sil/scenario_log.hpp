@@ -1,0 +1,27 @@
+// The steps of a scenario in a run's log.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/tick_log.hpp"
+#include "sil/scenario.hpp"
+
+namespace pmg::sil {
+
+/// Writes SCENARIO once where the step changes. Allocates there, and nowhere else.
+class ScenarioLog {
+ public:
+  /// Keeps references to both.
+  ScenarioLog(runtime::TickLog& log, const Scenario& scenario) : log_(log), scenario_(scenario) {}
+
+  /// Before the first tick of the step with this number, counted from 1; later does nothing.
+  void write(std::int64_t stamp_ns, std::size_t number);
+
+ private:
+  runtime::TickLog& log_;
+  const Scenario& scenario_;
+  std::size_t last_ = 0;
+};
+
+}  // namespace pmg::sil

@@ -1,0 +1,246 @@
+#include "control/command_intake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace pmg::control {
+namespace {
+
+using DriveVerdict = CommandIntake::DriveVerdict;
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+/// Messages reach the intake in the moment in which they are received; stamp_ns tells when they were sent.
+class Intake : public testing::Test {
+ protected:
+  DriveVerdict drive(const char* source, std::int64_t session, std::int64_t sequence, std::int64_t now_ns,
+                     double lease_s = 0.5) {
+    return drive_sent(now_ns, source, session, sequence, now_ns, lease_s);
+  }
+  DriveVerdict drive_sent(std::int64_t stamp_ns, const char* source, std::int64_t session, std::int64_t sequence,
+                          std::int64_t now_ns, double lease_s = 0.5) {
+    DriveMessage message{.source = Source::make(source, session),
+                         .sequence = sequence,
+                         .stamp_ns = stamp_ns,
+                         .received_ns = now_ns,
+                         .lease_s = lease_s,
+                         .command = {}};
+    message.command[kVx] = 0.1 * static_cast<double>(sequence);
+    return intake_.accept(message, now_ns);
+  }
+  CommandIntake::Judgement request(const char* source, std::int64_t session, std::int64_t sequence, Mode mode,
+                                   std::int64_t now_ns, bool reset = false) {
+    return request_sent(now_ns, source, session, sequence, mode, now_ns, reset);
+  }
+  CommandIntake::Judgement request_sent(std::int64_t stamp_ns, const char* source, std::int64_t session,
+                                        std::int64_t sequence, Mode mode, std::int64_t now_ns, bool reset = false) {
+    return intake_.judge({.source = Source::make(source, session),
+                          .sequence = sequence,
+                          .stamp_ns = stamp_ns,
+                          .received_ns = now_ns,
+                          .mode = mode,
+                          .reset_fault = reset},
+                         now_ns);
+  }
+
+  CommandIntake intake_;
+};
+
+TEST_F(Intake, OneSourceDrivesUntilItsLeaseEnds) {
+  EXPECT_EQ(drive("gamepad", 1, 1, 0), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("vr", 1, 1, kSecond_ns / 2 - 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(intake_.driving(0), Source::make("gamepad", 1));
+  EXPECT_EQ(drive("vr", 1, 1, kSecond_ns / 2), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("gamepad", 1, 2, kSecond_ns / 2 + 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(intake_.driving(2 * kSecond_ns), Source{});
+}
+
+TEST_F(Intake, ARestartedSourceIsAnotherSourceAndEndsItsPredecessor) {
+  drive("gamepad", 1, 50, 0);
+  EXPECT_EQ(drive("gamepad", 2, 1, 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(drive("gamepad", 1, 51, 2), DriveVerdict::kAccepted) << "a successor that waits takes nothing away";
+  EXPECT_EQ(drive("gamepad", 2, 2, kSecond_ns), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("gamepad", 1, 52, 10 * kSecond_ns), DriveVerdict::kOutOfOrder) << "somebody plays a recording";
+}
+
+TEST_F(Intake, RepeatedAndOvertakenCommandsAreRefused) {
+  drive("gamepad", 1, 5, 0);
+  EXPECT_EQ(drive("gamepad", 1, 5, 10), DriveVerdict::kOutOfOrder);
+  EXPECT_EQ(drive("gamepad", 1, 4, 10), DriveVerdict::kOutOfOrder);
+  EXPECT_DOUBLE_EQ(intake_.command()[kVx], 0.5);
+  EXPECT_DOUBLE_EQ(intake_.age_s(kSecond_ns), 1.0) << "a refused message is no sign of life";
+}
+
+TEST_F(Intake, WhatASourceSentIsRememberedWhileAnotherOneDrives) {
+  drive("gamepad", 7, 100, 0);
+  drive("vr", 3, 1, kSecond_ns);
+  EXPECT_EQ(drive("gamepad", 7, 100, 3 * kSecond_ns), DriveVerdict::kOutOfOrder);
+  EXPECT_EQ(drive("gamepad", 7, 101, 3 * kSecond_ns), DriveVerdict::kAccepted);
+}
+
+TEST_F(Intake, AgeCountsFromTheReceptionNotFromTheTick) {
+  DriveMessage waited{.source = Source::make("gamepad", 1), .sequence = 1, .lease_s = 0.5, .command = {}};
+  waited.received_ns = kSecond_ns;
+  EXPECT_EQ(intake_.accept(waited, kSecond_ns + kSecond_ns / 10), DriveVerdict::kAccepted);
+  EXPECT_DOUBLE_EQ(intake_.age_s(kSecond_ns + kSecond_ns / 10), 0.1);
+  EXPECT_EQ(intake_.driving(kSecond_ns + kSecond_ns / 2), Source{}) << "and so does the lease";
+}
+
+TEST_F(Intake, CommandsThatTravelledTooLongAreLateWhateverTheSendersClock) {
+  for (const std::int64_t clocks_apart_ns : {std::int64_t{0}, 1'700'000'000 * kSecond_ns, -900 * kSecond_ns}) {
+    intake_ = CommandIntake();
+    const auto sent = [&](std::int64_t sequence, std::int64_t sent_ns, std::int64_t travel_ns) {
+      return drive_sent(sent_ns + clocks_apart_ns, "vr", 1, sequence, sent_ns + travel_ns);
+    };
+    EXPECT_EQ(sent(1, kSecond_ns, 5'000'000), DriveVerdict::kAccepted);
+    EXPECT_EQ(sent(2, 2 * kSecond_ns, 1'000'000), DriveVerdict::kAccepted);
+    EXPECT_EQ(sent(3, 3 * kSecond_ns, 199'000'000), DriveVerdict::kAccepted) << "slow, not late";
+    EXPECT_EQ(sent(4, 4 * kSecond_ns, 210'000'000), DriveVerdict::kLate);
+    EXPECT_EQ(intake_.ignored().late, 1);
+    EXPECT_EQ(sent(5, 5 * kSecond_ns, 1'000'000), DriveVerdict::kAccepted);
+  }
+}
+
+TEST_F(Intake, ClocksThatDriftApartMakeNoMessageLate) {
+  // An hour at 50 ms, the sender's clock slow by 200 parts in a million: 0.7 s apart at the end.
+  for (std::int64_t k = 1; k <= 72'000; ++k) {
+    const std::int64_t now_ns = k * 50'000'000;
+    ASSERT_EQ(drive_sent(now_ns - now_ns / 5000, "vr", 1, k, now_ns), DriveVerdict::kAccepted) << k;
+  }
+}
+
+TEST_F(Intake, StampsMayBeAnything) {
+  constexpr auto kLowest = std::numeric_limits<std::int64_t>::min(),
+                 kHighest = std::numeric_limits<std::int64_t>::max();
+  std::int64_t sequence = 0;
+  for (const std::int64_t stamp_ns : {kLowest, kHighest, std::int64_t{0}, kHighest, kLowest}) {
+    drive_sent(stamp_ns, "vr", 1, ++sequence, kSecond_ns);
+    request_sent(stamp_ns, "vr", 1, sequence, Mode::kStand, kSecond_ns);
+  }
+  EXPECT_EQ(drive_sent(kHighest, "vr", 1, ++sequence, kSecond_ns), DriveVerdict::kAccepted);
+}
+
+TEST_F(Intake, CommandsThatAreNotFiniteAreRefused) {
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      CommandIntake intake;
+      DriveMessage message{.source = Source::make("gamepad", 1), .sequence = 1, .lease_s = 0.5, .command = {}};
+      message.command.u[channel] = bad;
+      EXPECT_EQ(intake.accept(message, 0), DriveVerdict::kNotFinite);
+      EXPECT_EQ(intake.command(), Command{});
+      EXPECT_EQ(intake.ignored().not_finite, 1);
+    }
+  }
+}
+
+TEST_F(Intake, LeasesArePositiveAndAtMostTwoSeconds) {
+  EXPECT_EQ(drive("gamepad", 1, 1, 0, 0.0), DriveVerdict::kNoLease);
+  EXPECT_EQ(drive("gamepad", 1, 1, 0, std::nan("")), DriveVerdict::kNoLease);
+  EXPECT_EQ(drive("gamepad", 1, 1, 0, 1e9), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("vr", 1, 1, 2 * kSecond_ns - 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(drive("vr", 1, 1, 2 * kSecond_ns), DriveVerdict::kAccepted);
+}
+
+TEST_F(Intake, AgeIsInfiniteBeforeTheFirstCommand) { EXPECT_TRUE(std::isinf(intake_.age_s(kSecond_ns))); }
+
+TEST_F(Intake, EveryMessageIsCountedOnce) {
+  drive("gamepad", 1, 1, 0);
+  drive("gamepad", 1, 1, 1);
+  drive("vr", 1, 1, 2);
+  drive("gamepad", 1, 2, 3, -1.0);
+  request("vr", 1, 1, Mode::kWalk, 4);
+  request("gamepad", 1, 1, Mode::kWalk, 5);
+  const IgnoredCommands& counts = intake_.ignored();
+  EXPECT_EQ(counts.accepted, 2);
+  EXPECT_EQ(counts.out_of_order, 1);
+  EXPECT_EQ(counts.other_source, 2);
+  EXPECT_EQ(counts.no_lease, 1);
+  EXPECT_EQ(counts.late + counts.not_finite, 0);
+}
+
+TEST_F(Intake, AnySourceMayStopButOnlyTheDrivingOneMayClimbOrReset) {
+  EXPECT_EQ(request("vr", 1, 1, Mode::kWalk, 0).verdict, Verdict::kTaken) << "nobody drives";
+  drive("gamepad", 1, 1, 0);
+  EXPECT_EQ(request("vr", 1, 2, Mode::kDamping, 1).verdict, Verdict::kTaken);
+  EXPECT_EQ(request("vr", 1, 3, Mode::kPassive, 1).verdict, Verdict::kTaken);
+  EXPECT_EQ(request("vr", 1, 4, Mode::kStand, 2).verdict, Verdict::kNotYours);
+  EXPECT_EQ(request("vr", 1, 5, Mode::kWalk, 2).verdict, Verdict::kNotYours);
+  EXPECT_EQ(request("vr", 1, 6, Mode::kDamping, 2, true).verdict, Verdict::kNotYours) << "a reset is no stop";
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kWalk, 2).verdict, Verdict::kTaken);
+  EXPECT_EQ(request("vr", 1, 7, Mode::kWalk, kSecond_ns).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, ARepeatedRequestIsAcknowledgedAgainButCarriedOutOnce) {
+  EXPECT_TRUE(request("vr", 1, 5, Mode::kStand, 0).fresh);
+  for (int k = 1; k < 5; ++k) {
+    const auto again = request("vr", 1, 5, Mode::kStand, k * kSecond_ns / 10);
+    EXPECT_EQ(again.verdict, Verdict::kTaken);
+    EXPECT_FALSE(again.fresh);
+  }
+  EXPECT_EQ(request("vr", 1, 4, Mode::kStand, kSecond_ns).verdict, Verdict::kOutOfOrder);
+  EXPECT_TRUE(request("vr", 1, 6, Mode::kStand, kSecond_ns).fresh);
+}
+
+TEST_F(Intake, ARequestThatWasRefusedMayBeRepeatedUntilItIsTaken) {
+  drive("gamepad", 1, 1, 0);
+  EXPECT_EQ(request("vr", 1, 1, Mode::kWalk, 1).verdict, Verdict::kNotYours);
+  EXPECT_TRUE(request("vr", 1, 1, Mode::kWalk, kSecond_ns).fresh);
+}
+
+TEST_F(Intake, LateRequestsAreRefused) {
+  EXPECT_TRUE(request_sent(0, "vr", 1, 1, Mode::kStand, kSecond_ns).fresh);
+  EXPECT_EQ(request_sent(kSecond_ns, "vr", 1, 2, Mode::kWalk, 2 * kSecond_ns + 210'000'000).verdict, Verdict::kLate);
+  EXPECT_EQ(request_sent(2 * kSecond_ns, "vr", 1, 2, Mode::kWalk, 3 * kSecond_ns).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, AStopIsTakenHoweverOldRepeatedOrForeignItIs) {
+  drive("gamepad", 5, 100, kSecond_ns, 2.0);
+  request("gamepad", 5, 100, Mode::kWalk, kSecond_ns);
+  for (const Mode mode : {Mode::kDamping, Mode::kPassive}) {
+    const std::int64_t now_ns = 2 * kSecond_ns;
+    EXPECT_EQ(request("gamepad", 5, 100, mode, now_ns).verdict, Verdict::kTaken) << "a sequence that was used";
+    EXPECT_EQ(request("gamepad", 5, 3, mode, now_ns).verdict, Verdict::kTaken) << "overtaken";
+    EXPECT_EQ(request("gamepad", 4, 1, mode, now_ns).verdict, Verdict::kTaken) << "of an earlier session";
+    EXPECT_EQ(request_sent(0, "gamepad", 5, 101, mode, now_ns).verdict, Verdict::kTaken) << "late";
+    EXPECT_EQ(request("stranger", 1, mode == Mode::kDamping ? 1 : 2, mode, now_ns).verdict, Verdict::kTaken);
+    EXPECT_FALSE(request("gamepad", 5, 3, mode, now_ns).fresh) << "but it is no second wish for limp drives";
+  }
+  EXPECT_EQ(intake_.driving(2 * kSecond_ns), Source::make("gamepad", 5)) << "a stop takes the lease from nobody";
+}
+
+TEST_F(Intake, WhatWasAskedBeforeAStopIsOvertakenByIt) {
+  request("vr", 1, 1, Mode::kDamping, kSecond_ns);
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kStand, kSecond_ns).verdict, Verdict::kLate);
+  EXPECT_TRUE(request("gamepad", 1, 1, Mode::kStand, kSecond_ns + 1).fresh);
+  intake_.stop(2 * kSecond_ns);
+  EXPECT_EQ(request("gamepad", 1, 2, Mode::kWalk, 2 * kSecond_ns).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 2, Mode::kDamping, 2 * kSecond_ns, true).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 3, Mode::kPassive, 2 * kSecond_ns).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, WhatIsNoModeIsRefused) {
+  EXPECT_EQ(request("vr", 1, 1, Mode::kFault, 0).verdict, Verdict::kNoMode);
+  EXPECT_EQ(request("vr", 1, 1, static_cast<Mode>(77), 0).verdict, Verdict::kNoMode);
+}
+
+TEST_F(Intake, TheSourceThatWasSilentLongestMakesRoomButNeverTheDrivingOne) {
+  drive("driver", 1, 10, 0, 2.0);
+  for (int k = 0; k < 20; ++k) {  // strangers that stop, each for the first time
+    request(("stranger" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, 1 + k);
+  }
+  EXPECT_EQ(drive("driver", 1, 10, 100), DriveVerdict::kOutOfOrder) << "still remembered";
+  EXPECT_FALSE(request("stranger19", 1, 1, Mode::kDamping, 100).fresh);
+  EXPECT_TRUE(request("stranger0", 1, 1, Mode::kDamping, 100).fresh) << "forgotten";
+}
+
+TEST(Source, LongNamesAreCutAndStayTerminated) {
+  const Source source = Source::make("a name that is longer than any source has", 1);
+  EXPECT_EQ(source.name.back(), '\0');
+  EXPECT_EQ(std::string(source.name.data()).size(), source.name.size() - 1);
+}
+
+}  // namespace
+}  // namespace pmg::control

@@ -1,0 +1,266 @@
+// docs/safety.md's table of faults, row by row, through the whole of bus cycle, guard, control cycle and tick: each
+// cause is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "control/control_rig.hpp"
+
+namespace pmg::control {
+namespace {
+
+using test::BreakablePolicy;
+using test::ControlRig;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kCyclesPerTick = 5;
+
+const model::RobotModel& robot() { return test::biped(); }
+
+/// A library that is in order when it is read and overflows when it is played: one step takes 6e-309 s.
+ClipLibrary overflowing_clips() {
+  ClipLibrary library = test::clips(robot());
+  for (auto* clips : {&library.positive, &library.negative}) {
+    for (auto& clip : *clips) {
+      if (clip) clip->period_s = 6e-309;
+    }
+  }
+  return library;
+}
+
+TickOptions options_of(FaultCode code) {
+  TickOptions options = tick_options(robot());
+  // From rest to full speed in one tick, so that the overflow comes in the tick of the injection.
+  if (code == FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
+  return options;
+}
+
+ClipLibrary clips_of(FaultCode code) {
+  return code == FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(robot());
+}
+
+template <typename Spoil>
+auto in_state(Spoil spoil) {
+  return [spoil](ControlRig& rig) { rig.bus.spoil = spoil; };
+}
+
+auto in_policy(BreakablePolicy::Break how) {
+  return [how](ControlRig& rig) { rig.policy->how = how; };
+}
+
+void give_the_guard_a_nan(ControlRig& rig) {
+  hal::ControlOutput output;
+  output.joints = rig.tick.result().command;
+  output.joints.q[2] = kNan;
+  rig.link.commands.put(output);
+}
+
+/// The control thread wakes two bus cycles late and its policy takes four: one too many together, none alone.
+void overrun(ControlRig& rig) {
+  rig.control_delay_cycles = 2;
+  rig.policy->meanwhile = [&rig] {
+    for (int k = 0; k < 4; ++k) rig.world();
+  };
+}
+
+struct Row {
+  const char* name;
+  FaultCode code;
+  std::function<void(ControlRig&)> inject;
+  /// The reset is refused as long as the cause is there. Otherwise the cause only shows when the robot stands again.
+  bool reset_waits;
+
+  friend void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+};
+
+std::vector<Row> rows() {
+  return {
+      {"BusLost", FaultCode::kBusLost, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kLost; }, true},
+      {"StaleState", FaultCode::kStaleState, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kStale; }, true},
+      {"NanInPosition", FaultCode::kStateNotFinite, in_state([](auto& s) { s.q[1] = kNan; }), true},
+      {"NanInOrientation", FaultCode::kStateNotFinite, in_state([](auto& s) { s.orientation_WI.x() = kNan; }), true},
+      {"MissingJoints", FaultCode::kStateNotFinite, in_state([](auto& s) { s.dq.conservativeResize(2); }), true},
+      {"Hot", FaultCode::kTemperature, in_state([](auto& s) { s.temperature_degC[2] = 95.0; }), true},
+      {"ControlFrozen", FaultCode::kControlFrozen, [](ControlRig& rig) { rig.control_frozen = true; }, false},
+      {"CommandNan", FaultCode::kCommandNotFinite, give_the_guard_a_nan, false},
+      {"StalePolicy", FaultCode::kStalePolicy, in_policy(BreakablePolicy::Break::kLate), false},
+      {"Overrun", FaultCode::kOverrun, overrun, false},
+      {"AboveRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].upper_rad + 0.12; }),
+       true},
+      {"BelowRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].lower_rad - 0.12; }),
+       true},
+      {"TooFast", FaultCode::kJointVelocity,
+       in_state([](auto& s) { s.dq[3] = 1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
+      {"TooFastBackwards", FaultCode::kJointVelocity,
+       in_state([](auto& s) { s.dq[3] = -1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
+      {"Torque", FaultCode::kJointTorque, in_state([](auto& s) { s.tau[3] = 1.3 * robot().joints[3].effort_limit_Nm; }),
+       true},
+      {"TorqueBackwards", FaultCode::kJointTorque,
+       in_state([](auto& s) { s.tau[3] = -1.3 * robot().joints[3].effort_limit_Nm; }), true},
+      {"Tilt", FaultCode::kTilt, in_state([](auto& s) {
+         s.orientation_WI = Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()) * s.orientation_WI;
+       }),
+       true},
+      {"TorsoAttitude", FaultCode::kTorsoAttitude, in_state([](auto& s) {
+         s.orientation_WI = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()) * s.orientation_WI;
+       }),
+       false},
+      {"Reference", FaultCode::kReferenceNotFinite, [](ControlRig& rig) { rig.drive.command[kVx] = 9.0; }, false},
+      {"PolicyNan", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNan), false},
+      {"PolicyFailed", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kStatus), false},
+      {"FarAction", FaultCode::kActionOutOfRange, in_policy(BreakablePolicy::Break::kFarAction), false},
+  };
+}
+
+void heal(ControlRig& rig) {
+  rig.bus.status = hal::BusStatus::kOk;
+  rig.bus.spoil = nullptr;
+  rig.control_frozen = rig.bus_frozen = rig.silent = false;
+  rig.control_delay_cycles = 0;
+  rig.policy->how = BreakablePolicy::Break::kNone;
+  rig.policy->meanwhile = nullptr;
+  rig.drive.command = Command{};
+}
+
+struct Range {
+  int least = std::numeric_limits<int>::max(), most = 0;
+  friend bool operator==(const Range&, const Range&) = default;
+};
+
+/// Whatever the moment between two ticks in which the cause appears.
+Range reaction_of(const Row& row) {
+  Range range;
+  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+    ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+    rig.reach_walk();
+    rig.align(moment);
+    const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
+    EXPECT_GE(cycles, 0) << row.name << ": no reaction";
+    range.least = std::min(range.least, cycles);
+    range.most = std::max(range.most, cycles);
+  }
+  return range;
+}
+
+/// The cells of a Markdown table's row.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream row(line);
+  for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+  return cells;
+}
+
+/// docs/safety.md: code -> bus cycles, "1 to 5" or "0". Its fault table is the one of six columns.
+std::map<std::string, Range> documented_reactions() {
+  constexpr std::size_t kColumns = 6, kCode = 1, kCycles = 5;  // the first cell is what stands before the first bar
+  std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/safety.md");
+  std::map<std::string, Range> reactions;
+  for (std::string line; std::getline(file, line);) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != kColumns + 1 || !cells[kCode].starts_with(" `")) continue;
+    const std::string code = cells[kCode].substr(2, cells[kCode].rfind('`') - 2);
+    Range range;
+    std::string to;
+    std::istringstream cycles(cells[kCycles]);
+    cycles >> range.least >> to;
+    range.most = range.least;
+    if (to == "to") cycles >> range.most;
+    EXPECT_TRUE(reactions.emplace(code, range).second) << code << " has two rows";
+  }
+  return reactions;
+}
+
+TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
+  std::map<std::string, Range> documented = documented_reactions();
+  for (std::size_t k = 1; k < kFaultCodes; ++k) {
+    const auto code = static_cast<FaultCode>(k);
+    const std::vector<Row> all = rows();
+    EXPECT_TRUE(std::ranges::any_of(all, [&](const Row& row) { return row.code == code; })) << to_string(code);
+    EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/safety.md";
+    EXPECT_NE(std::string(advice(code)), "") << to_string(code);
+  }
+  EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";
+}
+
+class FaultInjection : public testing::TestWithParam<Row> {};
+
+TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
+  const Row& row = GetParam();
+  const Range measured = reaction_of(row);
+  const Range documented = documented_reactions()[to_string(row.code)];
+  EXPECT_EQ(measured.least, documented.least) << row.name;
+  EXPECT_EQ(measured.most, documented.most) << row.name;
+}
+
+TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
+  const Row& row = GetParam();
+  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  rig.reach_walk();
+  const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
+  ASSERT_GE(cycles, 0);
+  int undamped = 0, broken = 0;
+  rig.after_cycle = [&] {
+    undamped += rig.bus.damping() ? 0 : 1;
+    broken += rig.bus.finite() ? 0 : 1;
+  };
+  if (row.code == FaultCode::kControlFrozen) {
+    rig.run(1.0);
+    EXPECT_EQ(undamped, 0) << "the guard goes on damping alone";
+    heal(rig);  // the thread comes back
+  }
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault);
+  EXPECT_EQ(rig.fault(), row.code);
+  const std::string words = describe(rig.tick.result().fault, robot());
+  EXPECT_EQ(words.find(std::string(to_string(row.code)) + ": "), 0u) << words;
+  EXPECT_EQ(words.find("nan"), std::string::npos) << words;
+
+  rig.ask(Mode::kStand);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault) << "a request is no reset";
+  if (row.reset_waits) {
+    rig.reset();
+    rig.run(0.1);
+    EXPECT_EQ(rig.mode(), Mode::kFault) << "what was wrong still is";
+    EXPECT_EQ(rig.fault(), row.code) << "the first fault is kept";
+  }
+  heal(rig);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kFault) << "it is latched";
+  rig.reset();
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kDamping);
+  EXPECT_EQ(rig.fault(), FaultCode::kNone);
+  EXPECT_EQ(undamped, 0) << "all the time the drives brake";
+  EXPECT_EQ(broken, 0);
+  rig.after_cycle = nullptr;
+  rig.reach_walk();
+}
+
+TEST_P(FaultInjection, IsNoFaultInPassive) {
+  const Row& row = GetParam();
+  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  rig.run(0.1);
+  row.inject(rig);
+  int driven = 0;
+  rig.after_cycle = [&] { driven += rig.bus.last_command.kp.sum() == 0.0 ? 0 : 1; };
+  rig.run(0.2);
+  rig.after_cycle = nullptr;
+  heal(rig);
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), Mode::kPassive);
+  EXPECT_EQ(driven, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, FaultInjection, testing::ValuesIn(rows()),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+}  // namespace
+}  // namespace pmg::control

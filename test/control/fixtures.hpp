@@ -1,0 +1,207 @@
+// What the runtime's tests share: robots, a bus without physics, a policy that can be made to fail.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <kdl/chaindynparam.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "hal/hal.hpp"
+#include "io/clock.hpp"
+#include "model/clip_library_file.hpp"
+#include "model/leg_kinematics.hpp"
+#include "model/robot_model.hpp"
+#include "sil/plant.hpp"
+#include "control/tick.hpp"
+
+namespace pmg::test {
+
+inline const model::RobotModel& biped() {
+  static const model::RobotModel robot =
+      model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "test/data/robots/biped");
+  return robot;
+}
+
+inline const model::RobotModel& z1() {
+  static const model::RobotModel robot = model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "config/robots/z1");
+  return robot;
+}
+
+inline ClipLibrary clips(const model::RobotModel& robot) {
+  return model::load_clip_library(robot.directory / "clips", robot);
+}
+
+/// The legs' torques of a robot whose pelvis is upright and whose feet carry it at rest. No heap after construction.
+class LoadedFeet {
+ public:
+  explicit LoadedFeet(const model::RobotModel& robot)
+      : robot_(robot),
+        legs_(robot),
+        gravity_{KDL::ChainDynParam(robot.leg_chain[kLeft], KDL::Vector(0.0, 0.0, -9.81)),
+                 KDL::ChainDynParam(robot.leg_chain[kRight], KDL::Vector(0.0, 0.0, -9.81))} {
+    for (const Foot foot : {kLeft, kRight}) q_[foot].resize(joints(foot)), holding_[foot].resize(joints(foot));
+  }
+
+  /// share: what each foot carries of the weight. Leaves a state alone whose q is broken.
+  void apply(const PerFoot<double>& share, model::RobotState& state) {
+    const int n = robot_.joint_index.size();
+    if (state.q.size() != n || state.tau.size() != n || state.dq.size() != n || !state.q.allFinite()) return;
+    const auto& feet = legs_.compute(state.q, state.dq);
+    for (const Foot foot : {kLeft, kRight}) {
+      for (unsigned i = 0; i < joints(foot); ++i) q_[foot](i) = state.q[robot_.leg_joints[foot][i]];
+      gravity_[foot].JntToGravity(q_[foot], holding_[foot]);
+      for (unsigned i = 0; i < joints(foot); ++i) {
+        state.tau[robot_.leg_joints[foot][i]] =
+            holding_[foot](i) - feet[foot].J(2, i) * share[foot] * robot_.total_mass_kg * 9.81;
+      }
+    }
+  }
+
+ private:
+  unsigned joints(Foot foot) const { return static_cast<unsigned>(robot_.leg_joints[foot].size()); }
+
+  const model::RobotModel& robot_;
+  model::LegKinematics legs_;
+  PerFoot<KDL::ChainDynParam> gravity_;
+  PerFoot<KDL::JntArray> q_, holding_;
+};
+
+/// Standing still on both feet, everything well.
+inline model::RobotState standing_state(const model::RobotModel& robot) {
+  const int n = robot.joint_index.size();
+  model::RobotState state;
+  state.q = robot.q_stand();
+  state.dq = state.tau = JointVector::Zero(n);
+  state.temperature_degC = JointVector::Constant(n, 35.0);
+  state.acceleration_m_s2 = {0.0, 0.0, 9.81};
+  // The IMU's link upright: R_WI = R_LI.
+  state.orientation_WI = Eigen::Quaterniond(robot.imu.T_LI.linear());
+  LoadedFeet(robot).apply({0.5, 0.5}, state);
+  return state;
+}
+
+/// Drives that follow at once, in a world where nothing ever falls.
+class IdealBus final : public hal::Hal {
+ public:
+  explicit IdealBus(const model::RobotModel& robot) : feet_(robot), state_(standing_state(robot)) {}
+
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
+    state_.bus_sample += 1;
+    state_.stamp_ns = static_cast<std::int64_t>(state_.bus_sample) * 2'000'000;
+    if (command.kp.sum() > 0.0) state_.q = command.q;
+    feet_.apply({0.5, 0.5}, state_);
+    state = state_;
+    last_command = command;
+    return status;
+  }
+
+  hal::BusStatus status = hal::BusStatus::kOk;
+  model::JointCommand last_command;
+
+ private:
+  LoadedFeet feet_;
+  model::RobotState state_;
+};
+
+/// A plant whose truth is whatever a test wants.
+class ScriptedPlant final : public sil::Plant {
+ public:
+  model::GroundTruth truth() const noexcept override { return value; }
+  bool diverged() const noexcept override { return false; }
+  void set_hoist(double lift_m, double engaged) noexcept override {
+    lift = lift_m;
+    hold = engaged;
+  }
+  model::GroundTruth value;
+  double lift = 0.0, hold = 0.0;
+};
+
+/// Follows the reference until told to break.
+class BreakablePolicy final : public policy::Policy {
+ public:
+  enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
+  explicit BreakablePolicy(bool needs_the_ground = true) : balances(needs_the_ground) {}
+  policy::Status act(const model::RobotState&, const Reference& reference, const Command& optimised,
+                     JointVector& q_des) noexcept override {
+    ++calls;
+    if (meanwhile) meanwhile();
+    seen_command = optimised;
+    q_des = reference.q;
+    if (how == Break::kNan) q_des[0] = std::numeric_limits<double>::quiet_NaN();
+    if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
+    if (how == Break::kFarAction) q_des[3] += control::ActionMonitorOptions{}.bound_rad + 0.1;
+    if (how == Break::kLate) q_des.setConstant(9.0);  // what a late policy leaves there must not count
+    if (how == Break::kLate) return policy::Status::kLate;
+    return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;
+  }
+  std::optional<policy::DriveGains> gains() const override { return own_gains; }
+  void reset() noexcept override { ++resets; }
+  bool needs_ground() const override { return balances; }
+
+  Break how = Break::kNone;
+  bool balances;
+  int calls = 0;
+  std::function<void()> meanwhile;  ///< what the world does while the policy thinks
+  std::optional<policy::DriveGains> own_gains;
+  Command seen_command;
+  int resets = 0;
+
+ private:
+  std::unique_ptr<double> heap_;
+};
+
+/// A tick with its operator: sends a fresh command and a request every time.
+struct DrivenTick {
+  explicit DrivenTick(const model::RobotModel& robot)
+      : DrivenTick(robot, std::make_unique<BreakablePolicy>(), clips(robot)) {}
+  DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy)
+      : DrivenTick(robot, std::move(any_policy), clips(robot)) {}
+  DrivenTick(const model::RobotModel& robot, std::unique_ptr<BreakablePolicy> any_policy, ClipLibrary library)
+      : feet(robot),
+        state(standing_state(robot)),
+        policy(any_policy.get()),
+        tick(robot, library, std::move(any_policy), clock, control::tick_options(robot)) {
+    drive.source = request.source = control::Source::make("test", 1);
+    drive.lease_s = 0.5;
+  }
+
+  /// One tick later, with drives that follow at once.
+  const control::TickResult& step(bool speaking = true) {
+    now_ns += 10'000'000;
+    state.stamp_ns = now_ns;
+    state.bus_sample += 5;
+    ++drive.sequence;
+    ++request.sequence;
+    drive.stamp_ns = drive.received_ns = request.stamp_ns = request.received_ns = now_ns;
+    const std::size_t messages = speaking ? 1 : 0;
+    const control::TickResult& result = tick.step({.state = state,
+                                                   .bus = bus,
+                                                   .now_ns = now_ns,
+                                                   .drives = {&drive, messages},
+                                                   .requests = {&request, asking ? messages : 0}});
+    if (result.command.kp.sum() > 0.0) state.q = result.command.q;
+    feet.apply(carried, state);
+    return result;
+  }
+  const control::TickResult& run(double duration_s, bool speaking = true) {
+    for (int k = 0; k < static_cast<int>(duration_s * 100.0 + 0.5); ++k) step(speaking);
+    return tick.result();
+  }
+
+  io::SimulationClock clock;
+  LoadedFeet feet;
+  PerFoot<double> carried{0.5, 0.5};  ///< by the feet, of the weight
+  model::RobotState state;
+  BreakablePolicy* policy;
+  control::Tick tick;
+  hal::BusStatus bus = hal::BusStatus::kOk;
+  bool asking = true;  ///< with a request in every tick
+  std::int64_t now_ns = 0;
+  control::DriveMessage drive;
+  control::ModeRequest request;
+};
+
+}  // namespace pmg::test

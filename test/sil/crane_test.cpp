@@ -1,0 +1,183 @@
+// The hoist that sets a robot down when it stands, and takes it up again.
+#include "sil/crane.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pmg_msgs/hoist_t.hpp"
+#include "runtime/hoist_gate.hpp"
+
+namespace pmg::sil {
+namespace {
+
+constexpr double kDt_s = 0.002;
+using State = runtime::CraneState;
+
+void run(Crane& crane, const CraneView& view, double seconds) {
+  for (double t_s = 0.0; t_s < seconds; t_s += kDt_s) crane.step(view, kDt_s);
+}
+
+/// A robot's legs: they carry what the rope, which gives 0.02 m under the whole weight, leaves.
+double carried(const Crane& crane) { return std::clamp(-crane.lift_m() / 0.02, 0.0, 1.0); }
+
+void set_down(Crane& crane) {
+  for (double t_s = 0.0; t_s < 6.0; t_s += kDt_s) crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
+}
+
+TEST(Crane, HoldsALimpRobotForEver) {
+  Crane crane;
+  run(crane, {}, 60.0);
+  EXPECT_EQ(crane.state(), State::kHolding);
+  EXPECT_EQ(crane.lift_m(), Crane::kLift_m);
+  EXPECT_EQ(crane.engaged(), 1.0);
+}
+
+TEST(Crane, SetsAStandingRobotDownAndLetsGoOnlyWhenItsFeetHaveCarriedForAWhile) {
+  Crane crane;
+  run(crane, {.stands = true}, 10.0);
+  EXPECT_EQ(crane.state(), State::kLowering) << "nothing carries it yet";
+  EXPECT_EQ(crane.engaged(), 1.0);
+  run(crane, {.stands = true, .carried_share = 0.49}, 10.0);
+  EXPECT_EQ(crane.engaged(), 1.0);
+  run(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
+  run(crane, {.stands = true, .carried_share = 0.1}, 0.01);
+  run(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
+  EXPECT_EQ(crane.engaged(), 1.0) << "on its feet for a moment only, twice";
+  run(crane, {.stands = true, .carried_share = 0.9}, 0.02 + Crane::kLetGo_s + 0.01);
+  EXPECT_EQ(crane.state(), State::kFree);
+  EXPECT_EQ(crane.engaged(), 0.0);
+}
+
+TEST(Crane, TakesUpARobotThatNoLongerStandsWhileItIsSetDown) {
+  for (const double after_s : {0.5, 1.9, 2.4, 2.7}) {
+    Crane crane;
+    for (double t_s = 0.0; t_s < after_s; t_s += kDt_s)
+      crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
+    ASSERT_NE(crane.state(), State::kFree) << after_s;
+    run(crane, {.torso_height_m = -0.1}, 5.0);
+    EXPECT_EQ(crane.state(), State::kHolding) << after_s;
+  }
+}
+
+TEST(Crane, LetsARobotThatWasLetGoFall) {
+  Crane crane;
+  set_down(crane);
+  ASSERT_EQ(crane.state(), State::kFree);
+  run(crane, {.torso_height_m = -0.7}, 5.0);
+  EXPECT_EQ(crane.state(), State::kFree) << "nobody asked";
+}
+
+TEST(Crane, CatchesARobotWhereItLiesAndLiftsItWithoutAJerk) {
+  for (const double height_m : {-0.75, -0.3, 0.0, 0.4}) {
+    Crane crane;
+    set_down(crane);
+    const CraneView lies{.stays_up = true, .torso_height_m = height_m};
+    crane.step(lies, kDt_s);
+    EXPECT_EQ(crane.engaged(), 0.0);
+    EXPECT_LE(crane.lift_m(), std::max(height_m, Crane::kLift_m)) << "it doesn't pull at first";
+    double lift_m = crane.lift_m(), engaged = 0.0;
+    for (double t_s = 0.0; t_s < 8.0; t_s += kDt_s) {
+      crane.step(lies, kDt_s);
+      EXPECT_LE(std::abs(crane.lift_m() - lift_m), Crane::kRaise_m_s * kDt_s * 1.001);
+      EXPECT_LE(std::abs(crane.engaged() - engaged), kDt_s / Crane::kCatch_s * 1.001);
+      lift_m = crane.lift_m();
+      engaged = crane.engaged();
+    }
+    EXPECT_EQ(crane.state(), State::kHolding);
+  }
+}
+
+TEST(Crane, ARobotThatIsToStayUpIsNotSetDown) {
+  Crane crane;
+  run(crane, {.stands = true, .stays_up = true}, 5.0);
+  EXPECT_EQ(crane.state(), State::kHolding);
+}
+
+TEST(HoistLine, StandingUpAnewEndsAWishToStayUp) {
+  runtime::HoistLine line;
+  line.see(control::Mode::kWalk, false);
+  line.ask(true);
+  line.see(control::Mode::kWalk, false);
+  line.see(control::Mode::kStand, false);
+  EXPECT_TRUE(line.stays_up()) << "from Walk to Stand is no standing up";
+  line.see(control::Mode::kFault, false);
+  line.see(control::Mode::kDamping, false);
+  EXPECT_TRUE(line.stays_up());
+  EXPECT_FALSE(line.stands());
+  line.see(control::Mode::kStand, true);
+  EXPECT_FALSE(line.stays_up());
+  EXPECT_FALSE(line.stands()) << "the ramp";
+  line.see(control::Mode::kStand, false);
+  EXPECT_TRUE(line.stands());
+}
+
+class HoistGateTest : public testing::Test {
+ protected:
+  using hoist_t = pmg_msgs::hoist_t;
+  void send(const hoist_t& message) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, message.getEncodedSize());
+    gate_.take(bytes);
+  }
+  static hoist_t lift(std::int64_t sequence, bool up = true) {
+    hoist_t message{};
+    message.version = hoist_t::VERSION;
+    message.robot = "biped";
+    message.source = "pmg_send.1";
+    message.session = 7;
+    message.sequence = sequence;
+    message.request = up ? hoist_t::LIFT : hoist_t::LOWER;
+    return message;
+  }
+  runtime::HoistLine line_;
+  runtime::HoistGate gate_{"biped"};
+};
+
+TEST_F(HoistGateTest, AControllerWithoutAHoistCountsAndIgnores) {
+  send(lift(1));
+  EXPECT_EQ(gate_.counts().no_hoist, 1);
+  pmg_msgs::hoist_state_t state{};
+  EXPECT_FALSE(gate_.fill(state));
+  gate_.see(control::TickResult{});
+}
+
+TEST_F(HoistGateTest, TheNewestRequestCountsHoweverOftenAndLateItComes) {
+  gate_.work(&line_);
+  send(lift(2));
+  EXPECT_TRUE(line_.stays_up());
+  pmg_msgs::hoist_state_t state{};
+  EXPECT_TRUE(gate_.fill(state));
+  EXPECT_EQ(state.source, "pmg_send.1");
+  EXPECT_EQ(state.sequence, 2);
+  EXPECT_FALSE(gate_.fill(state)) << "said";
+  send(lift(3, false));
+  send(lift(2));  // overtaken
+  EXPECT_FALSE(line_.stays_up());
+  EXPECT_TRUE(gate_.fill(state)) << "answered all the same";
+  EXPECT_EQ(state.sequence, 3);
+}
+
+TEST_F(HoistGateTest, WhatIsNotMeantForItIsCountedAndIgnored) {
+  gate_.work(&line_);
+  hoist_t message = lift(1);
+  message.robot = "other";
+  send(message);
+  message = lift(1);
+  message.version = 2;
+  send(message);
+  message = lift(1);
+  message.request = 5;
+  send(message);
+  message = lift(1);
+  message.source = "";
+  send(message);
+  gate_.take(std::vector<std::uint8_t>{1, 2, 3});
+  EXPECT_EQ(gate_.counts(), (runtime::GateCounts{.malformed = 3, .other_version = 1, .other_robot = 1}));
+  EXPECT_FALSE(line_.stays_up());
+}
+
+}  // namespace
+}  // namespace pmg::sil
