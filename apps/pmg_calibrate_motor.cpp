@@ -25,8 +25,8 @@ using namespace pmg;
 enum ExitCode { kOk = 0, kNotBetter = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
-BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/motor.yaml (what pmg_sil --motor
-reads), DIR/fit.json, DIR/report.html and DIR/fit.svg. Fitted are the drive's gain and damping, the rotor's inertia, whatever
+BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/reference/file-formats.md). Writes DIR/motor.yaml (what
+pmg_sil --motor reads), DIR/fit.json, DIR/report.html and DIR/fit.svg. Fitted are the drive's gain and damping, the rotor's inertia, whatever
 bench.yaml calls unknown, and what --also names: damping, friction, stribeck, load_friction, asymmetry, presliding,
 delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, hysteresis,
 eccentricity, quantisation, velocity_lag, backlash, compliance, cogging, offset, thermal_drift, self_heating, inertia,

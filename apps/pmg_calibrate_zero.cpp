@@ -22,8 +22,8 @@ enum ExitCode { kOk = 0, kNotAll = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 LOG is a log, or a run's folder, of pmg_sil or pmg_controller in which the robot stood still on both feet on level
-ground, in several postures (docs/zero-calibration.md). Writes DIR/zero.yaml (what pmg_sil --motor reads), DIR/zero.json
-and DIR/report.html. --make-stances writes a robot folder and a scenario with which to take such logs instead.
+ground, in several postures (docs/how-to/zero-calibration.md). Writes DIR/zero.yaml (what pmg_sil --motor reads),
+DIR/zero.json and DIR/report.html. --make-stances writes a robot folder and a scenario with which to take such logs instead.
 
 Examples:
   pmg_calibrate_zero --robot z1 --make-stances out/stances

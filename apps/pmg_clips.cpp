@@ -232,7 +232,7 @@ struct WalkOptions {
   bool list = false;
 };
 
-/// Double-support limits of docs/method.md hold for the mean over all commands, the others for each.
+/// Double-support limits of docs/explanation/method.md hold for the mean over all commands, the others for each.
 int walk(const WalkOptions& options) {
   const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
   ClipLibrary library =

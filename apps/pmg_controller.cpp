@@ -40,7 +40,7 @@ constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controlle
 
 constexpr const char* kFooter = R"(
 Starts in Passive and waits for operators on LCM (pmg_send, pmg_watch). SIGINT, SIGTERM and SIGHUP damp the robot, close the
-log and end the program. Software stops are not safety-rated: docs/safety.md.
+log and end the program. Software stops are not safety-rated: docs/reference/safety.md.
 
 With --bench the robot excites one joint as soon as it stands (pmg_send stand), the others holding, and damps when all is
 recorded. It must hang clear of the ground with its base held fast. Stops, faults and limits are in force as ever, and what

@@ -31,8 +31,8 @@ using namespace pmg;
 enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
-BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/file-formats.md). Writes DIR/report.html (pictures first),
-DIR/diagnosis.json and DIR/motor.yaml: the model with the effects that were found, which pmg_sil --motor and training
+BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/reference/file-formats.md). Writes DIR/report.html (pictures
+first), DIR/diagnosis.json and DIR/motor.yaml: the model with the effects that were found, which pmg_sil --motor and training
 read. Where effects can't be told apart, DIR/next_excitation/ is what to record next. Without --model the drive's gain
 and damping, the rotor's inertia and whatever bench.yaml calls unknown are fitted first.
 

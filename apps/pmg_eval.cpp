@@ -30,7 +30,7 @@ enum ExitCode { kOk = 0, kMissed = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 Each runs the real controller in lockstep with MuJoCo, writes DIR/report.html (self-contained) and DIR/COMMAND.json
-(docs/evaluation.md), and gives the same figures for the same seeds however many jobs run at once.
+(docs/how-to/evaluation.md), and gives the same figures for the same seeds however many jobs run at once.
 
 Examples:
   pmg_eval table1 --robot z1 --seeds 20 --out out/table1
@@ -306,7 +306,7 @@ int main(int argc, char** argv) {
   declare_common(*gait_command, arguments);
   declare_policy(*gait_command, arguments);
   gait_command->add_option("--norms", arguments.norms,
-                           "CSV of published means (docs/evaluation.md); a built-in set if not given");
+                           "CSV of published means (docs/how-to/evaluation.md); a built-in set if not given");
   gait_command->add_option("--speed", arguments.speed_m_s, "forward [m/s]")
       ->check(apps::positive())
       ->capture_default_str();

@@ -20,7 +20,7 @@ enum ExitCode { kOk = 0, kIncomplete = 1, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 LOG is a .lcm file, or the folder of a run. Several logs are laid over each other, each from its own beginning. The page
-holds all that it needs: it can be mailed and read without a network. docs/reports.md says how to read it.
+holds all that it needs: it can be mailed and read without a network. docs/how-to/reports.md says how to read it.
 
 Example:
   pmg_report out/tour/log.lcm --out tour.html

@@ -42,11 +42,17 @@ function(pmg_add_app name)
   add_dependencies(programs ${name})
 endfunction()
 
+# Tests are compiled as often as they are run: what they test is optimised, they themselves hardly.
+if(CMAKE_BUILD_TYPE STREQUAL Release)
+  set(PMG_TEST_OPTIONS -O1)
+endif()
+
 # pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry a TEST, run from the source root.
 function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
+  target_compile_options(test_${name} PRIVATE ${PMG_TEST_OPTIONS})
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300

@@ -1,4 +1,4 @@
-"""Reads from a Markdown page what its reader is meant to type (the conventions: docs/pages.md)."""
+"""Reads from a Markdown page what its reader is meant to type (the conventions: docs/reference/pages.md)."""
 import re
 import textwrap
 from dataclasses import dataclass, field

@@ -1,5 +1,5 @@
 // Faults: what ends motion until the operator resets it, and how they are told. Limiting is not a fault (limiter.hpp).
-// Reactions: docs/safety.md.
+// Reactions: docs/reference/safety.md.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The mode machine: Passive -> Damping -> Stand -> Walk, and Fault, latched. Its table is docs/safety.md.
+// The mode machine: Passive -> Damping -> Stand -> Walk, and Fault, latched. Its table is docs/reference/safety.md.
 #pragma once
 
 #include <cstdint>

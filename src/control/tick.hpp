@@ -76,7 +76,8 @@ struct TickResult {
   ExcitationProgress excitation;  ///< what the command belongs to
   bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
-  /// The feet carry nothing (docs/safety.md): the policy isn't run, the reference alone drives. Only in Stand.
+  /// The feet carry nothing (docs/reference/safety.md): the policy isn't run, the reference alone drives. Only in
+  /// Stand.
   bool hanging = false;
   /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
   bool footing_unknown = false;

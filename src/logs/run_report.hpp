@@ -1,4 +1,4 @@
-// One or more runs as a page of pictures (docs/reports.md): how it went, at a glance, before any number.
+// One or more runs as a page of pictures (docs/how-to/reports.md): how it went, at a glance, before any number.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Reads and writes clip libraries: CSV with one column a joint by name (SI) and a YAML beside each
-// (docs/file-formats.md).
+// (docs/reference/file-formats.md).
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Reads and writes a clip library's command inverse (docs/file-formats.md).
+// Reads and writes a clip library's command inverse (docs/reference/file-formats.md).
 #pragma once
 
 #include <filesystem>

@@ -33,7 +33,7 @@ std::optional<Hottest> hottest(const RobotNews& news) {
   return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
 }
 
-/// The policy's variant (docs/file-formats.md) as the configuration in force tells it; pmg where it doesn't.
+/// The policy's variant (docs/reference/file-formats.md) as the configuration in force tells it; pmg where it doesn't.
 std::string variant(const pmg_msgs::robot_info_t& info) {
   const auto options = nlohmann::json::parse(info.options, nullptr, false);
   if (!options.is_object() || !options.contains("variant") || !options["variant"].is_string()) {

@@ -1,4 +1,5 @@
-// How well a simulated robot did what the user asked: the metrics of docs/method.md, from the simulation's truth.
+// How well a simulated robot did what the user asked, from the simulation's truth: the metrics of summary.json
+// (docs/reference/file-formats.md).
 #pragma once
 
 #include <cstddef>

@@ -35,8 +35,8 @@ struct Scenario {
   const ScenarioStep& at(double time_s) const;  ///< the last step stays in force at and after the end
 };
 
-/// Reads a scenario (docs/file-formats.md). mode and the gantry's part hold on until a later step changes them; a
-/// command belongs to its step alone. Throws model::ConfigError with file, line and column.
+/// Reads a scenario (docs/reference/file-formats.md). mode and the gantry's part hold on until a later step changes
+/// them; a command belongs to its step alone. Throws model::ConfigError with file, line and column.
 Scenario load_scenario(const std::filesystem::path& file);
 
 /// Speaks a scenario as an operator would: in every tick a fresh command and the mode it wants.

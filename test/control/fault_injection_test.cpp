@@ -1,5 +1,5 @@
-// docs/safety.md's table of faults, row by row, through the whole of bus cycle, guard, control cycle and tick: each
-// cause is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
+// docs/reference/safety.md's table of faults, row by row, through the whole of bus cycle, guard, control cycle and
+// tick: each cause is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -157,10 +157,10 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// docs/safety.md: code -> bus cycles, "1 to 5" or "0". Its fault table is the one of six columns.
+/// docs/reference/safety.md: code -> bus cycles, "1 to 5" or "0". Its fault table is the one of six columns.
 std::map<std::string, Range> documented_reactions() {
   constexpr std::size_t kColumns = 6, kCode = 1, kCycles = 5;  // the first cell is what stands before the first bar
-  std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/safety.md");
+  std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/reference/safety.md");
   std::map<std::string, Range> reactions;
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> cells = cells_of(line);
@@ -183,7 +183,7 @@ TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
     const auto code = static_cast<FaultCode>(k);
     const std::vector<Row> all = rows();
     EXPECT_TRUE(std::ranges::any_of(all, [&](const Row& row) { return row.code == code; })) << to_string(code);
-    EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/safety.md";
+    EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/reference/safety.md";
     EXPECT_NE(std::string(advice(code)), "") << to_string(code);
   }
   EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";

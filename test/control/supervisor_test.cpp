@@ -1,4 +1,4 @@
-// docs/safety.md, row by row.
+// docs/reference/safety.md, row by row.
 #include "control/supervisor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// One picture an effect for docs/effects.md: the same joint without it and with it. To draw them anew:
-//   PMG_EFFECT_PICTURES=docs/images/effects build/bin/test_diagnosis_evidence --gtest_filter='EffectPictures.*'
+// One picture an effect for docs/reference/effects.md: the same joint without it and with it. To draw them anew:
+//   PMG_EFFECT_PICTURES=docs/images/effects build/release/bin/test_diagnosis_evidence --gtest_filter='EffectPictures.*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -197,7 +197,7 @@ TEST(EffectPictures, ShowEveryEffectOfTheCatalogue) {
 
 TEST(EffectPictures, AreInTheDocumentation) {
   const fs::path root = PMG_SOURCE_DIR;
-  std::ifstream in(root / "docs/effects.md");
+  std::ifstream in(root / "docs/reference/effects.md");
   std::ostringstream text;
   text << in.rdbuf();
   for (const Effect& effect : catalogue()) {

@@ -1,4 +1,5 @@
-// The nightly campaign: many hidden robots, how often the diagnosis is right, as the table of docs/robot-diagnosis.md.
+// The nightly campaign: many hidden robots, how often the diagnosis is right, as the table of
+// docs/explanation/whole-robot-diagnosis.md.
 // Usage: hidden_robot_campaign [COUNT [FIRST_SEED]]. Exit code 1 when a promise is broken.
 #include <fmt/format.h>
 

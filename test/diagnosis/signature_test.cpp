@@ -43,8 +43,8 @@ int agreeing(const Answers& answers, const std::string& effect, const std::strin
   return agrees == found->second.end() ? 0 : agrees->second;
 }
 
-/// With a true rate of 2 %, 12 benches show 2 or more in 2 of 100 cases. More by PMG_SIGNATURE_BENCHES; docs/effects.md
-/// has what 150 of each kind gave.
+/// With a true rate of 2 %, 12 benches show 2 or more in 2 of 100 cases. More by PMG_SIGNATURE_BENCHES;
+/// docs/reference/effects.md has what 150 of each kind gave.
 int clean_benches() {
   const char* more = std::getenv("PMG_SIGNATURE_BENCHES");
   return more == nullptr ? 12 : std::max(12, std::atoi(more));

@@ -28,7 +28,7 @@ constexpr const char* kFooter = R"(
 Examples:
   hidden_plants make --seeds 3:5 --out out/plants       # benches with truth.json and base.yaml beside them, to look at
   hidden_plants run --seeds 0:199 --shard 1/4 --out out/nightly
-  hidden_plants table out/nightly --markdown docs/hidden-plants.md --require promised
+  hidden_plants table out/nightly --markdown docs/explanation/hidden-plants.md --require promised
 
 Exit codes: 0 done, 1 a promise is broken, 2 bad input, 130 interrupted (results so far are kept; run goes on from them).)";
 

@@ -93,7 +93,7 @@ class Pages(unittest.TestCase):
         self.expect(2, "expected a build", "true")
 
     def test_every_page_of_the_project_can_be_read(self):
-        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
             typed_blocks.read_blocks(page.read_text(), page.name)
 
 

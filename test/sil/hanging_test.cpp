@@ -1,5 +1,5 @@
-// Z1's own policy in MuJoCo: lifted, set down, dropped, with dead torque readings. docs/safety.md's table of what
-// happens when the feet carry nothing, row by row.
+// Z1's own policy in MuJoCo: lifted, set down, dropped, with dead torque readings. docs/reference/safety.md's table of
+// what happens when the feet carry nothing, row by row.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -179,7 +179,7 @@ class GoesWild final : public policy::Policy {
                      JointVector& q_des) noexcept override {
     const policy::Status status = sound_->act(state, reference, observed, q_des);
     if (--left_ >= 0) return status;
-    const double clamp_rad = *sound_->action_bound_rad() / 0.95;  // docs/file-formats.md: action_limit
+    const double clamp_rad = *sound_->action_bound_rad() / 0.95;  // docs/reference/file-formats.md: action_limit
     q_des = reference.q + (action_factor_ * (q_des - reference.q)).cwiseMax(-clamp_rad).cwiseMin(clamp_rad);
     return status;
   }
@@ -217,7 +217,8 @@ TEST_P(WalkingSabotage, IsDampedBeforeTheRobotHasGoneFar) {
   RecordProperty("fault", fmt::format("after {:.2f} s: {}", after_s, describe(fault, test::z1())));
 }
 
-// docs/safety.md has the times measured; twice the median is allowed, because they depend on the moment in the gait.
+// docs/reference/safety.md has the times measured; twice the median is allowed, because they depend on the moment in
+// the gait.
 INSTANTIATE_TEST_SUITE_P(Actions, WalkingSabotage,
                          testing::Values(Sabotaged{"TimesFive", 5.0, 1.82}, Sabotaged{"Negated", -1.0, 0.8},
                                          Sabotaged{"Zero", 0.0, 2.0}),
