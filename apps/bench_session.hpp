@@ -11,9 +11,9 @@
 
 #include "calib/bench_writer.hpp"
 #include "calib/excitation.hpp"
+#include "control/tick.hpp"
 #include "model/nearest_name.hpp"
 #include "runtime/excitation_recorder.hpp"
-#include "control/tick.hpp"
 #include "sim/joint_load.hpp"
 
 namespace pmg::apps {

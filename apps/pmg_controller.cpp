@@ -14,15 +14,15 @@
 #include <optional>
 
 #include "bench_session.hpp"
+#include "control/control_setup.hpp"
+#include "control/mode_text.hpp"
 #include "driving_window.hpp"
 #include "io/lcm_link.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "runtime/comms.hpp"
-#include "control/control_setup.hpp"
 #include "runtime/controller.hpp"
 #include "runtime/controller_report.hpp"
-#include "control/mode_text.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "sil/simulated_robot.hpp"
@@ -313,7 +313,7 @@ int run_controller(Arguments& arguments) {
   world_options.benched_joint = arguments.bench;
   sim::World world(loaded.robot, world_options);
   sil::SimulatedRobot robot(world, arguments.gantry ? sil::HoistedBy::kGantry : sil::HoistedBy::kCrane,
-                                !arguments.no_log);
+                            !arguments.no_log);
   std::optional<apps::DrivingWindow> window;
   if (arguments.viewer) window.emplace(world.mj_model(), arguments.name, arguments.lcm_url);
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);

@@ -11,19 +11,19 @@
 #include <optional>
 
 #include "bench_session.hpp"
-#include "sil/sil_hal.hpp"
+#include "control/control_setup.hpp"
+#include "control/mode_text.hpp"
 #include "io/lcm_link.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "runtime/comms.hpp"
-#include "control/control_setup.hpp"
 #include "runtime/controller_report.hpp"
 #include "sil/film.hpp"
 #include "sil/live_view.hpp"
 #include "sil/lockstep.hpp"
-#include "control/mode_text.hpp"
 #include "sil/realtime_run.hpp"
+#include "sil/sil_hal.hpp"
 #include "sil/summary.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/video_writer.hpp"
@@ -185,7 +185,7 @@ struct Stage {
   sim::World& world;
   io::LogWriter& log_file;
   control::Tick& tick;
-  sil::LiveView* view;                  // may be null
+  sil::LiveView* view;                      // may be null
   const apps::BenchSession* bench;          // may be null
   runtime::ExcitationRecorder* excitation;  // null without a bench
   bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
@@ -209,9 +209,8 @@ Played play_lockstep(const Stage& stage) {
   std::optional<sil::Film> film;
   if (stage.arguments.video) film.emplace(stage.world, stage.arguments.out / "video.mp4");
   apps::ProgressLine progress;
-  sil::Lockstep lockstep(
-      robot, bus, plant, stage.tick, stage.scenario, &log,
-      {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
+  sil::Lockstep lockstep(robot, bus, plant, stage.tick, stage.scenario, &log,
+                         {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
   lockstep.interrupted = [&stage] { return stage.over(); };
   if (stage.excitation != nullptr) {
     lockstep.after_record = [&stage](const control::TickRecord& record) { stage.excitation->add(record); };
@@ -267,10 +266,10 @@ Played play_realtime(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
   sil::SimulatedRobot simulated(stage.world,
-                                    stage.arguments.gantry           ? sil::HoistedBy::kGantry
-                                    : stage.arguments.by_operators() ? sil::HoistedBy::kCrane
-                                                                     : sil::HoistedBy::kScenario,
-                                    true);
+                                stage.arguments.gantry           ? sil::HoistedBy::kGantry
+                                : stage.arguments.by_operators() ? sil::HoistedBy::kCrane
+                                                                 : sil::HoistedBy::kScenario,
+                                true);
   runtime::Controller controller(robot, simulated, stage.tick);
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
   runtime::RunInfo info = run_info(stage);
@@ -280,7 +279,7 @@ Played play_realtime(const Stage& stage) {
   runtime::TickLog log(stage.log_file, robot, info, rate_Hz);
   apps::ProgressLine progress;
   sil::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
-                           !stage.balanced_by_policy() && !stage.arguments.gantry);
+                       !stage.balanced_by_policy() && !stage.arguments.gantry);
   std::optional<Operators> operators;
   if (stage.arguments.by_operators()) {
     operators.emplace(stage, info, controller, simulated);
@@ -344,15 +343,14 @@ int simulate(Arguments arguments) {
     loaded.options.excitation = bench->plan();
   }
   const sil::Scenario scenario = benching                   ? bench_scenario(*bench, loaded.options.dt_s)
-                                     : arguments.by_operators() ? endless_scenario()
-                                                                : sil::load_scenario(arguments.scenario);
+                                 : arguments.by_operators() ? endless_scenario()
+                                                            : sil::load_scenario(arguments.scenario);
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
   }
   require(arguments.out, "--out");
-  sim::WorldOptions world_options =
-      sil::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
+  sim::WorldOptions world_options = sil::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
   world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
     sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
@@ -386,8 +384,8 @@ int simulate(Arguments arguments) {
   played.timing.write_csv(arguments.out / "timing.csv");
   nlohmann::ordered_json summary =
       sil::summary_json({loaded.robot.name, scenario.name, arguments.control.policy, arguments.seed, wall_s,
-                             arguments.control.policy == "none" ? "" : to_string(loaded.variant)},
-                            played.outcome, played.timing, loaded.robot);
+                         arguments.control.policy == "none" ? "" : to_string(loaded.variant)},
+                        played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   if (bench) summary["bench"] = bench->write(*recorder);
   if (!played.film_failure.empty()) summary["film_failure"] = played.film_failure;

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "pmg/types.hpp"
 #include "control/fault.hpp"
+#include "pmg/types.hpp"
 
 namespace pmg::control {
 

@@ -2,11 +2,11 @@
 // a record of it all. The same object runs in lockstep and in the robot's control thread.
 #pragma once
 
-#include "hal/bus_cycle.hpp"
-#include "io/clock.hpp"
 #include "control/operator_inbox.hpp"
 #include "control/tick.hpp"
 #include "control/tick_record.hpp"
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
 
 namespace pmg::control {
 

@@ -6,11 +6,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "control/tick.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
 #include "policy/policy.hpp"
-#include "control/tick.hpp"
 
 namespace pmg::control {
 

@@ -5,9 +5,9 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 
-#include "io/mailbox.hpp"
 #include "control/mode.hpp"
 #include "control/tick_record.hpp"
+#include "io/mailbox.hpp"
 
 namespace pmg::control {
 

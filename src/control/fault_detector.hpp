@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "control/fault.hpp"
+#include "control/torso_attitude.hpp"
 #include "hal/command_guard.hpp"
 #include "hal/hal.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
-#include "control/fault.hpp"
-#include "control/torso_attitude.hpp"
 
 namespace pmg::control {
 

@@ -3,8 +3,8 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "hal/stop_line.hpp"
 #include "control/mode.hpp"
+#include "hal/stop_line.hpp"
 
 namespace pmg::control {
 

@@ -8,13 +8,6 @@
 #include <optional>
 #include <span>
 
-#include "gco/motion_composition.hpp"
-#include "hal/command_guard.hpp"
-#include "hal/hal.hpp"
-#include "io/clock.hpp"
-#include "model/robot_io.hpp"
-#include "model/robot_model.hpp"
-#include "policy/policy.hpp"
 #include "control/action_monitor.hpp"
 #include "control/command_intake.hpp"
 #include "control/entry_ramp.hpp"
@@ -23,6 +16,13 @@
 #include "control/limiter.hpp"
 #include "control/mode.hpp"
 #include "control/supervisor.hpp"
+#include "gco/motion_composition.hpp"
+#include "hal/command_guard.hpp"
+#include "hal/hal.hpp"
+#include "io/clock.hpp"
+#include "model/robot_io.hpp"
+#include "model/robot_model.hpp"
+#include "policy/policy.hpp"
 
 namespace pmg::control {
 

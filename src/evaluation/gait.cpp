@@ -8,8 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "generator/joint_roles.hpp"
 #include "control/control_cycle.hpp"
+#include "generator/joint_roles.hpp"
 
 namespace pmg::evaluation {
 
@@ -25,11 +25,11 @@ constexpr const char* kSideNames[] = {"left", "right"};
 
 sil::Scenario gait_scenario(const GaitTest& test) {
   sil::ScenarioStep stand{.start_s = 0.0,
-                              .duration_s = kStand_s,
-                              .text = "stand",
-                              .mode = control::Mode::kStand,
-                              .command = {},
-                              .hoist_without_policy = false};
+                          .duration_s = kStand_s,
+                          .text = "stand",
+                          .mode = control::Mode::kStand,
+                          .command = {},
+                          .hoist_without_policy = false};
   sil::ScenarioStep walk = stand;
   walk.start_s = kStand_s;
   walk.duration_s = kUntilSteady_s + test.steady_s;

@@ -59,11 +59,11 @@ double PushPlan::direction_rad() const { return direction * 2.0 * std::numbers::
 sil::Scenario push_scenario(const PushPlan& plan) {
   sil::Scenario scenario{.name = "push", .steps = {}};
   sil::ScenarioStep step{.start_s = 0.0,
-                             .duration_s = kStand_s,
-                             .text = "stand",
-                             .mode = control::Mode::kStand,
-                             .command = {},
-                             .hoist_without_policy = false};
+                         .duration_s = kStand_s,
+                         .text = "stand",
+                         .mode = control::Mode::kStand,
+                         .command = {},
+                         .hoist_without_policy = false};
   scenario.steps.push_back(step);
   step.start_s = kStand_s;
   step.duration_s = plan.at_s + kAfterPush_s - kStand_s;

@@ -16,7 +16,8 @@ class StepMeasure {
   StepMeasure(const model::RobotModel& robot, const sil::Scenario& scenario)
       : measure_(robot.standing_height_m), scenario_(scenario) {}
 
-  void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const sil::ScenarioStep& step);
+  void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+           const sil::ScenarioStep& step);
 
   /// What is left of a run whose simulation diverged: the robot counts as fallen.
   void count_as_fallen(double from_s, const control::TickResult& result, model::GroundTruth last);

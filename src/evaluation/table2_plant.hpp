@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "model/robot_model.hpp"
 #include "control/control_setup.hpp"
+#include "model/robot_model.hpp"
 #include "sim/motor_file.hpp"
 #include "sim/variation.hpp"
 

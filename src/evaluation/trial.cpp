@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "evaluation/step_measure.hpp"
-#include "sil/sil_hal.hpp"
 #include "io/clock.hpp"
 #include "sil/lockstep.hpp"
+#include "sil/sil_hal.hpp"
 
 namespace pmg::evaluation {
 
@@ -38,7 +38,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   sil::WorldPlant plant(*simulated);
   // Nobody carries a robot that is evaluated, whether or not a policy balances it.
   sil::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
-                             {.balanced_by_policy = true, .always_hoisted = options.gantry});
+                         {.balanced_by_policy = true, .always_hoisted = options.gantry});
   StepMeasure measure(robot, scenario);
   bool ended = false, interrupted = false;
   model::GroundTruth truth;

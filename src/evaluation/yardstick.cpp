@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "control/control_cycle.hpp"
 #include "evaluation/step_measure.hpp"
 #include "gco/motion_composition.hpp"
 #include "pmg/command_limiter.hpp"
-#include "control/control_cycle.hpp"
 
 namespace pmg::evaluation {
 

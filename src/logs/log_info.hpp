@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "pmg_msgs/robot_info_t.hpp"
 #include "control/mode.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
 
 namespace pmg::logs {
 

@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "control/control_setup.hpp"
 #include "io/log_series.hpp"
 #include "logs/message_fields.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
-#include "control/control_setup.hpp"
 #include "runtime/tick_messages.hpp"
 
 namespace pmg::logs {

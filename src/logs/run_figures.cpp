@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "pages/histogram.hpp"
 #include "control/mode.hpp"
+#include "pages/histogram.hpp"
 #include "sil/summary.hpp"
 
 namespace pmg::logs {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "control/mode.hpp"
 #include "logs/report_sections.hpp"
 #include "logs/run_figures.hpp"
-#include "control/mode.hpp"
 
 namespace pmg::logs {
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "control/mode.hpp"
 #include "io/log_series.hpp"
 #include "logs/measured_command.hpp"
 #include "logs/run_judgement.hpp"
@@ -23,7 +24,6 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
-#include "control/mode.hpp"
 
 namespace pmg::logs {
 

@@ -83,7 +83,7 @@ struct RunSeries {
   std::string scenario;
   std::vector<Step> steps;
 
-  sil::TrackingSummary tracking;  ///< followed_s is 0 without a simulation's truth
+  sil::TrackingSummary tracking;      ///< followed_s is 0 without a simulation's truth
   gco::SlipSummary reference_slip;    ///< as in summary.json
   std::vector<LimitedJoint> limited;  ///< most often limited first
 

@@ -17,8 +17,8 @@ constexpr std::size_t kMostOthers = 16;  // names that are told at start: a floo
 
 }  // namespace
 
-Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox, const model::RobotModel& robot,
-             const RunInfo& run, double control_rate_Hz, const io::Clock& clock)
+Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
+             const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock)
     : link_(link),
       outbox_(outbox),
       robot_(robot),

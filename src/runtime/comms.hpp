@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "control/controller_outbox.hpp"
+#include "control/operator_inbox.hpp"
+#include "control/tick_record.hpp"
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "model/robot_model.hpp"
@@ -20,12 +23,9 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
-#include "control/controller_outbox.hpp"
 #include "runtime/hoist_gate.hpp"
 #include "runtime/operator_gate.hpp"
-#include "control/operator_inbox.hpp"
 #include "runtime/run_info.hpp"
-#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -35,8 +35,8 @@ class Comms {
  public:
   /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
   /// subscribe.
-  Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox, const model::RobotModel& robot,
-        const RunInfo& run, double control_rate_Hz, const io::Clock& clock);
+  Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
+        const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock);
 
   /// One line for the console when something is wrong for the first time. Called from step().
   std::function<void(const std::string&)> on_warning;

@@ -31,7 +31,8 @@ ThreadSchedule scheduled(ThreadSchedule schedule, bool realtime) {
 
 }  // namespace
 
-Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options)
+Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick,
+                       const ControllerOptions& options)
     : options_(options),
       inbox_(link_.stop),
       bus_cycle_(bus, link_, robot, clock_, options.guard),

@@ -11,12 +11,12 @@
 #include <thread>
 #include <vector>
 
-#include "hal/bus_cycle.hpp"
-#include "io/clock.hpp"
-#include "io/mailbox.hpp"
 #include "control/control_cycle.hpp"
 #include "control/controller_outbox.hpp"
 #include "control/operator_inbox.hpp"
+#include "hal/bus_cycle.hpp"
+#include "io/clock.hpp"
+#include "io/mailbox.hpp"
 #include "runtime/periodic_thread.hpp"
 
 namespace pmg::runtime {
@@ -51,7 +51,9 @@ class Controller {
   Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options = {});
   ~Controller();  ///< stops
 
-  control::OperatorInbox& inbox() noexcept { return inbox_; }  ///< to be written by comms alone, and by others before start()
+  control::OperatorInbox& inbox() noexcept {
+    return inbox_;
+  }  ///< to be written by comms alone, and by others before start()
   control::ControllerOutbox& outbox() noexcept { return outbox_; }
   const control::ControllerOutbox& outbox() const noexcept { return outbox_; }
   /// What the system refused of real-time scheduling, in words; known before start().

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "control/tick_record.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_messages.hpp"
-#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <string>
 
+#include "control/tick.hpp"
 #include "io/lcm_link.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "runtime/hoist_line.hpp"
 #include "runtime/operator_gate.hpp"
-#include "control/tick.hpp"
 
 namespace pmg::runtime {
 

@@ -27,7 +27,8 @@ void OperatorGate::take_command(io::Bytes bytes) {
     ++counts_.other_robot;
   } else {
     const control::DriveMessage drive = drive_message(*message, clock_.now_ns());
-    const bool taken = rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
+    const bool taken =
+        rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
     if (!taken) ++counts_.flooded;
   }
 }

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include "io/clock.hpp"
-#include "io/lcm_link.hpp"
 #include "control/operator_inbox.hpp"
 #include "control/source_rates.hpp"
+#include "io/clock.hpp"
+#include "io/lcm_link.hpp"
 
 namespace pmg::runtime {
 

@@ -27,8 +27,8 @@ fs::path made(const fs::path& directory) {
 
 }  // namespace
 
-Recorder::Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
-                   const RecorderOptions& options, Say say)
+Recorder::Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run,
+                   const io::Clock& clock, const RecorderOptions& options, Say say)
     : outbox_(outbox),
       robot_(robot),
       run_(run),

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "control/controller_outbox.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
-#include "control/controller_outbox.hpp"
 #include "runtime/flight_recorder.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_log.hpp"
@@ -40,8 +40,8 @@ class Recorder {
 
   /// Keeps references to outbox, robot and clock, which is the one that stamps the records. Throws std::runtime_error
   /// when the folder or the first file can't be made.
-  Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run, const io::Clock& clock,
-           const RecorderOptions& options, Say say);
+  Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run,
+           const io::Clock& clock, const RecorderOptions& options, Say say);
   ~Recorder();  ///< closes
 
   /// Called with every record, in order, after it was logged; in drain().

@@ -57,7 +57,8 @@ void TickLog::announce_fault(std::int64_t stamp_ns, const control::TickRecord& r
 
 void TickLog::write_fault_once(const control::TickRecord& record) {
   const control::Fault& fault = record.result.fault;
-  const bool latched = fault.code != control::FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
+  const bool latched =
+      fault.code != control::FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
   last_fault_ = fault;
   if (!latched) return;
   fill(record, run_, robot_, fault_);

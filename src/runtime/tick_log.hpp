@@ -3,13 +3,13 @@
 
 #include <cstdint>
 
+#include "control/tick_record.hpp"
 #include "io/log_writer.hpp"
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/scenario_step_t.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_messages.hpp"
-#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 

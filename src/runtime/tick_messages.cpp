@@ -138,7 +138,8 @@ void fill(const control::TickRecord& record, int joint_count, pmg_msgs::motor_co
   copy(command.tau_ff, joint_count, message.torque_ff_Nm);
 }
 
-void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message) {
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
+          pmg_msgs::status_t& message) {
   const control::TickResult& result = record.result;
   message.stamp_ns = record.now_ns;
   message.robot = run.robot;
@@ -193,7 +194,8 @@ void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
   for (const control::ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
 }
 
-void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message) {
+void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records,
+          pmg_msgs::timing_t& message) {
   const control::CycleTiming& timing = record.timing;
   const control::StageTimes& times = record.result.times;
   message.stamp_ns = record.now_ns;
@@ -210,7 +212,8 @@ void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t 
   message.dropped_records = dropped_records;
 }
 
-void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message) {
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
+          pmg_msgs::fault_t& message) {
   const control::Fault& fault = record.result.fault;
   message.robot = run.robot;
   message.stamp_ns = fault.stamp_ns;

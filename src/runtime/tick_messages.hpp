@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "control/tick_record.hpp"
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ack_t.hpp"
@@ -22,7 +23,6 @@
 #include "pmg_msgs/timing_t.hpp"
 #include "runtime/bus_timing.hpp"
 #include "runtime/run_info.hpp"
-#include "control/tick_record.hpp"
 
 namespace pmg::runtime {
 
@@ -32,12 +32,15 @@ void fill(const RunInfo& run, const model::RobotModel& robot, double control_rat
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message);
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::reference_t& message);
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message);
-void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::status_t& message);
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
+          pmg_msgs::status_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::limited_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message);
-void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records, pmg_msgs::timing_t& message);
+void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records,
+          pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
-void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot, pmg_msgs::fault_t& message);
+void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
+          pmg_msgs::fault_t& message);
 void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message);
 void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message);
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);

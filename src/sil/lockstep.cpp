@@ -8,8 +8,8 @@ namespace {
 constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 }  // namespace
 
-Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick, const Scenario& scenario,
-                   runtime::TickLog* log, const LockstepOptions& options)
+Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick,
+                   const Scenario& scenario, runtime::TickLog* log, const LockstepOptions& options)
     : plant_(plant),
       tick_(tick),
       scenario_(scenario),

@@ -5,18 +5,18 @@
 #include <functional>
 #include <optional>
 
+#include "control/control_cycle.hpp"
+#include "control/tick.hpp"
 #include "hal/bus_cycle.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
-#include "control/control_cycle.hpp"
+#include "runtime/tick_log.hpp"
 #include "sil/hoist.hpp"
 #include "sil/plant.hpp"
 #include "sil/run_measure.hpp"
 #include "sil/scenario.hpp"
 #include "sil/scenario_log.hpp"
 #include "sil/stage_timing.hpp"
-#include "control/tick.hpp"
-#include "runtime/tick_log.hpp"
 
 namespace pmg::sil {
 

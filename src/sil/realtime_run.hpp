@@ -9,12 +9,12 @@
 
 #include "io/clock.hpp"
 #include "runtime/controller.hpp"
+#include "runtime/tick_log.hpp"
 #include "sil/run_measure.hpp"
 #include "sil/scenario.hpp"
 #include "sil/scenario_log.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sil/stage_timing.hpp"
-#include "runtime/tick_log.hpp"
 
 namespace pmg::sil {
 
@@ -22,8 +22,8 @@ class RealtimeRun {
  public:
   /// Keeps references. robot keeps the truth. log may be null. hoists: the scenario's gantry acts (nobody balances the
   /// robot, and it does not hang already).
-  RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, runtime::Controller& controller, const Scenario& scenario,
-              runtime::TickLog* log, bool hoists);
+  RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, runtime::Controller& controller,
+              const Scenario& scenario, runtime::TickLog* log, bool hoists);
 
   /// Called after every tick, in the recorder's thread.
   std::function<void(const RunProgress&)> after_tick;

@@ -14,7 +14,8 @@ bool holds(control::Mode mode) { return mode == control::Mode::kStand || mode ==
 RunMeasure::RunMeasure(double standing_height_m)
     : metrics_(standing_height_m, kTickPeriod_s), gait_period_s_(kGaitPeriodBeforeWalking_s) {}
 
-void RunMeasure::add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const Command& asked) {
+void RunMeasure::add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+                     const Command& asked) {
   add_reference(result);
   add_truth(result, truth, hoisted, asked);
 }
@@ -29,7 +30,8 @@ void RunMeasure::add_reference(const control::TickResult& result) {
   if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
 }
 
-void RunMeasure::add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const Command& asked) {
+void RunMeasure::add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+                           const Command& asked) {
   if (hoisted) sums_.hoisted_s += kTickPeriod_s;
   // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
   const bool judged = !hoisted && (holds(result.mode) || result.mode == control::Mode::kFault);

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "control/tick.hpp"
 #include "gco/slip_statistics.hpp"
 #include "sil/metrics.hpp"
 #include "sil/scenario.hpp"
-#include "control/tick.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sil {
@@ -44,7 +44,8 @@ class RunMeasure {
   /// Its two halves, for who knows no truth. Of the result the first reads mode, fault, reference and optimised, the
   /// second the mode.
   void add_reference(const control::TickResult& result);
-  void add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const Command& asked);
+  void add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+                 const Command& asked);
 
   /// With everything that add() saw; interrupted and diverged are the caller's to say.
   RunOutcome outcome() const;

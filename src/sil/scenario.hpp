@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "control/mode.hpp"
 #include "pmg/command.hpp"
 #include "sil/hoist.hpp"
-#include "control/mode.hpp"
 
 namespace pmg::sil {
 

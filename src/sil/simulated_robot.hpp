@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "sil/sil_hal.hpp"
+#include "control/tick.hpp"
 #include "io/mailbox.hpp"
 #include "pmg/types.hpp"
+#include "runtime/hoist_line.hpp"
 #include "sil/crane.hpp"
 #include "sil/hoist.hpp"
-#include "runtime/hoist_line.hpp"
-#include "control/tick.hpp"
+#include "sil/sil_hal.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sil {

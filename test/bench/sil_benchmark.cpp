@@ -11,14 +11,14 @@
 
 #include "bench/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
-#include "sil/sil_hal.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
 #include "policy/policy.hpp"
-#include "sil/lockstep.hpp"
 #include "runtime/tick_log.hpp"
+#include "sil/lockstep.hpp"
+#include "sil/sil_hal.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "bench/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
-#include "sil/sil_hal.hpp"
 #include "model/clip_library_file.hpp"
 #include "sil/lockstep.hpp"
+#include "sil/sil_hal.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::test {
@@ -81,7 +81,7 @@ void BM_tick(benchmark::State& state) {
     sil::SilHal bus(world);
     sil::WorldPlant plant(world);
     sil::Lockstep lockstep(robot, bus, plant, tick, played, nullptr,
-                               {.balanced_by_policy = true, .always_hoisted = true});
+                           {.balanced_by_policy = true, .always_hoisted = true});
     AllocationsPerTick allocations;
     int walked = 0;
     lockstep.after_tick = [&](const sil::RunProgress& now) {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include "control/fixtures.hpp"
-#include "hal/bus_cycle.hpp"
 #include "control/control_cycle.hpp"
+#include "control/fixtures.hpp"
 #include "control/operator_inbox.hpp"
+#include "hal/bus_cycle.hpp"
 
 namespace pmg::test {
 

@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "control/fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "policy/linear_policy.hpp"
-#include "control/fixtures.hpp"
 
 namespace pmg::control {
 namespace {

@@ -9,13 +9,13 @@
 #include <optional>
 #include <utility>
 
+#include "control/tick.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
 #include "sil/plant.hpp"
-#include "control/tick.hpp"
 
 namespace pmg::test {
 

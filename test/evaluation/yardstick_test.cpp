@@ -17,7 +17,7 @@ namespace {
 constexpr double kTick_s = 0.01;
 
 sil::ScenarioStep step(double start_s, double duration_s, control::Mode mode, const Command& command,
-                           bool beyond_reach = false) {
+                       bool beyond_reach = false) {
   sil::ScenarioStep made;
   made.start_s = start_s;
   made.duration_s = duration_s;
@@ -95,8 +95,8 @@ model::GroundTruth going(double speed_m_s, int tick, double height_m) {
 TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
   const sil::Scenario scenario{.name = "hand",
-                                   .steps = {step(0.0, 10.0, control::Mode::kWalk, of(kVx, 0.3)),
-                                             step(10.0, 10.0, control::Mode::kWalk, of(kVx, 0.8), true)}};
+                               .steps = {step(0.0, 10.0, control::Mode::kWalk, of(kVx, 0.3)),
+                                         step(10.0, 10.0, control::Mode::kWalk, of(kVx, 0.8), true)}};
   StepMeasure measure(robot, scenario);
   control::TickResult result;
   result.mode = control::Mode::kWalk;

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "io/log_writer.hpp"
 #include "control/control_rig.hpp"
 #include "control/control_setup.hpp"
+#include "io/log_writer.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_log.hpp"
 

@@ -13,8 +13,8 @@
 namespace pmg::ops {
 namespace {
 
-using runtime::CraneState;
 using control::Mode;
+using runtime::CraneState;
 using testing::HasSubstr;
 
 constexpr double kStep_s = 0.01;

@@ -6,12 +6,12 @@
 #include <memory>
 #include <string>
 
+#include "control/control_cycle.hpp"
+#include "control/fixtures.hpp"
 #include "hal/bus_cycle.hpp"
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "runtime/comms.hpp"
-#include "control/control_cycle.hpp"
-#include "control/fixtures.hpp"
 
 namespace pmg::test {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pmg_msgs/mode_t.hpp"
 #include "control/fixtures.hpp"
+#include "pmg_msgs/mode_t.hpp"
 
 namespace pmg::runtime {
 namespace {
@@ -97,7 +97,8 @@ TEST_F(CommsTest, EveryTickIsToldOnceAndWhoRunsWhatOnceASecond) {
 }
 
 TEST_F(CommsTest, EveryAnswerIsSent) {
-  outbox_.acks.push({.source = control::Source::make("pendant", 5), .sequence = 3, .verdict = control::Verdict::kNotYours});
+  outbox_.acks.push(
+      {.source = control::Source::make("pendant", 5), .sequence = 3, .verdict = control::Verdict::kNotYours});
   outbox_.acks.push({.source = control::Source::make("pendant", 5), .sequence = 4, .mode = control::Mode::kDamping});
   tick();
   EXPECT_EQ(heard_["ACK"], 2);

@@ -13,9 +13,9 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "runtime/comms.hpp"
-#include "sil/realtime_run.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/threaded_controller.hpp"
+#include "sil/realtime_run.hpp"
 
 namespace pmg::runtime {
 namespace {
@@ -100,8 +100,10 @@ TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
   std::filesystem::create_directories(folder_);
   ThreadedRobot run(test::z1());
   sil::Scenario scenario{.name = "walk", .steps = {}};
-  scenario.steps.push_back({.start_s = 0.0, .duration_s = 0.8, .text = "stand", .mode = control::Mode::kStand, .command = {}});
-  scenario.steps.push_back({.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = control::Mode::kWalk, .command = {}});
+  scenario.steps.push_back(
+      {.start_s = 0.0, .duration_s = 0.8, .text = "stand", .mode = control::Mode::kStand, .command = {}});
+  scenario.steps.push_back(
+      {.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = control::Mode::kWalk, .command = {}});
   scenario.steps.back().command[kVx] = 0.4;
   io::LogWriter writer(folder_ / "log.lcm");
   const RunInfo info{.robot = "z1"};
@@ -122,7 +124,8 @@ TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
 TEST_F(Composition, AnInterruptedScenarioKeepsWhatWasDone) {
   ThreadedRobot run(test::z1());
   sil::Scenario scenario{.name = "long", .steps = {}};
-  scenario.steps.push_back({.start_s = 0.0, .duration_s = 600.0, .text = "stand", .mode = control::Mode::kStand, .command = {}});
+  scenario.steps.push_back(
+      {.start_s = 0.0, .duration_s = 600.0, .text = "stand", .mode = control::Mode::kStand, .command = {}});
   sil::RealtimeRun play(test::z1(), run.robot, run.controller, scenario, nullptr, false);
   std::atomic<int> observed{0};
   play.after_tick = [&](const sil::RunProgress&) { ++observed; };

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "control/fixtures.hpp"
-#include "io/clock.hpp"
 #include "control/controller_outbox.hpp"
+#include "control/fixtures.hpp"
 #include "control/tick_record.hpp"
+#include "io/clock.hpp"
 
 namespace pmg::test {
 

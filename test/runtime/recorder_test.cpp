@@ -307,9 +307,9 @@ TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
   const std::string first_line = page.substr(0, page.find('\n'));
   EXPECT_THAT(first_line, HasSubstr(robot_.joint_index.name(0)));
   EXPECT_THAT(first_line, HasSubstr("95.0"));
-  for (const char* part :
-       {"biped-2", "Mode before  walk", "Driven by    nobody", "tester #200: vx 0.40 m/s", "tester #0: walk",
-        control::advice(control::FaultCode::kTemperature), "reset", "301 ticks, from 2.00 s before the fault to 1.00 s after"}) {
+  for (const char* part : {"biped-2", "Mode before  walk", "Driven by    nobody", "tester #200: vx 0.40 m/s",
+                           "tester #0: walk", control::advice(control::FaultCode::kTemperature), "reset",
+                           "301 ticks, from 2.00 s before the fault to 1.00 s after"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   EXPECT_THAT(page, HasSubstr(name));
@@ -318,7 +318,8 @@ TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
 TEST_F(FlightRecorderTest, EachFaultHasItsOwnFileAndNamesSortByTime) {
   const auto recorder = this->recorder(without_log());
   std::vector<std::string> in_order;
-  for (const control::FaultCode code : {control::FaultCode::kTilt, control::FaultCode::kBusLost, control::FaultCode::kTilt}) {
+  for (const control::FaultCode code :
+       {control::FaultCode::kTilt, control::FaultCode::kBusLost, control::FaultCode::kTilt}) {
     source_.fault(code);
     run(50, *recorder);
     source_.reset();

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "runtime/controller.hpp"
 #include "control/fixtures.hpp"
+#include "runtime/controller.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::test {

@@ -73,7 +73,7 @@ class Names(unittest.TestCase):
         for text in ("[a](nowhere.md)", "[a](operation.md#nowhere)", "![a](../images/nowhere.png)", "`src/runtime/nowhere.*`",
                      "`nowhere_test.cpp`", "```\npmg_sil --scenario config/scenarios/nowhere.yaml\n```", "`a=1 build/bin/pmg_sil`"):
             self.assertEqual(len(self.wrong(page, text)), 1, text)
-        for text in ("[a](operation.md#logs)", "`src/runtime/supervisor.*`", "`supervisor_test.cpp`", "`out/why/report.html`",
+        for text in ("[a](operation.md#logs)", "`src/control/supervisor.*`", "`supervisor_test.cpp`", "`out/why/report.html`",
                      "`runs/*.csv`", "`build/release/bin/pmg_sil`", "[a](https://example.org/nowhere.md)"):
             self.assertEqual(self.wrong(page, text), [], text)
 

@@ -99,11 +99,11 @@ class Chaos {
     for (double& value : rig_.drive.command.u) value = any_number();
     rig_.silent = below(4) == 0;
     control::DriveMessage stranger{.source = any_source(),
-                          .sequence = any_integer(),
-                          .stamp_ns = any_integer(),
-                          .received_ns = any_integer(),
-                          .lease_s = 0.02 * any_number(),
-                          .command = rig_.drive.command};
+                                   .sequence = any_integer(),
+                                   .stamp_ns = any_integer(),
+                                   .received_ns = any_integer(),
+                                   .lease_s = 0.02 * any_number(),
+                                   .command = rig_.drive.command};
     rig_.inbox.put(stranger);
   }
   void ask_something() {
@@ -115,11 +115,11 @@ class Chaos {
       return;
     }
     rig_.inbox.put(control::ModeRequest{.source = any_source(),
-                               .sequence = any_integer(),
-                               .stamp_ns = any_integer(),
-                               .received_ns = any_integer(),
-                               .mode = mode,
-                               .reset_fault = reset});
+                                        .sequence = any_integer(),
+                                        .stamp_ns = any_integer(),
+                                        .received_ns = any_integer(),
+                                        .mode = mode,
+                                        .reset_fault = reset});
   }
   void spoil_a_sensor() {
     rig_.bus.spoil = [which = below(8), joint = below(10), value = any_number()](model::RobotState& state) {
@@ -190,7 +190,8 @@ class Watch {
     if (rig_.bus.exchanges == 0) return;
     if (!rig_.bus.finite()) ++not_finite;
     if (!within_clamps(rig_.bus.last_command)) ++beyond_clamps;
-    const bool in_fault = mode_ == control::Mode::kFault && rig_.mode() == control::Mode::kFault && rig_.cycles > fault_since_;
+    const bool in_fault =
+        mode_ == control::Mode::kFault && rig_.mode() == control::Mode::kFault && rig_.cycles > fault_since_;
     const bool foreign = chaos_.corrupted_in >= fault_since_;  // a command that no tick gave
     if (in_fault && !foreign && !rig_.bus_frozen && !rig_.bus.damping()) ++undamped;
   }

@@ -9,10 +9,10 @@
 #include <random>
 #include <utility>
 
-#include "control/fixtures.hpp"
-#include "sil/sil_hal.hpp"
 #include "control/control_setup.hpp"
+#include "control/fixtures.hpp"
 #include "sil/lockstep.hpp"
+#include "sil/sil_hal.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/variation.hpp"
 
@@ -212,9 +212,11 @@ TEST_P(LiftedInMidWalk, HangsStillInItsStandingPostureAndStandsWhenItIsSetDown) 
   };
   const double lift_s = draw(4.0, 5.0), down_s = lift_s + 4.0, end_s = down_s + 6.0;  // anywhere in the gait
   const Command command{{draw(-0.3, 0.8), draw(-0.2, 0.2), draw(-0.5, 0.5), 0.0, 0.0, 0.0}};
-  const Ride it =
-      ride(scenario_of({{0.0, control::Mode::kStand}, {1.5, control::Mode::kWalk, command}, {down_s - 0.5, control::Mode::kStand}}, end_s),
-           lifted_between(lift_s, down_s, draw(0.4, 1.2)), {.seed = GetParam()});
+  const Ride it = ride(
+      scenario_of(
+          {{0.0, control::Mode::kStand}, {1.5, control::Mode::kWalk, command}, {down_s - 0.5, control::Mode::kStand}},
+          end_s),
+      lifted_between(lift_s, down_s, draw(0.4, 1.2)), {.seed = GetParam()});
 
   const double clear_s = it.lifted_at(lift_s);
   ASSERT_LT(clear_s, down_s - 2.0) << it.told();
@@ -225,8 +227,9 @@ TEST_P(LiftedInMidWalk, HangsStillInItsStandingPostureAndStandsWhenItIsSetDown) 
   const double off_rad = it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.farthest_rad; });
   EXPECT_LT(off_rad, 0.1) << "joints near their reference from 1 s after lifting";
   EXPECT_EQ(it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.walk_gain; }), 0.0);
-  EXPECT_EQ(it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.mode == control::Mode::kStand ? 0.0 : 1.0; }),
-            0.0);
+  EXPECT_EQ(
+      it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.mode == control::Mode::kStand ? 0.0 : 1.0; }),
+      0.0);
   EXPECT_LE(it.most(lift_s, end_s, [](const Seen& tick) { return tick.most_torque; }), 1.0 + 1e-9);
   const double torque = it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.most_torque; });
   EXPECT_LT(torque, 0.3) << "it holds its own legs and no more";
@@ -287,11 +290,11 @@ TEST(Hanging, DroppedFromAHandsBreadthItsPolicyCatchesIt) {
 }
 
 TEST(Hanging, TorqueReadingsThatVanishTakeNoPolicyFromARobotThatWalks) {
-  const Ride it =
-      ride(scenario_of(
-               {{0.0, control::Mode::kStand}, {1.5, control::Mode::kWalk, Command{{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}}}, {8.0, control::Mode::kStand}},
-               10.0),
-           [](double) { return Rope{}; }, {.torques_dead_from_s = 4.0});
+  const Ride it = ride(scenario_of({{0.0, control::Mode::kStand},
+                                    {1.5, control::Mode::kWalk, Command{{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}}},
+                                    {8.0, control::Mode::kStand}},
+                                   10.0),
+                       [](double) { return Rope{}; }, {.torques_dead_from_s = 4.0});
   EXPECT_EQ(it.most(1.0, 10.0, [](const Seen& tick) { return tick.hanging ? 1.0 : 0.0; }), 0.0);
   EXPECT_TRUE(it.stands()) << it.told();
 }
@@ -305,8 +308,10 @@ TEST(Hanging, WithoutTorqueReadingsItIsTakenUpAndSetDownAllTheSame) {
 
 TEST(Hanging, NeitherChangeOverThrowsATarget) {
   const Command forward{{0.6, 0.0, 0.0, 0.0, 0.0, 0.0}};
-  const Ride it = ride(scenario_of({{0.0, control::Mode::kStand}, {1.5, control::Mode::kWalk, forward}, {6.0, control::Mode::kStand}}, 11.0),
-                       lifted_between(4.0, 7.0));
+  const Ride it = ride(
+      scenario_of({{0.0, control::Mode::kStand}, {1.5, control::Mode::kWalk, forward}, {6.0, control::Mode::kStand}},
+                  11.0),
+      lifted_between(4.0, 7.0));
   double at_changes_rad = 0.0;
   int changes = 0;
   for (std::size_t i = 100; i < it.seen.size(); ++i) {

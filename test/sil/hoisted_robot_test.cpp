@@ -6,10 +6,10 @@
 #include <cmath>
 #include <memory>
 
-#include "hal/bus_cycle.hpp"
 #include "control/control_cycle.hpp"
 #include "control/control_setup.hpp"
 #include "control/fixtures.hpp"
+#include "hal/bus_cycle.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::sil {
@@ -30,11 +30,11 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
   /// 10 ms, in which somebody asks for the velocity.
   void step(double vx_m_s = 0.0) {
     control::DriveMessage drive{.source = control::Source::make("test", 1),
-                       .sequence = ++sequence_,
-                       .stamp_ns = clock_.now_ns(),
-                       .received_ns = clock_.now_ns(),
-                       .lease_s = 0.5,
-                       .command = {}};
+                                .sequence = ++sequence_,
+                                .stamp_ns = clock_.now_ns(),
+                                .received_ns = clock_.now_ns(),
+                                .lease_s = 0.5,
+                                .command = {}};
     drive.command[kVx] = vx_m_s;
     inbox_.put(drive);
     cycle_->run(clock_.now_ns());
@@ -48,11 +48,11 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
   }
   void ask(control::Mode mode, bool reset = false) {
     inbox_.put(control::ModeRequest{.source = control::Source::make("test", 1),
-                           .sequence = ++sequence_,
-                           .stamp_ns = clock_.now_ns(),
-                           .received_ns = clock_.now_ns(),
-                           .mode = mode,
-                           .reset_fault = reset});
+                                    .sequence = ++sequence_,
+                                    .stamp_ns = clock_.now_ns(),
+                                    .received_ns = clock_.now_ns(),
+                                    .mode = mode,
+                                    .reset_fault = reset});
   }
   template <typename Condition>
   double until(Condition condition, double at_most_s, double vx_m_s = 0.0) {

@@ -11,8 +11,8 @@
 #include <span>
 
 #include "control/fixtures.hpp"
-#include "sil/sil_hal.hpp"
 #include "io/log_reader.hpp"
+#include "sil/sil_hal.hpp"
 #include "sil/summary.hpp"
 
 namespace pmg::sil {
@@ -36,7 +36,8 @@ class LockstepRun : public testing::Test {
   ~LockstepRun() override { std::filesystem::remove_all(folder_); }
 
   control::Tick make_tick(const model::RobotModel& robot) {
-    return control::Tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock_, control::tick_options(robot));
+    return control::Tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock_,
+                         control::tick_options(robot));
   }
   std::string bytes(const std::string& name) {
     std::ifstream file(folder_ / name, std::ios::binary);

@@ -8,10 +8,10 @@
 #include <limits>
 #include <ostream>
 
-#include "control/fixtures.hpp"
-#include "sil/sil_hal.hpp"
 #include "control/control_setup.hpp"
+#include "control/fixtures.hpp"
 #include "sil/lockstep.hpp"
+#include "sil/sil_hal.hpp"
 
 namespace pmg::sil {
 namespace {

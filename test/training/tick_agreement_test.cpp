@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "control/fixtures.hpp"
 #include "pmg_batch.h"
 #include "policy/observation.hpp"
-#include "control/fixtures.hpp"
 
 namespace pmg::test {
 namespace {
