@@ -7,6 +7,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("apps", "cmake", "config", "docs", "include", "msgs", "scripts", "src", "test", "training")
 BUILDS = ("release", "ci", "debug", "asan", "tsan")  # of CMakePresets.json, each in build/NAME
+OUTPUTS = ("build", "out")  # there or not, as the tree was used; which builds there can be is checked apart
 FENCE = re.compile(r"^ *```.*?^ *```", re.M | re.S)
 SOURCE_NAME = re.compile(r"[\w-]+\.(?:cpp|hpp|md|py|sh)")
 PATH = re.compile(r"[\w.*-]+(?:/[\w.*-]*)+")  # without <name>, {a,b} and other placeholders
@@ -27,6 +28,8 @@ def link_is_there(page, target):
 def path_is_there(page, path):
     """From the project's root or the page's folder; true of a path that begins in a folder of another project or of outputs."""
     first = path.split("/")[0]
+    if first in OUTPUTS:
+        return True
     ours = first in (*FOLDERS, "third_party") or (page.parent / first).is_dir()
     return not ours or any(any(folder.glob(path.rstrip("/"))) for folder in (ROOT, page.parent))
 
