@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnosis/cluster_regression.hpp"
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
 #include "diagnosis/torque_balance.hpp"
 
 namespace pmg::diagnosis {

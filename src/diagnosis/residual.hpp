@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
 
 namespace pmg::diagnosis {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
 #include "diagnosis/robot_evidence.hpp"
 #include "diagnosis/robot_ground.hpp"
 #include "diagnosis/robot_recording.hpp"

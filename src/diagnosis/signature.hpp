@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/bench.hpp"
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
 
 namespace pmg::diagnosis {
 

@@ -1,4 +1,4 @@
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
 
 namespace pmg::diagnosis {
 
