@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/bench_writer.hpp"
-#include "calib/excitation.hpp"
+#include "bench/bench_writer.hpp"
+#include "bench/excitation.hpp"
 #include "control/tick.hpp"
 #include "model/nearest_name.hpp"
 #include "runtime/excitation_recorder.hpp"
@@ -20,7 +20,7 @@ namespace pmg::apps {
 
 /// Every run of an excitation for this joint. Throws std::invalid_argument when the joint's range or gains forbid it.
 inline control::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,
-                                               const calib::Excitation& excitation) {
+                                               const bench::Excitation& excitation) {
   const auto index = robot.joint_index.find(joint);
   if (!index) {
     throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint; {}", joint, robot.name,
@@ -28,7 +28,7 @@ inline control::ExcitationPlan excitation_plan(const model::RobotModel& robot, c
   }
   control::ExcitationPlan plan;
   plan.joint = *index;
-  for (const calib::ExcitationRow& row : excitation.rows) {
+  for (const bench::ExcitationRow& row : excitation.rows) {
     plan.runs.push_back(
         {excitation.trajectory(row.trajectory).q_cmd_rad, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad});
   }
@@ -44,7 +44,7 @@ class BenchSession {
       : robot_(robot),
         folder_(excitation),
         out_(out),
-        excitation_(calib::read_excitation(excitation)),
+        excitation_(bench::read_excitation(excitation)),
         plan_(excitation_plan(robot, joint, excitation_)) {
     if (std::abs(excitation_.rate_hz * control_period_s - 1.0) > 1e-6) {
       throw std::invalid_argument(fmt::format("{}: {} commands a second; expected {:g}, one a control tick",
@@ -62,7 +62,7 @@ class BenchSession {
   nlohmann::ordered_json json() const {
     return {{"joint", joint().name},
             {"excitation", folder_.string()},
-            {"sha256", calib::excitation_sha256(folder_, excitation_)}};
+            {"sha256", bench::excitation_sha256(folder_, excitation_)}};
   }
 
   double duration_s(double control_period_s) const {
@@ -79,14 +79,14 @@ class BenchSession {
 
   /// Writes what is complete, if anything is; says how many runs of how many.
   std::string write(const runtime::ExcitationRecorder& recorder) const {
-    std::vector<calib::WrittenRun> runs;
+    std::vector<bench::WrittenRun> runs;
     for (const runtime::RecordedRun& run : recorder.complete()) {
-      const calib::ExcitationRow& row = excitation_.rows[static_cast<std::size_t>(run.run)];
+      const bench::ExcitationRow& row = excitation_.rows[static_cast<std::size_t>(run.run)];
       runs.push_back({row.file, row.trajectory, row.repeat, row.gains.kp_Nm_per_rad, row.gains.kd_Nm_s_per_rad, run.t_s,
                       run.q_cmd_rad, run.q_rad, run.dq_rad_s, run.torque_Nm, run.temp_C});
     }
     if (!runs.empty()) {
-      calib::write_bench(
+      bench::write_bench(
           out_,
           {.robot = robot_.name,
            .joint = joint().name,
@@ -108,7 +108,7 @@ class BenchSession {
  private:
   const model::RobotModel& robot_;
   std::filesystem::path folder_, out_;
-  calib::Excitation excitation_;
+  bench::Excitation excitation_;
   control::ExcitationPlan plan_;
   sim::HangingLoad load_;
 };

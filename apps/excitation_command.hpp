@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/csv_table.hpp"
-#include "calib/excitation.hpp"
+#include "bench/csv_table.hpp"
+#include "bench/excitation.hpp"
 #include "model/nearest_name.hpp"
 #include "model/robot_model.hpp"
 #include "option_checks.hpp"
@@ -45,8 +45,8 @@ class ExcitationCommand {
 
   /// Writes the bench; says what it is. Throws std::invalid_argument, model::ConfigError or std::runtime_error.
   std::string run(const std::string& joint, const std::filesystem::path& out, unsigned seed) const {
-    calib::ExcitationLimits limits = limits_;
-    std::vector<calib::ExcitationGains> gains;
+    bench::ExcitationLimits limits = limits_;
+    std::vector<bench::ExcitationGains> gains;
     if (!robot_.empty()) take_robot(joint, limits, gains);
     if (!angle_.empty()) std::tie(limits.lower_rad, limits.upper_rad) = pair(angle_, ':', "--angle", "LOWER:UPPER");
     if (robot_.empty() && angle_.empty()) missing("--angle");
@@ -58,8 +58,8 @@ class ExcitationCommand {
       gains.push_back({kp, kd});
     }
     if (gains.empty()) missing("--gains");
-    const calib::Excitation excitation = calib::make_excitation(limits, gains, repeats_, seed);
-    calib::write_excitation(out, excitation,
+    const bench::Excitation excitation = bench::make_excitation(limits, gains, repeats_, seed);
+    bench::write_excitation(out, excitation,
                             fmt::format("{} trajectories x {} pairs of gains x {} repeats, {:g} s each",
                                         excitation.trajectories.size(), gains.size(), repeats_, limits.seconds));
     return fmt::format("{} runs of {:g} s between {:.3f} and {:.3f} rad, at most {:.3g} rad/s in smooth segments: {}",
@@ -70,8 +70,8 @@ class ExcitationCommand {
  private:
   /// Half of the way from the standing posture to the nearer end of the range, and no more than half a radian: others
   /// hold still, and a limb that swings far meets them.
-  void take_robot(const std::string& name, calib::ExcitationLimits& limits,
-                  std::vector<calib::ExcitationGains>& gains) const {
+  void take_robot(const std::string& name, bench::ExcitationLimits& limits,
+                  std::vector<bench::ExcitationGains>& gains) const {
     const model::RobotModel robot = model::load_robot(model::find_robot(robot_));
     const auto index = robot.joint_index.find(name);
     if (!index)
@@ -89,8 +89,8 @@ class ExcitationCommand {
 
   static std::pair<double, double> pair(const std::string& text, char between, const char* option, const char* form) {
     const std::size_t at = text.find(between);
-    const auto first = calib::to_number(text.substr(0, at));
-    const auto second = at == std::string::npos ? std::nullopt : calib::to_number(text.substr(at + 1));
+    const auto first = bench::to_number(text.substr(0, at));
+    const auto second = at == std::string::npos ? std::nullopt : bench::to_number(text.substr(at + 1));
     if (!first || !second) throw std::invalid_argument(fmt::format("{} {}; expected {}", option, text, form));
     return {*first, *second};
   }
@@ -104,7 +104,7 @@ class ExcitationCommand {
   std::vector<std::string> gains_;
   double speed_rad_s_ = 0.0;
   int repeats_ = 2;
-  calib::ExcitationLimits limits_;
+  bench::ExcitationLimits limits_;
 };
 
 }  // namespace pmg::apps

@@ -77,7 +77,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
 }
 
-std::vector<std::string> names_to_fit(const Arguments& arguments, const calib::Bench& bench) {
+std::vector<std::string> names_to_fit(const Arguments& arguments, const bench::Bench& bench) {
   std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
   for (const std::string& word : arguments.also) {
     for (const std::string& name : calib::effect_parameters(word)) {
@@ -95,12 +95,12 @@ std::pair<std::string, std::string> split(const std::string& text, const char* e
 }
 
 double number(const std::string& text, const std::string& what) {
-  const auto value = calib::to_number(text);
+  const auto value = bench::to_number(text);
   if (!value) throw std::invalid_argument(fmt::format("{}: '{}' isn't a number", what, text));
   return *value;
 }
 
-std::vector<calib::FitParameter> parameters(const Arguments& arguments, const calib::Bench& bench) {
+std::vector<calib::FitParameter> parameters(const Arguments& arguments, const bench::Bench& bench) {
   std::vector<calib::FitParameter> found;
   for (const std::string& name : names_to_fit(arguments, bench)) found.push_back(calib::fit_parameter(name, bench));
   for (const std::string& text : arguments.ranges) {
@@ -117,7 +117,7 @@ std::vector<calib::FitParameter> parameters(const Arguments& arguments, const ca
   return found;
 }
 
-calib::JointModel start_model(const Arguments& arguments, const calib::Bench& bench) {
+calib::JointModel start_model(const Arguments& arguments, const bench::Bench& bench) {
   calib::JointModel model;
   model.actuator = bench.known;
   for (const std::string& text : arguments.fixed) {
@@ -127,10 +127,10 @@ calib::JointModel start_model(const Arguments& arguments, const calib::Bench& be
   return model;
 }
 
-std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::string& filter, double step_s,
+std::vector<calib::SingleJoint> read(const bench::Bench& bench, const std::string& filter, double step_s,
                                      apps::ProgressLine& progress) {
   std::vector<calib::SingleJoint> joints;
-  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter), [&](double share) {
+  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filter), [&](double share) {
          progress.show(share, "reading " + bench.folder.string());
          return apps::interrupt_requested == 0;
        })) {
@@ -194,13 +194,13 @@ void tell(const calib::FitResults& results, const fs::path& out) {
                            results.wall_s, results.threads, out.string());
 }
 
-calib::NoiseFloor noise_floor(const std::vector<calib::SingleJoint>& fitted,
+bench::NoiseFloor noise_floor(const std::vector<calib::SingleJoint>& fitted,
                               const std::vector<calib::SingleJoint>& scored) {
-  std::vector<const calib::BenchRun*> runs;
+  std::vector<const bench::BenchRun*> runs;
   for (const std::vector<calib::SingleJoint>* joints : {&fitted, &scored}) {
     for (const calib::SingleJoint& joint : *joints) runs.push_back(&joint.run());
   }
-  return calib::noise_floor(runs);
+  return bench::noise_floor(runs);
 }
 
 int calibrate(const Arguments& arguments) {
@@ -210,7 +210,7 @@ int calibrate(const Arguments& arguments) {
   }
   if (arguments.bench.empty()) throw std::invalid_argument("BENCH is missing (--help shows an example)");
   apps::ProgressLine progress;
-  const calib::Bench bench = calib::read_bench(arguments.bench);
+  const bench::Bench bench = bench::read_bench(arguments.bench);
   std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
   calib::JointModel start = start_model(arguments, bench);
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
@@ -220,10 +220,10 @@ int calibrate(const Arguments& arguments) {
   expect_apart(fitted, scored);
   calib::FitResults results;
   results.noise_floor = noise_floor(fitted, scored);
-  std::vector<calib::BenchRun> runs;
+  std::vector<bench::BenchRun> runs;
   for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
   results.inverse = calib::inverse_dynamics(bench, runs);
-  if (results.inverse && bench.law == calib::DriveLaw::kCascadePd && !arguments.only)
+  if (results.inverse && bench.law == bench::DriveLaw::kCascadePd && !arguments.only)
     results.inverse_taken = calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));
   calib::FitOptions options;

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "calib/zero_results.hpp"
-#include "calib/zero_stances.hpp"
+#include "zero/zero_results.hpp"
+#include "zero/zero_stances.hpp"
 #include "io/whole_file.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
@@ -37,7 +37,7 @@ struct Arguments {
   std::vector<fs::path> logs;
   std::string robot = "z1";
   fs::path out, stances, motor;
-  calib::ZeroOptions options;
+  zero::ZeroOptions options;
   bool json = false;
 };
 
@@ -69,17 +69,17 @@ void declare(CLI::App& app, Arguments& arguments) {
 }
 
 int make_stances(const Arguments& arguments) {
-  calib::write_zero_rig(model::load_robot(model::find_robot(arguments.robot)), arguments.stances);
+  zero::write_zero_rig(model::load_robot(model::find_robot(arguments.robot)), arguments.stances);
   std::cout << fmt::format("stances in {}\n", arguments.stances.string());
   return kOk;
 }
 
-void write_results(const calib::ZeroResults& results, const sim::ActuatorsByJoint& known, const fs::path& out) {
+void write_results(const zero::ZeroResults& results, const sim::ActuatorsByJoint& known, const fs::path& out) {
   fs::create_directories(out);
-  calib::zero_report(results).write(out / "report.html");
+  zero::zero_report(results).write(out / "report.html");
   io::write_whole_file(out / "zero.yaml",
-                       sim::motor_yaml(calib::with_zero_offsets(known, results), calib::zero_remarks(results)));
-  io::write_whole_file(out / "zero.json", calib::zero_json(results).dump(2) + "\n");
+                       sim::motor_yaml(zero::with_zero_offsets(known, results), zero::zero_remarks(results)));
+  io::write_whole_file(out / "zero.json", zero::zero_json(results).dump(2) + "\n");
 }
 
 int calibrate(const Arguments& arguments) {
@@ -90,12 +90,12 @@ int calibrate(const Arguments& arguments) {
   sim::ActuatorsByJoint known;
   if (!arguments.motor.empty()) known = sim::read_motor_file(arguments.motor, robot.joint_index);
   apps::ProgressLine progress;
-  const std::vector<calib::StillPose> poses = calib::read_still_poses(arguments.logs, robot, {}, [&](double share) {
+  const std::vector<zero::StillPose> poses = zero::read_still_poses(arguments.logs, robot, {}, [&](double share) {
     progress.show(share, "reading logs");
     return apps::interrupt_requested == 0;
   });
-  calib::ZeroResults results{.robot = &robot, .poses = &poses, .options = arguments.options, .found = {}};
-  results.found = calib::calibrate_zero(robot, poses, arguments.options, [&](int iteration) {
+  zero::ZeroResults results{.robot = &robot, .poses = &poses, .options = arguments.options, .found = {}};
+  results.found = zero::calibrate_zero(robot, poses, arguments.options, [&](int iteration) {
     progress.show(fmt::format("iteration {}", iteration + 1));
     return apps::interrupt_requested == 0;
   });
@@ -104,9 +104,9 @@ int calibrate(const Arguments& arguments) {
   if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // nothing is found yet
   write_results(results, known, arguments.out);
   if (arguments.json) {
-    std::cout << calib::zero_json(results).dump(2) << '\n';
+    std::cout << zero::zero_json(results).dump(2) << '\n';
   } else {
-    for (const std::string& line : calib::zero_text(results)) std::cout << line << '\n';
+    for (const std::string& line : zero::zero_text(results)) std::cout << line << '\n';
     std::cout << fmt::format("results in {}\n", arguments.out.string());
   }
   if (results.interrupted) return kInterrupted;

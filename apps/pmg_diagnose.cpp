@@ -86,7 +86,7 @@ sim::ActuatorParameters given_model(Arguments& arguments) {
                                           arguments.joint, model::expected_name(arguments.joint, names)));
 }
 
-std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib::Bench& bench) {
+std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench::Bench& bench) {
   const std::string unit = calib::position_unit(bench, true);
   std::vector<std::string> lines = {
       fmt::format("Written by pmg_diagnose from {}: {}", bench.folder.filename().string(), name(found.verdict))};
@@ -101,7 +101,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const calib:
   return lines;
 }
 
-void tell(const diagnosis::Diagnosis& found, const calib::Bench& bench, const fs::path& out, double wall_s) {
+void tell(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
   const std::string unit = calib::position_unit(bench, true);
   std::cout << "verdict: " << name(found.verdict) << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
@@ -157,7 +157,7 @@ int diagnose(Arguments arguments) {
     throw std::invalid_argument("expected one BENCH and --out DIR");
   arguments.bench = arguments.inputs.front();
   apps::ProgressLine progress;
-  const calib::Bench bench = calib::read_bench(arguments.bench);
+  const bench::Bench bench = bench::read_bench(arguments.bench);
   diagnosis::DiagnoseOptions options;
   options.fit = arguments.fit;
   options.score = arguments.score;
@@ -184,7 +184,7 @@ int diagnose(Arguments arguments) {
   if (found.next_excitation) {
     diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
   }
-  std::vector<calib::BenchRun> recorded;
+  std::vector<bench::BenchRun> recorded;
   for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());
   const std::vector<diagnosis::Signature> checks = diagnosis::signatures(bench, recorded);
   io::write_whole_file(arguments.out / "report.html",

@@ -132,8 +132,8 @@ logs::PlayedExcitation played_excitation(const model::RobotModel& robot, const s
     throw std::invalid_argument(fmt::format(
         "this run excited {} by {}, which isn't here; expected its place now in --excitation", joint, folder.string()));
   }
-  const calib::Excitation excitation = calib::read_excitation(folder);
-  return {apps::excitation_plan(robot, joint, excitation), calib::excitation_sha256(folder, excitation)};
+  const bench::Excitation excitation = bench::read_excitation(folder);
+  return {apps::excitation_plan(robot, joint, excitation), bench::excitation_sha256(folder, excitation)};
 }
 
 logs::ReplayReport replay_with_progress(const Arguments& arguments) {

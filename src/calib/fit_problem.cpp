@@ -77,13 +77,13 @@ double to_unit(const FitParameter& p, double value) {
 
 }  // namespace
 
-FitParameter fit_parameter(const std::string& name, const Bench& bench) {
+FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
   if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
   const sim::ActuatorParameter& p = sim::actuator_parameter(name);
   // A firmware's number per radian of error, to a duty of 1.
-  if (bench.law == DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
+  if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
   // A linear axis moves kilograms by hundreds of newtons.
-  const bool linear = bench.rig == Rig::kLinear;
+  const bool linear = bench.rig == bench::Rig::kLinear;
   const double scale = !linear                         ? 1.0
                        : p.unit.starts_with("kg")      ? 1000.0
                        : p.unit.starts_with("Nm")      ? 100.0
@@ -116,17 +116,17 @@ std::vector<std::string> effect_parameters(const std::string& word) {
                                           word, fmt::join(effect_words(), ", ")));
 }
 
-std::vector<std::string> basic_parameters(const Bench& bench) {
+std::vector<std::string> basic_parameters(const bench::Bench& bench) {
   std::vector<std::string> names;
   switch (bench.law) {
-    case DriveLaw::kPositionPd:
+    case bench::DriveLaw::kPositionPd:
       names = {"drive.kp_scale", "drive.kd_scale"};
       break;
-    case DriveLaw::kServoVoltage:  // its damping is the motor's own
+    case bench::DriveLaw::kServoVoltage:  // its damping is the motor's own
       names = {"drive.torque_per_unit_Nm", "drive.back_emf_s_per_rad"};
       break;
-    case DriveLaw::kCascadePd:
-    case DriveLaw::kTorque:
+    case bench::DriveLaw::kCascadePd:
+    case bench::DriveLaw::kTorque:
       break;
   }
   names.emplace_back("transmission.armature_kg_m2");

@@ -19,7 +19,7 @@ struct FitParameter {
 
 /// The rows of sim::actuator_parameters and of the load by name, with ranges for this rig. Throws std::invalid_argument
 /// that lists the names.
-FitParameter fit_parameter(const std::string& name, const Bench& bench);
+FitParameter fit_parameter(const std::string& name, const bench::Bench& bench);
 
 /// Words of the command line as names of parameters: damping, friction, delay, rate_limit, load_friction, ..., or a
 /// parameter's own name. Throws std::invalid_argument that lists the words.
@@ -27,7 +27,7 @@ std::vector<std::string> effect_parameters(const std::string& word);
 std::vector<std::string> effect_words();
 
 /// What the paper fits (III-C.1: Kp, Kd, I) as this bench's drive law has it, and what bench.yaml calls unknown.
-std::vector<std::string> basic_parameters(const Bench& bench);
+std::vector<std::string> basic_parameters(const bench::Bench& bench);
 
 double value(const JointModel& model, const std::string& name);
 void set(JointModel& model, const std::string& name, double value);

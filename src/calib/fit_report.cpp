@@ -16,7 +16,7 @@ namespace {
 /// Samples of one run as the page's chart needs them; a dropout is a gap.
 void show_run(pages::Page& page, const FitResults& results, const SingleJoint& joint, double error_rad,
               const char* which) {
-  const Recording& r = joint.run().recording;
+  const bench::Recording& r = joint.run().recording;
   const std::vector<double> simulated = joint.rollout(results.fit.model);
   std::vector<double> measured = r.q_rad;
   for (std::size_t k = 0; k < measured.size(); ++k) {
@@ -55,11 +55,11 @@ void show_runs(pages::Page& page, const FitResults& results, const Assessment& a
 
 /// Mean absolute error by what a row of runs.csv says.
 void show_groups(pages::Page& page, const FitResults& results, const Assessment& assessment, const std::string& title) {
-  const auto name = [](const BenchRun& run) { return run.trajectory.empty() ? run.file : run.trajectory; };
+  const auto name = [](const bench::BenchRun& run) { return run.trajectory.empty() ? run.file : run.trajectory; };
   std::map<std::string, std::pair<RolloutError, RolloutError>> groups;
   const auto add = [](RolloutError& sum, const RolloutError& error) { sum = total({sum, error}); };
   for (std::size_t i = 0; i < assessment.runs->size(); ++i) {
-    const BenchRun& run = (*assessment.runs)[i].run();
+    const bench::BenchRun& run = (*assessment.runs)[i].run();
     for (const std::string& group : {name(run), fmt::format("kp {:g}", run.kp)}) {
       add(groups[group].first, assessment.before[i]);
       add(groups[group].second, assessment.after[i]);
@@ -121,7 +121,7 @@ std::string fit_picture(const FitResults& results, const JointModel& before) {
     return shown.after[a].mean_absolute_rad() < shown.after[b].mean_absolute_rad();
   });
   const SingleJoint& joint = (*shown.runs)[order[order.size() / 2]];
-  const Recording& r = joint.run().recording;
+  const bench::Recording& r = joint.run().recording;
   const std::vector<double> old = joint.rollout(before), simulated = joint.rollout(results.fit.model);
   std::vector<double> old_miss(old.size()), miss(old.size());
   for (std::size_t k = 0; k < miss.size(); ++k) {
@@ -163,7 +163,7 @@ pages::Page fit_report(const FitResults& results) {
     if (results.scored) show_groups(page, results, *results.scored, "runs that were not fitted");
   });
   if (!results.noise_floor.pairs.empty()) {
-    const NoiseFloor& floor = results.noise_floor;
+    const bench::NoiseFloor& floor = results.noise_floor;
     page.paragraph(
         fmt::format("The noise floor: {} pairs of repeats stray by {:.3g} {} about what they have in common "
                     "({:.3g} to {:.3g}), and differ from each other by {:.3g}. No model explains that.",

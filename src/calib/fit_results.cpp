@@ -49,7 +49,7 @@ Json inverse_json(const InverseDynamics& found) {
           {"windows", found.samples}};
 }
 
-Json noise_json(const NoiseFloor& floor) {
+Json noise_json(const bench::NoiseFloor& floor) {
   return {{"pairs", floor.pairs.size()},
           {"mean_absolute", floor.mean_absolute_rad},
           {"mean_absolute_low", floor.mean_absolute_low_rad},
@@ -72,8 +72,8 @@ Json parameter_json(const FitParameter& parameter, double value, const Confidenc
 
 }  // namespace
 
-std::string position_unit(const Bench& bench, bool thousandths) {
-  return std::string(thousandths ? "m" : "") + (bench.rig == Rig::kLinear ? "m" : "rad");
+std::string position_unit(const bench::Bench& bench, bool thousandths) {
+  return std::string(thousandths ? "m" : "") + (bench.rig == bench::Rig::kLinear ? "m" : "rad");
 }
 
 bool at_bound(const FitParameter& parameter, double value) {
@@ -89,7 +89,7 @@ std::string reservation(const FitParameter& parameter, double value, const Confi
   return "";
 }
 
-bool take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns) {
   const double viscous = found.viscous_Nm_s_per_rad.value, coulomb_Nm = found.coulomb_Nm.value;
   const std::pair<const char*, double> determined[] = {
@@ -124,8 +124,8 @@ Json fit_json(const FitResults& results) {
     json["parameters"][parameter.name] =
         parameter_json(parameter, value(results.fit.model, parameter.name), results.confidence[i]);
   }
-  if (results.bench->law == DriveLaw::kPositionPd) {  // where all runs were told the same gains
-    const BenchRun& run = results.problem->runs().front().run();
+  if (results.bench->law == bench::DriveLaw::kPositionPd) {  // where all runs were told the same gains
+    const bench::BenchRun& run = results.problem->runs().front().run();
     json["gains"] = {{"kp_Nm_per_rad", results.fit.model.actuator.drive.kp_scale * run.kp},
                      {"kd_Nm_s_per_rad", results.fit.model.actuator.drive.kd_scale * run.kd}};
   }

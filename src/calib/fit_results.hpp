@@ -9,7 +9,7 @@
 #include "calib/fit_confidence.hpp"
 #include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::calib {
@@ -22,7 +22,7 @@ struct Assessment {
 };
 
 struct FitResults {
-  const Bench* bench = nullptr;
+  const bench::Bench* bench = nullptr;
   const FitProblem* problem = nullptr;
   Fit fit;
   std::vector<Confidence> confidence;  ///< in the order of the problem's parameters
@@ -31,7 +31,7 @@ struct FitResults {
   double wall_s = 0.0;
   std::optional<InverseDynamics> inverse;  ///< where the drive was recorded
   bool inverse_taken = false;              ///< and then the model has it, and rollouts found the rest
-  NoiseFloor noise_floor;                  ///< of fitted and scored runs that repeat each other
+  bench::NoiseFloor noise_floor;                  ///< of fitted and scored runs that repeat each other
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };
@@ -40,7 +40,7 @@ struct FitResults {
 /// from a lag of the drive's velocity, the recorded drive can. Where nothing is left to look for, that lag is. A number
 /// below zero by less than its uncertainty is taken as zero; where one is impossible nothing is taken, rollouts look
 /// for all of it, and the result is false.
-bool take_inverse_dynamics(const InverseDynamics& found, const Bench& bench, JointModel& start,
+bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns);
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
@@ -53,7 +53,7 @@ pages::Page fit_report(const FitResults& results);
 std::vector<std::string> motor_remarks(const FitResults& results);
 
 /// "rad" and "mrad" of a turning joint, "m" and "mm" of a linear axis.
-std::string position_unit(const Bench& bench, bool thousandths);
+std::string position_unit(const bench::Bench& bench, bool thousandths);
 
 /// What speaks against taking a parameter at its word, or "".
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);

@@ -55,8 +55,8 @@ struct Equations {
   double drive_Nm = 0.0, drive_Nm2 = 0.0;  // sums
 };
 
-void add(const Bench& bench, const BenchRun& run, double window_s, Equations& equations) {
-  const Recording& r = run.recording;
+void add(const bench::Bench& bench, const bench::BenchRun& run, double window_s, Equations& equations) {
+  const bench::Recording& r = run.recording;
   const bool torque = !r.torque_Nm.empty();
   const std::vector<double>& drive = torque ? r.torque_Nm : r.drive_V;
   const double torque_per_unit = torque ? 1.0 : bench.known.drive.torque_per_unit_Nm;
@@ -131,13 +131,13 @@ std::string meaning_of_negative(const InverseDynamics& found) {
   return text;
 }
 
-std::optional<InverseDynamics> inverse_dynamics(const Bench& bench, const std::vector<BenchRun>& runs,
+std::optional<InverseDynamics> inverse_dynamics(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                                 double window_s) {
   const bool unknown =
       std::find(bench.unknown.begin(), bench.unknown.end(), "drive.torque_per_unit_Nm") != bench.unknown.end();
   Equations equations;
-  for (const BenchRun& run : runs) {
-    const bool voltage_is_duty = bench.law == DriveLaw::kServoVoltage;  // back-EMF isn't in it
+  for (const bench::BenchRun& run : runs) {
+    const bool voltage_is_duty = bench.law == bench::DriveLaw::kServoVoltage;  // back-EMF isn't in it
     if (!run.recording.torque_Nm.empty() || (!run.recording.drive_V.empty() && !unknown && !voltage_is_duty)) {
       add(bench, run, window_s, equations);
     }

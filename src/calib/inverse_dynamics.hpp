@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 namespace pmg::calib {
 
@@ -45,7 +45,7 @@ std::string meaning_of_negative(const InverseDynamics& found);
 
 /// Positions are differentiated by cubics over window_s to either side, which add no phase; torques are smoothed alike.
 /// Nothing where no drive_V or torque is recorded, or torque_per_unit is unknown, or fewer than 100 windows move.
-std::optional<InverseDynamics> inverse_dynamics(const Bench& bench, const std::vector<BenchRun>& runs,
+std::optional<InverseDynamics> inverse_dynamics(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                                 double window_s = 0.004);
 
 }  // namespace pmg::calib

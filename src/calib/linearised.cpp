@@ -18,7 +18,7 @@ Linearised nothing(std::size_t dimensions) {
 
 Linearised linearise(const FitProblem& problem, const std::vector<double>& point, const SingleJoint& joint) {
   const auto parameters = static_cast<Eigen::Index>(problem.dimensions());
-  const Recording& recording = joint.run().recording;
+  const bench::Recording& recording = joint.run().recording;
   const std::vector<double> at = joint.rollout(problem.model_at(point));
   Eigen::MatrixXd slopes(static_cast<Eigen::Index>(at.size()), parameters);
   for (std::size_t d = 0; d < problem.dimensions(); ++d) {

@@ -11,16 +11,16 @@ namespace {
 constexpr double kSilStep_s = 0.002;
 constexpr double kLost_rad = 1e3;  // a rollout that gets here has diverged
 
-sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t sample) {
-  const Recording& r = run.recording;
+sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& run, std::size_t sample) {
+  const bench::Recording& r = run.recording;
   sim::ActuatorInput input;
   input.q_rad = r.q_cmd_rad[sample];
   input.kp = run.kp;
   input.kd = run.kd;
   if (!r.dq_cmd_rad_s.empty()) input.dq_rad_s = r.dq_cmd_rad_s[sample];
   if (!r.tau_ff_Nm.empty()) input.feed_forward = r.tau_ff_Nm[sample];
-  if (bench.law == DriveLaw::kTorque) input.feed_forward = r.torque_Nm[sample];
-  if (bench.law == DriveLaw::kServoVoltage) input.supply = r.bus_V.empty() ? bench.supply_V : r.bus_V[sample];
+  if (bench.law == bench::DriveLaw::kTorque) input.feed_forward = r.torque_Nm[sample];
+  if (bench.law == bench::DriveLaw::kServoVoltage) input.supply = r.bus_V.empty() ? bench.supply_V : r.bus_V[sample];
   if (!r.enabled.empty()) input.enabled = r.enabled[sample];
   if (!r.temp_C.empty())
     input.temperature_C = r.temp_C[sample];
@@ -31,7 +31,7 @@ sim::ActuatorInput input_at(const Bench& bench, const BenchRun& run, std::size_t
 
 /// Where the joint rests before the command first changes: the mean of the readings there, or the first one where they
 /// drift by more than three deviations of their noise. One noisy reading would load friction by gain times noise.
-double resting_reading_rad(const Recording& r) {
+double resting_reading_rad(const bench::Recording& r) {
   std::size_t count = 0;
   while (count < r.q_rad.size() && r.valid[count] && r.q_cmd_rad[count] == r.q_cmd_rad.front()) ++count;
   const std::size_t half = count / 2;
@@ -51,11 +51,11 @@ double resting_reading_rad(const Recording& r) {
 
 }  // namespace
 
-double simulation_step_s(const Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
+double simulation_step_s(const bench::Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
 
-SingleJoint::SingleJoint(const Bench& bench, BenchRun run, double step_s)
+SingleJoint::SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s)
     : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {
-  const Recording& r = run_.recording;
+  const bench::Recording& r = run_.recording;
   for (std::size_t s = 0; s < r.t_s.size(); ++s) inputs_.push_back(input_at(bench, run_, s));
   const double start_s = r.t_s.front();
   const auto steps = static_cast<std::size_t>(std::ceil((r.t_s.back() - start_s) / step_s - 1e-9));

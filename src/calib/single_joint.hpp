@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 #include "sim/actuator_model.hpp"
 
 namespace pmg::calib {
@@ -28,7 +28,7 @@ struct RolloutError {
 /// q' = q + h dq': what MuJoCo's `implicit` integrator does with one hinge, step for step.
 class SingleJoint {
  public:
-  SingleJoint(const Bench& bench, BenchRun run, double step_s);
+  SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s);
 
   /// The drive's reading at each of the recording's samples, open loop from where it began, at rest there: what the
   /// drive leaves of gravity lies on dry friction, as far as it can carry that.
@@ -36,7 +36,7 @@ class SingleJoint {
 
   RolloutError error(const JointModel& model) const;
 
-  const BenchRun& run() const { return run_; }
+  const bench::BenchRun& run() const { return run_; }
   double step_s() const { return step_s_; }
   std::size_t steps() const { return sample_of_step_.size(); }
   sim::ActuatorInput input(std::size_t step) const;
@@ -52,7 +52,7 @@ class SingleJoint {
     std::size_t step;
     double share;
   };
-  BenchRun run_;
+  bench::BenchRun run_;
   double step_s_;
   double start_reading_rad_;
   std::vector<sim::ActuatorInput> inputs_;  // one a sample
@@ -63,6 +63,6 @@ class SingleJoint {
 
 /// The simulation's step for a bench: the SIL's 2 ms, or less where the recording is faster: damping that is
 /// taken implicitly acts like an inertia of step times damping, which a fit would take off the rotor's.
-double simulation_step_s(const Bench& bench);
+double simulation_step_s(const bench::Bench& bench);
 
 }  // namespace pmg::calib

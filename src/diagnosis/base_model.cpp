@@ -36,7 +36,7 @@ constexpr double kDeviation = 0.5;  // of the tolerance: where a calibration's n
 
 }  // namespace
 
-BaseModel base_model(const calib::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
+BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
                      const NestedFit& fit, unsigned threads) {
   BaseModel base;
   base.model.actuator = given.value_or(bench.known);

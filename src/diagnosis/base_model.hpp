@@ -18,7 +18,7 @@ struct BaseModel {
 };
 
 /// given: of motor.yaml; without it the paper's eta and what bench.yaml calls unknown are fitted from scratch.
-BaseModel base_model(const calib::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
+BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
                      const NestedFit& fit, unsigned threads);
 
 }  // namespace pmg::diagnosis

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 namespace pmg::diagnosis {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "calib/fit_problem.hpp"
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/explanation.hpp"
 #include "diagnosis/intervals.hpp"
@@ -25,9 +25,9 @@ constexpr std::size_t kSearchedRuns = 40;  // the choice is made on so many, the
 // friction changes from day to day, and no joint is quite its model), and no small rest of what was found.
 constexpr double kRemains = 8.0, kRemainsOfBeginning = 0.1;
 
-std::vector<calib::SingleJoint> read(const calib::Bench& bench, const std::string& filter, double step_s) {
+std::vector<calib::SingleJoint> read(const bench::Bench& bench, const std::string& filter, double step_s) {
   std::vector<calib::SingleJoint> joints;
-  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter))) {
+  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filter))) {
     joints.emplace_back(bench, std::move(run), step_s);
   }
   return joints;
@@ -58,17 +58,17 @@ void expect_apart(const std::vector<calib::SingleJoint>& fitted, const std::vect
 }
 
 /// From whatever the bench repeats; else the sensor's own noise in the fitted runs.
-NoiseFloor noise_floor(const calib::Bench& bench, const std::vector<calib::SingleJoint>& fitted) {
-  const std::vector<calib::BenchRun> all = bench.read_runs(calib::RowFilter(""));
-  std::vector<const calib::BenchRun*> runs;
-  for (const calib::BenchRun& run : all) runs.push_back(&run);
-  const calib::NoiseFloor found = calib::noise_floor(runs);
+NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::SingleJoint>& fitted) {
+  const std::vector<bench::BenchRun> all = bench.read_runs(bench::RowFilter(""));
+  std::vector<const bench::BenchRun*> runs;
+  for (const bench::BenchRun& run : all) runs.push_back(&run);
+  const bench::NoiseFloor found = bench::noise_floor(runs);
   if (!found.pairs.empty()) {
     return {found.mean_absolute_rad, found.rms_rad, true,
             fmt::format("{} pairs of repeats, each about what both have in common", found.pairs.size())};
   }
   double squares = 0.0;
-  for (const calib::SingleJoint& joint : fitted) squares += std::pow(calib::sensor_noise_rad(joint.run().recording), 2);
+  for (const calib::SingleJoint& joint : fitted) squares += std::pow(bench::sensor_noise_rad(joint.run().recording), 2);
   const double rms_rad = std::sqrt(squares / static_cast<double>(fitted.size()));
   return {std::sqrt(2.0 / 3.141592653589793) * rms_rad, rms_rad, false,
           "nothing was repeated: the sensor's own noise, from sixth differences of its readings"};
@@ -76,7 +76,7 @@ NoiseFloor noise_floor(const calib::Bench& bench, const std::vector<calib::Singl
 
 class Diagnosing {
  public:
-  Diagnosing(const calib::Bench& bench, const DiagnoseOptions& options, const DiagnoseProgress& progress)
+  Diagnosing(const bench::Bench& bench, const DiagnoseOptions& options, const DiagnoseProgress& progress)
       : bench_(bench), options_(options), progress_(progress) {}
 
   Diagnosis run(DiagnosedRuns* runs) {
@@ -86,7 +86,7 @@ class Diagnosing {
     if (!options_.score.empty()) scored = read(bench_, options_.score, step_s);
     expect_apart(fitted, scored);
     diagnosis_.noise_floor = noise_floor(bench_, fitted);
-    diagnosis_.unit = bench_.rig == calib::Rig::kLinear ? "m" : "rad";
+    diagnosis_.unit = bench_.rig == bench::Rig::kLinear ? "m" : "rad";
     if (runs != nullptr) *runs = {fitted, scored};
     checks_ = checks(fitted);
     const NestedFit all(fitted, options_.threads), fit(spread(fitted, kSearchedRuns), options_.threads);
@@ -134,7 +134,7 @@ class Diagnosing {
   }
 
   std::vector<Signature> checks(const std::vector<calib::SingleJoint>& fitted) const {
-    std::vector<calib::BenchRun> runs;
+    std::vector<bench::BenchRun> runs;
     for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
     return signatures(bench_, runs);
   }
@@ -190,7 +190,7 @@ class Diagnosing {
                                                      : Verdict::kFound;
   }
 
-  const calib::Bench& bench_;
+  const bench::Bench& bench_;
   const DiagnoseOptions& options_;
   const DiagnoseProgress& progress_;
   double share_ = 0.0;
@@ -202,7 +202,7 @@ class Diagnosing {
 
 }  // namespace
 
-Diagnosis diagnose(const calib::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs,
+Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs,
                    const DiagnoseProgress& progress) {
   return Diagnosing(bench, options, progress).run(runs);
 }

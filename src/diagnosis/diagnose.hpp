@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 #include "diagnosis/diagnosis.hpp"
 
 namespace pmg::diagnosis {
 
 struct DiagnoseOptions {
-  std::string fit, score;  ///< rows of runs.csv (calib::RowFilter); without a score everything is fitted
+  std::string fit, score;  ///< rows of runs.csv (bench::RowFilter); without a score everything is fitted
   std::optional<sim::ActuatorParameters> model;  ///< what the simulation has now (motor.yaml); else a fit of the basics
   unsigned threads = 1;
   unsigned seed = 1;    ///< of the bootstrap
@@ -27,7 +27,7 @@ struct DiagnosedRuns {
 using DiagnoseProgress = std::function<bool(double share, const std::string& text)>;
 
 /// Throws std::invalid_argument and model::ConfigError on bad input. The same input and seed give the same result.
-Diagnosis diagnose(const calib::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs = nullptr,
+Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs = nullptr,
                    const DiagnoseProgress& progress = {});
 
 }  // namespace pmg::diagnosis

@@ -39,7 +39,7 @@ struct NextRun {
   std::string shape;          ///< of the command, in words
   int times = 1;              ///< to be recorded; all of them to be fitted
   double kp = 1.0, kd = 0.0;  ///< what to tell the drive, as BenchRun's
-  calib::JointLoad load;
+  bench::JointLoad load;
   double load_mass_kg = 0.0, load_length_m = 0.0;  ///< as in runs.csv; 0 on a bench without loads
   std::vector<double> t_s, q_cmd_rad;
 };

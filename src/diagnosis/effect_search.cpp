@@ -35,7 +35,7 @@ std::vector<std::string> less(std::vector<std::string> effects, const std::strin
 
 }  // namespace
 
-EffectSearch::EffectSearch(const calib::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
+EffectSearch::EffectSearch(const bench::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
                            DirectEvidence evidence, SearchProgress progress)
     : bench_(bench),
       fit_(fit),

@@ -42,7 +42,7 @@ using SearchProgress = std::function<bool(const std::string& text)>;
 
 class EffectSearch {
  public:
-  EffectSearch(const calib::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
+  EffectSearch(const bench::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
                DirectEvidence evidence, SearchProgress progress);
 
   /// The base fitted, no effects in it.
@@ -90,7 +90,7 @@ class EffectSearch {
   Extension exchanged(Extension current);
   bool going(const std::string& text);
 
-  const calib::Bench& bench_;
+  const bench::Bench& bench_;
   const NestedFit& fit_;
   BaseModel base_;
   SearchLimits limits_;

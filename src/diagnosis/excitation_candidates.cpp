@@ -114,9 +114,9 @@ double mean_or(const std::vector<double>& values, double otherwise) {
   return sum / static_cast<double>(values.size());
 }
 
-calib::Recording recording_of(const calib::Bench& bench, const calib::Recording& like, const Shape& shape,
+bench::Recording recording_of(const bench::Bench& bench, const bench::Recording& like, const Shape& shape,
                               const CommandRange& range) {
-  calib::Recording r;
+  bench::Recording r;
   const auto count = static_cast<std::size_t>(kDuration_s * bench.sample_rate_hz);
   const double centre_rad = 0.5 * (range.low_rad + range.high_rad), half_rad = 0.5 * (range.high_rad - range.low_rad);
   for (std::size_t k = 0; k < count; ++k) {
@@ -141,21 +141,21 @@ std::vector<Value> three_of(const std::vector<Value>& sorted) {
 }
 
 /// A run of each setting that is to be tried; recordings are still those of other runs.
-std::vector<calib::BenchRun> settings(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs) {
+std::vector<bench::BenchRun> settings(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs) {
   std::set<std::pair<double, double>> gains;
   std::set<std::tuple<double, double, double>> loads;
   for (const calib::SingleJoint& joint : runs) {
-    const calib::BenchRun& run = joint.run();
+    const bench::BenchRun& run = joint.run();
     gains.insert({run.kp, run.kd});
     loads.insert({run.load.gravity_Nm, run.load.inertia_kg_m2, run.load.hangs_at_rad});
   }
-  for (const calib::BenchLoad& one : bench.loads) {
+  for (const bench::BenchLoad& one : bench.loads) {
     loads.insert({one.load.gravity_Nm, one.load.inertia_kg_m2, one.load.hangs_at_rad});
   }
-  std::vector<calib::BenchRun> found;
+  std::vector<bench::BenchRun> found;
   for (const auto& [gravity_Nm, inertia_kg_m2, hangs_at_rad] : three_of(std::vector(loads.begin(), loads.end()))) {
     for (const auto& [kp, kd] : three_of(std::vector(gains.begin(), gains.end()))) {
-      calib::BenchRun run = runs.front().run();
+      bench::BenchRun run = runs.front().run();
       run.kp = kp;
       run.kd = kd;
       run.load = {inertia_kg_m2, gravity_Nm, hangs_at_rad};
@@ -167,11 +167,11 @@ std::vector<calib::BenchRun> settings(const calib::Bench& bench, const std::vect
 
 }  // namespace
 
-std::vector<ExcitationCandidate> excitation_candidates(const calib::Bench& bench,
+std::vector<ExcitationCandidate> excitation_candidates(const bench::Bench& bench,
                                                        const std::vector<calib::SingleJoint>& runs) {
   const CommandRange range = commanded(runs);
   std::vector<ExcitationCandidate> found;
-  for (const calib::BenchRun& setting : settings(bench, runs)) {
+  for (const bench::BenchRun& setting : settings(bench, runs)) {
     for (const Shape& shape : shapes()) {
       found.push_back({shape.name, setting});
       found.back().run.recording = recording_of(bench, setting.recording, shape, range);

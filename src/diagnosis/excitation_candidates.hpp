@@ -11,13 +11,13 @@ namespace pmg::diagnosis {
 /// A run that nobody has recorded yet: its readings are those of a joint that stays where it begins.
 struct ExcitationCandidate {
   std::string shape;  ///< of the command, in words
-  calib::BenchRun run;
+  bench::BenchRun run;
 };
 
 /// Steps, staircases, sweeps, reversals and chirps of several sizes and paces, each with the lowest, middle and highest
 /// of the gains that were used and of the loads that the bench has. Six seconds each, within the range of the commands
 /// that were recorded; each begins where the recorded runs begin and glides to where its shape does.
-std::vector<ExcitationCandidate> excitation_candidates(const calib::Bench& bench,
+std::vector<ExcitationCandidate> excitation_candidates(const bench::Bench& bench,
                                                        const std::vector<calib::SingleJoint>& runs);
 
 }  // namespace pmg::diagnosis

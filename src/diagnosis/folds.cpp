@@ -29,7 +29,7 @@ std::vector<Fold> folds(const NestedFit& fit) {
     }
     found.insert(found.end(), kind_of.begin(), kind_of.end());
   };
-  const auto run = [&](std::size_t b) -> const calib::BenchRun& { return fit.runs()[run_of_block[b]].run(); };
+  const auto run = [&](std::size_t b) -> const bench::BenchRun& { return fit.runs()[run_of_block[b]].run(); };
   add("gain", [&](std::size_t b) { return fmt::format("{} {}", run(b).kp, run(b).kd); });
   add("load", [&](std::size_t b) { return fmt::format("{} {}", run(b).load.inertia_kg_m2, run(b).load.gravity_Nm); });
   add("trajectory", [&](std::size_t b) { return run(b).trajectory; });

@@ -16,7 +16,7 @@ constexpr double kSmallestJump = 0.04;  // of the command's range
 constexpr std::size_t kSmallestReach = 2;
 
 /// Slope and curvature of a parabola through the valid samples from first to last, at the sample `at`.
-Eigen::Vector2d parabola(const calib::Recording& r, std::size_t first, std::size_t last, std::size_t at) {
+Eigen::Vector2d parabola(const bench::Recording& r, std::size_t first, std::size_t last, std::size_t at) {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d products = Eigen::Vector3d::Zero();
   const double scale_s = std::max(1e-9, r.t_s[last] - r.t_s[first]);
@@ -34,7 +34,7 @@ Eigen::Vector2d parabola(const calib::Recording& r, std::size_t first, std::size
   return {c[1] / scale_s, 2.0 * c[2] / (scale_s * scale_s)};
 }
 
-void differentiate(const calib::Recording& r, double window_s, Motion& motion) {
+void differentiate(const bench::Recording& r, double window_s, Motion& motion) {
   const std::size_t count = r.t_s.size();
   const double step_s = (r.t_s.back() - r.t_s.front()) / static_cast<double>(count - 1);
   const std::size_t reach = std::max(kSmallestReach, static_cast<std::size_t>(std::lround(0.5 * window_s / step_s)));
@@ -47,8 +47,8 @@ void differentiate(const calib::Recording& r, double window_s, Motion& motion) {
   }
 }
 
-void drive(const calib::Bench& bench, const calib::BenchRun& run, Motion& motion) {
-  const calib::Recording& r = run.recording;
+void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion) {
+  const bench::Recording& r = run.recording;
   const sim::ActuatorParameters::Drive& p = bench.known.drive;
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     const bool enabled = r.enabled.empty() || r.enabled[k];
@@ -63,7 +63,7 @@ void drive(const calib::Bench& bench, const calib::BenchRun& run, Motion& motion
       wish += p.kd_scale * run.kd * (dq_cmd_rad_s - motion.dq_rad_s[k]);
     }
     if (!r.tau_ff_Nm.empty()) wish += r.tau_ff_Nm[k];
-    const bool servo = bench.law == calib::DriveLaw::kServoVoltage;
+    const bool servo = bench.law == bench::DriveLaw::kServoVoltage;
     const double supply = !servo ? 1.0 : r.bus_V.empty() ? bench.supply_V : r.bus_V[k];
     const double given = std::isnan(wish) ? wish : std::clamp(wish, -p.limit, p.limit);
     motion.drive.push_back(enabled ? given * supply : 0.0);
@@ -73,7 +73,7 @@ void drive(const calib::Bench& bench, const calib::BenchRun& run, Motion& motion
 
 }  // namespace
 
-std::vector<std::size_t> command_steps(const calib::Recording& r) {
+std::vector<std::size_t> command_steps(const bench::Recording& r) {
   const auto [low, high] = std::minmax_element(r.q_cmd_rad.begin(), r.q_cmd_rad.end());
   const double smallest_rad = kSmallestJump * (*high - *low);
   const auto move_rad = [&](std::size_t k) { return std::abs(r.q_cmd_rad[k] - r.q_cmd_rad[k - 1]); };
@@ -86,8 +86,8 @@ std::vector<std::size_t> command_steps(const calib::Recording& r) {
   return steps;
 }
 
-Motion motion(const calib::Bench& bench, const calib::BenchRun& run, double window_s) {
-  const calib::Recording& r = run.recording;
+Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s) {
+  const bench::Recording& r = run.recording;
   Motion motion;
   differentiate(r, window_s, motion);
   drive(bench, run, motion);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 namespace pmg::diagnosis {
 
@@ -21,9 +21,9 @@ struct Motion {
 };
 
 /// window_s: the parabola is fitted to the samples within half of it on either side, to two on either side at least.
-Motion motion(const calib::Bench& bench, const calib::BenchRun& run, double window_s = 0.05);
+Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s = 0.05);
 
 /// Samples whose command is farther from the one before than from anything that the neighbouring samples' commands do.
-std::vector<std::size_t> command_steps(const calib::Recording& recording);
+std::vector<std::size_t> command_steps(const bench::Recording& recording);
 
 }  // namespace pmg::diagnosis

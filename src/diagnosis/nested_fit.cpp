@@ -98,7 +98,7 @@ BlockNormal prior(const NestedModel& model) {
 NestedFit::NestedFit(std::vector<calib::SingleJoint> runs, unsigned threads)
     : runs_(std::move(runs)), threads_(threads) {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    const calib::Recording& r = runs_[i].run().recording;
+    const bench::Recording& r = runs_[i].run().recording;
     std::vector<Eigen::Index> starts{0};
     double ends_s = r.t_s.front() + kBlock_s;
     for (std::size_t k = 0; k < r.t_s.size(); ++k) {
@@ -119,7 +119,7 @@ Misses NestedFit::misses(const calib::JointModel& model) const {
   ++evaluations_;
   try {
     calib::for_each_in_parallel(runs_.size(), threads_, [&](std::size_t i) {
-      const calib::Recording& r = runs_[i].run().recording;
+      const bench::Recording& r = runs_[i].run().recording;
       const std::vector<double> reading = runs_[i].rollout(model);
       found[i].resize(static_cast<Eigen::Index>(reading.size()));
       for (std::size_t k = 0; k < reading.size(); ++k) {

@@ -45,7 +45,7 @@ using Seen = std::vector<Separation::Blocks>;
 
 class Campaign {
  public:
-  Campaign(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs, const std::vector<Rivals>& rivals,
+  Campaign(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const std::vector<Rivals>& rivals,
            const SeparationWanted& wanted, unsigned threads)
       : rivals_(rivals), wanted_(wanted), candidates_(excitation_candidates(bench, runs)), seen_(candidates_.size()) {
     for (std::size_t g = 0; g < rivals.size(); ++g) {
@@ -131,7 +131,7 @@ class Campaign {
     return models;
   }
 
-  Seen look(const calib::Bench& bench, const calib::BenchRun& run, double step_s) const {
+  Seen look(const bench::Bench& bench, const bench::BenchRun& run, double step_s) const {
     Seen seen(pairs_.size());
     const calib::SingleJoint unseen(bench, run, step_s);
     const NestedFit still({unseen}, 1);
@@ -140,7 +140,7 @@ class Campaign {
       std::vector<Slopes> slopes;
       const std::vector<NestedModel> models = without_rounding(rivals_[g]);
       for (const NestedModel& model : models) {
-        calib::BenchRun as = run;
+        bench::BenchRun as = run;
         as.recording.q_rad = unseen.rollout(model.model);
         played.emplace_back(std::vector{calib::SingleJoint(bench, std::move(as), step_s)}, 1U);
         slopes.push_back(still.slopes(model, still.misses(model.model)));
@@ -166,7 +166,7 @@ class Campaign {
 };
 
 /// Of the trajectories that were asked for before and are in runs.csv now, the first free number.
-std::size_t first_number(const calib::Bench& bench) {
+std::size_t first_number(const bench::Bench& bench) {
   const auto column = bench.runs.find("trajectory");
   if (!column) return 0;
   for (std::size_t number = 0;; ++number) {
@@ -176,8 +176,8 @@ std::size_t first_number(const calib::Bench& bench) {
   }
 }
 
-NextRun next_run(const calib::Bench& bench, const ExcitationCandidate& candidate, int times, std::size_t number) {
-  const calib::BenchRun& run = candidate.run;
+NextRun next_run(const bench::Bench& bench, const ExcitationCandidate& candidate, int times, std::size_t number) {
+  const bench::BenchRun& run = candidate.run;
   NextRun next;
   next.name = fmt::format("asked{}", number);
   next.shape = candidate.shape;
@@ -187,7 +187,7 @@ NextRun next_run(const calib::Bench& bench, const ExcitationCandidate& candidate
   next.load = run.load;
   next.t_s = run.recording.t_s;
   next.q_cmd_rad = run.recording.q_cmd_rad;
-  for (const calib::BenchLoad& one : bench.loads) {
+  for (const bench::BenchLoad& one : bench.loads) {
     if (one.load.inertia_kg_m2 != run.load.inertia_kg_m2 || one.load.gravity_Nm != run.load.gravity_Nm) continue;
     next.load_mass_kg = one.mass_kg;
     next.load_length_m = one.length_m;
@@ -214,9 +214,9 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-AskedFor next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                          const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads) {
-  if (bench.law == calib::DriveLaw::kTorque || runs.empty() || rivals.empty()) return {};
+  if (bench.law == bench::DriveLaw::kTorque || runs.empty() || rivals.empty()) return {};
   Campaign campaign(bench, runs, rivals, wanted, threads);
   const std::map<std::size_t, int> chosen = campaign.choose();
   AskedFor asked{std::nullopt, campaign.same_here()};

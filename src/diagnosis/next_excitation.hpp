@@ -33,7 +33,7 @@ struct AskedFor {
 /// is the truth; until all are there, or recordings don't help any more, or there are six runs or 24 recordings. Twice:
 /// what is found strays by one deviation. Direction-dependent friction and a constant torque are one where the friction
 /// varies with nothing; such a pair is named and not asked about.
-AskedFor next_excitation(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                          const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads = 1);
 
 }  // namespace pmg::diagnosis

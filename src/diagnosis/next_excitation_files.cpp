@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string command_csv(const calib::Bench& bench, const NextRun& run) {
+std::string command_csv(const bench::Bench& bench, const NextRun& run) {
   std::vector<std::vector<double>> rows;
   for (std::size_t k = 0; k < run.t_s.size(); ++k) rows.push_back({run.t_s[k], run.q_cmd_rad[k]});
-  return model::format_number_table({"t_s", bench.rig == calib::Rig::kLinear ? "q_cmd_m" : "q_cmd_rad"}, rows);
+  return model::format_number_table({"t_s", bench.rig == bench::Rig::kLinear ? "q_cmd_m" : "q_cmd_rad"}, rows);
 }
 
 /// What is known of a row, by column.
@@ -59,7 +59,7 @@ std::string text_of(const fs::path& file) {
 
 }  // namespace
 
-void write_next_excitation(const fs::path& folder, const calib::Bench& bench, const NextExcitation& next) {
+void write_next_excitation(const fs::path& folder, const bench::Bench& bench, const NextExcitation& next) {
   if (fs::exists(folder / "runs"))
     throw std::runtime_error(folder.string() + " holds recordings already; expected a folder without runs/");
   fs::remove_all(folder / "commands");

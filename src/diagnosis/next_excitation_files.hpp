@@ -13,6 +13,6 @@ namespace pmg::diagnosis {
 /// them all and leaves the usual score. Columns that the diagnosis knows nothing of stay empty. What an earlier
 /// diagnosis left in the folder is removed, unless something was recorded there: that throws std::runtime_error, as
 /// does a file that can't be written.
-void write_next_excitation(const std::filesystem::path& folder, const calib::Bench& bench, const NextExcitation& next);
+void write_next_excitation(const std::filesystem::path& folder, const bench::Bench& bench, const NextExcitation& next);
 
 }  // namespace pmg::diagnosis

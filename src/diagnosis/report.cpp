@@ -49,7 +49,7 @@ std::string thousandths(const Interval& interval) {
 }
 
 /// Where the drive was off.
-std::vector<pages::Band> switched_off(const calib::Recording& r) {
+std::vector<pages::Band> switched_off(const bench::Recording& r) {
   std::vector<pages::Band> bands;
   for (std::size_t k = 0; k < r.enabled.size(); ++k) {
     if (r.enabled[k]) continue;
@@ -59,9 +59,9 @@ std::vector<pages::Band> switched_off(const calib::Recording& r) {
   return bands;
 }
 
-void show_run(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis, const calib::SingleJoint& joint,
+void show_run(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis, const calib::SingleJoint& joint,
               const std::string& which) {
-  const calib::Recording& r = joint.run().recording;
+  const bench::Recording& r = joint.run().recording;
   const std::vector<double> before = joint.rollout(diagnosis.before), after = joint.rollout(diagnosis.after);
   std::vector<double> measured = r.q_rad;
   for (std::size_t k = 0; k < measured.size(); ++k) {
@@ -88,7 +88,7 @@ void show_run(pages::Page& page, const calib::Bench& bench, const Diagnosis& dia
               .axis = joint.run().file});
 }
 
-void show_runs(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis,
+void show_runs(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis,
                const std::vector<calib::SingleJoint>& runs, unsigned threads) {
   const std::vector<calib::RolloutError> errors = calib::errors(diagnosis.before, runs, threads);
   std::vector<std::size_t> order(runs.size());
@@ -102,7 +102,7 @@ void show_runs(pages::Page& page, const calib::Bench& bench, const Diagnosis& di
   }
 }
 
-void show_gain(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis) {
+void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis) {
   pages::Bars bars{.title = fmt::format("mean absolute error{}, with 95 % intervals",
                                         diagnosis.held_out ? " on held-out runs" : " over folds"),
                    .unit = calib::position_unit(bench, true),
@@ -137,7 +137,7 @@ std::string parameter_lines(const Cause& cause) {
   return text;
 }
 
-void show_causes(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis) {
+void show_causes(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis) {
   const std::string unit = calib::position_unit(bench, true);
   page.heading("Causes");
   if (diagnosis.causes.empty()) page.paragraph("No effect of the catalogue is named.");
@@ -204,7 +204,7 @@ void show_checks(pages::Page& page, const std::vector<Signature>& checks) {
 
 }  // namespace
 
-std::string verdict_text(const calib::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs) {
+std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs) {
   std::vector<std::string> causes;
   for (const Cause& cause : diagnosis.causes) {
     std::string text = title(cause.effect);
@@ -239,7 +239,7 @@ std::string verdict_text(const calib::Bench& bench, const Diagnosis& diagnosis, 
   return text;
 }
 
-pages::Page diagnosis_report(const calib::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
+pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
                              const std::vector<Signature>& checks, unsigned threads) {
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));

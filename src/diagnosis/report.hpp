@@ -11,10 +11,10 @@
 namespace pmg::diagnosis {
 
 /// Held-out runs are shown where there are any, else the fitted ones. threads: for the rollouts.
-pages::Page diagnosis_report(const calib::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
+pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
                              const std::vector<Signature>& checks, unsigned threads = 1);
 
 /// The verdict as one line: "Coulomb friction, delay: 38.6 mrad before, 12.5 mrad after, on 80 held-out runs".
-std::string verdict_text(const calib::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs);
+std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs);
 
 }  // namespace pmg::diagnosis

@@ -36,9 +36,9 @@ struct RunSamples {
   std::vector<double> values[std::size(kColumns)];
 };
 
-RunSamples read(const calib::Bench& bench, const calib::SingleJoint& joint, const calib::JointModel& model,
+RunSamples read(const bench::Bench& bench, const calib::SingleJoint& joint, const calib::JointModel& model,
                 std::size_t every) {
-  const calib::Recording& r = joint.run().recording;
+  const bench::Recording& r = joint.run().recording;
   const std::vector<double> simulated_rad = joint.rollout(model);
   const Motion m = motion(bench, joint.run());
   RunSamples samples;
@@ -58,10 +58,10 @@ RunSamples read(const calib::Bench& bench, const calib::SingleJoint& joint, cons
   return samples;
 }
 
-const char* unit(const calib::Bench& bench, std::size_t column) {
-  const bool volts = bench.law == calib::DriveLaw::kServoVoltage || bench.law == calib::DriveLaw::kCascadePd;
+const char* unit(const bench::Bench& bench, std::size_t column) {
+  const bool volts = bench.law == bench::DriveLaw::kServoVoltage || bench.law == bench::DriveLaw::kCascadePd;
   if (column == kDrive && volts) return "V";
-  return bench.rig == calib::Rig::kLinear ? kColumns[column].linear_unit : kColumns[column].unit;
+  return bench.rig == bench::Rig::kLinear ? kColumns[column].linear_unit : kColumns[column].unit;
 }
 
 bool varies(const std::vector<double>& values) {
@@ -159,7 +159,7 @@ Interval explained_share(const ResidualSamples& samples, const std::vector<std::
 
 }  // namespace
 
-ResidualSamples residual_samples(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                                  const calib::JointModel& model, unsigned threads, std::size_t most) {
   std::size_t all = 0;
   for (const calib::SingleJoint& joint : runs) all += joint.run().recording.t_s.size();

@@ -26,7 +26,7 @@ struct ResidualSamples {
 };
 
 /// At most so many samples in all, evenly thinned. The same whatever the number of threads.
-ResidualSamples residual_samples(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                                  const calib::JointModel& model, unsigned threads, std::size_t most = 200000);
 
 /// Mean residual over one range of a circumstance, with its 95 % interval (cluster-robust over blocks).

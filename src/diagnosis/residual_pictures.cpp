@@ -78,7 +78,7 @@ void show_spectrum(pages::Page& page, const std::string& unit, const ResidualSpe
 
 }  // namespace
 
-void show_residuals(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis,
+void show_residuals(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis,
                     const std::vector<calib::SingleJoint>& runs, unsigned threads) {
   const std::vector<Dependence> before = dependences(residual_samples(bench, runs, diagnosis.before, threads));
   const std::vector<Dependence> after = dependences(residual_samples(bench, runs, diagnosis.after, threads));

@@ -9,7 +9,7 @@
 namespace pmg::diagnosis {
 
 /// A section of the page: residual before and after against each circumstance, and over frequency.
-void show_residuals(pages::Page& page, const calib::Bench& bench, const Diagnosis& diagnosis,
+void show_residuals(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis,
                     const std::vector<calib::SingleJoint>& runs, unsigned threads);
 
 }  // namespace pmg::diagnosis

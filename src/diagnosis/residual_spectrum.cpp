@@ -37,7 +37,7 @@ Spectrum windowed_transform(const std::vector<double>& values, std::size_t first
 }
 
 std::vector<double> residual(const calib::SingleJoint& joint, const calib::JointModel& model) {
-  const calib::Recording& r = joint.run().recording;
+  const bench::Recording& r = joint.run().recording;
   std::vector<double> values = joint.rollout(model);
   for (std::size_t k = 0; k < values.size(); ++k) {
     values[k] = r.valid[k] || k == 0 ? values[k] - r.q_rad[k] : values[k - 1];
@@ -51,7 +51,7 @@ ResidualSpectrum residual_spectrum(const std::vector<calib::SingleJoint>& runs, 
                                    double window_s) {
   ResidualSpectrum found;
   if (runs.empty()) return found;
-  const calib::Recording& first = runs.front().run().recording;
+  const bench::Recording& first = runs.front().run().recording;
   const double step_s = (first.t_s.back() - first.t_s.front()) / static_cast<double>(first.t_s.size() - 1);
   const auto count = static_cast<std::size_t>(std::lround(window_s / step_s));
   if (count < 8) return found;

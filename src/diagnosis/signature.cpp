@@ -34,7 +34,7 @@ void doubt_onset(std::vector<Signature>& checks) {
 
 }  // namespace
 
-std::vector<Signature> signatures(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs) {
+std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
   std::vector<Signature> found;
   if (runs.empty()) return found;
   found.push_back(step_onset_check(bench, runs));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 #include "diagnosis/verdict.hpp"
 
 namespace pmg::diagnosis {
@@ -31,6 +31,6 @@ struct Signature {
 /// One for each check; where the runs don't have what it takes, it says what is missing. Effects that don't show
 /// without a model have none, some have two. Friction and offsets that a check agrees with may well be in the model
 /// already.
-std::vector<Signature> signatures(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs);
+std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs);
 
 }  // namespace pmg::diagnosis

@@ -36,7 +36,7 @@ Interval around(double value, double deviation) { return {value, value - 2.0 * d
 
 class BalanceChecks {
  public:
-  BalanceChecks(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs)
+  BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs)
       : bench_(bench), balance_(bench, runs), shape_(find_shape(balance_)) {}
 
   std::vector<Signature> all() {
@@ -58,11 +58,11 @@ class BalanceChecks {
 
  private:
   const Columns& c() const { return columns_.front(); }
-  bool position_pd() const { return bench_.law == calib::DriveLaw::kPositionPd; }
-  bool pendulum() const { return bench_.rig == calib::Rig::kPendulum; }
+  bool position_pd() const { return bench_.law == bench::DriveLaw::kPositionPd; }
+  bool pendulum() const { return bench_.rig == bench::Rig::kPendulum; }
   const char* drive_unit() const {
-    if (bench_.law == calib::DriveLaw::kServoVoltage || bench_.law == calib::DriveLaw::kCascadePd) return "V";
-    return bench_.rig == calib::Rig::kLinear ? "N" : "Nm";
+    if (bench_.law == bench::DriveLaw::kServoVoltage || bench_.law == bench::DriveLaw::kCascadePd) return "V";
+    return bench_.rig == bench::Rig::kLinear ? "N" : "Nm";
   }
 
   ClusterRegression regression(const std::vector<Column>& base) const { return {base, drive_, balance_.clusters()}; }
@@ -191,7 +191,7 @@ class BalanceChecks {
 
   /// A source resistance in front of a bridge counts by the duty's square.
   void add_supply_sag(const std::vector<Column>& base) {
-    if (bench_.law != calib::DriveLaw::kServoVoltage) {
+    if (bench_.law != bench::DriveLaw::kServoVoltage) {
       return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
     }
     const double full = bench_.known.drive.limit * bench_.supply_V;
@@ -203,7 +203,7 @@ class BalanceChecks {
   /// Within the band the whole of the gain's output is missing: a share of 1 is what tells it from friction.
   void add_dead_band() {
     if (!balance_.shaped() || !enough_) return cannot_tell("dead_band", "too little motion was recorded");
-    if (bench_.rig == calib::Rig::kLinear) return cannot_tell("dead_band", "looked for on turning joints only");
+    if (bench_.rig == bench::Rig::kLinear) return cannot_tell("dead_band", "looked for on turning joints only");
     const ClusterRegression base =
         regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy});
     double band_rad = 0.0, surest_t = 0.0, largest_share = 0.0;
@@ -249,7 +249,7 @@ class BalanceChecks {
   /// The strongest of many orders is strong by chance: the bar grows with their number.
   void add_cogging() {
     if (!enough_) return cannot_tell("cogging", "too little motion was recorded");
-    if (bench_.rig == calib::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
+    if (bench_.rig == bench::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
     const ClusterRegression base = regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy,
                                                balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; })});
     constexpr int kLowest = 3, kOrders = 60;             // below, a wrong load looks the same
@@ -312,7 +312,7 @@ class BalanceChecks {
     found_.push_back(s);
   }
 
-  const calib::Bench& bench_;
+  const bench::Bench& bench_;
   TorqueBalance balance_;
   FoundShape shape_;
   std::vector<Columns> columns_;
@@ -323,7 +323,7 @@ class BalanceChecks {
 
 }  // namespace
 
-std::vector<Signature> balance_checks(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs) {
+std::vector<Signature> balance_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
   return BalanceChecks(bench, runs).all();
 }
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 #include "diagnosis/motion.hpp"
 #include "diagnosis/signature_checks.hpp"
 
@@ -39,7 +39,7 @@ Interval median_interval(std::vector<double> values) {
 
 /// When readings leave rest after the step at this sample, in seconds after it; nothing where the joint wasn't at rest
 /// or hardly moves. From rest a joint gains speed evenly: the root of its way is a straight line, whose foot is sought.
-std::optional<double> onset_s(const calib::Recording& r, std::size_t step, double noise_rad) {
+std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad) {
   constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // shares of the step's size
   const double size_rad = std::abs(r.q_cmd_rad[step] - r.q_cmd_rad[step - 1]);
   std::size_t before = step;
@@ -81,10 +81,10 @@ struct Rest {
 };
 
 /// Stretches of unchanged command in which the reading, too, has stood for the last 0.3 s.
-void add_rests(const calib::Bench& bench, const calib::BenchRun& run, std::vector<Rest>& rests) {
+void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vector<Rest>& rests) {
   constexpr double kStood_s = 0.3;
-  const calib::Recording& r = run.recording;
-  const double noise_rad = calib::sensor_noise_rad(r), kp = bench.known.drive.kp_scale * run.kp;
+  const bench::Recording& r = run.recording;
+  const double noise_rad = bench::sensor_noise_rad(r), kp = bench.known.drive.kp_scale * run.kp;
   std::size_t from = 0;
   for (std::size_t k = 1; k <= r.t_s.size(); ++k) {
     const bool ends = k == r.t_s.size() || r.q_cmd_rad[k] != r.q_cmd_rad[from];
@@ -109,11 +109,11 @@ void add_rests(const calib::Bench& bench, const calib::BenchRun& run, std::vecto
 
 }  // namespace
 
-Signature step_onset_check(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs) {
+Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
   Signature s{"delay", "step onset", Agreement::kCannotTell, kUnknown, "s", "no steps from rest were recorded"};
   std::vector<double> onsets_s;
-  for (const calib::BenchRun& run : runs) {
-    const double noise_rad = calib::sensor_noise_rad(run.recording);
+  for (const bench::BenchRun& run : runs) {
+    const double noise_rad = bench::sensor_noise_rad(run.recording);
     for (const std::size_t step : command_steps(run.recording)) {
       if (const auto onset = onset_s(run.recording, step, noise_rad)) onsets_s.push_back(*onset);
     }
@@ -135,16 +135,16 @@ Signature step_onset_check(const calib::Bench& bench, const std::vector<calib::B
 }
 
 /// |short_by| = a + b / kp: b is a torque, a an angle. Each rest comes from another direction and distance.
-std::vector<Signature> rest_checks(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs) {
+std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
   Signature band{"dead_band",
                  "rest against gain",
                  Agreement::kCannotTell,
                  kUnknown,
                  "rad",
                  "needs a position PD at two gains, half as high again, and commands that stand still"};
-  if (bench.law != calib::DriveLaw::kPositionPd) return {band};
+  if (bench.law != bench::DriveLaw::kPositionPd) return {band};
   std::vector<Rest> rests;
-  for (const calib::BenchRun& run : runs) add_rests(bench, run, rests);
+  for (const bench::BenchRun& run : runs) add_rests(bench, run, rests);
   double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
   for (const Rest& rest : rests) lowest = std::min(lowest, rest.kp), highest = std::max(highest, rest.kp);
   if (rests.size() < 8 || !(highest >= 1.5 * lowest)) return {band};
@@ -190,7 +190,7 @@ std::vector<Signature> rest_checks(const calib::Bench& bench, const std::vector<
 }
 
 /// The smallest step between different readings; a quantised sensor's readings are its multiples (plus an offset).
-Signature quantum_check(const std::vector<calib::BenchRun>& runs) {
+Signature quantum_check(const std::vector<bench::BenchRun>& runs) {
   constexpr std::size_t kFewest = 20;  // different readings
   constexpr double kOff = 0.08;        // of a quantum: files round
   constexpr double kCoarse_rad = 1e-4;
@@ -198,7 +198,7 @@ Signature quantum_check(const std::vector<calib::BenchRun>& runs) {
               "rad",          "too few different readings"};
   std::set<double> readings;
   std::size_t samples = 0;
-  for (const calib::BenchRun& run : runs) {
+  for (const bench::BenchRun& run : runs) {
     for (std::size_t k = 0; k < run.recording.q_rad.size(); ++k) {
       if (run.recording.valid[k]) readings.insert(run.recording.q_rad[k]), ++samples;
     }

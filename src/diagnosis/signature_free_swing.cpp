@@ -33,8 +33,8 @@ Signature check(const std::string& effect, const ClusterRegression& regression, 
 
 }  // namespace
 
-std::vector<Signature> free_swing_checks(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs) {
-  if (bench.rig != calib::Rig::kPendulum) return {};
+std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+  if (bench.rig != bench::Rig::kPendulum) return {};
   const TorqueBalance balance(bench, runs, TorqueBalance::While::kOff);
   if (balance.windows() == 0) return {};
   const std::vector<int> clusters = balance.clusters();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 #include "diagnosis/motion.hpp"
 
 namespace pmg::diagnosis {
@@ -17,10 +17,10 @@ constexpr double kRest_share = 0.01;    // of the fastest speed: below it the si
 constexpr double kMoving_share = 0.7;   // of a window
 
 /// Speeds whose sign says nothing: three deviations of the parabola's slope under the sensor's noise.
-double uncertain_rad_s(const calib::Recording& r, double sample_s) {
+double uncertain_rad_s(const bench::Recording& r, double sample_s) {
   const double reach = std::max(2.0, std::round(0.5 * kDerivative_s / sample_s));
   const double squares = reach * (reach + 1.0) * (2.0 * reach + 1.0) / 3.0;
-  return 3.0 * calib::sensor_noise_rad(r) / (sample_s * std::sqrt(squares));
+  return 3.0 * bench::sensor_noise_rad(r) / (sample_s * std::sqrt(squares));
 }
 
 /// The speed that one sample in 50 exceeds.
@@ -36,7 +36,7 @@ double usual_fastest(const std::vector<double>& speeds_rad_s) {
 }
 
 /// Of the command from each sample to the next: held, run straight, or chased at a limited rate.
-std::vector<double> means(const calib::Bench& bench, const calib::Recording& r, double rate_limit_rad_s) {
+std::vector<double> means(const bench::Bench& bench, const bench::Recording& r, double rate_limit_rad_s) {
   std::vector<double> found;
   double at_rad = r.q_cmd_rad.front();
   for (std::size_t k = 0; k + 1 < r.t_s.size(); ++k) {
@@ -56,8 +56,8 @@ std::vector<double> means(const calib::Bench& bench, const calib::Recording& r, 
 
 }  // namespace
 
-TorqueBalance::TorqueBalance(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs, While when)
-    : bench_(&bench), source_(&runs), when_(when), shaped_(bench.law != calib::DriveLaw::kTorque) {
+TorqueBalance::TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when)
+    : bench_(&bench), source_(&runs), when_(when), shaped_(bench.law != bench::DriveLaw::kTorque) {
   sample_s_ = 1.0 / bench.sample_rate_hz;
   const std::size_t count = std::max(kFewest, static_cast<std::size_t>(std::lround(kWindow_s / sample_s_)));
   const double half_s = 0.5 * static_cast<double>(count) * sample_s_;
@@ -69,13 +69,13 @@ TorqueBalance::TorqueBalance(const calib::Bench& bench, const std::vector<calib:
     weight_1_.push_back(scale * -6.0 * x * y * y / half_s);
     weight_2_.push_back(scale * (-6.0 * y * y + 24.0 * x * x * y) / (half_s * half_s));
   }
-  for (const calib::BenchRun& run : runs) read(run);
+  for (const bench::BenchRun& run : runs) read(run);
   shape({});
   for (std::size_t i = 0; i < runs_.size(); ++i) find_windows(i);
 }
 
-void TorqueBalance::read(const calib::BenchRun& run) {
-  const calib::Recording& r = run.recording;
+void TorqueBalance::read(const bench::BenchRun& run) {
+  const bench::Recording& r = run.recording;
   const Motion m = motion(*bench_, run, kDerivative_s);
   const double fastest_rad_s = usual_fastest(m.dq_rad_s);
   fastest_rad_s_ = std::max(fastest_rad_s_, fastest_rad_s);
@@ -102,8 +102,8 @@ void TorqueBalance::read(const calib::BenchRun& run) {
 
 void TorqueBalance::shape(const CommandShape& shape) {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    const calib::BenchRun& run = (*source_)[i];
-    const calib::Recording& r = run.recording;
+    const bench::BenchRun& run = (*source_)[i];
+    const bench::Recording& r = run.recording;
     const sim::ActuatorParameters::Drive& p = bench_->known.drive;
     const std::vector<double> command_rad = means(*bench_, r, shape.rate_limit_rad_s);
     double last_turn_s = -1e9, last_drive = 0.0;
@@ -115,7 +115,7 @@ void TorqueBalance::shape(const CommandShape& shape) {
     };
     for (std::size_t k = 0; k < runs_[i].size(); ++k) {
       BalancePoint& point = runs_[i][k];
-      const bool servo = bench_->law == calib::DriveLaw::kServoVoltage;
+      const bool servo = bench_->law == bench::DriveLaw::kServoVoltage;
       const double supply = !servo ? 1.0 : r.bus_V.empty() ? bench_->supply_V : r.bus_V[k];
       point.error_rad = delayed(command_rad, k) - point.q_rad;
       point.error_drive = p.kp_scale * run.kp * point.error_rad * supply;

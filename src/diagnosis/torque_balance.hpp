@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 namespace pmg::diagnosis {
 
@@ -36,7 +36,7 @@ class TorqueBalance {
  public:
   /// Runs must outlive it. Windows lie where the drive is on throughout, or where it is off.
   enum class While { kOn, kOff };
-  TorqueBalance(const calib::Bench& bench, const std::vector<calib::BenchRun>& runs, While when = While::kOn);
+  TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when = While::kOn);
 
   std::size_t windows() const { return windows_.size(); }
   bool shaped() const { return shaped_; }  ///< a command's shape matters: positions are commanded
@@ -72,12 +72,12 @@ class TorqueBalance {
   struct Window {
     std::size_t run, first;
   };
-  void read(const calib::BenchRun& run);
+  void read(const bench::BenchRun& run);
   void find_windows(std::size_t run);
-  double noise_rad_s(const calib::BenchRun& run) const;
+  double noise_rad_s(const bench::BenchRun& run) const;
 
-  const calib::Bench* bench_;
-  const std::vector<calib::BenchRun>* source_;
+  const bench::Bench* bench_;
+  const std::vector<bench::BenchRun>* source_;
   While when_;
   bool shaped_;
   double sample_s_ = 0.01, fastest_rad_s_ = 0.0;

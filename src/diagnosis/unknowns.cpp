@@ -19,9 +19,9 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// What the drive would put out at the recorded positions, by its law without any timing.
-double wished_torque_Nm(const calib::BenchRun& run, std::size_t k, double supply, const JointModel& model) {
+double wished_torque_Nm(const bench::BenchRun& run, std::size_t k, double supply, const JointModel& model) {
   const auto& drive = model.actuator.drive;
-  const calib::Recording& r = run.recording;
+  const bench::Recording& r = run.recording;
   if (!r.enabled.empty() && !r.enabled[k]) return 0.0;
   if (!r.torque_Nm.empty()) return r.torque_Nm[k];
   const double output = std::clamp(drive.kp_scale * run.kp * (r.q_cmd_rad[k] - r.q_rad[k]), -drive.limit, drive.limit);
@@ -57,20 +57,20 @@ double lowest_order(const BenchScale& scale) {
 
 }  // namespace
 
-BenchScale scale_of(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs, const JointModel& model) {
+BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const JointModel& model) {
   BenchScale scale;
   std::vector<double> torques, speeds, inertias, positions;
   constexpr double kSpan_s = 0.02;
   for (const calib::SingleJoint& joint : runs) {
-    const calib::BenchRun& run = joint.run();
-    const calib::Recording& r = run.recording;
+    const bench::BenchRun& run = joint.run();
+    const bench::Recording& r = run.recording;
     scale.bus_recorded = scale.bus_recorded || !r.bus_V.empty();
     inertias.push_back(run.load.inertia_kg_m2 + model.actuator.transmission.armature_kg_m2);
     const auto span = static_cast<std::size_t>(std::max(1.0, kSpan_s * bench.sample_rate_hz));
     for (std::size_t k = 0; k < r.t_s.size(); ++k) {
       if (!r.valid[k]) continue;
       positions.push_back(r.q_rad[k]);
-      const bool servo = bench.law == calib::DriveLaw::kServoVoltage;
+      const bool servo = bench.law == bench::DriveLaw::kServoVoltage;
       const double supply = !servo ? 1.0 : r.bus_V.empty() ? bench.supply_V : r.bus_V[k];
       torques.push_back(std::abs(wished_torque_Nm(run, k, supply, model)));
       if (k < span || !r.valid[k - span]) continue;
@@ -106,7 +106,7 @@ double Unknown::step() const {
   return logarithmic ? 1e-2 : 5e-3 * typical;
 }
 
-Unknown unknown(const std::string& name, const calib::Bench& bench, const BenchScale& scale) {
+Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
   const calib::FitParameter range = calib::fit_parameter(name, bench);
   Unknown u{name, range.unit, range.lower, range.upper, false, 1.0};
   const double torque = scale.torque_Nm, speed = scale.speed_rad_s;

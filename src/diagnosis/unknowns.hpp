@@ -20,7 +20,7 @@ struct BenchScale {
   bool bus_recorded = false;
 };
 
-BenchScale scale_of(const calib::Bench& bench, const std::vector<calib::SingleJoint>& runs,
+BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                     const calib::JointModel& model);
 
 /// One parameter of a fit. Fits move it along its coordinate: the value, or its logarithm.
@@ -38,7 +38,7 @@ struct Unknown {
 };
 
 /// Over the whole range in which it makes sense on this bench.
-Unknown unknown(const std::string& name, const calib::Bench& bench, const BenchScale& scale);
+Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);
 
 /// Values of the effect's parameters from which fits begin, in their order; current: the model that is extended.
 std::vector<std::vector<double>> starts(const Effect& effect, const calib::JointModel& current,

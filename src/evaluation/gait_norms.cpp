@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib/csv_table.hpp"
+#include "bench/csv_table.hpp"
 #include "generator/published_gait.hpp"
 
 namespace pmg::evaluation {
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kFewestRows = 11;  // steps of 10 %
 
 /// Degrees of the column whose name begins and ends so, whatever the source says of its sign between.
-std::vector<double> means(const calib::CsvTable& table, const std::string& begin) {
+std::vector<double> means(const bench::CsvTable& table, const std::string& begin) {
   for (const std::string& name : table.header) {
     if (name.starts_with(begin) && name.ends_with("_mean")) return table.numbers(name);
   }
@@ -49,7 +49,7 @@ GaitNorms built_in_norms() {
 }
 
 GaitNorms load_norms(const std::filesystem::path& file) {
-  const calib::CsvTable table = calib::read_csv(file);
+  const bench::CsvTable table = bench::read_csv(file);
   if (table.rows.size() < kFewestRows) {
     model::raise({file.string()}, "", fmt::format("{} rows", table.rows.size()),
                  fmt::format("at least {}, from 0 to 100 % of the cycle", kFewestRows));

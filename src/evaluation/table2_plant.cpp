@@ -8,8 +8,8 @@
 #include <random>
 
 #include "calib/motor_fit.hpp"
-#include "calib/zero_calibration.hpp"
-#include "calib/zero_stances.hpp"
+#include "zero/zero_calibration.hpp"
+#include "zero/zero_stances.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/config_reader.hpp"
@@ -48,8 +48,8 @@ double draw(const sim::Range& range, std::mt19937_64& random) {
 
 /// Steps and smooth segments about 0 (paper III-C.1), another for each number, with pauses in which a joint comes to
 /// rest.
-calib::Recording excitation(int number) {
-  calib::Recording recording;
+bench::Recording excitation(int number) {
+  bench::Recording recording;
   for (int k = 0; k < kBenchSamples; ++k) {
     const double t_s = static_cast<double>(k) / kRate_Hz, pace = 1.0 + 0.5 * number;
     const double smooth = 0.7 * std::sin(2.0 * pace * t_s) + 0.3 * std::sin(9.0 * t_s + number);
@@ -62,7 +62,7 @@ calib::Recording excitation(int number) {
   return recording;
 }
 
-std::vector<calib::SingleJoint> record(const calib::Bench& bench, const sim::ActuatorParameters& truth,
+std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::ActuatorParameters& truth,
                                        const sim::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
   sim::NormalSource noise(seed);
   calib::JointModel plant;
@@ -72,7 +72,7 @@ std::vector<calib::SingleJoint> record(const calib::Bench& bench, const sim::Act
   plant.actuator.sensor.zero_offset_rad = 0.0;
   std::vector<calib::SingleJoint> runs;
   for (int number = 0; number < kBenchRuns; ++number) {
-    calib::BenchRun run;
+    bench::BenchRun run;
     run.file = fmt::format("run{}.csv", number);
     run.kp = kp * (number % 2 == 0 ? 1.0 : 0.5);
     run.kd = kd * (number < 2 ? 1.0 : 0.5);  // of one kd alone nothing tells it from viscous friction
@@ -165,9 +165,9 @@ sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotMo
 
 sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                         const Gains& gains, unsigned seed) {
-  calib::Bench bench;
-  bench.rig = calib::Rig::kPendulum;
-  bench.law = calib::DriveLaw::kPositionPd;
+  bench::Bench bench;
+  bench.rig = bench::Rig::kPendulum;
+  bench.law = bench::DriveLaw::kPositionPd;
   calib::FitOptions options;
   options.starts = 2;
   options.screened_per_dimension = 8;
@@ -198,10 +198,10 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
 std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                             const std::filesystem::path& folder, std::uint64_t seed,
                                             const std::function<bool()>& stop) {
-  calib::write_zero_rig(robot, folder / "stances");
+  zero::write_zero_rig(robot, folder / "stances");
   if (!take_stances(plant, folder, seed, stop)) return {};
-  const calib::ZeroCalibration found =
-      calib::calibrate_zero(robot, calib::read_still_poses({folder / "log.lcm"}, robot));
+  const zero::ZeroCalibration found =
+      zero::calibrate_zero(robot, zero::read_still_poses({folder / "log.lcm"}, robot));
   std::vector<FoundOffset> offsets;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     if (found.observable[i])

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/running_program.hpp"
-#include "calib/bench.hpp"
-#include "calib/excitation.hpp"
+#include "bench/bench.hpp"
+#include "bench/excitation.hpp"
 #include "io/private_network.hpp"
 
 namespace pmg {
@@ -25,8 +25,8 @@ using testing::HasSubstr;
 constexpr int kRuns = 4;
 constexpr std::size_t kSamples = 60;  // 0.6 s: most are whole on a host that stops once a second
 
-calib::Excitation steps(int runs, std::size_t samples) {
-  calib::Excitation excitation;
+bench::Excitation steps(int runs, std::size_t samples) {
+  bench::Excitation excitation;
   excitation.trajectories = {{"steps", {}}};
   for (std::size_t k = 0; k < samples; ++k) {
     excitation.trajectories[0].q_cmd_rad.push_back(k / (kSamples / 2) % 2 == 0 ? 0.0 : 0.1);
@@ -53,8 +53,8 @@ class ControllerBench : public testing::Test {
 
   /// The controller, from its first STATUS to its end, with what an operator does once it stands; its exit code.
   template <typename Operator>
-  int bench(const std::string& name, const calib::Excitation& excitation, Operator&& operate) {
-    if (!fs::exists(at("excitation"))) calib::write_excitation(at("excitation"), excitation, "steps");
+  int bench(const std::string& name, const bench::Excitation& excitation, Operator&& operate) {
+    if (!fs::exists(at("excitation"))) bench::write_excitation(at("excitation"), excitation, "steps");
     RunningProgram controller(
         "pmg_controller",
         {"--hal", "sil", "--robot", "z1", "--no-realtime", "--bench", "head_pitch", "--excitation",
@@ -88,10 +88,10 @@ TEST_F(ControllerBench, RecordsEndsByItselfAndItsLogReplays) {
     ASSERT_GT(runs, 0) << said_;
     EXPECT_EQ(code, runs == kRuns ? 0 : 1) << said_;
     EXPECT_THAT(said_, HasSubstr(std::to_string(runs) + " of " + std::to_string(kRuns) + " runs of head_pitch"));
-    const calib::Bench recording = calib::read_bench(at(name));
+    const bench::Bench recording = bench::read_bench(at(name));
     EXPECT_EQ(recording.joint, "head_pitch");
-    ASSERT_EQ(recording.read_runs(calib::RowFilter(""), {}).size(), static_cast<std::size_t>(runs));
-    for (const calib::BenchRun& run : recording.read_runs(calib::RowFilter(""), {})) {
+    ASSERT_EQ(recording.read_runs(bench::RowFilter(""), {}).size(), static_cast<std::size_t>(runs));
+    for (const bench::BenchRun& run : recording.read_runs(bench::RowFilter(""), {})) {
       EXPECT_EQ(run.recording.t_s.size(), static_cast<std::size_t>(kSamples));
     }
     EXPECT_EQ(run("pmg_log", {"replay", at("log_" + name).string()}), 0) << said_;

@@ -25,8 +25,8 @@ fs::path benches() {
 // Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N, offset -3.16 N of the opposing force.
 TEST(MeasuredBench, OfALinearDriveGivesThePublishedParameters) {
   PMG_NEEDS_BENCH("emps");
-  const calib::Bench bench = calib::read_bench(benches() / "emps");
-  const auto found = calib::inverse_dynamics(bench, bench.read_runs(calib::RowFilter("")));
+  const bench::Bench bench = bench::read_bench(benches() / "emps");
+  const auto found = calib::inverse_dynamics(bench, bench.read_runs(bench::RowFilter("")));
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->armature_kg_m2.value / 95.1, 1.0, 0.03);
   EXPECT_NEAR(found->viscous_Nm_s_per_rad.value / 203.5, 1.0, 0.03);
@@ -34,16 +34,16 @@ TEST(MeasuredBench, OfALinearDriveGivesThePublishedParameters) {
   EXPECT_NEAR(found->offset_Nm.value / 3.16, 1.0, 0.03);
 }
 
-std::vector<calib::SingleJoint> joints(const calib::Bench& bench, const char* filter) {
+std::vector<calib::SingleJoint> joints(const bench::Bench& bench, const char* filter) {
   std::vector<calib::SingleJoint> found;
-  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter))) {
+  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filter))) {
     found.emplace_back(bench, std::move(run), calib::simulation_step_s(bench));
   }
   return found;
 }
 
 /// Fitted by pmg_calibrate_motor to kp_firmware 4, 8, 16, 32 of repeat 0.
-calib::JointModel hobby_servo(const calib::Bench& bench) {
+calib::JointModel hobby_servo(const bench::Bench& bench) {
   calib::JointModel model;
   model.actuator = bench.known;
   sim::ActuatorParameters& p = model.actuator;
@@ -64,7 +64,7 @@ constexpr const char* kHeldOut = "kp_firmware in 12,24 and repeat == 1";
 // Open loop over 6 s, of gains and a repeat that no fit has seen. Repeats of one run differ by 9 to 10 mrad.
 TEST(MeasuredBench, OfAHobbyServoIsFollowedWithin14MilliradiansOfRunsHeldOut) {
   PMG_NEEDS_BENCH("sts3215");
-  const calib::Bench bench = calib::read_bench(benches() / "sts3215");
+  const bench::Bench bench = bench::read_bench(benches() / "sts3215");
   const calib::RolloutError error = total(calib::errors(hobby_servo(bench), joints(bench, kHeldOut), 2));
   EXPECT_EQ(error.samples, 80U * 600U - 12U) << "12 readings are dropouts";
   EXPECT_LT(error.mean_absolute_rad(), 0.0140);
@@ -72,7 +72,7 @@ TEST(MeasuredBench, OfAHobbyServoIsFollowedWithin14MilliradiansOfRunsHeldOut) {
 
 TEST(MeasuredBench, OfAHobbyServoNeedsItsRateLimitAndItsLoadsFriction) {
   PMG_NEEDS_BENCH("sts3215");
-  const calib::Bench bench = calib::read_bench(benches() / "sts3215");
+  const bench::Bench bench = bench::read_bench(benches() / "sts3215");
   const std::vector<calib::SingleJoint> runs = joints(bench, kHeldOut);
   const auto error_rad = [&](const char* without, double neutral) {
     calib::JointModel model = hobby_servo(bench);
@@ -86,8 +86,8 @@ TEST(MeasuredBench, OfAHobbyServoNeedsItsRateLimitAndItsLoadsFriction) {
 
 TEST(MeasuredBench, OfAWarmingServoIsRead) {
   PMG_NEEDS_BENCH("xl330");
-  const calib::Bench bench = calib::read_bench(benches() / "xl330");
-  EXPECT_EQ(bench.read_runs(calib::RowFilter("")).size(), 16U);
+  const bench::Bench bench = bench::read_bench(benches() / "xl330");
+  EXPECT_EQ(bench.read_runs(bench::RowFilter("")).size(), 16U);
   EXPECT_EQ(bench.unknown.front(), "drive.kp_scale");
 }
 

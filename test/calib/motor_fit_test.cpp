@@ -29,7 +29,7 @@ calib::JointModel truth() {
 }
 
 calib::FitProblem problem(const std::vector<std::string>& words, double noise_rad, int runs = 4) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   std::vector<calib::FitParameter> parameters;
   for (const std::string& name : calib::basic_parameters(bench))
     parameters.push_back(calib::fit_parameter(name, bench));
@@ -54,7 +54,7 @@ TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
 // A foot on its ankle: of the rotor's inertia the load is a thirtieth, and all torques could be larger by one factor
 // almost as well. 0.4 mrad of noise leave a few percent of that factor open.
 TEST(MotorFit, FindsTheFactorOfAllTorquesUnderALightLoad) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   const calib::FitProblem usual = problem({"friction", "damping"}, 0.0);
   calib::JointModel light = truth();
   light.actuator.command.delay_s = 0.0;
@@ -62,7 +62,7 @@ TEST(MotorFit, FindsTheFactorOfAllTorquesUnderALightLoad) {
   std::normal_distribution<double> noise(0.0, 4e-4);
   std::vector<calib::SingleJoint> runs;
   for (const calib::SingleJoint& joint : usual.runs()) {
-    calib::BenchRun run = joint.run();
+    bench::BenchRun run = joint.run();
     run.load = {0.001, 0.15, 0.0};
     run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(light);
     for (double& q_rad : run.recording.q_rad) q_rad += noise(random);
@@ -153,15 +153,15 @@ TEST(FitProblem, PointsAreWhatModelsAre) {
 constexpr double kMass_kg = 95.0, kViscous_N_s_per_m = 200.0, kForwards_N = 17.0, kBackwards_N = 23.0;
 
 /// Ten seconds of a linear drive's sines, the force so much later or earlier than the position, with noise of 20 mV.
-std::pair<calib::Bench, calib::BenchRun> linear_drive(double force_late_s, double rate_hz, double pace = 1.0) {
-  calib::Bench bench;
-  bench.rig = calib::Rig::kLinear;
-  bench.law = calib::DriveLaw::kCascadePd;
+std::pair<bench::Bench, bench::BenchRun> linear_drive(double force_late_s, double rate_hz, double pace = 1.0) {
+  bench::Bench bench;
+  bench.rig = bench::Rig::kLinear;
+  bench.law = bench::DriveLaw::kCascadePd;
   bench.sample_rate_hz = rate_hz;
   bench.known.drive.torque_per_unit_Nm = 35.0;
   std::mt19937 random(3);
   std::normal_distribution<double> noise_V(0.0, 0.02);
-  calib::BenchRun run;
+  bench::BenchRun run;
   for (int k = 0; k < static_cast<int>(10.0 * rate_hz); ++k) {
     const double t = k / rate_hz, slow = 3.0 * pace, fast = 11.0 * pace;
     run.recording.t_s.push_back(t);

@@ -19,7 +19,7 @@ namespace pmg::test {
 
 class MujocoJoint {
  public:
-  MujocoJoint(const calib::JointLoad& load, const sim::ActuatorParameters& parameters, double step_s)
+  MujocoJoint(const bench::JointLoad& load, const sim::ActuatorParameters& parameters, double step_s)
       : actuator_(parameters, step_s), model_(compile(text(load, step_s))), data_(mj_makeData(model_.get())) {
     sim::hand_over(model_.get(), 0, actuator_);
     mj_setConst(model_.get(), data_.get());
@@ -46,7 +46,7 @@ class MujocoJoint {
   mjData* mj_data() { return data_.get(); }
 
  private:
-  static std::string text(const calib::JointLoad& load, double step_s) {
+  static std::string text(const bench::JointLoad& load, double step_s) {
     // A mass at half the lever that would need all the inertia, so that its own inertia is positive.
     constexpr double kGravity_m_s2 = 9.81;
     const double lever_m = load.gravity_Nm > 0.0 ? 0.5 * kGravity_m_s2 * load.inertia_kg_m2 / load.gravity_Nm : 0.1;

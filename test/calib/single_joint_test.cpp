@@ -73,8 +73,8 @@ const std::vector<Kind>& kinds() {
 
 /// The same run of a load that hangs askew, on a day when the joint warms from 25 to 55 degrees, switched off towards
 /// its end.
-calib::SingleJoint warming(const calib::Bench& bench, const calib::SingleJoint& joint) {
-  calib::BenchRun run = joint.run();
+calib::SingleJoint warming(const bench::Bench& bench, const calib::SingleJoint& joint) {
+  bench::BenchRun run = joint.run();
   run.load.hangs_at_rad = 0.3;
   const std::size_t samples = run.recording.t_s.size();
   for (std::size_t k = 0; k < samples; ++k) {
@@ -88,7 +88,7 @@ class BothSimulators : public testing::TestWithParam<Kind> {};
 
 // 1e-6 rad is what the two may differ by after 3 s of 2 ms steps; the same arithmetic in another order leaves 1e-10.
 TEST_P(BothSimulators, MoveAJointAlike) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   calib::JointModel model;
   model.actuator.transmission.armature_kg_m2 = 0.02;
   GetParam().set(model.actuator);
@@ -139,9 +139,9 @@ TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
     for (int step = 0; step < 1000; ++step) world.step(command);  // comes to rest
 
     const sim::HangingLoad load = sim::hanging_load(z1(), name);
-    calib::Bench bench = test::pd_bench(true);
+    bench::Bench bench = test::pd_bench(true);
     bench.sample_rate_hz = 500.0;
-    calib::BenchRun run;
+    bench::BenchRun run;
     run.kp = joint.kp_Nm_per_rad, run.kd = joint.kd_Nm_s_per_rad;
     run.load = {load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad};
     for (int step = 0; step < 1500; ++step) {
@@ -167,8 +167,8 @@ TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
 }
 
 TEST(SingleJoint, RestsOnItsFrictionUntilItIsMoved) {
-  const calib::Bench bench = test::pd_bench(true);
-  calib::BenchRun run;
+  const bench::Bench bench = test::pd_bench(true);
+  bench::BenchRun run;
   run.kp = 20.0, run.kd = 0.8;
   run.load = {0.02, 1.0, 0.0};
   for (int k = 0; k < 200; ++k) {
@@ -194,8 +194,8 @@ TEST(SingleJoint, RestsOnItsFrictionUntilItIsMoved) {
 }
 
 TEST(SingleJoint, SwingsWithThePeriodOfAPendulum) {
-  const calib::Bench bench = test::pd_bench(true);
-  calib::BenchRun run;
+  const bench::Bench bench = test::pd_bench(true);
+  bench::BenchRun run;
   run.kp = run.kd = 0.0;
   run.load = {0.05, 2.0, 0.0};
   run.recording = test::excitation(0);
@@ -213,10 +213,10 @@ TEST(SingleJoint, SwingsWithThePeriodOfAPendulum) {
 }
 
 TEST(SingleJoint, LeavesASensorsDropoutsOut) {
-  const calib::Bench bench = test::pd_bench(false);
+  const bench::Bench bench = test::pd_bench(false);
   calib::JointModel model;
   model.actuator.transmission.armature_kg_m2 = 0.02;
-  calib::BenchRun run = test::record(bench, model, 1).front().run();
+  bench::BenchRun run = test::record(bench, model, 1).front().run();
   run.recording.q_rad[100] = -3.14;
   run.recording.valid[100] = false;
   const calib::RolloutError error = calib::SingleJoint(bench, run, 0.002).error(model);

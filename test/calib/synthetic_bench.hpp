@@ -15,8 +15,8 @@
 namespace pmg::test {
 
 /// Steps and smooth segments within +-1.2 rad, 3 s at 100 Hz; another phase and pace for each number.
-inline calib::Recording excitation(int number) {
-  calib::Recording recording;
+inline bench::Recording excitation(int number) {
+  bench::Recording recording;
   for (int k = 0; k < 300; ++k) {
     const double t_s = 0.01 * k, pace = 1.0 + 0.4 * number;
     const double smooth_rad = 0.8 * std::sin(2.0 * pace * t_s) + 0.3 * std::sin(7.0 * t_s + number);
@@ -30,23 +30,23 @@ inline calib::Recording excitation(int number) {
 }
 
 /// A position PD on a horizontal axis or a pendulum.
-inline calib::Bench pd_bench(bool pendulum) {
-  calib::Bench bench;
+inline bench::Bench pd_bench(bool pendulum) {
+  bench::Bench bench;
   bench.folder = "synthetic";
-  bench.rig = pendulum ? calib::Rig::kPendulum : calib::Rig::kHorizontal;
-  bench.law = calib::DriveLaw::kPositionPd;
+  bench.rig = pendulum ? bench::Rig::kPendulum : bench::Rig::kHorizontal;
+  bench.law = bench::DriveLaw::kPositionPd;
   return bench;
 }
 
 /// Runs of the bench as the model moves them, with noise of the sensor.
-inline std::vector<calib::SingleJoint> record(const calib::Bench& bench, const calib::JointModel& truth, int count,
+inline std::vector<calib::SingleJoint> record(const bench::Bench& bench, const calib::JointModel& truth, int count,
                                               double noise_rad = 0.0, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 1.0);
-  const bool pendulum = bench.rig == calib::Rig::kPendulum;
+  const bool pendulum = bench.rig == bench::Rig::kPendulum;
   std::vector<calib::SingleJoint> joints;
   for (int number = 0; number < count; ++number) {
-    calib::BenchRun run;
+    bench::BenchRun run;
     run.file = fmt::format("run{}.csv", number);
     run.trajectory = fmt::format("excitation{}", number);
     run.kp = number % 2 == 0 ? 20.0 : 40.0;
@@ -70,7 +70,7 @@ inline void write_bench(const std::filesystem::path& folder, const std::vector<c
   rows << "file,trajectory,repeat,kp_Nm_per_rad,kd_Nm_s_per_rad,load_mass_kg\n";
   double mass_kg = 1.0;
   for (const calib::SingleJoint& joint : joints) {
-    const calib::BenchRun& run = joint.run();
+    const bench::BenchRun& run = joint.run();
     yaml << fmt::format("  - {{mass_kg: {}, length_m: 0.1, inertia_kg_m2: {}, gravity_Nm: {}}}\n", mass_kg,
                         run.load.inertia_kg_m2, run.load.gravity_Nm);
     rows << fmt::format("{},{},0,{},{},{}\n", run.file, run.trajectory, run.kp, run.kd, mass_kg);

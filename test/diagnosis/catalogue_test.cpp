@@ -8,7 +8,7 @@ namespace pmg::diagnosis {
 namespace {
 
 TEST(Catalogue, EveryParameterIsOneOfTheSimulation) {
-  const calib::Bench bench;
+  const bench::Bench bench;
   for (const Effect& effect : catalogue()) {
     EXPECT_FALSE(effect.parameters.empty()) << effect.name;
     for (const std::string& parameter : effect.parameters) EXPECT_NO_THROW(calib::fit_parameter(parameter, bench));

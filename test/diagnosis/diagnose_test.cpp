@@ -33,7 +33,7 @@ class Diagnose : public testing::Test {
     test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4, 2e-4));
     DiagnoseOptions options;
     options.model = known();
-    return diagnose(calib::read_bench(folder_), options);
+    return diagnose(bench::read_bench(folder_), options);
   }
   void TearDown() override { fs::remove_all(folder_); }
   const fs::path folder_ = fs::temp_directory_path() / ("pmg_diagnose_" + std::to_string(getpid()));
@@ -65,7 +65,7 @@ TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
   test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4));
   DiagnoseOptions options;
   options.model = known();
-  const Diagnosis found = diagnose(calib::read_bench(folder_), options);
+  const Diagnosis found = diagnose(bench::read_bench(folder_), options);
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "quantisation");
   const Interval quantum_rad = found.causes.front().parameters.front().estimate;
@@ -95,7 +95,7 @@ TEST_F(Diagnose, RefusesToScoreWhatItFits) {
   test::write_bench(folder_, test::record(test::pd_bench(true), truth, 2));
   DiagnoseOptions options;
   options.score = "repeat == 0";
-  EXPECT_THROW(diagnose(calib::read_bench(folder_), options), std::invalid_argument);
+  EXPECT_THROW(diagnose(bench::read_bench(folder_), options), std::invalid_argument);
 }
 
 }  // namespace

@@ -116,12 +116,12 @@ const std::map<std::string, Demonstration>& demonstrations() {
 
 /// 3.4 s at 100 Hz; temperature rises from 25 to 59 degC.
 calib::SingleJoint joint(const Demonstration& shown) {
-  calib::Bench bench;
-  calib::BenchRun run;
+  bench::Bench bench;
+  bench::BenchRun run;
   run.kp = shown.kp;
   run.kd = 0.05 * shown.kp;
   run.load = {0.05, shown.gravity_Nm};
-  calib::Recording& r = run.recording;
+  bench::Recording& r = run.recording;
   for (int k = 0; k < 340; ++k) {
     r.t_s.push_back(0.01 * k);
     r.q_cmd_rad.push_back(shown.command(r.t_s.back()));

@@ -18,7 +18,7 @@ calib::JointModel healthy() {
 }
 
 struct Setting {
-  calib::Bench bench = test::pd_bench(true);
+  bench::Bench bench = test::pd_bench(true);
   NestedFit fit;
   BenchScale scale;
   explicit Setting(const calib::JointModel& truth)

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <random>
 
-#include "calib/excitation.hpp"
+#include "bench/excitation.hpp"
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/folds.hpp"
@@ -37,7 +37,7 @@ NestedModel with(const char* parameter, double value, calib::JointModel model = 
 }
 
 /// What is asked for to tell two models apart.
-AskedFor asked(const calib::Bench& bench, const NestedModel& one, const NestedModel& other,
+AskedFor asked(const bench::Bench& bench, const NestedModel& one, const NestedModel& other,
                const std::vector<std::string>& names = {"one", "other"}) {
   return next_excitation(bench, test::record(bench, one.model, 2), {{{one, other}, names}}, kWanted);
 }
@@ -69,7 +69,7 @@ TEST(NextExcitation, ZeroOffsetAndConstantTorquePartByGravity) {
 }
 
 TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   NestedModel one = held(healthy()), other = with("drive.kp_scale", 1.01);
   const AskedFor fixed = asked(bench, one, other);
   const NestedFit fit(test::record(bench, one.model, 2), 1);
@@ -85,12 +85,12 @@ TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
 }
 
 /// Recordings of what was asked for, by a joint like the model.
-std::vector<calib::SingleJoint> recorded(const calib::Bench& bench, const std::vector<NextRun>& asked,
+std::vector<calib::SingleJoint> recorded(const bench::Bench& bench, const std::vector<NextRun>& asked,
                                          const calib::JointModel& truth, std::mt19937& random) {
   std::normal_distribution<double> noise_rad(0.0, kNoise_rad);
   std::vector<calib::SingleJoint> joints;
   for (const NextRun& one : asked) {
-    calib::BenchRun run;
+    bench::BenchRun run;
     run.trajectory = one.name;
     run.kp = one.kp;
     run.kd = one.kd;
@@ -112,7 +112,7 @@ std::vector<calib::SingleJoint> recorded(const calib::Bench& bench, const std::v
 // Noise that is independent from sample to sample strays less than the block's one number that is reckoned with, so
 // what comes out is at least what was expected.
 TEST(NextExcitation, PartsModelsAsSurelyAsItSays) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   const NestedModel one = with("command.delay_s", 0.003), other = with("sensor.lag_s", 0.003);
   const AskedFor found = asked(bench, one, other);
   ASSERT_TRUE(found.next);
@@ -126,7 +126,7 @@ TEST(NextExcitation, PartsModelsAsSurelyAsItSays) {
 }
 
 TEST(NextExcitation, StaysWithinTheCommandsThatWereRecorded) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   const NestedModel one = with("command.delay_s", 0.01), other = with("command.rate_limit_rad_s", 2.0);
   double most_rad = 0.0;
   for (const calib::SingleJoint& joint : test::record(bench, one.model, 2)) {
@@ -141,7 +141,7 @@ TEST(NextExcitation, StaysWithinTheCommandsThatWereRecorded) {
 }
 
 TEST(NextExcitation, PartsTheRivalsOfEveryCause) {
-  const calib::Bench bench = test::pd_bench(true);
+  const bench::Bench bench = test::pd_bench(true);
   const NestedModel model = held(healthy());
   const Rivals first{{model, with("command.delay_s", 0.01)}, {"a", "delay"}};
   const Rivals second{{model, with("sensor.zero_offset_rad", 0.02)}, {"b", "zero_offset"}};
@@ -155,20 +155,20 @@ TEST(NextExcitation, IsWrittenAsWhatCanBePlayedAndAppended) {
   const fs::path folder = fs::temp_directory_path() / ("pmg_next_excitation_" + std::to_string(getpid()));
   const NestedModel one = held(healthy());
   test::write_bench(folder / "bench", test::record(test::pd_bench(true), one.model, 2));
-  const calib::Bench bench = calib::read_bench(folder / "bench");
+  const bench::Bench bench = bench::read_bench(folder / "bench");
   std::vector<calib::SingleJoint> runs;
-  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(""))) runs.emplace_back(bench, std::move(run), 2e-3);
+  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(""))) runs.emplace_back(bench, std::move(run), 2e-3);
   const AskedFor found =
       next_excitation(bench, runs, {{{one, with("command.delay_s", 0.01)}, {"one", "other"}}}, kWanted);
   ASSERT_TRUE(found.next);
   write_next_excitation(folder / "next", bench, *found.next);
-  const calib::Excitation played = calib::read_excitation(folder / "next");
+  const bench::Excitation played = bench::read_excitation(folder / "next");
   std::size_t recordings = 0;
   for (const NextRun& run : found.next->runs) recordings += static_cast<std::size_t>(run.times);
   ASSERT_EQ(played.rows.size(), recordings);
   EXPECT_EQ(played.rows.front().gains.kp_Nm_per_rad, found.next->runs.front().kp);
   EXPECT_EQ(played.trajectory(played.rows.front().trajectory).q_cmd_rad.size(), found.next->runs.front().t_s.size());
-  EXPECT_EQ(calib::read_bench(folder / "next").runs.header, bench.runs.header);
+  EXPECT_EQ(bench::read_bench(folder / "next").runs.header, bench.runs.header);
   fs::create_directories(folder / "next" / "runs");
   EXPECT_THROW(write_next_excitation(folder / "next", bench, *found.next), std::runtime_error);
   fs::remove_all(folder);

@@ -14,9 +14,9 @@
 namespace pmg::test {
 
 struct RandomBench {
-  calib::Bench bench;
+  bench::Bench bench;
   calib::JointModel truth;
-  std::vector<calib::BenchRun> runs;
+  std::vector<bench::BenchRun> runs;
 };
 
 /// The command of one run within +-reach_rad, T_s long: steps, two sines, a chirp, or a slow triangle.
@@ -53,8 +53,8 @@ inline RandomBench random_bench(unsigned seed, const std::function<void(RandomBe
   RandomBench made;
   made.bench.folder = "random";
   const bool pendulum = kind != Kind::kHorizontal, servo = kind == Kind::kServo;
-  made.bench.rig = pendulum ? calib::Rig::kPendulum : calib::Rig::kHorizontal;
-  made.bench.law = servo ? calib::DriveLaw::kServoVoltage : calib::DriveLaw::kPositionPd;
+  made.bench.rig = pendulum ? bench::Rig::kPendulum : bench::Rig::kHorizontal;
+  made.bench.law = servo ? bench::DriveLaw::kServoVoltage : bench::DriveLaw::kPositionPd;
   made.bench.sample_rate_hz = unit(random) < 0.5 ? 100.0 : 250.0;
   const double torque_Nm = between(1.0, 6.0);
   made.truth.actuator.friction.coulomb_Nm = torque_Nm * between(0.02, 0.15);
@@ -72,14 +72,14 @@ inline RandomBench random_bench(unsigned seed, const std::function<void(RandomBe
   if (change) change(made, random);
   std::normal_distribution<double> noise(0.0, noise_rad);
   for (int i = 0; i < 12; ++i) {
-    calib::BenchRun run;
+    bench::BenchRun run;
     run.file = "run" + std::to_string(i) + ".csv";
     run.trajectory = std::to_string(i % 4);
     run.kp = (i + i / 4) % 2 == 0 ? kp : 2.0 * kp;
     run.kd = i % 3 == 0 ? kd : 1.6 * kd;
     const double size = i % 5 < 3 ? 1.0 : 1.6;
     run.load = {0.04 * torque_Nm * size, pendulum ? torque_Nm * size : 0.0};
-    calib::Recording& r = run.recording;
+    bench::Recording& r = run.recording;
     r.q_cmd_rad = random_command(random, i % 4, made.bench.sample_rate_hz, 5.0);
     for (std::size_t k = 0; k < r.q_cmd_rad.size(); ++k) {
       r.t_s.push_back(static_cast<double>(k) / made.bench.sample_rate_hz);

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<calib::SingleJoint> joints(const test::RandomBench& made) {
   std::vector<calib::SingleJoint> found;
-  for (const calib::BenchRun& run : made.runs) found.emplace_back(made.bench, run, 0.001);
+  for (const bench::BenchRun& run : made.runs) found.emplace_back(made.bench, run, 0.001);
   return found;
 }
 
@@ -52,7 +52,7 @@ TEST(Residual, OfAMissingDelayGoesWithTheVelocity) {
 
 TEST(Residual, HasTheCircumstancesThatTheBenchHas) {
   test::RandomBench made = test::random_bench(1, {}, test::Kind::kHorizontal);
-  for (calib::BenchRun& run : made.runs) run.recording.temp_C.clear();
+  for (bench::BenchRun& run : made.runs) run.recording.temp_C.clear();
   const ResidualSamples samples = residual_samples(made.bench, joints(made), made.truth, 1);
   std::vector<std::string> names;
   for (const Circumstance& c : samples.circumstances) {
@@ -66,7 +66,7 @@ TEST(Residual, HasTheCircumstancesThatTheBenchHas) {
 TEST(Residual, SpectrumHasTheVarianceAndTheLine) {
   test::RandomBench made = test::random_bench(1);
   made.runs.resize(1);
-  calib::Recording& r = made.runs[0].recording;
+  bench::Recording& r = made.runs[0].recording;
   calib::JointModel model = made.truth;
   const std::vector<double> simulated = calib::SingleJoint(made.bench, made.runs[0], 0.001).rollout(model);
   constexpr double kLine_Hz = 5.0, kAmplitude_rad = 0.01;

@@ -148,7 +148,7 @@ TEST(Signatures, MeasureADelayAndARate) {
 TEST(Signatures, SayWhatIsMissing) {
   RandomBench made = random_bench(1);
   made.runs.resize(1);
-  calib::Recording& r = made.runs[0].recording;
+  bench::Recording& r = made.runs[0].recording;
   for (std::size_t k = 0; k < r.q_rad.size(); ++k) r.q_rad[k] = r.q_cmd_rad[k] = k < 100 ? 0.0 : 1e-4;
   for (const Signature& check : signatures(made.bench, made.runs)) {
     EXPECT_NE(check.agreement, Agreement::kAgrees) << check.effect;

@@ -36,9 +36,9 @@ std::vector<Unknown> unknowns(const Rig& rig, const sim::ActuatorParameters& nom
 }
 
 std::vector<calib::SingleJoint> read(const std::filesystem::path& folder, const std::string& filter) {
-  const calib::Bench bench = calib::read_bench(folder);
+  const bench::Bench bench = bench::read_bench(folder);
   std::vector<calib::SingleJoint> joints;
-  for (calib::BenchRun& run : bench.read_runs(calib::RowFilter(filter))) {
+  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filter))) {
     joints.emplace_back(bench, std::move(run), calib::simulation_step_s(bench));
   }
   return joints;
@@ -48,7 +48,7 @@ Eigen::VectorXd residuals(const sim::ActuatorParameters& model, const std::vecto
   std::vector<double> all;
   for (const calib::SingleJoint& joint : joints) {
     const std::vector<double> q_rad = joint.rollout({.actuator = model});
-    const calib::Recording& r = joint.run().recording;
+    const bench::Recording& r = joint.run().recording;
     for (std::size_t k = 0; k < q_rad.size(); ++k) all.push_back(r.valid[k] ? q_rad[k] - r.q_rad[k] : 0.0);
   }
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));

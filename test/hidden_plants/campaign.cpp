@@ -19,7 +19,7 @@ diagnosis::Diagnosis diagnose(const std::filesystem::path& bench, const sim::Act
   options.fit = kFitFilter;
   options.score = kScoreFilter;
   options.model = base;
-  return diagnosis::diagnose(calib::read_bench(bench), options);
+  return diagnosis::diagnose(bench::read_bench(bench), options);
 }
 
 /// The rig's load that is meant, with what its scales didn't see.

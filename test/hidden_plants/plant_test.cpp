@@ -221,10 +221,10 @@ double difference_from_single_joint_rad(PlantParameters plant, double kd, Rig ri
   }
   const PlantRecording recording = record(plant, rig, 1, run);
 
-  calib::Bench bench;
-  bench.law = plant.drive.servo ? calib::DriveLaw::kServoVoltage : calib::DriveLaw::kPositionPd;
+  bench::Bench bench;
+  bench.law = plant.drive.servo ? bench::DriveLaw::kServoVoltage : bench::DriveLaw::kPositionPd;
   bench.supply_V = rig.bus_V;
-  calib::BenchRun same;
+  bench::BenchRun same;
   same.kp = run.kp;
   same.kd = run.kd;
   same.load = {load.inertia_kg_m2, load.gravity_Nm};

@@ -1,4 +1,4 @@
-#include "calib/bench_writer.hpp"
+#include "bench/bench_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "io/whole_file.hpp"
 #include "model/number_table.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -52,4 +52,4 @@ void write_bench(const fs::path& folder, const RobotBench& bench, const std::vec
                   load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad, bench.design));
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib/csv_table.hpp"
-#include "calib/excitation.hpp"
+#include "bench/csv_table.hpp"
+#include "bench/excitation.hpp"
 #include "io/whole_file.hpp"
 #include "model/bundle.hpp"
 #include "model/number_table.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::string excitation_sha256(const fs::path& folder, const Excitation& excitati
   return model::files_sha256(std::move(files));
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

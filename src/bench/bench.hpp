@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "calib/csv_table.hpp"
-#include "calib/recording.hpp"
-#include "calib/row_filter.hpp"
+#include "bench/csv_table.hpp"
+#include "bench/recording.hpp"
+#include "bench/row_filter.hpp"
 #include "sim/actuator_parameters.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 /// What the joint moves besides its own rotor. On a linear rig kg and N.
 struct JointLoad {
@@ -67,4 +67,4 @@ struct Bench {
 /// Throws model::ConfigError on whatever is missing, unknown or implausible.
 Bench read_bench(const std::filesystem::path& folder);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

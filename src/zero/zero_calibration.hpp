@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/standing_constraint.hpp"
-#include "calib/zero_poses.hpp"
+#include "zero/standing_constraint.hpp"
+#include "zero/zero_poses.hpp"
 #include "model/sole_load.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 struct ZeroOptions {
   // The paper's symbols; it gives no values.
@@ -71,4 +71,4 @@ using ZeroProgress = std::function<bool(int iteration)>;
 ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector<StillPose>& poses,
                                const ZeroOptions& options = {}, const ZeroProgress& progress = {});
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

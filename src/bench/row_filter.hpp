@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/csv_table.hpp"
+#include "bench/csv_table.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 /// Terms joined by `and`: COLUMN in V,V,... | not in V,V,... | == V | != V | < V | <= V | > V | >= V. Values that are
 /// numbers on both sides compare as numbers, others as text; < and its kin need numbers.
@@ -30,4 +30,4 @@ class RowFilter {
   std::vector<Term> terms_;
 };
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

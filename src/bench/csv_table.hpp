@@ -8,7 +8,7 @@
 
 #include "model/config_error.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 struct CsvTable {
   std::filesystem::path file;
@@ -30,4 +30,4 @@ CsvTable read_csv(const std::filesystem::path& file);
 /// Nothing when the text isn't a number; NaN and infinities are numbers here.
 std::optional<double> to_number(const std::string& text);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -1,4 +1,4 @@
-#include "calib/recording.hpp"
+#include "bench/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "calib/csv_table.hpp"
+#include "bench/csv_table.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -146,4 +146,4 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   return recording;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -1,4 +1,4 @@
-#include "calib/excitation.hpp"
+#include "bench/excitation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 #include <set>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ TEST_F(ExcitationFiles, AreRefusedWithPlaceAndReason) {
 }
 
 }  // namespace
-}  // namespace pmg::calib
+}  // namespace pmg::bench

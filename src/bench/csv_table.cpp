@@ -1,4 +1,4 @@
-#include "calib/csv_table.hpp"
+#include "bench/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <fstream>
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -90,4 +90,4 @@ CsvTable read_csv(const std::filesystem::path& file) {
   return table;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -7,7 +7,7 @@
 
 #include "model/robot_model.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 /// Where one sole is, level, against the standing posture.
 struct SolePlace {
@@ -41,4 +41,4 @@ std::vector<int> sole_joints(const model::RobotModel& robot);
 /// with. Throws std::invalid_argument or what copying files throws.
 void write_zero_rig(const model::RobotModel& robot, const std::filesystem::path& out);
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

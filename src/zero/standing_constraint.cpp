@@ -1,10 +1,10 @@
-#include "calib/standing_constraint.hpp"
+#include "zero/standing_constraint.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <set>
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 namespace {
 
@@ -95,4 +95,4 @@ Eigen::Vector3d StandingConstraint::gravity_B(const JointVector& q, const Eigen:
   return R_BI(q, Eigen::Vector2d::Zero()) * gravity_I;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

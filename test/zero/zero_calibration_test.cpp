@@ -1,15 +1,15 @@
 // Zero points from poses that are computed rather than simulated: what is hidden is known exactly.
-#include "calib/zero_calibration.hpp"
+#include "zero/zero_calibration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <kdl/chaindynparam.hpp>
 
-#include "calib/zero_stances.hpp"
+#include "zero/zero_stances.hpp"
 #include "sim/robots.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 namespace {
 
 using testing::Contains;
@@ -150,4 +150,4 @@ TEST(ZeroCalibration, WithoutAPoseThatStandsThereIsAMessage) {
 }
 
 }  // namespace
-}  // namespace pmg::calib
+}  // namespace pmg::zero

@@ -1,4 +1,4 @@
-#include "calib/zero_calibration.hpp"
+#include "zero/zero_calibration.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 namespace {
 
@@ -278,4 +278,4 @@ ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector
   return found;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

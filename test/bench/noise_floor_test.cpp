@@ -1,4 +1,4 @@
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "calib/synthetic_bench.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 namespace {
 
 constexpr double kNoise_rad = 2e-3;
@@ -74,4 +74,4 @@ TEST(SensorNoise, IsFoundUnderTheMotion) {
 }
 
 }  // namespace
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -1,4 +1,4 @@
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "model/config_reader.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -202,4 +202,4 @@ std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const Progress& 
   return found;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -7,7 +7,7 @@
 #include "model/chain_kinematics.hpp"
 #include "model/leg_kinematics.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 /// Both soles' tilts [rad], and how much higher the left one is [m].
 using StandingMiss = Eigen::Matrix<double, 5, 1>;
@@ -42,4 +42,4 @@ class StandingConstraint {
   std::vector<int> joints_;
 };
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

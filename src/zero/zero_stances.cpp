@@ -1,4 +1,4 @@
-#include "calib/zero_stances.hpp"
+#include "zero/zero_stances.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -10,7 +10,7 @@
 #include "model/clip_library_file.hpp"
 #include "model/leg_kinematics.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 namespace {
 
@@ -236,4 +236,4 @@ void write_zero_rig(const model::RobotModel& robot, const fs::path& out) {
   io::write_whole_file(out / "scenario.yaml", scenario_yaml(stances));
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

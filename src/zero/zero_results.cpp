@@ -1,11 +1,11 @@
-#include "calib/zero_results.hpp"
+#include "zero/zero_results.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 namespace {
 
@@ -223,4 +223,4 @@ std::vector<std::string> zero_remarks(const ZeroResults& results) {
           "zero_offset_rad is reading less truth; the firmware adds its negative."};
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

@@ -9,7 +9,7 @@
 
 #include "model/robot_model.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 /// Means over one still stretch, joints in the robot's order.
 struct StillPose {
@@ -35,4 +35,4 @@ using ReadingProgress = std::function<bool(double share)>;
 std::vector<StillPose> read_still_poses(const std::vector<std::filesystem::path>& logs, const model::RobotModel& robot,
                                         const StillnessOptions& options = {}, const ReadingProgress& progress = {});
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

@@ -1,4 +1,4 @@
-#include "calib/row_filter.hpp"
+#include "bench/row_filter.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::vector<bool> RowFilter::keeps(const CsvTable& table) const {
   return kept;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

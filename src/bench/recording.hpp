@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 /// Columns of equal length. On a linear rig rad is m and Nm is N. Columns that the file doesn't have are empty.
 struct Recording {
@@ -28,4 +28,4 @@ struct RecordingFormat {
 /// degrees, too few samples, and a command that never changes.
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 /// Two runs of one design (same trajectory, gains, load and commands, different repeat), by their place in the list.
 struct RepeatPair {
@@ -36,4 +36,4 @@ NoiseFloor noise_floor(const std::vector<const BenchRun*>& runs);
 /// the least that any model misses by; disturbances of the joint itself come on top, unseen.
 double sensor_noise_rad(const Recording& recording);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

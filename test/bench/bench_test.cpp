@@ -1,5 +1,5 @@
 // A bench is read whole or refused with one line that says what is wrong and where.
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class BenchFiles : public testing::Test {
 
   std::string refusal(const std::string& filter = "") const {
     try {
-      calib::read_bench(folder_).read_runs(calib::RowFilter(filter));
+      bench::read_bench(folder_).read_runs(bench::RowFilter(filter));
     } catch (const std::exception& error) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
       return error.what();
@@ -37,7 +37,7 @@ class BenchFiles : public testing::Test {
   void change(const std::function<std::string(int row, std::vector<std::string> cells)>& edit,
               const char* header = nullptr) const {
     const fs::path file = folder_ / "runs" / "run1.csv";
-    const calib::CsvTable table = calib::read_csv(file);
+    const bench::CsvTable table = bench::read_csv(file);
     std::ofstream out(file);
     out << (header != nullptr ? header : "t_s,q_cmd_rad,q_rad") << '\n';
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -60,14 +60,14 @@ class BenchFiles : public testing::Test {
 };
 
 TEST_F(BenchFiles, AJointIsCalledAsBenchYamlSaysOrElseAsItsFolder) {
-  EXPECT_EQ(calib::read_bench(folder_).joint_name(), folder_.filename().string());
+  EXPECT_EQ(bench::read_bench(folder_).joint_name(), folder_.filename().string());
   std::ofstream(folder_ / "bench.yaml", std::ios::app) << "joint: left_knee\n";
-  EXPECT_EQ(calib::read_bench(folder_).joint_name(), "left_knee");
+  EXPECT_EQ(bench::read_bench(folder_).joint_name(), "left_knee");
 }
 
 TEST_F(BenchFiles, AreReadAsTheyWereWritten) {
-  const calib::Bench bench = calib::read_bench(folder_);
-  const std::vector<calib::BenchRun> runs = bench.read_runs(calib::RowFilter("kp_Nm_per_rad in 20 and repeat == 0"));
+  const bench::Bench bench = bench::read_bench(folder_);
+  const std::vector<bench::BenchRun> runs = bench.read_runs(bench::RowFilter("kp_Nm_per_rad in 20 and repeat == 0"));
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[1].file, "run2.csv");
   EXPECT_EQ(runs[1].kp, 20.0);
@@ -142,23 +142,23 @@ TEST_F(BenchFiles, WithALoadThatBenchYamlDoesntHaveAreRefused) {
 
 TEST_F(BenchFiles, MayMissASampleOfTheSensor) {
   change([](int row, auto c) { return c[0] + "," + c[1] + "," + (row == 40 ? "-3.14" : c[2]); });
-  const auto runs = calib::read_bench(folder_).read_runs(calib::RowFilter(""));
+  const auto runs = bench::read_bench(folder_).read_runs(bench::RowFilter(""));
   EXPECT_EQ(runs[1].recording.dropouts(), 1U);
   EXPECT_FALSE(runs[1].recording.valid[40]);
 }
 
 TEST(RowFilter, SaysWhatItCannotRead) {
   for (const char* text : {"kp", "kp in", "kp ~ 3", "kp == 3 or kp == 4", "kp == 3 and", "not"}) {
-    EXPECT_THROW(calib::RowFilter{text}, std::invalid_argument) << text;
+    EXPECT_THROW(bench::RowFilter{text}, std::invalid_argument) << text;
   }
 }
 
 TEST(RowFilter, ComparesNumbersAsNumbersAndNamesAsNames) {
-  calib::CsvTable table;
+  bench::CsvTable table;
   table.file = "runs.csv";
   table.header = {"trajectory", "kp"};
   table.rows = {{"swing", "4"}, {"swing", "8.0"}, {"step", "16"}, {"step", "32"}};
-  const auto kept = [&](const char* text) { return calib::RowFilter(text).keeps(table); };
+  const auto kept = [&](const char* text) { return bench::RowFilter(text).keeps(table); };
   EXPECT_EQ(kept(""), (std::vector{true, true, true, true}));
   EXPECT_EQ(kept("kp in 8, 32"), (std::vector{false, true, false, true}));
   EXPECT_EQ(kept("kp not in 8,32 and trajectory==step"), (std::vector{false, false, true, false}));

@@ -1,4 +1,4 @@
-#include "calib/noise_floor.hpp"
+#include "bench/noise_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <random>
 #include <tuple>
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 namespace {
 
@@ -133,4 +133,4 @@ double sensor_noise_rad(const Recording& recording) {
   return *middle / kMedianOfNormal / std::sqrt(kVariance);
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

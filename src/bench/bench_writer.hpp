@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/bench.hpp"
+#include "bench/bench.hpp"
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 /// One run. Columns of equal length; an empty one is left out.
 struct WrittenRun {
@@ -28,4 +28,4 @@ struct RobotBench {
 /// Throws std::runtime_error when a file can't be written; bench.yaml, without which it is no bench, comes last.
 void write_bench(const std::filesystem::path& folder, const RobotBench& bench, const std::vector<WrittenRun>& runs);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/zero_calibration.hpp"
+#include "zero/zero_calibration.hpp"
 #include "pages/page.hpp"
 #include "sim/motor_file.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 struct ZeroResults {
   const model::RobotModel* robot = nullptr;
@@ -34,4 +34,4 @@ pages::Page zero_report(const ZeroResults& results);
 std::vector<std::string> zero_text(const ZeroResults& results);     ///< lines for a console
 std::vector<std::string> zero_remarks(const ZeroResults& results);  ///< of zero.yaml
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero

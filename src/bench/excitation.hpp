@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace pmg::calib {
+namespace pmg::bench {
 
 struct ExcitationLimits {
   double lower_rad = -0.5, upper_rad = 0.5;
@@ -58,4 +58,4 @@ Excitation read_excitation(const std::filesystem::path& folder);
 /// model::files_sha256 of what read_excitation reads of this excitation's folder.
 std::string excitation_sha256(const std::filesystem::path& folder, const Excitation& excitation);
 
-}  // namespace pmg::calib
+}  // namespace pmg::bench

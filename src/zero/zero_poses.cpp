@@ -1,4 +1,4 @@
-#include "calib/zero_poses.hpp"
+#include "zero/zero_poses.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
 
-namespace pmg::calib {
+namespace pmg::zero {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::vector<StillPose> read_still_poses(const std::vector<fs::path>& logs, const
   return poses;
 }
 
-}  // namespace pmg::calib
+}  // namespace pmg::zero
