@@ -14,7 +14,7 @@
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/next_excitation_files.hpp"
 #include "diagnosis/report.hpp"
-#include "diagnosis/signature.hpp"
+#include "evidence/signature.hpp"
 #include "io/whole_file.hpp"
 #include "model/nearest_name.hpp"
 #include "option_checks.hpp"
@@ -110,7 +110,7 @@ void tell(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs
                              1e3 * cause.held_out_error_before, unit, 1e3 * cause.held_out_error_after, unit);
     if (!cause.same_here.empty())
       std::cout << fmt::format("    which on this rig is the same as {}\n", fmt::join(cause.same_here, ", "));
-    for (const diagnosis::ParameterEstimate& p : cause.parameters) {
+    for (const evidence::ParameterEstimate& p : cause.parameters) {
       std::cout << fmt::format("    {} = {:.4g} ({:.4g} to {:.4g}) {}\n", p.name, p.estimate.value, p.estimate.low,
                                p.estimate.high, p.unit);
     }
@@ -186,7 +186,7 @@ int diagnose(Arguments arguments) {
   }
   std::vector<bench::BenchRun> recorded;
   for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());
-  const std::vector<diagnosis::Signature> checks = diagnosis::signatures(bench, recorded);
+  const std::vector<evidence::Signature> checks = evidence::signatures(bench, recorded);
   io::write_whole_file(arguments.out / "report.html",
                        diagnosis::diagnosis_report(bench, found, runs, checks, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/robot_diagnosis.hpp"
-#include "diagnosis/robot_excitation.hpp"
-#include "diagnosis/robot_report.hpp"
+#include "robot_diagnosis/robot_diagnosis.hpp"
+#include "robot_diagnosis/robot_excitation.hpp"
+#include "robot_diagnosis/robot_report.hpp"
 #include "io/whole_file.hpp"
 #include "model/clip_library_file.hpp"
 #include "sil/simulated_robot.hpp"
@@ -21,27 +21,27 @@ struct RobotDiagnosisArguments {
   std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
   std::filesystem::path out;
   bool json = false;
-  diagnosis::RobotProgress progress{};
+  robot_diagnosis::RobotProgress progress{};
 };
 
 /// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm. False when progress ended it:
 /// what was recorded whole until then is kept, and stderr says what.
 inline bool record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed,
-                         const diagnosis::RobotProgress& progress = {}) {
+                         const robot_diagnosis::RobotProgress& progress = {}) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
   const ClipLibrary clips = model::load_clip_library(robot.directory / "clips", robot);
   std::filesystem::create_directories(out);
   std::string kept = "nothing was written";
   try {
     sim::World gantry(robot, sil::world_with_noise(seed, true));
-    diagnosis::write_robot_log(diagnosis::play(gantry, diagnosis::hanging_excitation(robot), "hanging", progress),
+    robot_diagnosis::write_robot_log(robot_diagnosis::play(gantry, robot_diagnosis::hanging_excitation(robot), "hanging", progress),
                                robot, out / "hanging.lcm");
     kept = "hanging.lcm is written, standing.lcm isn't";
     sim::World ground(robot, sil::world_with_noise(seed, false));
-    diagnosis::write_robot_log(
-        diagnosis::play(ground, diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
+    robot_diagnosis::write_robot_log(
+        robot_diagnosis::play(ground, robot_diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
         out / "standing.lcm");
-  } catch (const diagnosis::Interrupted&) {
+  } catch (const robot_diagnosis::Interrupted&) {
     std::cerr << "interrupted: " << kept << '\n';
     return false;
   }
@@ -52,19 +52,19 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
 /// is written then, and stderr says so. Throws std::exception on bad input, before anything is written.
 inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
-  const std::vector<diagnosis::RobotRecording> recordings = diagnosis::read_robot_logs(arguments.logs, robot);
-  diagnosis::RobotDiagnosis found;
+  const std::vector<robot_diagnosis::RobotRecording> recordings = robot_diagnosis::read_robot_logs(arguments.logs, robot);
+  robot_diagnosis::RobotDiagnosis found;
   try {
-    found = diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
-  } catch (const diagnosis::Interrupted&) {
+    found = robot_diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
+  } catch (const robot_diagnosis::Interrupted&) {
     std::cerr << "interrupted: nothing was written\n";
     return false;
   }
-  const nlohmann::ordered_json json = diagnosis::robot_diagnosis_json(found);
+  const nlohmann::ordered_json json = robot_diagnosis::robot_diagnosis_json(found);
   std::filesystem::create_directories(arguments.out);
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
-  diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
-  std::cout << (arguments.json ? json.dump(2) + "\n" : diagnosis::robot_diagnosis_text(found));
+  robot_diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
+  std::cout << (arguments.json ? json.dump(2) + "\n" : robot_diagnosis::robot_diagnosis_text(found));
   return true;
 }
 

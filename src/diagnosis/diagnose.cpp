@@ -14,7 +14,7 @@
 #include "diagnosis/intervals.hpp"
 #include "diagnosis/next_excitation.hpp"
 #include "diagnosis/residual.hpp"
-#include "diagnosis/signature.hpp"
+#include "evidence/signature.hpp"
 
 namespace pmg::diagnosis {
 
@@ -91,7 +91,7 @@ class Diagnosing {
     checks_ = checks(fitted);
     const NestedFit all(fitted, options_.threads), fit(spread(fitted, kSearchedRuns), options_.threads);
     tell(0.02, "fitting what the simulation has");
-    const BaseModel base = diagnosis::base_model(bench_, options_.model, fit, options_.threads);
+    const BaseModel base = base_model(bench_, options_.model, fit, options_.threads);
     EffectSearch search(bench_, fit, base, limits(),
                         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad),
                         [this](const std::string& text) { return tell(share_ + 0.02 * (0.9 - share_), text); });
@@ -133,10 +133,10 @@ class Diagnosing {
     return {.noise_squares = noise, .healthy_squares = noise, .of_noise = 0.4, .of_beginning = 0.05, .of_rest = 0.1};
   }
 
-  std::vector<Signature> checks(const std::vector<calib::SingleJoint>& fitted) const {
+  std::vector<evidence::Signature> checks(const std::vector<calib::SingleJoint>& fitted) const {
     std::vector<bench::BenchRun> runs;
     for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
-    return signatures(bench_, runs);
+    return evidence::signatures(bench_, runs);
   }
 
   bool tell(double share, const std::string& text) {
@@ -184,10 +184,10 @@ class Diagnosing {
     ask_for_more(fit);
     const bool alike = std::any_of(diagnosis_.causes.begin(), diagnosis_.causes.end(),
                                    [](const Cause& cause) { return !cause.or_instead.empty(); });
-    diagnosis_.verdict = remains                     ? Verdict::kUnexplained
-                         : alike                     ? Verdict::kAmbiguous
-                         : diagnosis_.causes.empty() ? Verdict::kNone
-                                                     : Verdict::kFound;
+    diagnosis_.verdict = remains                     ? evidence::Verdict::kUnexplained
+                         : alike                     ? evidence::Verdict::kAmbiguous
+                         : diagnosis_.causes.empty() ? evidence::Verdict::kNone
+                                                     : evidence::Verdict::kFound;
   }
 
   const bench::Bench& bench_;
@@ -196,7 +196,7 @@ class Diagnosing {
   double share_ = 0.0;
   Diagnosis diagnosis_;
   std::optional<NestedFit> judged_;
-  std::vector<Signature> checks_;  // without a model
+  std::vector<evidence::Signature> checks_;  // without a model
   Explanation explanation_;
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
-#include "diagnosis/verdict.hpp"
+#include "evidence/verdict.hpp"
 
 namespace pmg::diagnosis {
 
@@ -14,7 +14,7 @@ namespace pmg::diagnosis {
 /// over the held-out runs: of the whole model without this effect (the rest fitted again), and with it.
 struct Cause {
   std::string effect;  ///< of the catalogue
-  std::vector<ParameterEstimate> parameters;
+  std::vector<evidence::ParameterEstimate> parameters;
   double held_out_error_before = 0.0, held_out_error_after = 0.0;
   std::vector<std::string> evidence;    ///< sentences: folds won, and model-free checks that agree or disagree
   std::vector<std::string> or_instead;  ///< effects that explain as much as this one; empty where it is told apart
@@ -59,12 +59,12 @@ struct NextExcitation {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::kNone;
+  evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;
   NoiseFloor noise_floor;
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
-  Interval held_out_before, held_out_after;
+  evidence::Interval held_out_before, held_out_after;
   bool held_out = false;               ///< runs were kept for the score; else the two above are from folds
   double share_of_way_to_floor = 0.0;  ///< (before - after) / (before - floor)
   /// What a usual block of half a second of the fitted runs misses by, in the noise (rms; geometric mean over blocks):

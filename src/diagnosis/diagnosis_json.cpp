@@ -12,13 +12,13 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity: null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json interval_json(const Interval& interval) {
+Json interval_json(const evidence::Interval& interval) {
   return {{"value", number(interval.value)}, {"low", number(interval.low)}, {"high", number(interval.high)}};
 }
 
 Json cause_json(const Cause& cause) {
   Json parameters = Json::object();
-  for (const ParameterEstimate& parameter : cause.parameters) {
+  for (const evidence::ParameterEstimate& parameter : cause.parameters) {
     parameters[parameter.name] = interval_json(parameter.estimate);
     parameters[parameter.name]["unit"] = parameter.unit;
   }

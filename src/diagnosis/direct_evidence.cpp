@@ -12,11 +12,11 @@ namespace {
 constexpr double kCoarser = 1.5;       // than the step that is known; sensors halve or double theirs
 constexpr double kShareOfNoise = 0.5;  // of its deviation: a quarter of its square
 
-std::vector<MeasuredCause> measured_causes(const std::vector<Signature>& checks, const sim::ActuatorParameters& base,
+std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
                                            double noise_rms_rad) {
   std::vector<MeasuredCause> found;
-  for (const Signature& check : checks) {
-    if (check.effect != "quantisation" || check.agreement != Agreement::kAgrees) continue;
+  for (const evidence::Signature& check : checks) {
+    if (check.effect != "quantisation" || check.agreement != evidence::Agreement::kAgrees) continue;
     const double quantum_rad = check.value.value;
     const double rms_rad = quantum_rad / std::sqrt(12.0);  // of what rounding leaves
     if (quantum_rad < kCoarser * base.sensor.quantum_rad || rms_rad < kShareOfNoise * noise_rms_rad) continue;
@@ -35,23 +35,23 @@ bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
   });
 }
 
-bool some_check(const std::vector<Signature>& checks, const std::string& effect, Agreement agreement) {
+bool some_check(const std::vector<evidence::Signature>& checks, const std::string& effect, evidence::Agreement agreement) {
   return std::any_of(checks.begin(), checks.end(),
-                     [&](const Signature& check) { return check.effect == effect && check.agreement == agreement; });
+                     [&](const evidence::Signature& check) { return check.effect == effect && check.agreement == agreement; });
 }
 
-std::vector<std::string> shown_effects(const std::vector<Signature>& checks, const sim::ActuatorParameters& base) {
+std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base) {
   const std::string thermal = "thermal_drift";
-  if (!some_check(checks, thermal, Agreement::kAgrees) || in_base(thermal, base)) return {};
+  if (!some_check(checks, thermal, evidence::Agreement::kAgrees) || in_base(thermal, base)) return {};
   return {thermal};
 }
 
 /// A load's check sees its inertia against its weight, and a load of another mass has both.
-std::vector<std::string> refuted_effects(const std::vector<Signature>& checks, const sim::ActuatorParameters& base) {
+std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base) {
   std::vector<std::string> found;
   for (const Effect& one : catalogue()) {
-    const bool refuted = some_check(checks, one.name, Agreement::kDisagrees) &&
-                         !some_check(checks, one.name, Agreement::kAgrees) && one.name != "load";
+    const bool refuted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
+                         !some_check(checks, one.name, evidence::Agreement::kAgrees) && one.name != "load";
     if (refuted && !in_base(one.name, base)) found.push_back(one.name);
   }
   return found;
@@ -59,7 +59,7 @@ std::vector<std::string> refuted_effects(const std::vector<Signature>& checks, c
 
 }  // namespace
 
-DirectEvidence direct_evidence(const std::vector<Signature>& checks, const sim::ActuatorParameters& base,
+DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
                                double noise_rms_rad) {
   return {measured_causes(checks, base, noise_rms_rad), shown_effects(checks, base), refuted_effects(checks, base)};
 }

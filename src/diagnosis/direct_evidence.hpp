@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/signature.hpp"
+#include "evidence/signature.hpp"
 #include "sim/actuator_parameters.hpp"
 
 namespace pmg::diagnosis {
@@ -13,7 +13,7 @@ namespace pmg::diagnosis {
 /// limit cycle, of which no model knows the phase.
 struct MeasuredCause {
   std::string effect, parameter;
-  Interval value;  ///< of the parameter, in its own unit
+  evidence::Interval value;  ///< of the parameter, in its own unit
 };
 
 struct DirectEvidence {
@@ -29,7 +29,7 @@ struct DirectEvidence {
 };
 
 /// noise_rms_rad: deviation of repeats.
-DirectEvidence direct_evidence(const std::vector<Signature>& checks, const sim::ActuatorParameters& base,
+DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
                                double noise_rms_rad);
 
 }  // namespace pmg::diagnosis

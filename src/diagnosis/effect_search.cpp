@@ -72,9 +72,9 @@ std::vector<Unknown> EffectSearch::unknowns(const std::vector<std::string>& effe
 /// Without the effect, but for parameters that the kept ones share.
 calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
                                       const std::vector<std::string>& kept) const {
-  for (const std::string& parameter : diagnosis::effect(effect).parameters) {
+  for (const std::string& parameter : effect(effect).parameters) {
     const bool shared = std::any_of(kept.begin(), kept.end(), [&](const std::string& name) {
-      return contains(diagnosis::effect(name).parameters, parameter);
+      return contains(effect(name).parameters, parameter);
     });
     if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
   }
@@ -85,7 +85,7 @@ Extension EffectSearch::extend(const std::vector<std::string>& effects, const ca
                                int iterations) const {
   Extension extension{effects, fit_.fit(start, unknowns(effects), iterations), {}};
   fit_.linearise(extension.fitted);
-  extension.held_out = diagnosis::held_out_squares(fit_, extension.fitted, compare_.folds());
+  extension.held_out = held_out_squares(fit_, extension.fitted, compare_.folds());
   return extension;
 }
 
@@ -142,7 +142,7 @@ Extension EffectSearch::settled(const Extension& extension) const {
     best.fitted = std::move(fitted);
   }
   fit_.linearise(best.fitted);
-  best.held_out = diagnosis::held_out_squares(fit_, best.fitted, compare_.folds());
+  best.held_out = held_out_squares(fit_, best.fitted, compare_.folds());
   return best;
 }
 
@@ -213,7 +213,7 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t mos
       if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}};
     }
     fit_.linearise(best.fitted, &screen.slopes());
-    best.held_out = diagnosis::held_out_squares(fit_, best.fitted, compare_.folds());
+    best.held_out = held_out_squares(fit_, best.fitted, compare_.folds());
     trials.push_back(trial(current, best, p.effect->name));
   }
   const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
@@ -253,7 +253,7 @@ std::vector<Trial> EffectSearch::alternatives(const Extension& without, const st
   std::vector<Trial> trials = tried(without, kExchanged);
   // What contains the effect as a special case explains as much; the simpler one stands.
   std::erase_if(trials, [&](const Trial& trial) {
-    return trial.effect == effect || contains(diagnosis::effect(trial.effect).contains, effect);
+    return trial.effect == effect || contains(effect(trial.effect).contains, effect);
   });
   return trials;
 }

@@ -59,7 +59,7 @@ class Explaining {
     cause.effect = name;
     for (const std::string& parameter : effect(name).parameters) {
       cause.parameters.push_back(measured != nullptr && measured->parameter == parameter
-                                     ? ParameterEstimate{parameter, measured->value, from_.unit}
+                                     ? evidence::ParameterEstimate{parameter, measured->value, from_.unit}
                                      : estimate(parameter));
     }
     cause.held_out_error_before = judged_error(rest.fitted.model);
@@ -76,8 +76,8 @@ class Explaining {
   }
 
   void add_checks(Cause& cause) const {
-    for (const Signature& check : from_.checks) {
-      if (check.effect != cause.effect || check.agreement == Agreement::kCannotTell) continue;
+    for (const evidence::Signature& check : from_.checks) {
+      if (check.effect != cause.effect || check.agreement == evidence::Agreement::kCannotTell) continue;
       cause.evidence.push_back(
           fmt::format("without a model, {} {}: {}", check.check, diagnosis::name(check.agreement), check.sentence));
     }
@@ -114,7 +114,7 @@ class Explaining {
     return from_.judged.absolutes_by_block(from_.judged.misses(model)).mean();
   }
 
-  ParameterEstimate estimate(const std::string& parameter) const {
+  evidence::ParameterEstimate estimate(const std::string& parameter) const {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
       const Unknown& u = from_.fitted.unknowns[i];
       if (u.name == parameter) return {parameter, intervals_[i], u.unit};
@@ -141,7 +141,7 @@ class Explaining {
   const Extension& chosen_;
   const ExplainedFrom& from_;
   double noise_squares_;
-  std::vector<Interval> intervals_;
+  std::vector<evidence::Interval> intervals_;
   Explanation found_;
 };
 

@@ -7,7 +7,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/next_excitation.hpp"
-#include "diagnosis/signature.hpp"
+#include "evidence/signature.hpp"
 
 namespace pmg::diagnosis {
 
@@ -19,7 +19,7 @@ struct ExplainedFrom {
   const NestedFit& all;                  ///< and all that were fitted
   const NestedFit& judged;               ///< those that errors are said of
   const NestedModel& fitted;             ///< the chosen effects, to all runs
-  const std::vector<Signature>& checks;  ///< without a model
+  const std::vector<evidence::Signature>& checks;  ///< without a model
   const NoiseFloor& noise;
   double error_after = 0.0;  ///< of the judged runs, with all causes [unit]
   std::string unit;

@@ -18,7 +18,7 @@ constexpr double kForm = 0.04;      // of the value: what two integrators of the
 constexpr double kTolerance = 0.3;  // of the value: wider ranges are those of searches
 constexpr double kUnseen_rad2 = 1e-18;
 
-Interval percentiles(double value, std::vector<double> drawn) {
+evidence::Interval percentiles(double value, std::vector<double> drawn) {
   std::sort(drawn.begin(), drawn.end());
   const auto at = [&](double share) {
     return drawn[static_cast<std::size_t>(share * static_cast<double>(drawn.size() - 1))];
@@ -44,7 +44,7 @@ Eigen::VectorXd jackknife(const NestedModel& model, const std::vector<Fold>& fol
 
 }  // namespace
 
-std::vector<Interval> parameter_intervals(const NestedModel& model, const std::vector<Fold>& folds,
+std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, const std::vector<Fold>& folds,
                                           double noise_squares) {
   const Eigen::Index count = model.coordinates.size();
   std::vector<Eigen::Index> seen;
@@ -83,14 +83,14 @@ std::vector<Interval> parameter_intervals(const NestedModel& model, const std::v
     covariance += pull * pull.transpose();
   }
   const Eigen::VectorXd moved = jackknife(model, folds);
-  std::vector<Interval> found;
+  std::vector<evidence::Interval> found;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     const double value = u.value(model.coordinates[i]);
     const auto place = std::find(seen.begin(), seen.end(), i);
     if (place == seen.end()) {
       const bool unseen = !(information(i, i) > kUnseen_rad2);
-      found.push_back(unseen ? Interval{value, u.lower, u.upper} : Interval{value, value, value});
+      found.push_back(unseen ? evidence::Interval{value, u.lower, u.upper} : evidence::Interval{value, value, value});
       continue;
     }
     const Eigen::Index s = place - seen.begin();

@@ -28,14 +28,14 @@ std::string title(const std::string& name) {
   return name;
 }
 
-pages::Tone tone(Verdict verdict) {
+pages::Tone tone(evidence::Verdict verdict) {
   switch (verdict) {
-    case Verdict::kFound:
-    case Verdict::kNone:
+    case evidence::Verdict::kFound:
+    case evidence::Verdict::kNone:
       return pages::Tone::kGood;
-    case Verdict::kAmbiguous:
+    case evidence::Verdict::kAmbiguous:
       return pages::Tone::kNeutral;
-    case Verdict::kUnexplained:
+    case evidence::Verdict::kUnexplained:
       break;
   }
   return pages::Tone::kBad;
@@ -43,7 +43,7 @@ pages::Tone tone(Verdict verdict) {
 
 std::string thousandths(double value_rad) { return fmt::format("{:.3g}", 1e3 * value_rad); }
 
-std::string thousandths(const Interval& interval) {
+std::string thousandths(const evidence::Interval& interval) {
   return fmt::format("{} ({} to {})", thousandths(interval.value), thousandths(interval.low),
                      thousandths(interval.high));
 }
@@ -130,7 +130,7 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
 
 std::string parameter_lines(const Cause& cause) {
   std::string text;
-  for (const ParameterEstimate& p : cause.parameters) {
+  for (const evidence::ParameterEstimate& p : cause.parameters) {
     text += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g}) {}", text.empty() ? "" : "; ", p.name, p.estimate.value,
                         p.estimate.low, p.estimate.high, p.unit);
   }
@@ -183,17 +183,17 @@ void show_rejected(pages::Page& page, const std::vector<Rejected>& rejected) {
   page.table(table);
 }
 
-void show_checks(pages::Page& page, const std::vector<Signature>& checks) {
+void show_checks(pages::Page& page, const std::vector<evidence::Signature>& checks) {
   if (checks.empty()) return;
   page.heading("Checks without a model");
   page.paragraph("What the recordings alone say, before any simulation; value with its 95 % interval.");
   pages::Table table{.header = {"effect", "the recordings", "looked at", "value", ""}, .rows = {}};
-  for (const Signature& check : checks) {
-    const Interval& v = check.value;
+  for (const evidence::Signature& check : checks) {
+    const evidence::Interval& v = check.value;
     table.rows.push_back(
         {title(check.effect),
-         check.agreement == Agreement::kAgrees      ? "show it"
-         : check.agreement == Agreement::kDisagrees ? "would show it, and don't"
+         check.agreement == evidence::Agreement::kAgrees      ? "show it"
+         : check.agreement == evidence::Agreement::kDisagrees ? "would show it, and don't"
                                                     : "can't tell",
          check.check,
          std::isfinite(v.value) ? fmt::format("{:.3g} ({:.3g} to {:.3g}) {}", v.value, v.low, v.high, check.unit) : "",
@@ -214,16 +214,16 @@ std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, 
   }
   std::string text;
   switch (diagnosis.verdict) {
-    case Verdict::kFound:
+    case evidence::Verdict::kFound:
       text = fmt::format("Found: {}", fmt::join(causes, ", "));
       break;
-    case Verdict::kAmbiguous:
+    case evidence::Verdict::kAmbiguous:
       text = fmt::format("Can't be told apart with these recordings: {}", fmt::join(causes, ", "));
       break;
-    case Verdict::kNone:
+    case evidence::Verdict::kNone:
       text = "Nothing beyond noise";
       break;
-    case Verdict::kUnexplained:
+    case evidence::Verdict::kUnexplained:
       text = fmt::format("Something real that no effect of the catalogue explains{}{}",
                          diagnosis.depends_on.empty() ? "" : "; it depends on ", fmt::join(diagnosis.depends_on, ", "));
       if (!causes.empty()) text += fmt::format("; besides: {}", fmt::join(causes, ", "));
@@ -233,14 +233,14 @@ std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, 
   text += fmt::format(". Mean absolute error {} {} before, {} {} after, on {} {} runs",
                       thousandths(diagnosis.held_out_before), unit, thousandths(diagnosis.held_out_after), unit,
                       shown_runs(diagnosis, runs).size(), diagnosis.held_out ? "held-out" : "fitted (over folds)");
-  if (diagnosis.noise_floor.mean_absolute_rad > 0.0 && diagnosis.verdict != Verdict::kNone) {
+  if (diagnosis.noise_floor.mean_absolute_rad > 0.0 && diagnosis.verdict != evidence::Verdict::kNone) {
     text += fmt::format(": {:.0f} % of the way to the noise floor", 100.0 * diagnosis.share_of_way_to_floor);
   }
   return text;
 }
 
 pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
-                             const std::vector<Signature>& checks, unsigned threads) {
+                             const std::vector<evidence::Signature>& checks, unsigned threads) {
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));

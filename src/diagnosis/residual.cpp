@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "calib/parallel.hpp"
-#include "diagnosis/motion.hpp"
+#include "evidence/motion.hpp"
 
 namespace pmg::diagnosis {
 
@@ -40,7 +40,7 @@ RunSamples read(const bench::Bench& bench, const calib::SingleJoint& joint, cons
                 std::size_t every) {
   const bench::Recording& r = joint.run().recording;
   const std::vector<double> simulated_rad = joint.rollout(model);
-  const Motion m = motion(bench, joint.run());
+  const evidence::Motion m = evidence::motion(bench, joint.run());
   RunSamples samples;
   for (std::size_t k = 0; k < r.t_s.size(); k += every) {
     if (!r.valid[k]) continue;
@@ -123,7 +123,7 @@ ResidualBin bin_mean(const ResidualSamples& samples, const std::vector<double>& 
 
 /// Runs are dealt to two halves, blocks of a second where there are fewer than four runs; each half's bin means predict
 /// the other half's residual.
-Interval explained_share(const ResidualSamples& samples, const std::vector<std::size_t>& bin, std::size_t bins) {
+evidence::Interval explained_share(const ResidualSamples& samples, const std::vector<std::size_t>& bin, std::size_t bins) {
   const std::size_t runs = samples.run.empty() ? 0 : samples.run.back() + 1;
   const auto half = [&](std::size_t i) { return (runs >= 4 ? samples.run[i] : samples.block[i] / 2) % 2; };
   std::vector<double> sum[2], count[2];

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
-#include "diagnosis/verdict.hpp"
+#include "evidence/verdict.hpp"
 
 namespace pmg::diagnosis {
 
@@ -32,7 +32,7 @@ ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<ca
 /// Mean residual over one range of a circumstance, with its 95 % interval (cluster-robust over blocks).
 struct ResidualBin {
   double at = 0.0;  ///< mean of the circumstance
-  Interval mean_rad;
+  evidence::Interval mean_rad;
   std::size_t samples = 0, blocks = 0;
 };
 
@@ -41,7 +41,7 @@ struct Dependence {
   std::string name, unit;
   std::vector<ResidualBin> bins;  ///< equally many samples each
   /// Of the residual's mean square, what bin means of the other half of the data explain: 0 or below by chance alone.
-  Interval explained_share;
+  evidence::Interval explained_share;
   bool significant() const { return explained_share.low > 0.0; }
 };
 

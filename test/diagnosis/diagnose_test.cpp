@@ -43,17 +43,17 @@ TEST_F(Diagnose, NamesADelayWithItsInterval) {
   const Diagnosis found = diagnosed([](sim::ActuatorParameters& p) { p.command.delay_s = 0.015; });
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "delay");
-  const Interval delay_s = found.causes.front().parameters.front().estimate;
+  const evidence::Interval delay_s = found.causes.front().parameters.front().estimate;
   EXPECT_LT(delay_s.low, 0.015);
   EXPECT_GT(delay_s.high, 0.015);
-  EXPECT_EQ(found.verdict, Verdict::kFound);
+  EXPECT_EQ(found.verdict, evidence::Verdict::kFound);
   EXPECT_GT(found.share_of_way_to_floor, 0.9);
   EXPECT_NEAR(found.after.actuator.command.delay_s, 0.015, 0.001);
 }
 
 TEST_F(Diagnose, FindsNothingWhereNothingIsWrong) {
   const Diagnosis found = diagnosed([](sim::ActuatorParameters&) {});
-  EXPECT_EQ(found.verdict, Verdict::kNone);
+  EXPECT_EQ(found.verdict, evidence::Verdict::kNone);
   EXPECT_TRUE(found.causes.empty());
   EXPECT_FALSE(found.rejected.empty());
 }
@@ -68,7 +68,7 @@ TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
   const Diagnosis found = diagnose(bench::read_bench(folder_), options);
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "quantisation");
-  const Interval quantum_rad = found.causes.front().parameters.front().estimate;
+  const evidence::Interval quantum_rad = found.causes.front().parameters.front().estimate;
   EXPECT_LE(quantum_rad.low, 0.02);
   EXPECT_GE(quantum_rad.high, 0.02);
   EXPECT_LT(quantum_rad.high - quantum_rad.low, 1e-4);  // files hold microradians

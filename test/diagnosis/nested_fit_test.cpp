@@ -33,7 +33,7 @@ TEST(NestedFit, FindsFrictionAndDelayWithinTheirIntervals) {
   NestedModel fitted = s.fit.fit(
       healthy(), {unknown("friction.coulomb_Nm", s.bench, s.scale), unknown("command.delay_s", s.bench, s.scale)}, 20);
   s.fit.linearise(fitted);
-  const std::vector<Interval> found = parameter_intervals(fitted, folds(s.fit), 1e-8);
+  const std::vector<evidence::Interval> found = parameter_intervals(fitted, folds(s.fit), 1e-8);
   EXPECT_LT(found[0].low, 0.3);
   EXPECT_GT(found[0].high, 0.3);
   EXPECT_LT(found[1].low, 0.012);

@@ -90,7 +90,7 @@ TEST(Report, ShowsRunsCausesRejectedAndWhatToRecord) {
   Diagnosis diagnosis;
   diagnosis.before = diagnosis.after = made.truth;
   diagnosis.before.actuator.friction.coulomb_Nm = 0.0;
-  diagnosis.verdict = Verdict::kAmbiguous;
+  diagnosis.verdict = evidence::Verdict::kAmbiguous;
   diagnosis.held_out = true;
   diagnosis.noise_floor = {0.001, 0.0012, false, "from the sensor's own noise"};
   Cause cause;
@@ -108,7 +108,7 @@ TEST(Report, ShowsRunsCausesRejectedAndWhatToRecord) {
   run.t_s = {0.0, 1.0, 2.0};
   run.q_cmd_rad = {0.0, 0.5, 0.0};
   diagnosis.next_excitation = next;
-  const std::string html = diagnosis_report(made.bench, diagnosis, runs, signatures(made.bench, made.runs)).html();
+  const std::string html = diagnosis_report(made.bench, diagnosis, runs, evidence::signatures(made.bench, made.runs)).html();
   for (const char* text : {"Coulomb friction or dead band", "record slow steps", "gains nothing", "friction.coulomb_Nm",
                            "wins &lt;all&gt; folds", "against velocity", "noise floor", "balance of torques"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;

@@ -64,7 +64,7 @@ nlohmann::json examine(std::uint64_t seed, const std::filesystem::path& folder, 
       {"diagnosis", diagnosis::diagnosis_json(found)},
       {"seconds", static_cast<double>(std::clock() - begin) / static_cast<double>(CLOCKS_PER_SEC)}};
   result["diagnosis"].erase("rejected");
-  if (found.verdict == diagnosis::Verdict::kAmbiguous && found.next_excitation) {
+  if (found.verdict == evidence::Verdict::kAmbiguous && found.next_excitation) {
     const auto again = folder / "asked";
     write_bench(again, plant.hidden, plant.hidden.plant, 0, record_asked_for(plant.hidden, *found.next_excitation));
     result["asked"] = diagnosis::diagnosis_json(diagnose(again, plant.base));

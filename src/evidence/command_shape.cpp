@@ -1,0 +1,149 @@
+#include "evidence/command_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace pmg::evidence {
+
+namespace {
+
+constexpr double kLongest_s = 0.1;
+constexpr int kResamples = 200;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// For each candidate shape (columns) and cluster (rows): squared residual of the balance, and of the drive with
+/// neither load nor acceleration to explain it. The second makes shapes comparable: less command is less to explain.
+struct Profile {
+  Eigen::MatrixXd residual, whole;
+  double ratio(Eigen::Index shape) const { return residual.col(shape).sum() / whole.col(shape).sum(); }
+};
+
+Eigen::MatrixXd basis(const std::vector<Column>& columns) {
+  Eigen::MatrixXd found(columns.front().size(), 0);
+  for (const Column& column : columns) {
+    Column rest = column;
+    for (int twice = 0; twice < 2; ++twice) rest -= found * (found.transpose() * rest);
+    if (!(rest.norm() > 0.01 * column.norm())) continue;
+    found.conservativeResize(Eigen::NoChange, found.cols() + 1);
+    found.col(found.cols() - 1) = rest.normalized();
+  }
+  return found;
+}
+
+Profile profile(TorqueBalance& balance, const std::vector<CommandShape>& shapes) {
+  const std::vector<int> clusters = balance.clusters();
+  const auto direction = balance.integral([](const BalancePoint& p) { return p.direction; });
+  const auto load = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
+  const auto heavy = balance.integral([](const BalancePoint& p) { return std::abs(p.gravity_Nm) * p.direction; });
+  const Column one = Column::Ones(direction.size());
+  const Eigen::MatrixXd small = basis({balance.speed_rad_s(), direction, one, heavy});
+  const Eigen::MatrixXd full = basis(
+      {balance.speed_rad_s(), direction, one, heavy, load + balance.load_inertia_Nm(), balance.acceleration_rad_s2()});
+  Profile found;
+  found.residual = found.whole = Eigen::MatrixXd::Zero(clusters.back() + 1, static_cast<Eigen::Index>(shapes.size()));
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    balance.shape(shapes[s]);
+    const Column drive = balance.drive();
+    const Column residual = drive - full * (full.transpose() * drive),
+                 whole = drive - small * (small.transpose() * drive);
+    for (Eigen::Index i = 0; i < drive.size(); ++i) {
+      const int cluster = clusters[static_cast<std::size_t>(i)];
+      found.residual(cluster, static_cast<Eigen::Index>(s)) += residual[i] * residual[i];
+      found.whole(cluster, static_cast<Eigen::Index>(s)) += whole[i] * whole[i];
+    }
+  }
+  return found;
+}
+
+/// How often each cluster is drawn.
+Eigen::VectorXd draw(Eigen::Index clusters, std::mt19937& random) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(clusters);
+  for (Eigen::Index i = 0; i < clusters; ++i) {
+    weights[static_cast<Eigen::Index>(random() % static_cast<unsigned long>(clusters))] += 1.0;
+  }
+  return weights;
+}
+
+Eigen::VectorXd ratios(const Profile& profile, const Eigen::VectorXd& weights) {
+  return (profile.residual.transpose() * weights).array() / (profile.whole.transpose() * weights).array();
+}
+
+/// Where a parabola through the lowest value and its neighbours has its lowest point; values on an even grid.
+double lowest_at(const Eigen::VectorXd& values) {
+  Eigen::Index best = 0;
+  values.minCoeff(&best);
+  const auto at = static_cast<double>(best);
+  if (best == 0 || best + 1 == values.size()) return at;
+  const double below = values[best - 1], here = values[best], above = values[best + 1];
+  const double bend = below - 2.0 * here + above;
+  return bend > 0.0 ? at + 0.5 * (below - above) / bend : at;
+}
+
+Interval interval(double value, std::vector<double> drawn) {
+  std::sort(drawn.begin(), drawn.end());
+  const std::size_t tail = drawn.size() / 40;
+  return {value, drawn[tail], drawn[drawn.size() - 1 - tail]};
+}
+
+void find_delay(TorqueBalance& balance, double rate_limit_rad_s, std::mt19937& random, FoundShape& found) {
+  const double step_s = std::max(0.001, 0.25 * balance.sample_s());
+  std::vector<CommandShape> shapes;
+  for (double delay_s = 0.0; delay_s <= kLongest_s; delay_s += step_s) shapes.push_back({delay_s, rate_limit_rad_s});
+  const Profile p = profile(balance, shapes);
+  const Eigen::VectorXd all = ratios(p, Eigen::VectorXd::Ones(p.residual.rows()));
+  std::vector<double> drawn_s;
+  for (int i = 0; i < kResamples; ++i)
+    drawn_s.push_back(step_s * lowest_at(ratios(p, draw(p.residual.rows(), random))));
+  found.delay_s = interval(step_s * lowest_at(all), drawn_s);
+  found.delay_gain = 1.0 - all.minCoeff() / all[0];
+}
+
+void find_rate(TorqueBalance& balance, double delay_s, std::mt19937& random, FoundShape& found) {
+  std::vector<CommandShape> shapes;
+  for (double share = 0.4; share < 4.0; share *= 1.12) {
+    shapes.push_back({delay_s, share * balance.fastest_rad_s()});
+  }
+  const auto limits = static_cast<Eigen::Index>(shapes.size());
+  shapes.push_back({delay_s, kInfinite});
+  const Profile p = profile(balance, shapes);
+  const Eigen::VectorXd all = ratios(p, Eigen::VectorXd::Ones(p.residual.rows()));
+  Eigen::Index best = 0;
+  all.head(limits).minCoeff(&best);
+  std::vector<double> drawn_gain, drawn_rad_s;
+  for (int i = 0; i < kResamples; ++i) {
+    const Eigen::VectorXd values = ratios(p, draw(p.residual.rows(), random));
+    Eigen::Index here = 0;
+    values.head(limits).minCoeff(&here);
+    drawn_gain.push_back(1.0 - values[best] / values[limits]);
+    drawn_rad_s.push_back(shapes[static_cast<std::size_t>(here)].rate_limit_rad_s);
+  }
+  found.rate_gain = interval(1.0 - all[best] / all[limits], drawn_gain);
+  found.rate_limit_rad_s = interval(shapes[static_cast<std::size_t>(best)].rate_limit_rad_s, drawn_rad_s);
+}
+
+}  // namespace
+
+FoundShape find_shape(TorqueBalance& balance, unsigned seed) {
+  constexpr std::size_t kFewestWindows = 40;
+  constexpr double kWorthIt = 0.1;  // of the balance's residual
+  FoundShape found;
+  found.rate_limit_rad_s = {kInfinite, kInfinite, kInfinite};
+  if (!balance.shaped() || balance.windows() < kFewestWindows) return found;
+  found.known = true;
+  std::mt19937 random(seed);
+  CommandShape shape;
+  // One after the other, twice: a limited rate looks like a delay until it is known, and the other way round.
+  for (int round = 0; round < 2; ++round) {
+    find_delay(balance, shape.rate_limit_rad_s, random, found);
+    shape.delay_s = found.delay_gain > kWorthIt && found.delay_s.low > 0.0 ? found.delay_s.value : 0.0;
+    find_rate(balance, shape.delay_s, random, found);
+    if (!(found.rate_gain.low > kWorthIt)) break;
+    shape.rate_limit_rad_s = found.rate_limit_rad_s.value;
+  }
+  balance.shape(shape);
+  return found;
+}
+
+}  // namespace pmg::evidence

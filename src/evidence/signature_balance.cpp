@@ -1,0 +1,330 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "evidence/command_shape.hpp"
+#include "evidence/signature_checks.hpp"
+
+namespace pmg::evidence {
+
+namespace {
+
+constexpr double kSure_t = 4.0;  // deviations: one in 10000 by chance; the shares guard against what isn't chance
+// Shares of the drive's rms that a term must make up. Sampling, and drives at their limit, leave up to 0.8 % in terms
+// that follow the direction, up to 0.9 % in those that follow the drive, where there is no such effect at all.
+constexpr double kFriction_share = 0.010, kConstant_share = 0.003, kDrive_share = 0.012;
+constexpr double kOwn = 0.1;  // of a term's rms that the others must not imitate
+constexpr int kFewestClusters = 15;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The balance's columns. Drive = load + rotor + friction: all at the joint, in the drive's unit.
+struct Columns {
+  explicit Columns(const TorqueBalance& balance)
+      : load(balance.integral([](const BalancePoint& p) { return p.gravity_Nm; }) + balance.load_inertia_Nm()),
+        acceleration(balance.acceleration_rad_s2()),
+        speed(balance.speed_rad_s()),
+        direction(balance.integral([](const BalancePoint& p) { return p.direction; })),
+        one(Column::Ones(direction.size())),
+        heavy(balance.integral([](const BalancePoint& p) { return std::abs(p.load_Nm) * p.direction; })) {}
+  Column load, acceleration, speed, direction, one, heavy;
+};
+
+Interval around(double value, double deviation) { return {value, value - 2.0 * deviation, value + 2.0 * deviation}; }
+
+class BalanceChecks {
+ public:
+  BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs)
+      : bench_(bench), balance_(bench, runs), shape_(find_shape(balance_)) {}
+
+  std::vector<Signature> all() {
+    if (balance_.shaped()) {
+      add_delay();
+      add_rate_limit();
+    }
+    columns_.emplace_back(balance_);
+    drive_ = balance_.drive();
+    const std::vector<int> clusters = balance_.clusters();
+    enough_ = !clusters.empty() && clusters.back() + 1 >= kFewestClusters;
+    add_friction();
+    add_offsets();
+    add_drive();
+    add_cogging();
+    add_thermal();
+    return std::move(found_);
+  }
+
+ private:
+  const Columns& c() const { return columns_.front(); }
+  bool position_pd() const { return bench_.law == bench::DriveLaw::kPositionPd; }
+  bool pendulum() const { return bench_.rig == bench::Rig::kPendulum; }
+  const char* drive_unit() const {
+    if (bench_.law == bench::DriveLaw::kServoVoltage || bench_.law == bench::DriveLaw::kCascadePd) return "V";
+    return bench_.rig == bench::Rig::kLinear ? "N" : "Nm";
+  }
+
+  ClusterRegression regression(const std::vector<Column>& base) const { return {base, drive_, balance_.clusters()}; }
+
+  void cannot_tell(const std::string& effect, const std::string& why) {
+    found_.push_back({effect, "balance of torques", Agreement::kCannotTell, {kNaN, kNaN, kNaN}, "", why});
+  }
+
+  /// An effect that is one term of the balance. must_be_positive: a friction that pushes is no friction.
+  void add_term(const std::string& effect, const std::vector<Column>& base, const Column& column,
+                const std::string& what, const std::string& unit, bool must_be_positive, double worth_share) {
+    if (!enough_) return cannot_tell(effect, "too little motion was recorded");
+    const TermEstimate e = regression(base).term(column);
+    if (!(e.own > kOwn)) return cannot_tell(effect, what + " can't be told from the rest in these recordings");
+    Signature s{effect, "balance of torques", Agreement::kCannotTell, around(e.coefficient, e.deviation), unit, ""};
+    const bool sure = must_be_positive ? e.t() > kSure_t : std::abs(e.t()) > kSure_t;
+    if (sure && e.share > worth_share) {
+      s.agreement = Agreement::kAgrees;
+    } else if (e.share_sure < 0.4 * worth_share) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = fmt::format("{}: {:.3g} {} (deviation {:.2g}), {:.2f} % of the drive", what, e.coefficient, unit,
+                             e.deviation, 100.0 * e.share);
+    found_.push_back(s);
+  }
+
+  void add_delay() {
+    if (!shape_.known) return cannot_tell("delay", "too little motion was recorded");
+    const Interval& d = shape_.delay_s;
+    // Half a sample: a command is held, and when within a sample it came is not recorded.
+    const double unsure_s = std::max(0.002, 0.5 * balance_.sample_s());
+    Signature s{"delay", "balance of torques", Agreement::kCannotTell, d, "s", ""};
+    if (d.low > unsure_s && shape_.delay_gain > 0.1) {
+      s.agreement = Agreement::kAgrees;
+    } else if (d.high < unsure_s) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = fmt::format(
+        "torques balance best with the command {:.1f} ms late ({:.1f} to {:.1f}); that removes {:.0f} % of what "
+        "doesn't",
+        1e3 * d.value, 1e3 * d.low, 1e3 * d.high, 100.0 * std::max(0.0, shape_.delay_gain));
+    found_.push_back(s);
+  }
+
+  void add_rate_limit() {
+    if (!shape_.known) return cannot_tell("rate_limit", "too little motion was recorded");
+    const Interval& r = shape_.rate_limit_rad_s;
+    Signature s{"rate_limit", "balance of torques", Agreement::kCannotTell, r, "rad/s", ""};
+    if (shape_.rate_gain.low > 0.1) {
+      s.agreement = Agreement::kAgrees;
+    } else if (shape_.rate_gain.high < 0.05) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = fmt::format(
+        "a command that moves at {:.3g} rad/s at most removes {:.0f} % ({:.0f} to {:.0f}) of what "
+        "doesn't balance",
+        r.value, 100.0 * shape_.rate_gain.value, 100.0 * shape_.rate_gain.low, 100.0 * shape_.rate_gain.high);
+    found_.push_back(s);
+  }
+
+  void add_friction() {
+    add_term("coulomb", {c().load, c().acceleration, c().speed, c().one, c().heavy}, c().direction,
+             "torque against the direction of motion, whatever the speed", drive_unit(), true, kFriction_share);
+    if (position_pd()) {
+      add_term("viscous", {c().load, c().acceleration, c().direction, c().one, c().heavy}, c().speed,
+               "torque against motion that grows with speed", "Nm s/rad", true, kFriction_share);
+    } else {
+      cannot_tell("viscous", "the back-EMF of this drive looks the same");
+    }
+    const double slow_rad_s = 0.15 * balance_.fastest_rad_s();
+    const Column slow = balance_.integral([slow_rad_s](const BalancePoint& p) {
+      const double ratio = p.dq_rad_s / slow_rad_s;
+      return std::exp(-ratio * ratio) * p.direction;
+    });
+    add_term("stribeck", {c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, slow,
+             fmt::format("friction below {:.2g} rad/s beyond that above", slow_rad_s), drive_unit(), false,
+             kFriction_share);
+    if (pendulum()) {
+      add_term("load_friction", {c().load, c().acceleration, c().speed, c().direction, c().one}, c().heavy,
+               "friction per torque of gravity", "", true, kFriction_share);
+    } else {
+      cannot_tell("load_friction", "no load hangs");
+    }
+  }
+
+  void add_offsets() {
+    const Column hanging = balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; });
+    std::vector<Column> base = {c().load, c().acceleration, c().speed, c().direction, c().heavy};
+    std::vector<Column> with_hanging = base;
+    if (pendulum()) with_hanging.push_back(hanging);
+    for (const char* effect : {"offset", "direction_friction"}) {
+      add_term(effect, with_hanging, c().one, "torque that one direction needs more than the other", drive_unit(),
+               false, kConstant_share);
+    }
+    base.push_back(c().one);
+    if (pendulum()) {
+      add_term("zero_offset", base, hanging, "gravity as if the joint stood elsewhere, by", "rad", false,
+               kConstant_share);
+    } else {
+      cannot_tell("zero_offset", "no load hangs");
+    }
+  }
+
+  void add_drive() {
+    const std::vector<Column> base = {c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy};
+    add_gain();
+    add_dead_band();
+    if (pendulum()) {
+      add_term("load", base, balance_.load_inertia_Nm(), "inertia of the load beyond what its weight says", "", false,
+               2.0 * kConstant_share);
+    }
+    add_supply_sag(base);
+    const double fastest_rad_s = balance_.fastest_rad_s();
+    const Column hard_and_fast = balance_.integral([fastest_rad_s](const BalancePoint& p) {
+      return p.drive * p.direction > 0.0 ? p.drive * std::abs(p.dq_rad_s) / fastest_rad_s : 0.0;
+    });
+    if (position_pd()) {
+      add_term("torque_speed", base, hard_and_fast, "share of a driving torque that is missing at the highest speed",
+               "", true, kDrive_share);
+    }
+    const Column turning =
+        balance_.integral([](const BalancePoint& p) { return p.since_turn_s < 0.03 ? p.drive : 0.0; });
+    add_term("backlash", base, turning, "share of the drive that is missing within 30 ms of its reversal", "", true,
+             kDrive_share);
+  }
+
+  /// A source resistance in front of a bridge counts by the duty's square.
+  void add_supply_sag(const std::vector<Column>& base) {
+    if (bench_.law != bench::DriveLaw::kServoVoltage) {
+      return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
+    }
+    const double full = bench_.known.drive.limit * bench_.supply_V;
+    add_term("supply_sag", base,
+             balance_.integral([full](const BalancePoint& p) { return std::pow(p.drive / full, 2) * p.load_Nm; }),
+             "drive that torques need beyond their share at full duty", "V/Nm", true, kDrive_share);
+  }
+
+  /// Within the band the whole of the gain's output is missing: a share of 1 is what tells it from friction.
+  void add_dead_band() {
+    if (!balance_.shaped() || !enough_) return cannot_tell("dead_band", "too little motion was recorded");
+    if (bench_.rig == bench::Rig::kLinear) return cannot_tell("dead_band", "looked for on turning joints only");
+    const ClusterRegression base =
+        regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy});
+    double band_rad = 0.0, surest_t = 0.0, largest_share = 0.0;
+    TermEstimate surest;
+    for (double limit_rad = 0.003; limit_rad < 0.1; limit_rad *= 1.35) {
+      const TermEstimate e = base.term(balance_.integral(
+          [limit_rad](const BalancePoint& p) { return std::abs(p.error_rad) < limit_rad ? p.error_drive : 0.0; }));
+      if (std::abs(e.coefficient - 1.0) < 0.5) largest_share = std::max(largest_share, e.share_sure);
+      if (e.t() > surest_t) surest_t = e.t(), band_rad = limit_rad, surest = e;
+    }
+    Signature s{
+        "dead_band", "balance of torques", Agreement::kCannotTell, {band_rad, band_rad / 1.35, band_rad * 1.35}, "rad",
+        ""};
+    if (surest_t > kSure_t && std::abs(surest.coefficient - 1.0) < 0.4 && surest.share > kConstant_share) {
+      s.agreement = Agreement::kAgrees;
+    } else if (surest.coefficient + 2.0 * surest.deviation < 0.6 || largest_share < 0.4 * kConstant_share) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = fmt::format("of the output of errors below {:.2g} rad a share of {:.2g} (deviation {:.2g}) is missing",
+                             band_rad, surest.coefficient, surest.deviation);
+    found_.push_back(s);
+  }
+
+  void add_gain() {
+    if (!position_pd()) return cannot_tell("gain", "the unit of this drive is fitted anyway");
+    if (!enough_) return cannot_tell("gain", "too little motion was recorded");
+    const TermEstimate e = regression({c().acceleration, c().speed, c().direction, c().one, c().heavy}).term(c().load);
+    if (!(e.own > kOwn) || !(e.coefficient > 0.1)) {
+      return cannot_tell("gain", "no load of known weight or inertia was moved");
+    }
+    const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
+    Signature s{"gain", "balance of torques", Agreement::kCannotTell, around(gain, deviation), "", ""};
+    if (std::abs(gain - 1.0) > std::max(kSure_t * deviation, 0.05)) {
+      s.agreement = Agreement::kAgrees;
+    } else if (std::abs(gain - 1.0) + 2.0 * deviation < 0.05) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = fmt::format("the drive gives {:.3g} (deviation {:.2g}) of what the load takes, by its own account",
+                             e.coefficient, e.deviation);
+    found_.push_back(s);
+  }
+
+  /// The strongest of many orders is strong by chance: the bar grows with their number.
+  void add_cogging() {
+    if (!enough_) return cannot_tell("cogging", "too little motion was recorded");
+    if (bench_.rig == bench::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
+    const ClusterRegression base = regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy,
+                                               balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; })});
+    constexpr int kLowest = 3, kOrders = 60;             // below, a wrong load looks the same
+    const double bar = 2.0 * std::log(kOrders / 0.001);  // chi-square, 2 degrees of freedom
+    double best = 0.0, largest_missed = 0.0;
+    int at = 0;
+    ClusterRegression::Pair strongest;
+    for (int order = kLowest; order <= kOrders; ++order) {
+      const auto pair =
+          base.pair(balance_.integral([order](const BalancePoint& p) { return std::sin(order * p.q_rad); }),
+                    balance_.integral([order](const BalancePoint& p) { return std::cos(order * p.q_rad); }));
+      if (!(pair.own > 0.3)) continue;
+      largest_missed = std::max(largest_missed, pair.share);
+      if (pair.t2 > best && pair.share > kFriction_share) best = pair.t2, at = order, strongest = pair;
+    }
+    const double amplitude = strongest.coefficients.norm();
+    const double deviation = best > 0.0 ? amplitude / std::sqrt(best) : 0.0;
+    Signature s{"cogging", "balance of torques", Agreement::kCannotTell, around(amplitude, deviation), drive_unit(),
+                ""};
+    if (best > bar) {
+      s.agreement = Agreement::kAgrees;
+    } else if (largest_missed < 0.4 * kFriction_share) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence = at == 0
+                     ? "no torque that repeats with the angle"
+                     : fmt::format("a torque of {:.3g} {} that repeats {} times a turn", amplitude, drive_unit(), at);
+    found_.push_back(s);
+  }
+
+  void add_thermal() {
+    const Column temperature = balance_.integral([](const BalancePoint& p) { return p.temp_C; });
+    if (!enough_ || !temperature.allFinite()) return cannot_tell("thermal_drift", "no temperature was recorded");
+    const double usual_C = temperature.mean(), range_K = temperature.maxCoeff() - temperature.minCoeff();
+    const std::vector<int> runs = balance_.clusters(true);
+    if (range_K < 3.0 || runs.back() + 1 < 6) {
+      return cannot_tell("thermal_drift", fmt::format("temperatures differ by {:.1f} K only, or in few runs", range_K));
+    }
+    const ClusterRegression base({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, drive_,
+                                 runs);
+    const TermEstimate friction =
+        base.term(balance_.integral([usual_C](const BalancePoint& p) { return (p.temp_C - usual_C) * p.direction; }));
+    const TermEstimate load = base.term(c().load.cwiseProduct(temperature - usual_C * c().one));
+    const bool by_friction = std::abs(friction.t()) > std::abs(load.t());
+    const TermEstimate& e = by_friction ? friction : load;
+    Signature s{"thermal_drift",
+                "balance of torques",
+                Agreement::kCannotTell,
+                around(e.coefficient, e.deviation),
+                by_friction ? std::string(drive_unit()) + "/K" : "1/K",
+                ""};
+    if (std::abs(e.t()) > kSure_t && e.share > kFriction_share) {
+      s.agreement = Agreement::kAgrees;
+    } else if (std::max(friction.share_sure, load.share_sure) < 0.4 * kFriction_share) {
+      s.agreement = Agreement::kDisagrees;
+    }
+    s.sentence =
+        fmt::format("{} changes by {:.3g} (deviation {:.2g}) a kelvin over {:.1f} K",
+                    by_friction ? "friction" : "the drive that a load takes", e.coefficient, e.deviation, range_K);
+    found_.push_back(s);
+  }
+
+  const bench::Bench& bench_;
+  TorqueBalance balance_;
+  FoundShape shape_;
+  std::vector<Columns> columns_;
+  Column drive_;
+  bool enough_ = false;
+  std::vector<Signature> found_;
+};
+
+}  // namespace
+
+std::vector<Signature> balance_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+  return BalanceChecks(bench, runs).all();
+}
+
+}  // namespace pmg::evidence

@@ -1,0 +1,238 @@
+// Checks that look at readings as they are.
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "bench/noise_floor.hpp"
+#include "evidence/motion.hpp"
+#include "evidence/signature_checks.hpp"
+
+namespace pmg::evidence {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr Interval kUnknown{kNaN, kNaN, kNaN};
+constexpr double kSure_t = 4.0;      // deviations
+constexpr double kWorth_rad = 1e-3;  // of a dead band, or of what friction leaves at the lowest gain
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of the median, from ranks (normal approximation of the binomial).
+Interval median_interval(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  const double reach = 0.98 * std::sqrt(n);
+  const auto rank = [&](double place) { return values[static_cast<std::size_t>(std::clamp(place, 0.0, n - 1.0))]; };
+  return {median(values), rank(std::floor(0.5 * n - reach)), rank(std::ceil(0.5 * n + reach))};
+}
+
+/// When readings leave rest after the step at this sample, in seconds after it; nothing where the joint wasn't at rest
+/// or hardly moves. From rest a joint gains speed evenly: the root of its way is a straight line, whose foot is sought.
+std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad) {
+  constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // shares of the step's size
+  const double size_rad = std::abs(r.q_cmd_rad[step] - r.q_cmd_rad[step - 1]);
+  std::size_t before = step;
+  while (before > 0 && r.t_s[step] - r.t_s[before - 1] < kRest_s) --before;
+  if (step - before < 4 || r.t_s[step] - r.t_s[before] < 0.5 * kRest_s) return std::nullopt;
+  double rest_rad = 0.0;
+  for (std::size_t k = before; k < step; ++k) rest_rad += r.q_rad[k] / static_cast<double>(step - before);
+  const double first_rad = std::max(6.0 * noise_rad, kFirst * size_rad);
+  for (std::size_t k = before; k < step; ++k) {
+    if (!r.valid[k] || std::abs(r.q_rad[k] - rest_rad) > std::max(4.0 * noise_rad, 0.1 * first_rad))
+      return std::nullopt;
+    if (k > before && r.q_cmd_rad[k] != r.q_cmd_rad[k - 1]) return std::nullopt;
+  }
+  const double sign = r.q_cmd_rad[step] > r.q_cmd_rad[step - 1] ? 1.0 : -1.0;
+  double n = 0.0, t = 0.0, y = 0.0, tt = 0.0, ty = 0.0;
+  for (std::size_t k = step; k < r.t_s.size() && r.q_cmd_rad[k] == r.q_cmd_rad[step]; ++k) {
+    const double way_rad = sign * (r.q_rad[k] - rest_rad), after_s = r.t_s[k] - r.t_s[step];
+    if (after_s > 0.3 || !r.valid[k] || (!r.enabled.empty() && !r.enabled[k])) return std::nullopt;
+    if (way_rad < first_rad) continue;
+    if (way_rad > kLast * size_rad && n >= 2.0) break;
+    const double root = std::sqrt(way_rad);
+    n += 1.0;
+    t += after_s;
+    y += root;
+    tt += after_s * after_s;
+    ty += after_s * root;
+    if (way_rad > kLast * size_rad && n >= 2.0) break;
+  }
+  const double bend = n * tt - t * t;
+  if (n < 2.0 || !(bend > 0.0)) return std::nullopt;
+  const double slope = (n * ty - t * y) / bend;
+  if (!(slope > 0.0)) return std::nullopt;
+  return (t - y / slope) / n;
+}
+
+/// Where one run came to rest.
+struct Rest {
+  double kp, short_by_rad;  ///< command minus reading, less what holds the load
+};
+
+/// Stretches of unchanged command in which the reading, too, has stood for the last 0.3 s.
+void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vector<Rest>& rests) {
+  constexpr double kStood_s = 0.3;
+  const bench::Recording& r = run.recording;
+  const double noise_rad = bench::sensor_noise_rad(r), kp = bench.known.drive.kp_scale * run.kp;
+  std::size_t from = 0;
+  for (std::size_t k = 1; k <= r.t_s.size(); ++k) {
+    const bool ends = k == r.t_s.size() || r.q_cmd_rad[k] != r.q_cmd_rad[from];
+    if (!ends) continue;
+    std::size_t first = k - 1;
+    while (first > from && r.t_s[k - 1] - r.t_s[first - 1] <= kStood_s) --first;
+    double mean_rad = 0.0, low_rad = r.q_rad[first], high_rad = low_rad;
+    bool on = r.t_s[k - 1] - r.t_s[first] > 0.8 * kStood_s && from > 0;
+    for (std::size_t i = first; i < k; ++i) {
+      mean_rad += r.q_rad[i] / static_cast<double>(k - first);
+      low_rad = std::min(low_rad, r.q_rad[i]);
+      high_rad = std::max(high_rad, r.q_rad[i]);
+      on = on && r.valid[i] && (r.enabled.empty() || r.enabled[i]) && (r.tau_ff_Nm.empty() || r.tau_ff_Nm[i] == 0.0);
+    }
+    if (on && high_rad - low_rad <= std::max(8.0 * noise_rad, 5e-4)) {
+      const double held_rad = run.load.gravity_Nm * std::sin(mean_rad) / kp;
+      rests.push_back({kp, r.q_cmd_rad[from] - mean_rad - held_rad});
+    }
+    from = k;
+  }
+}
+
+}  // namespace
+
+Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+  Signature s{"delay", "step onset", Agreement::kCannotTell, kUnknown, "s", "no steps from rest were recorded"};
+  std::vector<double> onsets_s;
+  for (const bench::BenchRun& run : runs) {
+    const double noise_rad = bench::sensor_noise_rad(run.recording);
+    for (const std::size_t step : command_steps(run.recording)) {
+      if (const auto onset = onset_s(run.recording, step, noise_rad)) onsets_s.push_back(*onset);
+    }
+  }
+  if (onsets_s.size() < 4) return s;
+  s.value = median_interval(onsets_s);
+  // The command is held: within a sample it isn't known when it came, nor when the reading was taken.
+  const double unsure_s = std::max(0.003, 0.75 / bench.sample_rate_hz);
+  if (s.value.low > unsure_s) {
+    s.agreement = Agreement::kAgrees;
+  } else if (s.value.high < unsure_s) {
+    s.agreement = Agreement::kDisagrees;
+  }
+  s.sentence = fmt::format(
+      "after {} steps from rest the joint sets off {:.1f} ms late ({:.1f} to {:.1f}); up to {:.1f} ms "
+      "is how the command is held",
+      onsets_s.size(), 1e3 * s.value.value, 1e3 * s.value.low, 1e3 * s.value.high, 1e3 * unsure_s);
+  return s;
+}
+
+/// |short_by| = a + b / kp: b is a torque, a an angle. Each rest comes from another direction and distance.
+std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+  Signature band{"dead_band",
+                 "rest against gain",
+                 Agreement::kCannotTell,
+                 kUnknown,
+                 "rad",
+                 "needs a position PD at two gains, half as high again, and commands that stand still"};
+  if (bench.law != bench::DriveLaw::kPositionPd) return {band};
+  std::vector<Rest> rests;
+  for (const bench::BenchRun& run : runs) add_rests(bench, run, rests);
+  double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
+  for (const Rest& rest : rests) lowest = std::min(lowest, rest.kp), highest = std::max(highest, rest.kp);
+  if (rests.size() < 8 || !(highest >= 1.5 * lowest)) return {band};
+
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+  for (const Rest& rest : rests) {
+    const Eigen::Vector2d row(1.0, lowest / rest.kp);
+    squares += row * row.transpose();
+    products += row * std::abs(rest.short_by_rad);
+  }
+  const Eigen::Matrix2d inverse = squares.ldlt().solve(Eigen::Matrix2d::Identity());
+  const Eigen::Vector2d fit = inverse * products;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Rest& rest : rests) {
+    const Eigen::Vector2d row(1.0, lowest / rest.kp);
+    const double error_rad = std::abs(rest.short_by_rad) - row.dot(fit);
+    scatter += error_rad * error_rad * row * row.transpose();
+  }
+  const auto count = static_cast<double>(rests.size());
+  const Eigen::Matrix2d covariance = inverse * scatter * inverse * (count / (count - 2.0));
+  const double deviation_rad = std::sqrt(std::max(0.0, covariance(0, 0)));
+  const double torque_Nm = fit[1] * lowest, deviation_Nm = lowest * std::sqrt(std::max(0.0, covariance(1, 1)));
+  Signature friction{"coulomb",
+                     "rest against gain",
+                     Agreement::kCannotTell,
+                     {torque_Nm, torque_Nm - 2.0 * deviation_Nm, torque_Nm + 2.0 * deviation_Nm},
+                     "Nm",
+                     ""};
+  if (torque_Nm > kSure_t * deviation_Nm && fit[1] > kWorth_rad) friction.agreement = Agreement::kAgrees;
+  friction.sentence = fmt::format(
+      "joints at rest are short of their command by {:.2g} Nm on average (deviation {:.1g})", torque_Nm, deviation_Nm);
+  band.value = {fit[0], fit[0] - 2.0 * deviation_rad, fit[0] + 2.0 * deviation_rad};
+  if (fit[0] > std::max(kWorth_rad, kSure_t * deviation_rad)) {
+    band.agreement = Agreement::kAgrees;
+  } else if (band.value.high < kWorth_rad) {
+    band.agreement = Agreement::kDisagrees;
+  }
+  band.sentence =
+      fmt::format("joints at rest miss by {:.2g} rad at any gain (deviation {:.1g}), and by {:.2g} Nm over the gain",
+                  fit[0], deviation_rad, fit[1] * lowest);
+  return {band, friction};
+}
+
+/// The smallest step between different readings; a quantised sensor's readings are its multiples (plus an offset).
+Signature quantum_check(const std::vector<bench::BenchRun>& runs) {
+  constexpr std::size_t kFewest = 20;  // different readings
+  constexpr double kOff = 0.08;        // of a quantum: files round
+  constexpr double kCoarse_rad = 1e-4;
+  Signature s{"quantisation", "multiples of one number",   Agreement::kCannotTell, kUnknown,
+              "rad",          "too few different readings"};
+  std::set<double> readings;
+  std::size_t samples = 0;
+  for (const bench::BenchRun& run : runs) {
+    for (std::size_t k = 0; k < run.recording.q_rad.size(); ++k) {
+      if (run.recording.valid[k]) readings.insert(run.recording.q_rad[k]), ++samples;
+    }
+  }
+  if (readings.size() < kFewest) return s;
+  std::vector<double> steps_rad;
+  for (auto it = std::next(readings.begin()); it != readings.end(); ++it) {
+    if (*it - *std::prev(it) > 1e-7) steps_rad.push_back(*it - *std::prev(it));
+  }
+  if (steps_rad.size() < kFewest) return s;
+  std::sort(steps_rad.begin(), steps_rad.end());
+  const double quantum_rad = median({steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(kFewest)});
+  std::size_t multiples = 0;
+  Interval single{quantum_rad, quantum_rad, quantum_rad};  // files round each
+  for (const double step_rad : steps_rad) {
+    const double count = step_rad / quantum_rad;
+    if (std::abs(count - std::round(count)) >= kOff || count <= 0.5) continue;
+    ++multiples;
+    single.low = std::min(single.low, step_rad / std::round(count));
+    single.high = std::max(single.high, step_rad / std::round(count));
+  }
+  const double share = static_cast<double>(multiples) / static_cast<double>(steps_rad.size());
+  s.value = single;
+  if (share > 0.9 && quantum_rad > kCoarse_rad) {
+    s.agreement = Agreement::kAgrees;
+    s.sentence = fmt::format("{:.0f} % of the {} different readings are {:.3g} rad apart, or multiples of it",
+                             100.0 * share, readings.size(), quantum_rad);
+  } else {
+    s.agreement = Agreement::kDisagrees;
+    s.value = kUnknown;
+    s.sentence = fmt::format("{} samples have {} different readings, of no common step above {:g} rad", samples,
+                             readings.size(), kCoarse_rad);
+  }
+  return s;
+}
+
+}  // namespace pmg::evidence

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "evidence/cluster_regression.hpp"
+#include "evidence/signature_checks.hpp"
+#include "evidence/torque_balance.hpp"
+
+namespace pmg::evidence {
+
+namespace {
+
+constexpr double kSure_t = 4.0;        // deviations
+constexpr double kWorth_share = 0.03;  // of the weight that swings
+constexpr double kOwn = 0.1;           // of a term's rms that the others must not imitate
+constexpr int kFewestClusters = 6;
+
+/// weight: torque of gravity; what friction leaves over is no measure of itself.
+Signature check(const std::string& effect, const ClusterRegression& regression, const Column& column,
+                const Column& weight, const std::string& what, const std::string& unit) {
+  Signature s{effect, "free swing", Agreement::kCannotTell, {}, unit, ""};
+  const TermEstimate e = regression.term(column);
+  s.value = {e.coefficient, e.coefficient - 2.0 * e.deviation, e.coefficient + 2.0 * e.deviation};
+  const double per_unit = column.norm() / std::max(1e-300, weight.norm());
+  const double share = std::abs(e.coefficient) * per_unit;
+  if (e.own > kOwn && e.t() > kSure_t && share > kWorth_share) s.agreement = Agreement::kAgrees;
+  if (e.own > kOwn && share + 2.0 * e.deviation * per_unit < 0.4 * kWorth_share) s.agreement = Agreement::kDisagrees;
+  s.sentence = fmt::format("switched off, the swing loses {}: {:.3g} {} (deviation {:.2g}), {:.1f} % of its weight",
+                           what, e.coefficient, unit, e.deviation, 100.0 * share);
+  return s;
+}
+
+}  // namespace
+
+std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+  if (bench.rig != bench::Rig::kPendulum) return {};
+  const TorqueBalance balance(bench, runs, TorqueBalance::While::kOff);
+  if (balance.windows() == 0) return {};
+  const std::vector<int> clusters = balance.clusters();
+  if (clusters.back() + 1 < kFewestClusters) return {};
+  // Nothing drives: what the load's weight and inertia leave is friction's and the rotor's.
+  const Column weight = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
+  const Column left = -(weight + balance.load_inertia_Nm());
+  const Column direction = balance.integral([](const BalancePoint& p) { return p.direction; });
+  const Column one = Column::Ones(direction.size());
+  return {check("coulomb", {{balance.acceleration_rad_s2(), balance.speed_rad_s(), one}, left, clusters}, direction,
+                weight, "the same at any speed", "Nm"),
+          check("viscous", {{balance.acceleration_rad_s2(), direction, one}, left, clusters}, balance.speed_rad_s(),
+                weight, "more the faster it is", "Nm s/rad")};
+}
+
+}  // namespace pmg::evidence

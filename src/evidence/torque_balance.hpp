@@ -1,0 +1,90 @@
+// What drives a joint against what moves: the equation of motion over short windows, from recordings alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "bench/bench.hpp"
+
+namespace pmg::evidence {
+
+/// What happens to a command before the drive compares it with its sensor.
+struct CommandShape {
+  double delay_s = 0.0;
+  double rate_limit_rad_s = std::numeric_limits<double>::infinity();
+};
+
+/// The joint half-way between two samples.
+struct BalancePoint {
+  double q_rad = 0.0, dq_rad_s = 0.0;
+  double direction = 0.0;                     ///< of motion, -1..1; runs through 0 where the speed is noise
+  double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the bench's load: gravity sin q, and with I ddq
+  double hanging_Nm = 0.0;                    ///< gravity cos q
+  double drive = 0.0;                         ///< what the law makes of the error [unit of output times supply]
+  double error_rad = 0.0, error_drive = 0.0;  ///< command minus reading, and what the drive's gain makes of it
+  double temp_C = 0.0;
+  double since_turn_s = 0.0;  ///< since the drive's torque last changed its sign
+};
+
+using Column = Eigen::VectorXd;
+
+/// Windows of a bench's runs in which the joint moves. Columns hold one number a window: the integral of a quantity
+/// under a smooth weight. Speeds and accelerations need no differences of readings (weak form: by parts,
+/// integral(w ddq) = integral(w'' q)), so noise hardly biases what is regressed on them.
+class TorqueBalance {
+ public:
+  /// Runs must outlive it. Windows lie where the drive is on throughout, or where it is off.
+  enum class While { kOn, kOff };
+  TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when = While::kOn);
+
+  std::size_t windows() const { return windows_.size(); }
+  bool shaped() const { return shaped_; }  ///< a command's shape matters: positions are commanded
+
+  Column drive() const;  ///< under the shape as it is set
+  void shape(const CommandShape& shape);
+
+  Column acceleration_rad_s2() const;
+  Column speed_rad_s() const;
+  Column load_inertia_Nm() const;  ///< I ddq
+
+  /// Of any function of a BalancePoint.
+  template <typename Function>
+  Column integral(const Function& function) const {
+    Column column(static_cast<Eigen::Index>(windows_.size()));
+    for (std::size_t i = 0; i < windows_.size(); ++i) {
+      const Window& window = windows_[i];
+      double sum = 0.0;
+      for (std::size_t k = 0; k < weight_.size(); ++k)
+        sum += weight_[k] * function(runs_[window.run][window.first + k]);
+      column[static_cast<Eigen::Index>(i)] = sum;
+    }
+    return column;
+  }
+
+  /// Which cluster each window belongs to: a second of one run, whose windows hang together; or a whole run.
+  std::vector<int> clusters(bool whole_runs = false) const;
+
+  double sample_s() const { return sample_s_; }
+  double fastest_rad_s() const { return fastest_rad_s_; }  ///< of all runs, noise aside
+
+ private:
+  struct Window {
+    std::size_t run, first;
+  };
+  void read(const bench::BenchRun& run);
+  void find_windows(std::size_t run);
+  double noise_rad_s(const bench::BenchRun& run) const;
+
+  const bench::Bench* bench_;
+  const std::vector<bench::BenchRun>* source_;
+  While when_;
+  bool shaped_;
+  double sample_s_ = 0.01, fastest_rad_s_ = 0.0;
+  std::vector<double> weight_, weight_1_, weight_2_;  // at midpoints: the weight and its derivatives
+  std::vector<std::vector<BalancePoint>> runs_;
+  std::vector<std::vector<bool>> usable_;
+  std::vector<Window> windows_;
+};
+
+}  // namespace pmg::evidence

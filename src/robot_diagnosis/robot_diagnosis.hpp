@@ -1,0 +1,50 @@
+// The diagnosis of a whole robot from its logs: payload, centre of mass, IMU mounting, ground, and single joints.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evidence/verdict.hpp"
+#include "robot_diagnosis/robot_evidence.hpp"
+#include "robot_diagnosis/robot_ground.hpp"
+#include "robot_diagnosis/robot_recording.hpp"
+
+namespace pmg::robot_diagnosis {
+
+struct RobotDiagnosisOptions {
+  RobotTolerances tolerances;
+  EvidenceOptions evidence;
+};
+
+struct RobotCause {
+  std::string effect{}, place{};  ///< of RobotCandidate
+  std::vector<evidence::ParameterEstimate> parameters{};
+  double log_evidence = 0.0;
+  int folds_better = 0, folds = 0;
+  std::vector<std::string> or_instead{};  ///< "effect of place"
+  std::string told_apart_by{};            ///< "hanging" or "standing": where these differ most; "" when there are none
+};
+
+/// What the logs had of each kind of support [s].
+struct RobotCoverage {
+  double hanging_s = 0.0, standing_s = 0.0, other_s = 0.0;
+};
+
+struct RobotDiagnosis {
+  evidence::Verdict verdict = evidence::Verdict::kNone;
+  std::vector<RobotCause> causes;  ///< the strongest first
+  GroundFriction ground;
+  RobotCoverage coverage;
+  double held_out_before = 0.0, held_out_after = 0.0;  ///< rms of left-out equations, in units of their noise
+  std::vector<std::string> depends_on;                 ///< unexplained: equations with more than noise
+  std::vector<RobotCause> others;                      ///< what came next, with its evidence, no parameters
+  std::vector<std::string> not_seen;  ///< "effect of place": no strength that matters would have shown in these logs
+};
+
+/// Throws std::runtime_error when the recordings hold nothing that can be used, Interrupted when progress says so.
+RobotDiagnosis diagnose_robot(const model::RobotModel& robot, std::span<const RobotRecording> recordings,
+                              const RobotDiagnosisOptions& options = {}, const RobotProgress& progress = {});
+
+}  // namespace pmg::robot_diagnosis

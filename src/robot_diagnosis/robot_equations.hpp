@@ -1,0 +1,93 @@
+// Equations of motion that hold whatever the ground and the gantry push, linear in what may be wrong with a robot.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot_diagnosis/robot_dynamics.hpp"
+#include "robot_diagnosis/robot_parameters.hpp"
+#include "robot_diagnosis/robot_samples.hpp"
+#include "model/robot_model.hpp"
+
+namespace pmg::robot_diagnosis {
+
+/// What carries the robot, and with it which equations hold.
+enum class Support {
+  kHanging,   ///< by the torso, feet in the air: its wrench is got rid of, a row for every joint
+  kStanding,  ///< on both soles, at rest: their wrenches follow from the legs' torques, 6 rows for the whole robot
+  kLoose,     ///< anything else: rows of arms and head only
+};
+
+/// One equation: residual + sum of coefficient * parameter is 0 but for noise. Joint rows and the last three of the
+/// whole robot's in Nm, its first three in N, soles' tilt in rad, difference of the soles' heights in m.
+struct RobotRow {
+  int kind = 0;  ///< rows of a kind share a noise level
+  double residual = 0.0;
+  double friction_variance = 0.0;  ///< of dry friction near standstill, whose direction isn't known
+  double standstill = 0.0;         ///< that, as a share of what it is when nothing moves
+  std::vector<std::pair<int, double>> coefficients;
+  int own_gain = -1;       ///< which of the coefficients is that of the gain of the row's own joint,
+  double spring_Nm = 0.0;  ///< of which this is the negative, by the encoder
+};
+
+/// Forces on one foot, from its leg's torques.
+struct FootForce {
+  double normal_N = 0.0, tangential_N = 0.0;
+};
+
+class RobotEquations {
+ public:
+  /// Keeps references. Throws std::runtime_error when the IMU isn't on the base link.
+  RobotEquations(const model::RobotModel& robot, const RobotParameterList& list);
+
+  Support support(const RobotSample& sample);
+  std::vector<RobotRow> rows(const RobotSample& sample, Support support);
+
+  /// What such torques add to the accelerometer's reading while the feet are free [m/s^2, IMU axes].
+  Eigen::Vector3d accelerometer_share(const JointVector& q, const JointVector& torque_Nm);
+
+  /// The IMU's velocity while both soles rest [m/s, IMU axes], from the legs.
+  Eigen::Vector3d imu_velocity_on_resting_soles(const model::RobotState& state);
+
+  PerFoot<FootForce> foot_forces(const RobotSample& sample);
+  double foot_separation_speed_m_s(const RobotSample& sample);
+
+  int kinds() const;
+  std::string kind_name(int kind) const;
+  int kind_of_joint(Support support, int joint) const;
+
+ private:
+  struct Change {  // of what is taken for true
+    int joint = -1;
+    double zero_offset_rad = 0.0;
+    Eigen::Vector3d imu_rad = Eigen::Vector3d::Zero();
+  };
+  struct Legs {  // how the joint torques of a leg act on the base rows, once the foot's wrench is eliminated
+    PerFoot<Eigen::Matrix<double, 6, 6>> to_base;
+  };
+
+  GeneralizedVector missing(const RobotSample& sample, const Change& change);
+  Eigen::VectorXd values(const RobotSample& sample, Support support, const Change& change, Legs* legs = nullptr);
+  Eigen::Matrix<double, 6, 6> leg_jacobian(const WrenchJacobian& foot, Foot side) const;
+  Eigen::Matrix<double, 6, 1> foot_wrench(const GeneralizedVector& force, Foot side);
+  std::vector<int> joints_of_rows(Support support) const;
+  void add_column(int parameter, const Eigen::VectorXd& column, std::vector<RobotRow>& rows) const;
+  Eigen::VectorXd torque_column(const RobotParameter& parameter, const RobotSample& sample, Support support,
+                                const Legs& legs, const Eigen::VectorXd& nominal) const;
+  Eigen::VectorXd link_column(const RobotParameter& parameter, const RobotSample& sample, Support support,
+                              const Eigen::VectorXd& nominal);
+
+  const model::RobotModel& robot_;
+  const RobotParameterList& list_;
+  RobotDynamics dynamics_;
+  const int joints_;
+  int torso_;
+  PerFoot<int> foot_body_;
+  bool legs_of_six_;
+  std::vector<bool> in_leg_, below_torso_;
+};
+
+}  // namespace pmg::robot_diagnosis

@@ -1,0 +1,204 @@
+#include "robot_diagnosis/robot_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "io/log_series.hpp"
+#include "io/log_writer.hpp"
+#include "pmg_msgs/motor_command_t.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "runtime/run_info.hpp"
+#include "runtime/tick_messages.hpp"
+
+namespace pmg::robot_diagnosis {
+
+namespace {
+
+constexpr double kTickPeriod_s = 0.01;  // of the controller: control::ControlCycle
+constexpr int kBusCyclesPerTick = 5;
+constexpr double kShortest_s = 1.0;
+constexpr const char* kState = "STATE";
+constexpr const char* kCommand = "MOTOR_COMMAND";
+
+bool finite(const model::RobotState& state) {
+  return state.q.allFinite() && state.dq.allFinite() && state.gyro_rad_s.allFinite() &&
+         state.acceleration_m_s2.allFinite() && state.orientation_WI.coeffs().allFinite();
+}
+
+bool finite(const model::JointCommand& command) {
+  return command.q.allFinite() && command.dq.allFinite() && command.kp.allFinite() && command.kd.allFinite() &&
+         command.tau_ff.allFinite();
+}
+
+bool take(const std::vector<double>& from, int joints, JointVector& to) {
+  if (std::ssize(from) != joints) return false;
+  to = Eigen::Map<const Eigen::VectorXd>(from.data(), joints);
+  return true;
+}
+
+bool joint_command(const pmg_msgs::motor_command_t& message, int joints, model::JointCommand& command) {
+  command.bus_sample = static_cast<std::uint64_t>(message.bus_sample);
+  return take(message.q_rad, joints, command.q) && take(message.dq_rad_s, joints, command.dq) &&
+         take(message.kp_Nm_per_rad, joints, command.kp) && take(message.kd_Nm_s_per_rad, joints, command.kd) &&
+         take(message.torque_ff_Nm, joints, command.tau_ff);
+}
+
+class LogTicks {
+ public:
+  LogTicks(const std::filesystem::path& log, const model::RobotModel& robot)
+      : robot_(robot), name_(log.filename().string()), series_(io::log_files({log})) {
+    if (name_.empty()) name_ = log.parent_path().filename().string();
+  }
+
+  std::vector<RobotRecording> read() {
+    while (series_.next()) {
+      const io::LogReader& event = series_.event();
+      if (event.channel() == "ROBOT_INFO") check_robot(event);
+      if (event.channel() == kState) take_state(event);
+      if (event.channel() == kCommand) take_command(event);
+    }
+    finish();
+    if (!any_tick_) fail("no STATE and MOTOR_COMMAND messages; expected the log of a controller");
+    if (recordings_.empty()) fail(fmt::format("no {} s without a gap", kShortest_s));
+    return std::move(recordings_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error(fmt::format("{}: {}", series_.file().string(), what));
+  }
+
+  void check_robot(const io::LogReader& event) {
+    const auto info = event.decode<pmg_msgs::robot_info_t>();
+    if (!info || info->joint_names == robot_.joint_index.names()) return;
+    fail(fmt::format("of the robot {} with {} joints; expected the joints of {}", info->model, info->joint_count,
+                     robot_.name));
+  }
+
+  void take_state(const io::LogReader& event) {
+    state_.reset();
+    const auto message = event.decode<pmg_msgs::robot_state_t>();
+    model::RobotState state;
+    if (!message) return;
+    if (!runtime::robot_state(*message, robot_.joint_index.size(), state))
+      fail(fmt::format("a STATE with {} joints; expected the {} of {}", message->joint_count, robot_.joint_index.size(),
+                       robot_.name));
+    if (!finite(state))
+      fail(fmt::format("a STATE that isn't finite at {} s; leave that stretch out",
+                       static_cast<double>(state.stamp_ns) * 1e-9));
+    state_ = state;
+  }
+
+  void take_command(const io::LogReader& event) {
+    const auto message = event.decode<pmg_msgs::motor_command_t>();
+    if (!message || !state_) return;
+    RobotTick tick{.t_s = static_cast<double>(state_->stamp_ns) * 1e-9, .state = *state_, .command = {}};
+    state_.reset();
+    if (!joint_command(*message, robot_.joint_index.size(), tick.command))
+      fail(fmt::format("a MOTOR_COMMAND with {} joints; expected {}", message->joint_count, robot_.joint_index.size()));
+    if (!finite(tick.command)) fail(fmt::format("a MOTOR_COMMAND that isn't finite at {} s", tick.t_s));
+    any_tick_ = true;
+    const bool follows =
+        !current_.ticks.empty() && std::abs(tick.t_s - current_.ticks.back().t_s - kTickPeriod_s) < 0.3 * kTickPeriod_s;
+    if (!follows) finish();
+    current_.ticks.push_back(std::move(tick));
+  }
+
+  void finish() {
+    if (static_cast<double>(current_.ticks.size()) * kTickPeriod_s > kShortest_s) {
+      current_.name = name_;
+      current_.period_s = kTickPeriod_s;
+      recordings_.push_back(std::move(current_));
+    }
+    current_ = {};
+  }
+
+  const model::RobotModel& robot_;
+  std::string name_;
+  io::LogSeries series_;
+  std::optional<model::RobotState> state_;
+  RobotRecording current_;
+  std::vector<RobotRecording> recordings_;
+  bool any_tick_ = false;
+};
+
+}  // namespace
+
+std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::path>& logs,
+                                            const model::RobotModel& robot) {
+  std::vector<RobotRecording> all;
+  for (const auto& log : logs) {
+    for (RobotRecording& recording : LogTicks(log, robot).read()) all.push_back(std::move(recording));
+  }
+  return all;
+}
+
+namespace {
+
+void write_ticks(const RobotRecording& recording, const model::RobotModel& robot, const std::filesystem::path& file) {
+  io::LogWriter writer(file);
+  runtime::RunInfo run;
+  run.robot = robot.name;
+  pmg_msgs::robot_info_t info;
+  runtime::fill(run, robot, 1.0 / recording.period_s, 0, info);
+  writer.write("ROBOT_INFO", 0, info);
+  const int joints = robot.joint_index.size();
+  control::TickRecord record{};
+  pmg_msgs::robot_state_t state;
+  pmg_msgs::motor_command_t command;
+  state.robot = command.robot = robot.name;
+  for (const RobotTick& tick : recording.ticks) {
+    record.now_ns = tick.state.stamp_ns;
+    record.state = tick.state;
+    record.result.command = tick.command;
+    runtime::fill(record, joints, state);
+    runtime::fill(record, joints, command);
+    writer.write(kState, record.now_ns, state);
+    writer.write(kCommand, record.now_ns, command);
+  }
+  writer.flush();
+}
+
+}  // namespace
+
+void write_robot_log(const RobotRecording& recording, const model::RobotModel& robot,
+                     const std::filesystem::path& file) {
+  std::filesystem::path beside = file;
+  beside += ".part";
+  try {
+    write_ticks(recording, robot, beside);
+    std::filesystem::rename(beside, file);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
+}
+
+RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
+                    const RobotProgress& progress) {
+  constexpr std::size_t kTicksPerReport = 100;
+  RobotRecording recording{.name = name, .period_s = kTickPeriod_s, .ticks = {}};
+  recording.ticks.reserve(commands.size());
+  for (const model::JointCommand& command : commands) {
+    RobotTick tick;
+    world.read(tick.state);
+    tick.t_s = world.time_s();
+    tick.command = command;
+    tick.command.bus_sample = tick.state.bus_sample;
+    recording.ticks.push_back(tick);
+    for (int cycle = 0; cycle < kBusCyclesPerTick; ++cycle) world.step(tick.command);
+    if (world.diverged()) throw std::runtime_error(fmt::format("{}: the simulation diverged at {} s", name, tick.t_s));
+    const std::size_t done = recording.ticks.size();
+    if (progress && done % kTicksPerReport == 0 &&
+        !progress(static_cast<double>(done) / static_cast<double>(commands.size())))
+      throw Interrupted();
+  }
+  return recording;
+}
+
+}  // namespace pmg::robot_diagnosis

@@ -1,0 +1,22 @@
+// A robot's diagnosis for machines and for people.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "robot_diagnosis/robot_diagnosis.hpp"
+#include "pages/page.hpp"
+
+namespace pmg::robot_diagnosis {
+
+/// {verdict, causes: [{effect, place, parameters: {name: {value, low, high, unit}}, log_evidence, folds_better, folds,
+/// or_instead}], rejected: [{effect, place, log_evidence}], ground_friction, coverage_s, held_out_error_before,
+/// held_out_error_after, unit, depends_on, not_seen, next_excitation}.
+nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& diagnosis);
+
+/// The same for people, a few lines.
+std::string robot_diagnosis_text(const RobotDiagnosis& diagnosis);
+
+pages::Page robot_diagnosis_page(const std::string& robot, const RobotDiagnosis& diagnosis);
+
+}  // namespace pmg::robot_diagnosis
