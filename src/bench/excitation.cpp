@@ -125,7 +125,7 @@ class Drawing {
     const std::size_t count = samples(seconds);
     for (std::size_t k = 0; k < count; ++k) {
       const double t_s = seconds_of(k), edge = std::clamp(std::min(t_s, seconds - t_s) / kFade_s, 0.0, 1.0);
-      values_.push_back(edge * edge * (3.0 - 2.0 * edge) * calib::value(t_s));
+      values_.push_back(edge * edge * (3.0 - 2.0 * edge) * value(t_s));
     }
   }
 

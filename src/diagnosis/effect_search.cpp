@@ -72,9 +72,9 @@ std::vector<Unknown> EffectSearch::unknowns(const std::vector<std::string>& effe
 /// Without the effect, but for parameters that the kept ones share.
 calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
                                       const std::vector<std::string>& kept) const {
-  for (const std::string& parameter : effect(effect).parameters) {
+  for (const std::string& parameter : diagnosis::effect(effect).parameters) {
     const bool shared = std::any_of(kept.begin(), kept.end(), [&](const std::string& name) {
-      return contains(effect(name).parameters, parameter);
+      return contains(diagnosis::effect(name).parameters, parameter);
     });
     if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
   }
@@ -253,7 +253,7 @@ std::vector<Trial> EffectSearch::alternatives(const Extension& without, const st
   std::vector<Trial> trials = tried(without, kExchanged);
   // What contains the effect as a special case explains as much; the simpler one stands.
   std::erase_if(trials, [&](const Trial& trial) {
-    return trial.effect == effect || contains(effect(trial.effect).contains, effect);
+    return trial.effect == effect || contains(diagnosis::effect(trial.effect).contains, effect);
   });
   return trials;
 }

@@ -79,7 +79,7 @@ class Explaining {
     for (const evidence::Signature& check : from_.checks) {
       if (check.effect != cause.effect || check.agreement == evidence::Agreement::kCannotTell) continue;
       cause.evidence.push_back(
-          fmt::format("without a model, {} {}: {}", check.check, diagnosis::name(check.agreement), check.sentence));
+          fmt::format("without a model, {} {}: {}", check.check, name(check.agreement), check.sentence));
     }
   }
 

@@ -165,7 +165,7 @@ double log_evidence(const RobotCandidate& candidate, const RobotParameterList& l
                     const Eigen::VectorXd& prior_precision) {
   const auto count = static_cast<Eigen::Index>(candidate.parameters.size());
   Eigen::MatrixXd covariance(count, count);
-  Eigen::VectorXd mean(count), tolerance(count), wide(count), diagnosis::prior(count);
+  Eigen::VectorXd mean(count), tolerance(count), wide(count), prior(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const int k = candidate.parameters[static_cast<std::size_t>(i)];
     const RobotParameter& p = list.parameters[static_cast<std::size_t>(k)];

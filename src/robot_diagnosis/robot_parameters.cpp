@@ -99,18 +99,18 @@ class List {
       const int index = add({.kind = kind, .joint = j, .tolerance = tolerance, .wide = wide, .relevant = relevant});
       list_.candidates.push_back({name, joint.name, {index}});
     };
-    diagnosis::effect("gain", Kind::kKp, t.kp_share, 0.3, 0.04);
-    diagnosis::effect("damping_gain", Kind::kKd, t.kd_share, 0.5, 0.1);
+    effect("gain", Kind::kKp, t.kp_share, 0.3, 0.04);
+    effect("damping_gain", Kind::kKd, t.kd_share, 0.5, 0.1);
     const double friction_Nm = std::max(joint.friction_Nm, 0.01 * joint.effort_limit_Nm);
-    diagnosis::effect("coulomb", Kind::kCoulomb, std::max(t.friction_share * joint.friction_Nm, t.friction_least_Nm),
+    effect("coulomb", Kind::kCoulomb, std::max(t.friction_share * joint.friction_Nm, t.friction_least_Nm),
            2.0 * friction_Nm, 0.3 * friction_Nm);
     const double viscous = std::max(joint.damping_Nm_s_per_rad, 0.05);
-    diagnosis::effect("viscous", Kind::kViscous, t.friction_share * viscous, 3.0 * viscous, 0.4 * viscous);
+    effect("viscous", Kind::kViscous, t.friction_share * viscous, 3.0 * viscous, 0.4 * viscous);
     const double armature = std::max(joint.armature_kg_m2, 0.002);
-    diagnosis::effect("armature", Kind::kArmature, std::hypot(t.armature_share * armature, t.inertia_share * moved_kg_m2_[j]),
+    effect("armature", Kind::kArmature, std::hypot(t.armature_share * armature, t.inertia_share * moved_kg_m2_[j]),
            armature, 0.2 * armature);
-    diagnosis::effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, 0.06, 0.006);
-    diagnosis::effect("delay", Kind::kDelay, t.delay_s, 0.01, 0.0015);
+    effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, 0.06, 0.006);
+    effect("delay", Kind::kDelay, t.delay_s, 0.01, 0.0015);
   }
 
   const model::RobotModel& robot_;

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/trained_policy.hpp"
+#include "benchmarks/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bench/walking_states.hpp"
+#include "benchmarks/walking_states.hpp"
 #include "gco/ground_aware_command.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "model/leg_kinematics.hpp"

@@ -7,9 +7,9 @@
 #include <exception>
 #include <vector>
 
-#include "bench/onnx_network.hpp"
-#include "bench/trained_policy.hpp"
-#include "bench/walking_states.hpp"
+#include "benchmarks/onnx_network.hpp"
+#include "benchmarks/trained_policy.hpp"
+#include "benchmarks/walking_states.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "policy/observation.hpp"
 #include "policy/onnx_policy.hpp"

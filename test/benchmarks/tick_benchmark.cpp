@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-#include "bench/trained_policy.hpp"
+#include "benchmarks/trained_policy.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "model/clip_library_file.hpp"
 #include "sil/lockstep.hpp"

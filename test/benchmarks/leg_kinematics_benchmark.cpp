@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bench/leg_chain_floor.hpp"
-#include "bench/walking_states.hpp"
+#include "benchmarks/leg_chain_floor.hpp"
+#include "benchmarks/walking_states.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "model/leg_kinematics.hpp"
 
