@@ -1,4 +1,4 @@
-#include "diagnosis/hidden_robot.hpp"
+#include "robot_diagnosis/hidden_robot.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "diagnosis/hidden_robot.hpp"
+#include "robot_diagnosis/hidden_robot.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
 #include "model/robot_model.hpp"
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "diagnosis/hidden_robot.hpp"
+#include "robot_diagnosis/hidden_robot.hpp"
 #include "robot_diagnosis/robot_excitation.hpp"
 #include "robot_diagnosis/robot_report.hpp"
 #include "model/clip_library_file.hpp"
