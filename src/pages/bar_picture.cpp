@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 #include "pages/axis.hpp"
 #include "pages/svg_parts.hpp"
@@ -19,6 +20,7 @@ constexpr int kWidth = 640, kAxis = 22, kGap = 7;
 constexpr double kLeastNames = 90.0, kMostNames = 270.0;
 constexpr int kRoomyBars = 12;  // few enough for a number at each
 constexpr int kLabels = 5;
+constexpr int kMargin = 6, kMarkRow = 13;  // above the bars, and for each row of marks' words
 
 double value_of(const Bars::Set& set, std::size_t row) {
   return row < set.values.size() && can_be_shown(set.values[row]) ? set.values[row]
@@ -45,9 +47,7 @@ class Drawing {
         bar_(bars.sets.size() <= 1 ? 10
              : numbered_           ? 14
                                    : 7),
-        row_(bar_ * static_cast<int>(std::max<std::size_t>(bars.sets.size(), 1)) + kGap),
-        top_(bars.marks.empty() ? 6 : 18),
-        bottom_(top_ + row_ * static_cast<int>(bars.names.size())) {
+        row_(bar_ * static_cast<int>(std::max<std::size_t>(bars.sets.size(), 1)) + kGap) {
     double names = kLeastNames, widest = 0.0;
     for (const std::string& name : bars.names) names = std::max(names, text_width(name));
     for (const Bars::Set& set : bars.sets) {
@@ -57,6 +57,9 @@ class Drawing {
     const double beside = numbered_ ? widest + 10.0 : 10.0;
     from_px_ = names_ + (range_.from < 0.0 ? beside : 0.0);
     to_px_ = kWidth - std::max(beside, text_width(bars.unit) + 34.0);
+    place_marks();
+    top_ = kMargin + kMarkRow * mark_rows_;
+    bottom_ = top_ + row_ * static_cast<int>(bars.names.size());
   }
 
   std::string svg() {
@@ -69,7 +72,8 @@ class Drawing {
       for (std::size_t set = 0; set < bars_.sets.size(); ++set) bar(row, set);
     }
     if (range_.from < 0.0) add(R"(<path d="M{:.1f} {}V{}" stroke="{}"/>)", x(0.0), top_, bottom_, colour::kInk);
-    marks();
+    for (const PlacedMark& mark : marks_) show(mark);
+    out_ += numbers_;  // on top of the marks' lines
     return out_ + names.svg(bottom_ + kAxis) + "</svg>";
   }
 
@@ -113,8 +117,10 @@ class Drawing {
     }
     if (!numbered_) return;
     const bool negative = value < 0.0;
-    add(R"(<text class="{}" x="{:.1f}" y="{}">{}</text>)", negative ? "name value" : "value",
-        negative ? low - 5.0 : high + 5.0, top + bar_ - 2, number(value));
+    fmt::format_to(
+        std::back_inserter(numbers_),
+        R"(<text class="{}" x="{:.1f}" y="{}" paint-order="stroke" stroke="white" stroke-width="3">{}</text>)",
+        negative ? "name value" : "value", negative ? low - 5.0 : high + 5.0, top + bar_ - 2, number(value));
   }
 
   /// Through the middle of a bar; x in the picture's units.
@@ -124,15 +130,38 @@ class Drawing {
         from, to, y, y - 3, y + 3, colour::kInk);
   }
 
-  void marks() {
+  struct PlacedMark {
+    const Mark* mark;
+    double words_px;  ///< middle of its words
+    int row;          ///< of its words, from above
+  };
+
+  /// Words stand above their lines, in as many rows as it takes that none covers another.
+  void place_marks() {
+    std::vector<const Mark*> in_order;
     for (const Mark& mark : bars_.marks) {
-      if (!can_be_shown(mark.x)) continue;
-      const double half = 0.5 * text_width(mark.text);
-      add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
-          R"(<text class="tick" x="{4:.1f}" y="{5}">{6}</text>)",
-          x(mark.x), top_, bottom_, colour::kInk, std::clamp(x(mark.x), half, kWidth - half), top_ - 5,
-          escape_html(mark.text));
+      if (can_be_shown(mark.x)) in_order.push_back(&mark);
     }
+    std::ranges::stable_sort(in_order, {}, [](const Mark* mark) { return mark->x; });
+    std::vector<double> row_ends_px;
+    for (const Mark* mark : in_order) {
+      const double half = 0.5 * text_width(mark->text);
+      const double middle = std::clamp(x(mark->x), half, kWidth - half);
+      const auto free = std::ranges::find_if(row_ends_px, [&](double end) { return end + 6.0 < middle - half; });
+      const auto row = static_cast<int>(free - row_ends_px.begin());
+      if (free == row_ends_px.end()) row_ends_px.push_back(0.0);
+      row_ends_px[static_cast<std::size_t>(row)] = middle + half;
+      marks_.push_back({mark, middle, row});
+    }
+    mark_rows_ = static_cast<int>(row_ends_px.size());
+  }
+
+  void show(const PlacedMark& placed) {
+    const int words_y = kMargin + kMarkRow * (placed.row + 1) - 3;
+    add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
+        R"(<text class="mark" x="{4:.1f}" y="{5}" paint-order="stroke" stroke="white" stroke-width="3">{6}</text>)",
+        x(placed.mark->x), words_y + 2, bottom_, colour::kInk, placed.words_px, words_y,
+        escape_html(placed.mark->text));
   }
 
   Legend legend() const {
@@ -148,9 +177,11 @@ class Drawing {
   const Bars& bars_;
   const Range range_;
   const bool numbered_;
-  const int bar_, row_, top_, bottom_;
+  const int bar_, row_;
+  int top_ = 0, bottom_ = 0, mark_rows_ = 0;
   double names_ = 0.0, from_px_ = 0.0, to_px_ = 0.0;
-  std::string out_;
+  std::vector<PlacedMark> marks_;
+  std::string out_, numbers_;
 };
 
 }  // namespace

@@ -262,5 +262,31 @@ TEST(SvgPictures, MarksStandAtTheirValues) {
   EXPECT_LE(words->number("x"), kPictureWidth);
 }
 
+TEST(SvgPictures, WordsOfCloseMarksStandAboveEachOther) {
+  const Bars bars{.title = "",
+                  .unit = "m",
+                  .names = {"row"},
+                  .sets = {{"set", {0.4}}},
+                  .marks = {{0.03, "limit 0.03"}, {0.028, "perfect follower"}, {0.035, "doing nothing"}}};
+  const auto elements = drawn_elements(svg(bars));
+  const DrawnAxis axis = x_axis(elements);
+  std::vector<const DrawnElement*> words;
+  for (const DrawnElement& e : elements) {
+    if (e.is("mark")) words.push_back(&e);
+  }
+  ASSERT_THAT(words, SizeIs(3));
+  const std::vector<double> in_order = {0.028, 0.03, 0.035};
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto line = pen_stops((words[i] - 1)->attributes.at("d")).front();
+    EXPECT_NEAR(axis(line.front().first), in_order[i], 3.0 * kDigit * std::abs(axis.per_unit()));
+    for (std::size_t k = 0; k < i; ++k) {
+      const double room = std::abs(words[i]->number("x") - words[k]->number("x"));
+      const double needed = 0.5 * kCharacter * static_cast<double>(words[i]->text.size() + words[k]->text.size());
+      EXPECT_TRUE(words[i]->number("y") != words[k]->number("y") || room > needed)
+          << words[i]->text << " covers " << words[k]->text;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pmg::pages
