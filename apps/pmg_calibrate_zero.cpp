@@ -6,12 +6,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "zero/zero_results.hpp"
-#include "zero/zero_stances.hpp"
 #include "io/whole_file.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
+#include "zero/zero_results.hpp"
+#include "zero/zero_stances.hpp"
 
 namespace {
 

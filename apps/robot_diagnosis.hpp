@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "io/whole_file.hpp"
+#include "model/clip_library_file.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
 #include "robot_diagnosis/robot_excitation.hpp"
 #include "robot_diagnosis/robot_report.hpp"
-#include "io/whole_file.hpp"
-#include "model/clip_library_file.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::apps {
@@ -34,8 +34,9 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
   std::string kept = "nothing was written";
   try {
     sim::World gantry(robot, sil::world_with_noise(seed, true));
-    robot_diagnosis::write_robot_log(robot_diagnosis::play(gantry, robot_diagnosis::hanging_excitation(robot), "hanging", progress),
-                               robot, out / "hanging.lcm");
+    robot_diagnosis::write_robot_log(
+        robot_diagnosis::play(gantry, robot_diagnosis::hanging_excitation(robot), "hanging", progress), robot,
+        out / "hanging.lcm");
     kept = "hanging.lcm is written, standing.lcm isn't";
     sim::World ground(robot, sil::world_with_noise(seed, false));
     robot_diagnosis::write_robot_log(
@@ -52,7 +53,8 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
 /// is written then, and stderr says so. Throws std::exception on bad input, before anything is written.
 inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
-  const std::vector<robot_diagnosis::RobotRecording> recordings = robot_diagnosis::read_robot_logs(arguments.logs, robot);
+  const std::vector<robot_diagnosis::RobotRecording> recordings =
+      robot_diagnosis::read_robot_logs(arguments.logs, robot);
   robot_diagnosis::RobotDiagnosis found;
   try {
     found = robot_diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);

@@ -17,9 +17,18 @@ if(PMG_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
+# A target's sources are compiled together, up to six at a time: most of the time of one goes to headers that all of them share. -DPMG_UNITY=OFF
+# compiles each on its own, as clang-tidy needs it and as suits who works on one file.
+option(PMG_UNITY "Compile several sources of a target together" ON)
+set(CMAKE_UNITY_BUILD ${PMG_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
+
 add_library(pmg_warnings INTERFACE)
 target_compile_options(pmg_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
+if(PMG_UNITY)  # it takes a source that is compiled with others for a header, whose types two sources could define differently
+  target_compile_options(pmg_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 if(PMG_WARNINGS_AS_ERRORS)
   target_compile_options(pmg_warnings INTERFACE -Werror)
 endif()
@@ -51,6 +60,7 @@ endif()
 function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/test)
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
   target_compile_options(test_${name} PRIVATE ${PMG_TEST_OPTIONS})
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")

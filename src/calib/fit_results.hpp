@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/noise_floor.hpp"
 #include "calib/fit_confidence.hpp"
 #include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
-#include "bench/noise_floor.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::calib {
@@ -31,7 +31,7 @@ struct FitResults {
   double wall_s = 0.0;
   std::optional<InverseDynamics> inverse;  ///< where the drive was recorded
   bool inverse_taken = false;              ///< and then the model has it, and rollouts found the rest
-  bench::NoiseFloor noise_floor;                  ///< of fitted and scored runs that repeat each other
+  bench::NoiseFloor noise_floor;           ///< of fitted and scored runs that repeat each other
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };

@@ -31,7 +31,7 @@ CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, s
   any_ = true;
   last_ = message;
   received_ns_ = received_ns;
-  lease_end_ns_ = received_ns + static_cast<std::int64_t>(std::min(message.lease_s, kLongestLease_s) * 1e9);
+  lease_end_ns_ = received_ns + io::nanoseconds(std::min(message.lease_s, kLongestLease_s));
   return verdict;
 }
 

@@ -13,6 +13,7 @@ namespace pmg::control {
 class ControlCycle {
  public:
   static constexpr std::int64_t kPeriod_ns = 10'000'000;
+  static constexpr double kPeriod_s = static_cast<double>(kPeriod_ns) * 1e-9;
 
   /// Keeps references to all of them.
   ControlCycle(Tick& tick, hal::BusLink& link, OperatorInbox& inbox, const io::Clock& clock);

@@ -41,6 +41,11 @@ struct Fault {
   std::int64_t stamp_ns = 0;
 };
 
+/// A fault stays latched with its first stamp; its value may change.
+inline bool same_incident(const Fault& a, const Fault& b) noexcept {
+  return a.code == b.code && a.stamp_ns == b.stamp_ns;
+}
+
 const char* to_string(FaultCode code) noexcept;
 const char* unit(FaultCode code) noexcept;    ///< of value and limit; empty when there are none
 const char* advice(FaultCode code) noexcept;  ///< one sentence for the operator: what to look at before the reset

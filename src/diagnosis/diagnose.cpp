@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "calib/fit_problem.hpp"
 #include "bench/noise_floor.hpp"
+#include "calib/fit_problem.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/explanation.hpp"
 #include "diagnosis/intervals.hpp"

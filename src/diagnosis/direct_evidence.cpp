@@ -12,8 +12,8 @@ namespace {
 constexpr double kCoarser = 1.5;       // than the step that is known; sensors halve or double theirs
 constexpr double kShareOfNoise = 0.5;  // of its deviation: a quarter of its square
 
-std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
-                                           double noise_rms_rad) {
+std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks,
+                                           const sim::ActuatorParameters& base, double noise_rms_rad) {
   std::vector<MeasuredCause> found;
   for (const evidence::Signature& check : checks) {
     if (check.effect != "quantisation" || check.agreement != evidence::Agreement::kAgrees) continue;
@@ -35,19 +35,23 @@ bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
   });
 }
 
-bool some_check(const std::vector<evidence::Signature>& checks, const std::string& effect, evidence::Agreement agreement) {
-  return std::any_of(checks.begin(), checks.end(),
-                     [&](const evidence::Signature& check) { return check.effect == effect && check.agreement == agreement; });
+bool some_check(const std::vector<evidence::Signature>& checks, const std::string& effect,
+                evidence::Agreement agreement) {
+  return std::any_of(checks.begin(), checks.end(), [&](const evidence::Signature& check) {
+    return check.effect == effect && check.agreement == agreement;
+  });
 }
 
-std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base) {
+std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& checks,
+                                       const sim::ActuatorParameters& base) {
   const std::string thermal = "thermal_drift";
   if (!some_check(checks, thermal, evidence::Agreement::kAgrees) || in_base(thermal, base)) return {};
   return {thermal};
 }
 
 /// A load's check sees its inertia against its weight, and a load of another mass has both.
-std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base) {
+std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks,
+                                         const sim::ActuatorParameters& base) {
   std::vector<std::string> found;
   for (const Effect& one : catalogue()) {
     const bool refuted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&

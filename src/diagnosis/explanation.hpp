@@ -15,10 +15,10 @@ namespace pmg::diagnosis {
 inline constexpr double kApartDeviations = 2.0;
 
 struct ExplainedFrom {
-  const NestedFit& searched;             ///< the runs that the choice was made on
-  const NestedFit& all;                  ///< and all that were fitted
-  const NestedFit& judged;               ///< those that errors are said of
-  const NestedModel& fitted;             ///< the chosen effects, to all runs
+  const NestedFit& searched;                       ///< the runs that the choice was made on
+  const NestedFit& all;                            ///< and all that were fitted
+  const NestedFit& judged;                         ///< those that errors are said of
+  const NestedModel& fitted;                       ///< the chosen effects, to all runs
   const std::vector<evidence::Signature>& checks;  ///< without a model
   const NoiseFloor& noise;
   double error_after = 0.0;  ///< of the judged runs, with all causes [unit]

@@ -45,7 +45,7 @@ Eigen::VectorXd jackknife(const NestedModel& model, const std::vector<Fold>& fol
 }  // namespace
 
 std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, const std::vector<Fold>& folds,
-                                          double noise_squares) {
+                                                    double noise_squares) {
   const Eigen::Index count = model.coordinates.size();
   std::vector<Eigen::Index> seen;
   Eigen::MatrixXd information = prior(model).information, scatter = Eigen::MatrixXd::Zero(count, count);

@@ -13,7 +13,7 @@ namespace pmg::diagnosis {
 /// gains, loads and trajectories (folds) moves; and what remains beyond noise_squares (mean square of the noise), a
 /// difference in form that pulls all blocks the same way.
 std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, const std::vector<Fold>& folds,
-                                          double noise_squares);
+                                                    double noise_squares);
 
 /// Mean absolute errors of the runs at two models, with 95 % intervals by a bootstrap over blocks that draws the same
 /// blocks for both.

@@ -194,7 +194,7 @@ void show_checks(pages::Page& page, const std::vector<evidence::Signature>& chec
         {title(check.effect),
          check.agreement == evidence::Agreement::kAgrees      ? "show it"
          : check.agreement == evidence::Agreement::kDisagrees ? "would show it, and don't"
-                                                    : "can't tell",
+                                                              : "can't tell",
          check.check,
          std::isfinite(v.value) ? fmt::format("{:.3g} ({:.3g} to {:.3g}) {}", v.value, v.low, v.high, check.unit) : "",
          check.sentence});

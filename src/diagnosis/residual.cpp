@@ -123,7 +123,8 @@ ResidualBin bin_mean(const ResidualSamples& samples, const std::vector<double>& 
 
 /// Runs are dealt to two halves, blocks of a second where there are fewer than four runs; each half's bin means predict
 /// the other half's residual.
-evidence::Interval explained_share(const ResidualSamples& samples, const std::vector<std::size_t>& bin, std::size_t bins) {
+evidence::Interval explained_share(const ResidualSamples& samples, const std::vector<std::size_t>& bin,
+                                   std::size_t bins) {
   const std::size_t runs = samples.run.empty() ? 0 : samples.run.back() + 1;
   const auto half = [&](std::size_t i) { return (runs >= 4 ? samples.run[i] : samples.block[i] / 2) % 2; };
   std::vector<double> sum[2], count[2];

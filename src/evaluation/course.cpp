@@ -9,7 +9,6 @@
 namespace pmg::evaluation {
 
 void CourseRecorder::add(const sil::RunProgress& now, const model::GroundTruth& truth) {
-  constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
   if (now.result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / now.result.reference.phase_rate_per_s;
   const Eigen::Matrix3d R_WB = truth.q_WB.toRotationMatrix();
   const double heading_rad = std::atan2(R_WB(1, 0), R_WB(0, 0)), c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -24,7 +23,8 @@ void CourseRecorder::add(const sil::RunProgress& now, const model::GroundTruth& 
     std::vector<double>& sum = travelled_[channel];
     if (sum.empty()) sum.push_back(0.0);
     sum.push_back(sum.back() + velocity[channel]);
-    const auto window = std::min(sum.size() - 1, static_cast<std::size_t>(std::lround(gait_period_s_ / kTickPeriod_s)));
+    const auto window = std::min(
+        sum.size() - 1, static_cast<std::size_t>(std::lround(gait_period_s_ / control::ControlCycle::kPeriod_s)));
     course_.did[channel].push_back((sum.back() - sum[sum.size() - 1 - window]) / static_cast<double>(window));
   }
   const sil::RollPitch torso = sil::roll_pitch(truth.q_WT);

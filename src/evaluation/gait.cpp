@@ -17,21 +17,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
-constexpr double kStand_s = 1.5, kUntilSteady_s = 4.0;
+constexpr double kStandBeforeWalk_s = 1.5, kUntilSteady_s = 4.0;
 constexpr double kLoadedFoot_N = 20.0;
 constexpr double kShortestSwing_s = 0.1;  // a shorter one is a foot that bounces
 constexpr const char* kSideNames[] = {"left", "right"};
 
 sil::Scenario gait_scenario(const GaitTest& test) {
   sil::ScenarioStep stand{.start_s = 0.0,
-                          .duration_s = kStand_s,
+                          .duration_s = kStandBeforeWalk_s,
                           .text = "stand",
                           .mode = control::Mode::kStand,
                           .command = {},
                           .hoist_without_policy = false};
   sil::ScenarioStep walk = stand;
-  walk.start_s = kStand_s;
+  walk.start_s = kStandBeforeWalk_s;
   walk.duration_s = kUntilSteady_s + test.steady_s;
   walk.text = "walk";
   walk.mode = control::Mode::kWalk;
@@ -47,13 +46,13 @@ std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::ar
 }
 
 FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
-  const std::vector<std::size_t> contacts = initial_contacts(recording.loaded, kTickPeriod_s);
+  const std::vector<std::size_t> contacts = initial_contacts(recording.loaded, control::ControlCycle::kPeriod_s);
   if (contacts.size() < 2) throw std::runtime_error("the robot doesn't walk: a foot makes no two steps");
   FootGait gait;
   gait.cycles = static_cast<int>(contacts.size()) - 1;
   const auto begin = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.front());
   const auto end = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.back());
-  gait.period_s = static_cast<double>(end - begin) * kTickPeriod_s / gait.cycles;
+  gait.period_s = static_cast<double>(end - begin) * control::ControlCycle::kPeriod_s / gait.cycles;
   gait.duty_factor = static_cast<double>(std::count(begin, end, true)) / static_cast<double>(end - begin);
   for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
     gait.measured_deg[joint] = mean_cycle(recording.measured_deg[joint], contacts);
@@ -125,7 +124,7 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
   Eigen::Vector3d start_W = Eigen::Vector3d::Zero(), end_W = start_W;
   double duty_sum = 0.0;
   const TrialObserver observer = [&](const sil::RunProgress& now, sim::World& world) {
-    if (now.time_s < kStand_s + kUntilSteady_s) return true;
+    if (now.time_s < kStandBeforeWalk_s + kUntilSteady_s) return true;
     const model::GroundTruth truth = world.truth();
     world.read(state);
     if (recordings[kLeft].loaded.empty()) start_W = truth.p_WB;
@@ -146,7 +145,7 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
                          {.gantry = false, .interrupted = supervision.interrupted, .observer = observer});
   const auto ticks = static_cast<double>(recordings[kLeft].loaded.size());
   if (ticks > 1.0) {
-    test.walked_m_s = (end_W - start_W).head<2>().norm() / ((ticks - 1.0) * kTickPeriod_s);
+    test.walked_m_s = (end_W - start_W).head<2>().norm() / ((ticks - 1.0) * control::ControlCycle::kPeriod_s);
     test.reference_duty_factor = duty_sum / ticks;
   }
   for (const Foot foot : {kLeft, kRight}) test.feet[foot] = foot_gait(recordings[foot], test.norms);

@@ -16,10 +16,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kStand_s = 1.5, kEarliestPush_s = 4.0;
+constexpr double kStandBeforePush_s = 1.5, kEarliestPush_s = 4.0;
 constexpr double kPushWindow_s = 1.0;  // about a gait period, so that every phase is met
 constexpr double kAfterPush_s = 4.0, kWalking_m_s = 0.5;
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
 double heading_rad(const model::GroundTruth& truth) {
   const Eigen::Vector3d forward_W = truth.q_WB * Eigen::Vector3d::UnitX();
@@ -59,14 +58,14 @@ double PushPlan::direction_rad() const { return direction * 2.0 * std::numbers::
 sil::Scenario push_scenario(const PushPlan& plan) {
   sil::Scenario scenario{.name = "push", .steps = {}};
   sil::ScenarioStep step{.start_s = 0.0,
-                         .duration_s = kStand_s,
+                         .duration_s = kStandBeforePush_s,
                          .text = "stand",
                          .mode = control::Mode::kStand,
                          .command = {},
                          .hoist_without_policy = false};
   scenario.steps.push_back(step);
-  step.start_s = kStand_s;
-  step.duration_s = plan.at_s + kAfterPush_s - kStand_s;
+  step.start_s = kStandBeforePush_s;
+  step.duration_s = plan.at_s + kAfterPush_s - kStandBeforePush_s;
   if (plan.walking) {
     step.text = "walk";
     step.mode = control::Mode::kWalk;
@@ -78,7 +77,8 @@ sil::Scenario push_scenario(const PushPlan& plan) {
 
 // Between two ticks the world makes whole steps, so so many ticks are the push's time exactly.
 bool Pusher::operator()(const sil::RunProgress& now, sim::World& world) {
-  const bool pushing = now.time_s >= plan_.at_s && ticks_pushed_ < std::lround(kPush_s / kTickPeriod_s);
+  const bool pushing =
+      now.time_s >= plan_.at_s && ticks_pushed_ < std::lround(kPush_s / control::ControlCycle::kPeriod_s);
   if (pushing) {
     if (ticks_pushed_++ == 0) {
       const double towards_rad = heading_rad(world.truth()) + plan_.direction_rad();
@@ -150,7 +150,7 @@ ordered_json to_json(const PushTest& test) {
 }
 
 namespace {
-std::string percent(const Estimate& share) {
+std::string survived_percent(const Estimate& share) {
   return std::isnan(share.mean) ? "-" : fmt::format("{:.1f} %", 100.0 * share.mean);
 }
 }  // namespace
@@ -159,10 +159,11 @@ std::vector<std::string> text_of(const PushTest& test) {
   std::vector<std::string> lines = {"impulse N s   survived   95 % interval     standing   walking"};
   for (const PushTrials& at : test.strengths) {
     const Estimate all = test.survival(at);
-    lines.push_back(fmt::format("{:>11.0f} {:>10}   [{:>5.1f}, {:>5.1f}] % {:>10} {:>9}", at.impulse_N_s, percent(all),
-                                100.0 * all.lower, 100.0 * all.upper,
-                                percent(test.survival(at, [](const PushPlan& plan) { return !plan.walking; })),
-                                percent(test.survival(at, [](const PushPlan& plan) { return plan.walking; }))));
+    lines.push_back(
+        fmt::format("{:>11.0f} {:>10}   [{:>5.1f}, {:>5.1f}] % {:>10} {:>9}", at.impulse_N_s, survived_percent(all),
+                    100.0 * all.lower, 100.0 * all.upper,
+                    survived_percent(test.survival(at, [](const PushPlan& plan) { return !plan.walking; })),
+                    survived_percent(test.survival(at, [](const PushPlan& plan) { return plan.walking; }))));
   }
   if (const auto reached = test.reached()) {
     lines.push_back(fmt::format("limit: {:.0f} % at {:.0f} N s: {}", 100.0 * kPushSurvival, kJudgedPush_N_s,

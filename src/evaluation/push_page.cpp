@@ -9,7 +9,7 @@ namespace pmg::evaluation {
 
 namespace {
 
-std::string percent(const Estimate& share) {
+std::string percent_with_interval(const Estimate& share) {
   if (std::isnan(share.mean)) return "-";
   return fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100.0 * share.mean, 100.0 * share.lower, 100.0 * share.upper);
 }
@@ -56,7 +56,7 @@ void add_directions(const PushTest& test, pages::Page& page) {
   for (const char* name : kPushDirectionNames) table.header.emplace_back(name);
   page.columns([&] {
     for (const PushTrials& at : test.strengths) {
-      std::vector<std::string> row = {fmt::format("{:.0f}", at.impulse_N_s), percent(test.survival(at))};
+      std::vector<std::string> row = {fmt::format("{:.0f}", at.impulse_N_s), percent_with_interval(test.survival(at))};
       pages::Bars bars{.title = fmt::format("{:.0f} N s: survived by direction [%]", at.impulse_N_s),
                        .unit = "%",
                        .names = {kPushDirectionNames.begin(), kPushDirectionNames.end()},
@@ -66,7 +66,7 @@ void add_directions(const PushTest& test, pages::Page& page) {
         const Estimate share = test.survival(at, [d](const PushPlan& plan) { return plan.direction == d; });
         set.values.push_back(100.0 * share.mean);
         set.intervals.push_back({100.0 * share.lower, 100.0 * share.upper});
-        row.push_back(percent(share));
+        row.push_back(percent_with_interval(share));
       }
       bars.sets = {set};
       page.bars(bars);
@@ -86,7 +86,7 @@ pages::Page page_of(const PushTest& test) {
       if (at.impulse_N_s != kJudgedPush_N_s) continue;
       page.verdict(*reached ? pages::Tone::kGood : pages::Tone::kBad,
                    fmt::format("{:.0f} N s: survived {} % of trials; asked {:.0f} %", at.impulse_N_s,
-                               percent(test.survival(at)), 100.0 * kPushSurvival));
+                               percent_with_interval(test.survival(at)), 100.0 * kPushSurvival));
     }
   }
   page.heading("Survival");

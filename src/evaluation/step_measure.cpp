@@ -8,8 +8,6 @@ namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
-
 Errors over(const Errors& sums, double seconds) {
   Errors mean{};
   for (std::size_t e = 0; e < kErrors && seconds > 0.0; ++e) mean[e] = sums[e] / seconds;
@@ -29,7 +27,7 @@ void StepMeasure::count_as_fallen(double from_s, const control::TickResult& resu
   last.p_WB.setZero();
   control::TickResult held = result;
   if (held.mode != control::Mode::kStand) held.mode = control::Mode::kWalk;
-  for (double time_s = from_s; time_s < scenario_.duration_s() - 1e-9; time_s += kTickPeriod_s) {
+  for (double time_s = from_s; time_s < scenario_.duration_s() - 1e-9; time_s += control::ControlCycle::kPeriod_s) {
     add(held, last, false, scenario_.at(time_s));
   }
 }
@@ -62,7 +60,7 @@ void StepMeasure::close_step() {
   const double seconds = now.seconds - before_.seconds;
   Errors mean;
   mean.fill(std::numeric_limits<double>::quiet_NaN());
-  if (seconds > 0.5 * kTickPeriod_s) {
+  if (seconds > 0.5 * control::ControlCycle::kPeriod_s) {
     Sums& group = step_->beyond_reach ? beyond_ : within_;
     for (std::size_t e = 0; e < kErrors; ++e) {
       mean[e] = (now.errors[e] - before_.errors[e]) / seconds;

@@ -15,7 +15,7 @@ namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<int> policy_joints(const model::RobotModel& robot) {
   std::vector<int> joints;
@@ -193,7 +193,7 @@ void WalkCurves::add(const WalkCurves& other) {
   samples_ += other.samples_;
 }
 
-double WalkCurves::imitation_rad() const { return samples_ > 0.0 ? std::sqrt(squares_rad2_ / samples_) : kNaN; }
+double WalkCurves::imitation_rad() const { return samples_ > 0.0 ? std::sqrt(squares_rad2_ / samples_) : kNotMeasured; }
 
 double WalkCurves::difference_rad(const WalkCurves& a, const WalkCurves& b) {
   if (a.sum_rad_.size() != b.sum_rad_.size()) throw std::invalid_argument("walks of different scenarios");
@@ -204,14 +204,14 @@ double WalkCurves::difference_rad(const WalkCurves& a, const WalkCurves& b) {
     squares += difference * difference;
     count += 1.0;
   }
-  return count > 0.0 ? std::sqrt(squares / count) : kNaN;
+  return count > 0.0 ? std::sqrt(squares / count) : kNotMeasured;
 }
 
 std::vector<double> WalkCurves::curve(std::size_t step, std::size_t joint) const {
   std::vector<double> values;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const std::size_t i = index(step, bin, joint);
-    values.push_back(count_[i] > 0.0 ? sum_rad_[i] / count_[i] : kNaN);
+    values.push_back(count_[i] > 0.0 ? sum_rad_[i] / count_[i] : kNotMeasured);
   }
   return values;
 }

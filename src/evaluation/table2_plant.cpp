@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <mutex>
 #include <numbers>
 #include <random>
 
 #include "calib/motor_fit.hpp"
-#include "zero/zero_calibration.hpp"
-#include "zero/zero_stances.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/config_reader.hpp"
@@ -18,6 +15,8 @@
 #include "sil/simulated_robot.hpp"
 #include "sim/joint_load.hpp"
 #include "sim/sensor_noise.hpp"
+#include "zero/zero_calibration.hpp"
+#include "zero/zero_stances.hpp"
 
 namespace pmg::evaluation {
 
@@ -28,12 +27,6 @@ constexpr int kBenchSamples = 500;  // a recording of five seconds
 constexpr int kBenchRuns = 4;
 constexpr double kAmplitude_rad = 0.3;
 constexpr double kWeight_kg = 4.0, kArm_m = 0.3;  // hung on the joint in half of the runs
-
-/// MuJoCo 2.2.2's XML reader and error handlers are global.
-std::mutex& mujoco_reads() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 sim::Range range(model::ConfigReader& reader, const std::string& key) {
   const std::vector<double> ends = reader.numbers(key, 2, model::non_negative());
@@ -90,11 +83,6 @@ std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::Act
   return runs;
 }
 
-std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::WorldOptions& options) {
-  const std::scoped_lock lock(mujoco_reads());
-  return std::make_unique<sim::World>(robot, options);
-}
-
 /// Plays the stances; false when it was stopped.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
                   const std::function<bool()>& stop) {
@@ -103,11 +91,11 @@ bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::pat
   const sil::Scenario scenario = sil::load_scenario(folder / "stances/scenario.yaml");
   sim::WorldOptions options = sil::world_with_noise(seed, false);
   options.motors = plant;
-  const std::unique_ptr<sim::World> world = build(loaded.robot, options);
+  sim::World world(loaded.robot, options);
   const io::WallClock stopwatch;
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
-  sil::SilHal bus(*world);
-  sil::WorldPlant truth(*world);
+  sil::SilHal bus(world);
+  sil::WorldPlant truth(world);
   io::LogWriter file(folder / "log.lcm");
   runtime::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
   sil::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
@@ -175,11 +163,7 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
   sim::ActuatorsByJoint found;
   for (const auto& [name, truth] : plant) {
     const int joint = robot.joint_index.at(name);
-    sim::HangingLoad load;
-    {
-      const std::scoped_lock lock(mujoco_reads());
-      load = sim::hanging_load(robot, name);
-    }
+    const sim::HangingLoad load = sim::hanging_load(robot, name);
     std::vector<calib::FitParameter> unknowns;
     for (const char* parameter : {"drive.kp_scale", "drive.kd_scale", "transmission.armature_kg_m2",
                                   "friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}) {
@@ -200,8 +184,7 @@ std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, 
                                             const std::function<bool()>& stop) {
   zero::write_zero_rig(robot, folder / "stances");
   if (!take_stances(plant, folder, seed, stop)) return {};
-  const zero::ZeroCalibration found =
-      zero::calibrate_zero(robot, zero::read_still_poses({folder / "log.lcm"}, robot));
+  const zero::ZeroCalibration found = zero::calibrate_zero(robot, zero::read_still_poses({folder / "log.lcm"}, robot));
   std::vector<FoundOffset> offsets;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     if (found.observable[i])

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "evaluation/step_measure.hpp"
@@ -12,30 +11,17 @@
 
 namespace pmg::evaluation {
 
-namespace {
-
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
-
-/// MuJoCo 2.2.2's XML reader and error handlers are global.
-std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::WorldOptions& options) {
-  static std::mutex mutex;
-  const std::scoped_lock lock(mutex);
-  return std::make_unique<sim::World>(robot, options);
-}
-
-}  // namespace
-
 TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario, const sim::WorldOptions& world,
                       const TrialOptions& options) {
   control::LoadedControl loaded = control::load_control(candidate.control);
   const model::RobotModel& robot = loaded.robot;
   sim::WorldOptions world_options = world;
   world_options.gantry = options.gantry;
-  const std::unique_ptr<sim::World> simulated = build(robot, world_options);
+  sim::World simulated(robot, world_options);
   const io::WallClock stopwatch;
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
-  sil::SilHal bus(*simulated);
-  sil::WorldPlant plant(*simulated);
+  sil::SilHal bus(simulated);
+  sil::WorldPlant plant(simulated);
   // Nobody carries a robot that is evaluated, whether or not a policy balances it.
   sil::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
                          {.balanced_by_policy = true, .always_hoisted = options.gantry});
@@ -44,10 +30,10 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   model::GroundTruth truth;
   double next_s = 0.0;
   lockstep.after_tick = [&](const sil::RunProgress& now) {
-    truth = simulated->truth();
+    truth = simulated.truth();
     measure.add(now.result, truth, options.gantry, now.step);
-    next_s = now.time_s + kTickPeriod_s;
-    if (options.observer) ended = !options.observer(now, *simulated);
+    next_s = now.time_s + control::ControlCycle::kPeriod_s;
+    if (options.observer) ended = !options.observer(now, simulated);
   };
   lockstep.interrupted = [&] {
     interrupted = options.interrupted && options.interrupted();

@@ -13,15 +13,13 @@ namespace pmg::evaluation {
 
 namespace {
 
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
-
 /// A body that moves exactly as commanded.
 class IdealRobot {
  public:
   explicit IdealRobot(double standing_height_m) : standing_height_m_(standing_height_m) {}
 
   model::GroundTruth move(const Command& command) {
-    yaw_rad_ += command[kOmega] * kTickPeriod_s;
+    yaw_rad_ += command[kOmega] * control::ControlCycle::kPeriod_s;
     const Eigen::AngleAxisd turn(yaw_rad_, Eigen::Vector3d::UnitZ());
     model::GroundTruth truth;
     truth.p_WB.z() = standing_height_m_ + command[kHeight];
@@ -50,7 +48,7 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
   double double_support = 1.0;
   const auto judge = [&](const sil::RunProgress& now, sim::World&) {
     const Command asked = now.result.mode == control::Mode::kWalk ? now.step.command : Command{};
-    const Command& limited = limiter.step(asked, double_support, kTickPeriod_s);
+    const Command& limited = limiter.step(asked, double_support, control::ControlCycle::kPeriod_s);
     const PerFoot<double>& weight = now.result.reference.contact_weight;
     double_support = weight[kLeft] * weight[kRight];
     nothing.add(now.result, still.move({}), false, now.step);

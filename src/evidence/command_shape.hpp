@@ -2,8 +2,8 @@
 #pragma once
 
 #include "evidence/cluster_regression.hpp"
-#include "evidence/verdict.hpp"
 #include "evidence/torque_balance.hpp"
+#include "evidence/verdict.hpp"
 
 namespace pmg::evidence {
 

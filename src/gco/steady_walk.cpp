@@ -14,8 +14,8 @@ namespace pmg::gco {
 namespace {
 
 constexpr double kTick_s = 0.01;
-constexpr double kSettle_s = 4.0;  // commands at their rate limits, height of the ground-aware optimisation
-constexpr int kCycles = 4;         // ticks fall on other phases in each
+constexpr double kSettleWalk_s = 4.0;  // commands at their rate limits, height of the ground-aware optimisation
+constexpr int kCycles = 4;             // ticks fall on other phases in each
 
 /// Sole points above the ground that the optimised height means.
 class Soles {
@@ -62,7 +62,7 @@ SteadyWalk walk_steadily(const model::RobotModel& robot, const ClipLibrary& libr
   Generator generator(library, generator_options(robot));
   GroundAwareCommand ground(robot);
   Soles soles(robot);
-  for (double t = 0.0; t < kSettle_s; t += kTick_s) ground.solve(generator.step(command, kTick_s));
+  for (double t = 0.0; t < kSettleWalk_s; t += kTick_s) ground.solve(generator.step(command, kTick_s));
   SteadyWalk walk;
   walk.lowest_swing_m = walk.clearance_m = walk.foot_gap_m = 1.0;
   SlipStatistics statistics;

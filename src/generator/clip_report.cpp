@@ -17,7 +17,8 @@ namespace {
 /// that has just left is that much below the ground: at small gains, for the first ticks of its swing.
 constexpr double kSwingBelowGround_m = 0.006;
 
-LegTrajectory legs_of(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
+LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain,
+                             const JointVector& q_stand) {
   LegTrajectory legs;
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
     LegPose q;
@@ -101,7 +102,7 @@ ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, 
   for (int tenth = 1; tenth <= 10; ++tenth) {
     GainReport at;
     at.gain = 0.1 * tenth;
-    at.ground = measure(legs, legs_of(clip, roles, at.gain, q_stand), when, base_of(robot, clip, at.gain));
+    at.ground = measure(legs, leg_trajectory(clip, roles, at.gain, q_stand), when, base_of(robot, clip, at.gain));
     at.velocity_error = at.ground.mean_velocity - at.gain * full;
     out.gains.push_back(at);
   }
@@ -185,8 +186,8 @@ std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms) {
   const JointRoles roles = find_joint_roles(robot);
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kDegree;
+  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+  const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kRadPerDegree;
   std::vector<double> hip_deg;
   std::vector<double> thigh_deg;
   std::vector<double> knee_deg;
@@ -194,10 +195,10 @@ std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const
   const std::size_t n = forward.q.size();
   for (std::size_t k = 0; k < 100; ++k) {
     const JointVector& q = forward.q[k * n / 100];
-    hip_deg.push_back(-q[roles.leg[kLeft][kHipPitch]] / kDegree);
+    hip_deg.push_back(-q[roles.leg[kLeft][kHipPitch]] / kRadPerDegree);
     thigh_deg.push_back(hip_deg.back() - tilt_deg);
-    knee_deg.push_back(q[roles.leg[kLeft][kKnee]] / kDegree);
-    ankle_deg.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kDegree);
+    knee_deg.push_back(q[roles.leg[kLeft][kKnee]] / kRadPerDegree);
+    ankle_deg.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kRadPerDegree);
   }
   const std::vector<double> published_hip = read_column(norms, "hip_flexion_mean");
   const std::vector<double> published_tilt = read_column(norms, "pelvis_tilt_ant+_mean");

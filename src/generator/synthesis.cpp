@@ -15,7 +15,7 @@
 namespace pmg::generator {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 GaitTask forward_task(const Making& making) {
   GaitTask task;
@@ -33,8 +33,9 @@ GaitTask forward_task(const Making& making) {
   // one: its movement counts, not its offset.
   task.hike_rad = 0.14;
   task.reference = published_reference(making.legs);
-  task.shape = {
-      {kHipPitch, 0.956, 5.5 * kDegree}, {kKnee, 0.953, 5.4 * kDegree}, {kAnklePitch, 0.98, 4.8 * kDegree, 0.85}};
+  task.shape = {{kHipPitch, 0.956, 5.5 * kRadPerDegree},
+                {kKnee, 0.953, 5.4 * kRadPerDegree},
+                {kAnklePitch, 0.98, 4.8 * kRadPerDegree, 0.85}};
   task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
   task.weights.bias << 1.0, 6.0, 6.0, 1.0, 0.1, 6.0;
   task.weights.slip = 12.0;
@@ -156,8 +157,9 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
   };
   const auto clip = [&making](const MadeGait& gait) { return assemble(making, gait.task, gait.legs, gait.body); };
 
-  const MadeGait forward = make("forward", forward_task(making),
-                                {.pelvis_tilt_rad = 8.0 * kDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kDegree});
+  const MadeGait forward =
+      make("forward", forward_task(making),
+           {.pelvis_tilt_rad = 8.0 * kRadPerDegree, .arm_swing = 0.8, .torso_yaw_rad = 3.5 * kRadPerDegree});
   library.positive[kVx] = clip(forward);
 
   GaitTask lateral_wanted = lateral_task(making), turn_wanted = turn_task(making);
@@ -167,12 +169,12 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
       {0.45, 4.0, clip_addition(making, forward.legs, forward.task, 0.55, turn_wanted.period_s)});
   auto backward_made = std::async(std::launch::async, [&] {
     return make("backward", backward_task(making, forward.legs, forward.task),
-                {.pelvis_tilt_rad = 3.0 * kDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kDegree});
+                {.pelvis_tilt_rad = 3.0 * kRadPerDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kRadPerDegree});
   });
-  auto lateral_made = std::async(std::launch::async,
-                                 [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kDegree}); });
+  auto lateral_made = std::async(
+      std::launch::async, [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kRadPerDegree}); });
   const MadeGait turn =
-      make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+      make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kRadPerDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
   const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
   library.negative[kVx] = clip(backward);
   library.positive[kVy] = clip(lateral);

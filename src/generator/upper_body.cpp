@@ -11,10 +11,10 @@ namespace pmg::generator {
 namespace {
 
 void swing_arm(const JointRoles& roles, const UpperBody& body, Foot side, double own_phase, JointVector& q) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
   const PublishedGait& gait = published_gait();
-  const double flexion = gait.shoulder_flexion.at_rad(own_phase) - gait.shoulder_flexion.mean_deg * kDegree;
-  const double bend = gait.elbow_flexion.at_rad(own_phase) - gait.elbow_flexion.mean_deg * kDegree;
+  const double flexion = gait.shoulder_flexion.at_rad(own_phase) - gait.shoulder_flexion.mean_deg * kRadPerDegree;
+  const double bend = gait.elbow_flexion.at_rad(own_phase) - gait.elbow_flexion.mean_deg * kRadPerDegree;
   if (roles.shoulder_pitch[side]) {
     q[*roles.shoulder_pitch[side]] -= body.arm_swing * flexion;
   }

@@ -6,6 +6,9 @@
 
 namespace pmg::io {
 
+/// Truncated towards zero.
+constexpr std::int64_t nanoseconds(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
+
 class Clock {
  public:
   virtual ~Clock() = default;

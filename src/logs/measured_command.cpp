@@ -10,7 +10,6 @@ namespace pmg::logs {
 namespace {
 constexpr double kLongestGaitPeriod_s = 4.0;
 
-Eigen::Quaterniond quaternion(const double (&wxyz)[4]) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
 }  // namespace
 
 std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_t& truth, double gait_period_s,
@@ -21,7 +20,7 @@ std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_
     const double step_s = time_s - samples_.back().time_s;
     if (step_s <= 0.0 || step_s > period_s) samples_.clear();
   }
-  const Eigen::Matrix3d R_WB = quaternion(truth.q_WB).toRotationMatrix();
+  const Eigen::Matrix3d R_WB = to_quaternion(truth.q_WB).toRotationMatrix();
   const Eigen::Map<const Eigen::Vector3d> omega_B(truth.omega_WB_B_rad_s);
   const double yaw_rad = std::atan2(R_WB(1, 0), R_WB(0, 0));
   samples_.push_back({.time_s = time_s,
@@ -43,7 +42,7 @@ std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_
   const double share = 1.0 / static_cast<double>(samples_.size());
   const double scale = std::max(std::hypot(sum.cos_yaw, sum.sin_yaw), 1e-12);
   const double c = sum.cos_yaw / scale, s = sum.sin_yaw / scale;
-  const sil::RollPitch torso = sil::roll_pitch(quaternion(truth.q_WT));
+  const sil::RollPitch torso = sil::roll_pitch(to_quaternion(truth.q_WT));
   std::array<double, kChannels> measured{};
   measured[kVx] = share * (c * sum.vx_W_m_s + s * sum.vy_W_m_s);
   measured[kVy] = share * (c * sum.vy_W_m_s - s * sum.vx_W_m_s);
@@ -55,7 +54,7 @@ std::array<double, kChannels> MeasuredCommand::add(const pmg_msgs::ground_truth_
 }
 
 bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m) {
-  const Eigen::Vector3d up_W = quaternion(truth.q_WT) * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up_W = to_quaternion(truth.q_WT) * Eigen::Vector3d::UnitZ();
   return truth.p_WB_m[2] < sil::Metrics::kFallenHeightShare * standing_height_m ||
          up_W.z() < std::cos(sil::Metrics::kFallenTilt_rad);
 }

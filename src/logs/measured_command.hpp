@@ -1,6 +1,7 @@
 // The six channels as a simulated robot really did them, to be laid over what was asked.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <deque>
@@ -9,6 +10,9 @@
 #include "pmg_msgs/ground_truth_t.hpp"
 
 namespace pmg::logs {
+
+/// Messages hold quaternions as w, x, y, z.
+inline Eigen::Quaterniond to_quaternion(const double (&wxyz)[4]) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
 
 /// Velocities in the heading frame H, averaged over the last gait period as the metrics are (metrics.hpp); posture of
 /// the torso in H; height of the pelvis as deviation from standing.

@@ -11,7 +11,7 @@ namespace pmg::logs::report {
 namespace {
 
 constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: a foot that barely touches carries nothing
-constexpr std::array<const char*, 2> kFeet = {"left", "right"};
+constexpr std::array<const char*, 2> kFootNames = {"left", "right"};
 constexpr std::array<const char*, kChannels> kTitles = {
     "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
     "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
@@ -86,7 +86,7 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
     const auto& truth = runs[i].truth;
     const std::vector<bool> held = holding(runs[i], reference.t_s);
     for (std::size_t foot = 0; foot < 2; ++foot) {
-      const std::string name = kFeet[foot] + suffix(runs, i);
+      const std::string name = kFootNames[foot] + suffix(runs, i);
       if (!reference.t_s.empty())
         lanes.lanes.push_back(
             {name, stretches(reference.t_s, "#5b7fa6", [&](std::size_t k) { return reference.contact[foot][k]; })});
@@ -135,9 +135,10 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
         lines.push_back(
             {.name = "measured" + behind, .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured});
       }
-      add_chart(page, runs,
-                fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFeet[foot]),
-                std::move(lines));
+      add_chart(
+          page, runs,
+          fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFootNames[foot]),
+          std::move(lines));
     }
   });
 }

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 
+#include "logs/measured_command.hpp"
+
 namespace pmg::logs {
 
 namespace {
 
-Eigen::Quaterniond quaternion(const double (&wxyz)[4]) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
-
 model::GroundTruth truth_of(const pmg_msgs::ground_truth_t& message) {
   model::GroundTruth truth;
   truth.p_WB = Eigen::Map<const Eigen::Vector3d>(message.p_WB_m);
-  truth.q_WB = quaternion(message.q_WB);
+  truth.q_WB = to_quaternion(message.q_WB);
   truth.v_WB_W = Eigen::Map<const Eigen::Vector3d>(message.v_WB_W_m_s);
   truth.omega_WB_B = Eigen::Map<const Eigen::Vector3d>(message.omega_WB_B_rad_s);
-  truth.q_WT = quaternion(message.q_WT);
+  truth.q_WT = to_quaternion(message.q_WT);
   for (const std::size_t foot : {kLeft, kRight}) {
     truth.foot_force_N[foot] = message.foot_force_N[foot];
     truth.foot_slip_m_s[foot] = message.foot_slip_m_s[foot];

@@ -3,11 +3,6 @@
 #include <utility>
 
 namespace pmg::model {
-namespace {
-
-Eigen::Vector3d to_eigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
-
-}  // namespace
 
 ChainKinematics::ChainKinematics(const KDL::Chain& chain, std::vector<int> joints)
     : chain_(chain), joints_(std::move(joints)), axes_(joints_.size()), origins_(joints_.size()) {}

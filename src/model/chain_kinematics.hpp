@@ -4,11 +4,14 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <kdl/chain.hpp>
+#include <kdl/frames.hpp>
 #include <vector>
 
 #include "pmg/types.hpp"
 
 namespace pmg::model {
+
+inline Eigen::Vector3d to_eigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Forward kinematics of a chain of fixed and revolute joints. KDL's own position and Jacobian solvers walk the chain
 /// once each; this walks it once for both. No heap after construction.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kCommandColumn = "command";
 
-std::vector<std::string> columns(const JointIndex& joints, bool with_command) {
+std::vector<std::string> clip_columns(const JointIndex& joints, bool with_command) {
   std::vector<std::string> names = joints.names();
   if (with_command) names.insert(names.begin(), kCommandColumn);
   return names;
@@ -17,7 +17,7 @@ std::vector<std::string> columns(const JointIndex& joints, bool with_command) {
 
 ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& joints, bool with_command) {
   const NumberTable numbers = read_number_table(
-      file, columns(joints, with_command),
+      file, clip_columns(joints, with_command),
       with_command ? "`command` and every joint of the robot" : "every joint of the robot, by its name");
   ClipTable table{numbers.file, {}, {}, numbers.line};
   for (const std::vector<double>& row : numbers.rows) {
@@ -41,7 +41,7 @@ std::string format_clip_table(const JointIndex& joints, const std::vector<double
     rows.emplace_back(q[row].data(), q[row].data() + q[row].size());
     if (!command.empty()) rows.back().insert(rows.back().begin(), command[row]);
   }
-  return format_number_table(columns(joints, !command.empty()), rows);
+  return format_number_table(clip_columns(joints, !command.empty()), rows);
 }
 
 }  // namespace pmg::model

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kAxes = CommandInverse::kAxes.size();
 
 /// The commands, then the corrections.
-std::vector<std::string> columns() {
+std::vector<std::string> inverse_columns() {
   std::vector<std::string> names;
   for (const char* prefix : {"", "correction_"}) {
     for (const Channel channel : CommandInverse::kAxes) names.push_back(std::string(prefix) + kChannelNames[channel]);
@@ -26,10 +26,10 @@ std::vector<std::string> columns() {
   return names;
 }
 
-/// For each of columns(), where it stands in the file.
+/// For each of inverse_columns(), where it stands in the file.
 std::array<std::size_t, 2 * kAxes> places(const NumberTable& table) {
   std::array<std::size_t, 2 * kAxes> place{};
-  const std::vector<std::string> names = columns();
+  const std::vector<std::string> names = inverse_columns();
   for (std::size_t i = 0; i < names.size(); ++i) {
     place[i] = static_cast<std::size_t>(std::ranges::find(table.columns, names[i]) - table.columns.begin());
   }
@@ -51,7 +51,7 @@ std::filesystem::path command_inverse_file(const std::filesystem::path& director
 
 CommandInverse read_command_inverse(const std::filesystem::path& directory) {
   const NumberTable table =
-      read_number_table(command_inverse_file(directory), columns(),
+      read_number_table(command_inverse_file(directory), inverse_columns(),
                         "each of " + std::to_string(kAxes) + " commands and of their corrections");
   const auto place = places(table);
   std::array<std::vector<double>, kAxes> axis;
@@ -71,7 +71,7 @@ CommandInverse read_command_inverse(const std::filesystem::path& directory) {
     const auto node = node_at(axis, i);
     for (std::size_t a = 0; a < kAxes; ++a) {
       if (table.rows[i][place[a]] != node[a]) {
-        raise(table.place(i), columns()[a], fmt::format("is {}", table.rows[i][place[a]]),
+        raise(table.place(i), inverse_columns()[a], fmt::format("is {}", table.rows[i][place[a]]),
               fmt::format("{}: the full grid, sorted", node[a]));
       }
       correction[i][a] = table.rows[i][place[kAxes + a]];
@@ -90,7 +90,7 @@ void write_command_inverse(const std::filesystem::path& directory, const Command
   const std::filesystem::path file = command_inverse_file(directory);
   errno = 0;
   std::ofstream stream(file, std::ios::binary);
-  stream << format_number_table(columns(), rows);
+  stream << format_number_table(inverse_columns(), rows);
   stream.close();
   if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
 }

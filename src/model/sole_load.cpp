@@ -17,8 +17,6 @@ constexpr double kRank = 1e-3;
 /// joints that is spread loses a little, because its foot turns.
 constexpr double kLiftMiss = 0.2;
 
-Eigen::Vector3d to_eigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
-
 }  // namespace
 
 SoleLoads::SoleLoads(const RobotModel& robot) : legs_{leg(robot, kLeft), leg(robot, kRight)} {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kBendPeriod_ns = 100'000'000;  // of a posture key that is held
 
-constexpr std::array<std::pair<std::string_view, Key>, 25> kNames = {{
+constexpr std::array<std::pair<std::string_view, Key>, 25> kKeyNames = {{
     {"w", Key::kForwards},     {"up", Key::kForwards},   {"s", Key::kBackwards}, {"down", Key::kBackwards},
     {"a", Key::kTurnLeft},     {"left", Key::kTurnLeft}, {"d", Key::kTurnRight}, {"right", Key::kTurnRight},
     {"q", Key::kStepLeft},     {"e", Key::kStepRight},   {"k", Key::kSquat},     {"i", Key::kRise},
@@ -47,8 +47,8 @@ constexpr bool bends(Key key) { return key > Key::kStepRight && key < Key::kUpri
 }  // namespace
 
 std::optional<Key> key_named(std::string_view name) noexcept {
-  const auto* found = std::ranges::find(kNames, name, &std::pair<std::string_view, Key>::first);
-  if (found == kNames.end()) return std::nullopt;
+  const auto* found = std::ranges::find(kKeyNames, name, &std::pair<std::string_view, Key>::first);
+  if (found == kKeyNames.end()) return std::nullopt;
   return found->second;
 }
 

@@ -28,7 +28,7 @@ double value_of(const Bars::Set& set, std::size_t row) {
 }
 
 /// What is shown: always with zero, from which bars begin.
-Range range_of(const Bars& bars) {
+Range bar_range(const Bars& bars) {
   Range range{0.0, 0.0};
   for (const Bars::Set& set : bars.sets) {
     for (const double value : set.values) range.include(value);
@@ -38,11 +38,11 @@ Range range_of(const Bars& bars) {
   return range.span() > 0.0 ? range : Range{0.0, 1.0};
 }
 
-class Drawing {
+class BarDrawing {
  public:
-  explicit Drawing(const Bars& bars)
+  explicit BarDrawing(const Bars& bars)
       : bars_(bars),
-        range_(range_of(bars)),
+        range_(bar_range(bars)),
         numbered_(bars.sets.size() <= 1 || bars.sets.size() * bars.names.size() <= kRoomyBars),
         bar_(bars.sets.size() <= 1 ? 10
              : numbered_           ? 14
@@ -186,6 +186,6 @@ class Drawing {
 
 }  // namespace
 
-std::string svg(const Bars& bars) { return Drawing(bars).svg(); }
+std::string svg(const Bars& bars) { return BarDrawing(bars).svg(); }
 
 }  // namespace pmg::pages

@@ -33,7 +33,7 @@ Range bulk(std::span<const double> all) {
 }
 
 /// Of all sets; with zero where that is not far away.
-Range range_of(const Histogram& histogram) {
+Range histogram_range(const Histogram& histogram) {
   Range range = Range::empty();
   for (const Histogram::Set& set : histogram.sets) {
     const Range found = bulk(set.values);
@@ -60,7 +60,7 @@ std::string summary(const Histogram::Set& set, const Bins& bins, const std::stri
 }  // namespace
 
 std::string svg(const Histogram& histogram) {
-  const Range range = range_of(histogram);
+  const Range range = histogram_range(histogram);
   std::vector<Bins> bins;
   double highest = 1.0;
   Legend legend(kLeft, kWidth);

@@ -15,15 +15,15 @@ namespace pmg::pages {
 
 namespace {
 
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoPoint = std::numeric_limits<double>::quiet_NaN();
 
 void push_gap(LineData& data, double x) {
   data.x.push_back(x);
-  for (std::vector<double>& line : data.y) line.push_back(kGap);
+  for (std::vector<double>& line : data.y) line.push_back(kNoPoint);
 }
 
 struct Extremes {
-  double first = kGap, second = kGap;
+  double first = kNoPoint, second = kNoPoint;
 };
 
 /// The smallest and the largest finite value of [from, to), in the order in which they came.

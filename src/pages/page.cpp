@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kColumns =
+constexpr std::size_t kChartColumns =
     1500;  // of a line: wider than a chart on a laptop, so that zooming in finds a bit more
 constexpr double kResolution = 5000.0;  // steps over a line's range: finer than a pixel
 
@@ -59,9 +59,9 @@ std::string tracks_json(const std::vector<std::vector<const Line*>>& groups, dou
   for (const auto& group : groups) {
     std::vector<std::span<const double>> ys;
     for (const Line* line : group) ys.push_back(line->y);
-    const LineData data = decimate(group.front()->x, ys, kColumns, longest_gap);
+    const LineData data = decimate(group.front()->x, ys, kChartColumns, longest_gap);
     text += text.size() > 1 ? ",{\"x\":" : "{\"x\":";
-    text += delta_json(data.x, 20.0 * kColumns) + ",\"y\":[";
+    text += delta_json(data.x, 20.0 * kChartColumns) + ",\"y\":[";
     for (std::size_t i = 0; i < data.y.size(); ++i) {
       if (i > 0) text += ',';
       text += delta_json(data.y[i], kResolution);

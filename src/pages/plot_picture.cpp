@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kWidth = 640, kNarrowestLeft = 58, kRight = 14, kTop = 8, kAxis = 38;
 constexpr std::size_t kColumns = 280;  // of a line: two points each are all that can be seen
-constexpr double kMargin = 0.04;       // of the range of y, above and below
-constexpr int kLabels = 6;             // along x: far enough apart for long ones
+constexpr double kRangeMargin = 0.04;  // of the range of y, above and below
+constexpr int kMostLabels = 6;         // along x: far enough apart for long ones
 constexpr const char* kStyle =
     "text{font:12px sans-serif;fill:#1b1f24}.grid{stroke:#e6e9ed}.tick{text-anchor:middle}.name{text-anchor:end}";
 
@@ -59,9 +59,9 @@ LineData seen(const PlotLine& line) {
   return {{line.x.begin(), line.x.end()}, {{line.y.begin(), line.y.end()}}};
 }
 
-class Drawing {
+class PlotDrawing {
  public:
-  Drawing(const Plot& plot, int top) : plot_(plot), top_(top + kTop), bottom_(top_ + plot.height_px) {
+  PlotDrawing(const Plot& plot, int top) : plot_(plot), top_(top + kTop), bottom_(top_ + plot.height_px) {
     x_.logarithmic = plot.logarithmic_x;
     y_.logarithmic = plot.logarithmic_y;
     for (const PlotLine& line : plot.lines) {
@@ -73,7 +73,7 @@ class Drawing {
     for (const Mark& mark : plot.marks) x_.include(mark.x);
     if (plot.show_zero && !plot.logarithmic_y) y_.include(0.0);
     x_.range = shown_range(x_.range, 0.0);
-    y_.range = shown_range(y_.range, kMargin);
+    y_.range = shown_range(y_.range, kRangeMargin);
     y_ticks_ = y_.ticks(std::max(4, plot.height_px / 30));
     double widest = 0.0;
     for (const AxisTick& tick : y_ticks_) widest = std::max(widest, text_width(tick.label));
@@ -114,7 +114,7 @@ class Drawing {
       add(R"(<path class="grid" d="M{} {:.1f}H{}"/><text class="name" x="{}" y="{:.1f}">{}</text>)", left_, at,
           kWidth - kRight, left_ - 6, at + 4, tick.label);
     }
-    for (const AxisTick& tick : x_.ticks(kLabels)) {
+    for (const AxisTick& tick : x_.ticks(kMostLabels)) {
       add(R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
           x_(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
@@ -193,7 +193,7 @@ class Drawing {
 }  // namespace
 
 std::string svg(const Plot& plot) {
-  Drawing drawing(plot, 0);
+  PlotDrawing drawing(plot, 0);
   return fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)", kWidth,
                      drawing.end(), escape_html(plot.title)) +
          drawing.svg() + "</svg>";
@@ -208,7 +208,7 @@ std::string svg_file(const std::vector<Plot>& plots) {
   for (const Plot& plot : plots) {
     body += fmt::format(R"(<text x="{}" y="{}" style="font-weight:bold">{}</text>)", kNarrowestLeft, top + 15,
                         escape_html(plot.title));
-    Drawing drawing(plot, top + kTitle);
+    PlotDrawing drawing(plot, top + kTitle);
     body += drawing.svg();
     top = drawing.end() + 4;
   }

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "model/robot_model.hpp"
 #include "robot_diagnosis/robot_dynamics.hpp"
 #include "robot_diagnosis/robot_parameters.hpp"
 #include "robot_diagnosis/robot_samples.hpp"
-#include "model/robot_model.hpp"
 
 namespace pmg::robot_diagnosis {
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "robot_diagnosis/robot_diagnosis.hpp"
 #include "pages/page.hpp"
+#include "robot_diagnosis/robot_diagnosis.hpp"
 
 namespace pmg::robot_diagnosis {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "robot_diagnosis/robot_recording.hpp"
 #include "pmg/types.hpp"
+#include "robot_diagnosis/robot_recording.hpp"
 
 namespace pmg::robot_diagnosis {
 

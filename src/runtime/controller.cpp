@@ -19,8 +19,6 @@ constexpr std::int64_t kStartDelay_ns = 2 * hal::BusCycle::kPeriod_ns;
 constexpr milliseconds kPoll{1};
 constexpr int kRecorderPause_ms = 20;
 
-std::int64_t ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
-
 ThreadSchedule scheduled(ThreadSchedule schedule, bool realtime) {
   if (!realtime) {
     schedule.priority = 0;
@@ -90,7 +88,7 @@ void Controller::start(Pass comms, Pass recorder) {
 }
 
 void Controller::await_first_sample() {
-  const std::int64_t deadline_ns = clock_.now_ns() + ns(options_.first_sample_within_s);
+  const std::int64_t deadline_ns = clock_.now_ns() + io::nanoseconds(options_.first_sample_within_s);
   while (!drives_answered_.load(std::memory_order_acquire)) {
     if (clock_.now_ns() > deadline_ns) {
       stopped_ = true;
@@ -157,13 +155,13 @@ bool Controller::await_damping() {
   damping.mode = control::Mode::kDamping;
   damping.received_ns = damping.stamp_ns = clock_.now_ns();
   inbox_.put(damping);
-  const std::int64_t deadline_ns = clock_.now_ns() + ns(options_.confirm_stop_within_s);
+  const std::int64_t deadline_ns = clock_.now_ns() + io::nanoseconds(options_.confirm_stop_within_s);
   const auto damps = [this] {
     const control::Mode mode = mode_.load(std::memory_order_acquire);
     return mode == control::Mode::kDamping || mode == control::Mode::kFault;
   };
   while (!damps() && clock_.now_ns() < deadline_ns) std::this_thread::sleep_for(kPoll);
-  std::this_thread::sleep_for(std::chrono::nanoseconds(ns(options_.damp_s)));
+  std::this_thread::sleep_for(std::chrono::nanoseconds(io::nanoseconds(options_.damp_s)));
   return damps();
 }
 

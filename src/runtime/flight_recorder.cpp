@@ -23,7 +23,6 @@ constexpr std::size_t kWaiting = 4;           // incidents that wait for the dis
 constexpr std::size_t kMessagesInText = 5;    // of each kind
 constexpr double kRoomForLatePasses_s = 2.0;  // the ring goes on while an incident's last second is awaited
 
-std::int64_t ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 double seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-9; }
 
 std::int64_t utc_now_ns() {
@@ -44,8 +43,6 @@ std::string utc(std::int64_t utc_ns, const char* format) {
 std::string mode_name(control::Mode mode) {
   return mode <= control::Mode::kFault ? to_string(mode) : fmt::format("mode {}", static_cast<int>(mode));
 }
-
-bool same(const control::Fault& a, const control::Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
 
 }  // namespace
 
@@ -80,7 +77,7 @@ void FlightRecorder::add(const control::TickRecord& record, const BusTiming& bus
 
 void FlightRecorder::note_fault(const control::TickRecord& record) {
   const control::Fault& fault = record.result.fault;
-  const bool latched = fault.code != control::FaultCode::kNone && !same(fault, last_fault_);
+  const bool latched = fault.code != control::FaultCode::kNone && !control::same_incident(fault, last_fault_);
   last_fault_ = fault;
   const control::Mode mode_before = std::exchange(last_mode_, record.result.mode);
   if (!latched) return;
@@ -97,14 +94,14 @@ void FlightRecorder::note_fault(const control::TickRecord& record) {
 }
 
 bool FlightRecorder::complete(const Incident& incident) const {
-  return held_ > 0 && row(0).record.now_ns >= incident.record.now_ns + ns(options_.after_s);
+  return held_ > 0 && row(0).record.now_ns >= incident.record.now_ns + io::nanoseconds(options_.after_s);
 }
 
 void FlightRecorder::pass() {
   if (waiting_.empty()) return;
   const std::int64_t now_ns = clock_.now_ns();
   std::erase_if(waiting_, [&](Incident& incident) {
-    const bool due = complete(incident) || now_ns > incident.record.now_ns + 2 * ns(options_.after_s);
+    const bool due = complete(incident) || now_ns > incident.record.now_ns + 2 * io::nanoseconds(options_.after_s);
     return due && now_ns >= incident.try_ns && try_writing(incident);
   });
 }
@@ -123,7 +120,7 @@ bool FlightRecorder::try_writing(Incident& incident) {
     remove_oldest();
     write(incident, file);
   } catch (const std::exception& error) {
-    incident.try_ns = clock_.now_ns() + ns(options_.retry_s);
+    incident.try_ns = clock_.now_ns() + io::nanoseconds(options_.retry_s);
     if (!std::exchange(incident.refused, true)) {
       say_(fmt::format("flight recorder: {}; kept in memory and tried again", error.what()));
       for (const Row* held : rows_of(incident)) incident.rescued.push_back(*held);
@@ -145,7 +142,8 @@ std::vector<const FlightRecorder::Row*> FlightRecorder::rows_of(const Incident& 
   for (std::size_t age = held_; age-- > 0;) {
     const Row& candidate = row(age);
     const std::int64_t since_ns = candidate.record.now_ns - fault_ns;
-    if (since_ns >= -ns(options_.before_s) && since_ns <= ns(options_.after_s)) rows.push_back(&candidate);
+    if (since_ns >= -io::nanoseconds(options_.before_s) && since_ns <= io::nanoseconds(options_.after_s))
+      rows.push_back(&candidate);
   }
   return rows;
 }

@@ -162,7 +162,7 @@ void Recorder::begin_file(std::int64_t stamp_ns) {
 
 void Recorder::try_again() {
   if (clock_.now_ns() < try_ns_) return;
-  try_ns_ = clock_.now_ns() + static_cast<std::int64_t>(options_.retry_s * 1e9);
+  try_ns_ = clock_.now_ns() + io::nanoseconds(options_.retry_s);
   try {
     if (fs::space(options_.directory).available < static_cast<std::uintmax_t>(options_.spare_bytes)) return;
     begin_file(record_.now_ns);
@@ -177,7 +177,7 @@ void Recorder::give_up_file(const std::string& why) {
   lost_before_refusal_ = disk_lost_;
   disk_lost_ += std::exchange(unflushed_, 0);
   writer_.reset();
-  try_ns_ = clock_.now_ns() + static_cast<std::int64_t>(options_.retry_s * 1e9);
+  try_ns_ = clock_.now_ns() + io::nanoseconds(options_.retry_s);
   say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on when there is room", why));
 }
 

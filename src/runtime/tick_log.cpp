@@ -2,10 +2,6 @@
 
 namespace pmg::runtime {
 
-namespace {
-bool same(const control::Fault& a, const control::Fault& b) { return a.code == b.code && a.stamp_ns == b.stamp_ns; }
-}  // namespace
-
 TickLog::TickLog(io::LogWriter& writer, const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz,
                  std::int64_t stamp_ns)
     : writer_(&writer), robot_(robot), run_(run), joint_count_(robot.joint_index.size()) {
@@ -57,8 +53,8 @@ void TickLog::announce_fault(std::int64_t stamp_ns, const control::TickRecord& r
 
 void TickLog::write_fault_once(const control::TickRecord& record) {
   const control::Fault& fault = record.result.fault;
-  const bool latched =
-      fault.code != control::FaultCode::kNone && !same(fault, last_fault_) && !same(fault, announced_fault_);
+  const bool latched = fault.code != control::FaultCode::kNone && !control::same_incident(fault, last_fault_) &&
+                       !control::same_incident(fault, announced_fault_);
   last_fault_ = fault;
   if (!latched) return;
   fill(record, run_, robot_, fault_);

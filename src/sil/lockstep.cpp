@@ -4,10 +4,6 @@
 
 namespace pmg::sil {
 
-namespace {
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
-}  // namespace
-
 Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick,
                    const Scenario& scenario, runtime::TickLog* log, const LockstepOptions& options)
     : plant_(plant),
@@ -24,7 +20,8 @@ Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, 
 }
 
 RunOutcome Lockstep::run() {
-  const auto ticks = static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / kTickPeriod_s - 1e-9));
+  const auto ticks =
+      static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / control::ControlCycle::kPeriod_s - 1e-9));
   timing_.reserve(static_cast<std::size_t>(ticks));
   bool ended_early = false;
   for (std::int64_t k = 0; k < ticks; ++k) {
@@ -32,7 +29,7 @@ RunOutcome Lockstep::run() {
     if (ended_early) break;
     advance();
     if (plant_.diverged()) break;
-    const double time_s = static_cast<double>(k) * kTickPeriod_s;
+    const double time_s = static_cast<double>(k) * control::ControlCycle::kPeriod_s;
     control(time_s);
     measure(time_s);
     if (after_tick) after_tick({time_s, scenario_.duration_s(), player_.current(), tick_.result()});
@@ -65,7 +62,7 @@ void Lockstep::control(double time_s) {
 
   if (!options_.always_hoisted) {
     hoist_.step(options_.balanced_by_policy ? Support::kNone : player_.current().support_without_policy(),
-                kTickPeriod_s);
+                control::ControlCycle::kPeriod_s);
     plant_.set_hoist(hoist_.lift_m(), hoist_.engaged());
   }
 }

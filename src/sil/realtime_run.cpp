@@ -9,7 +9,6 @@
 namespace pmg::sil {
 
 namespace {
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 constexpr std::chrono::milliseconds kPoll{20};
 constexpr double kReserved_s = 600.0;  // of timing, at most; a run may go on for ever
 }  // namespace
@@ -25,7 +24,8 @@ RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, 
       measure_(model.standing_height_m),
       bus_cycles_(controller.outbox()) {
   if (log_ != nullptr) scenario_log_.emplace(*log_, scenario_);
-  timing_.reserve(static_cast<std::size_t>(std::ceil(std::min(scenario.duration_s(), kReserved_s) / kTickPeriod_s)) +
+  timing_.reserve(static_cast<std::size_t>(
+                      std::ceil(std::min(scenario.duration_s(), kReserved_s) / control::ControlCycle::kPeriod_s)) +
                   1);
 }
 
@@ -81,7 +81,7 @@ void RealtimeRun::record_tick() {
   }
   if (!measuring_.load()) return;
   if (ticks_ == 0) first_tick_ns_ = record_.now_ns;
-  const double time_s = static_cast<double>(ticks_++) * kTickPeriod_s;
+  const double time_s = static_cast<double>(ticks_++) * control::ControlCycle::kPeriod_s;
   timing_.add(time_s, result.times);
   if (truth != nullptr) measure_.add(result, truth->truth, truth->hoisted, asked_);
   if (after_tick) after_tick({time_s, scenario_.duration_s(), scenario_.at(time_s), result});

@@ -5,14 +5,13 @@
 namespace pmg::sil {
 
 namespace {
-constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
 
 bool holds(control::Mode mode) { return mode == control::Mode::kStand || mode == control::Mode::kWalk; }
 }  // namespace
 
 RunMeasure::RunMeasure(double standing_height_m)
-    : metrics_(standing_height_m, kTickPeriod_s), gait_period_s_(kGaitPeriodBeforeWalking_s) {}
+    : metrics_(standing_height_m, control::ControlCycle::kPeriod_s), gait_period_s_(kGaitPeriodBeforeWalking_s) {}
 
 void RunMeasure::add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
                      const Command& asked) {
@@ -22,7 +21,7 @@ void RunMeasure::add(const control::TickResult& result, const model::GroundTruth
 
 void RunMeasure::add_reference(const control::TickResult& result) {
   ++ticks_;
-  if (result.hanging) sums_.hanging_s += kTickPeriod_s;
+  if (result.hanging) sums_.hanging_s += control::ControlCycle::kPeriod_s;
   if (result.mode == control::Mode::kFault && last_mode_ != control::Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 
@@ -32,7 +31,7 @@ void RunMeasure::add_reference(const control::TickResult& result) {
 
 void RunMeasure::add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
                            const Command& asked) {
-  if (hoisted) sums_.hoisted_s += kTickPeriod_s;
+  if (hoisted) sums_.hoisted_s += control::ControlCycle::kPeriod_s;
   // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
   const bool judged = !hoisted && (holds(result.mode) || result.mode == control::Mode::kFault);
   if (judged) {
@@ -44,7 +43,7 @@ void RunMeasure::add_truth(const control::TickResult& result, const model::Groun
 
 RunOutcome RunMeasure::outcome() const {
   RunOutcome outcome = sums_;
-  outcome.duration_s = static_cast<double>(ticks_) * kTickPeriod_s;
+  outcome.duration_s = static_cast<double>(ticks_) * control::ControlCycle::kPeriod_s;
   outcome.fell = metrics_.fell();
   outcome.fell_at_s = metrics_.fell_at_s();
   outcome.tracking = metrics_.summary();

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "sim/mujoco_objects.hpp"
 #include "sim/scene.hpp"
 
 namespace pmg::sim {
@@ -82,10 +83,6 @@ std::string key_name(int key, int scancode) {
   const char* label = glfwGetKeyName(key, scancode);  // by the keyboard's layout
   return label == nullptr ? "" : label;
 }
-
-struct FreeData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 }  // namespace
 
@@ -191,7 +188,7 @@ struct Viewer::Impl {
   const mjModel* model;
   std::function<void(const ViewerKey&)> on_key;
   Window window;  // before everything that lives in its OpenGL context
-  std::unique_ptr<mjData, FreeData> data;
+  DataPointer data;
   Scene scene;
   mjrContext context{};
   mjvCamera camera{};

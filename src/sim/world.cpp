@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <stdexcept>
 
 #include "sim/actuator_joint.hpp"
 #include "sim/motors_in_force.hpp"
+#include "sim/mujoco_objects.hpp"
 #include "sim/sensor_noise.hpp"
 #include "sim/suspension.hpp"
 
@@ -19,13 +21,6 @@ constexpr double kClampInertia = 1e12;           // [kg, kg m^2] 100 Nm turn it 
 constexpr double kRopeLength_m = 4.0;            // as drawn
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
-struct FreeModel {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-};
-struct FreeData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
 /// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in
 /// mjData.
 void silence_warnings(const char*) {}
@@ -34,7 +29,10 @@ void silence_warnings(const char*) {}
 /// whole.
 [[noreturn]] void throw_error(const char* message) { throw std::runtime_error(std::string("MuJoCo: ") + message); }
 
-std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
+/// One robot at a time: MuJoCo's XML reader and its handlers of errors are global.
+ModelPointer compile(const std::string& xml) {
+  static std::mutex reader;
+  const std::scoped_lock lock(reader);
   mju_user_warning = silence_warnings;
   mju_user_error = throw_error;
   constexpr const char* kName = "robot.xml";
@@ -43,8 +41,7 @@ std::unique_ptr<mjModel, FreeModel> compile(const std::string& xml) {
   mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(xml.size()));
   std::memcpy(files->filedata[mj_findFileVFS(files.get(), kName)], xml.data(), xml.size());
   std::array<char, 1000> error{};
-  std::unique_ptr<mjModel, FreeModel> model(
-      mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())));
+  ModelPointer model(mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())));
   mj_deleteVFS(files.get());
   if (!model) throw std::runtime_error(std::string("MuJoCo refuses the robot: ") + error.data());
   return model;
@@ -113,8 +110,8 @@ struct World::Impl {
   }
 
   WorldOptions options;
-  std::unique_ptr<mjModel, FreeModel> model;
-  std::unique_ptr<mjData, FreeData> data;
+  ModelPointer model;
+  DataPointer data;
   Suspension suspension;
   SensorNoise noise;
   std::vector<model::JointCommand> underway;  // to the drives: a ring as long as the delay, the newest included

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "model/sole_load.hpp"
 #include "zero/standing_constraint.hpp"
 #include "zero/zero_poses.hpp"
-#include "model/sole_load.hpp"
 
 namespace pmg::zero {
 

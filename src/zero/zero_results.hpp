@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "zero/zero_calibration.hpp"
 #include "pages/page.hpp"
 #include "sim/motor_file.hpp"
+#include "zero/zero_calibration.hpp"
 
 namespace pmg::zero {
 

@@ -12,12 +12,10 @@ namespace {
 
 using test::BreakablePolicy;
 using test::ControlRig;
+using test::kCyclesPerTick;
+using test::kNan;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kCyclesPerTick = 5;
 constexpr double kCycle_s = 0.002;
-
-const model::RobotModel& robot() { return test::biped(); }
 
 /// Its policy takes 12 ms, until told otherwise or for so many ticks.
 void block_policy(ControlRig& rig, int ticks) {
@@ -29,7 +27,7 @@ void block_policy(ControlRig& rig, int ticks) {
 
 TEST(Degradation, AFrozenBusFindsADampingCommandWhenItReturns) {
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(robot());
+    ControlRig rig(test::biped());
     rig.reach_walk();
     rig.align(moment);
     rig.bus_frozen = true;
@@ -43,7 +41,7 @@ TEST(Degradation, AFrozenBusFindsADampingCommandWhenItReturns) {
 
 TEST(Degradation, AHostThatStopsEverythingForAWhileIsNoFault) {
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(robot());
+    ControlRig rig(test::biped());
     rig.reach_walk();
     rig.align(moment);
     rig.clock.advance_to(rig.clock.now_ns() + 150'000'000);
@@ -57,7 +55,7 @@ TEST(Degradation, AHostThatStopsEverythingForAWhileIsNoFault) {
 TEST(Degradation, AStrangersStopBrakesInTheNextBusCycle) {
   for (const Mode stop : {Mode::kDamping, Mode::kPassive}) {
     for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-      ControlRig rig(robot());
+      ControlRig rig(test::biped());
       rig.reach_walk();
       rig.drive.command[kVx] = 0.3;
       rig.run(1.0);
@@ -71,7 +69,7 @@ TEST(Degradation, AStrangersStopBrakesInTheNextBusCycle) {
 }
 
 TEST(Degradation, AStopBrakesEvenWhenNobodyReadsIt) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   rig.control_frozen = true;
   for (int k = 0; k < 100; ++k) rig.ask(Mode::kStand);  // a flood that fills the queue
@@ -82,7 +80,7 @@ TEST(Degradation, AStopBrakesEvenWhenNobodyReadsIt) {
 }
 
 TEST(Degradation, AStopThatIsRepeatedUntilItIsAcknowledgedMakesNoRobotLimp) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   for (int k = 0; k < 20; ++k) {
     rig.inbox.put(ModeRequest{.source = Source::make("stop", 1),
@@ -99,7 +97,7 @@ TEST(Degradation, AStopThatIsRepeatedUntilItIsAcknowledgedMakesNoRobotLimp) {
 }
 
 TEST(Degradation, AKilledCommandSourceEndsInStandWithinItsTime) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   rig.drive.command[kVx] = 0.4;
   rig.run(3.0);
@@ -121,7 +119,7 @@ TEST(Degradation, AKilledCommandSourceEndsInStandWithinItsTime) {
 }
 
 TEST(Degradation, AnOperatorsNanIsIgnoredAndCounted) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   rig.drive.command[kVx] = 0.2;
   rig.run(0.1);
@@ -137,7 +135,7 @@ TEST(Degradation, AnOperatorsNanIsIgnoredAndCounted) {
 }
 
 TEST(Degradation, ASingleLateTickIsCountedAndNoFault) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   for (int k = 0; k < 10; ++k) {
     block_policy(rig, 2);
@@ -148,14 +146,14 @@ TEST(Degradation, ASingleLateTickIsCountedAndNoFault) {
 }
 
 TEST(Degradation, APolicyThatBlocksIsNamedAndNotTheOverrunThatItCauses) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   ASSERT_GE(rig.cycles_to_damping([&] { block_policy(rig, 100); }), 0);
   EXPECT_EQ(rig.fault(), FaultCode::kStalePolicy);
 }
 
 TEST(Degradation, ALatePolicysLastTargetIsHeldFirst) {
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.reach_walk();
   rig.drive.command[kVx] = 0.3;
   for (int episode = 0; episode < 3; ++episode) {
@@ -179,7 +177,7 @@ TEST(Degradation, ALatePolicysLastTargetIsHeldFirst) {
 
 TEST(Degradation, NoCycleOfEitherThreadUsesTheHeap) {
   if (test::allocation_count() < 0) GTEST_SKIP() << "allocations can't be counted in this build";
-  ControlRig rig(robot());
+  ControlRig rig(test::biped());
   rig.drive.command = Command{{0.2, 0.1, 0.1, 0.1, 0.05, -0.02}};
   const auto run = [&](double duration_s) { rig.run(duration_s); };
   const long before = test::allocation_count();

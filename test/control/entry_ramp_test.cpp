@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "control/fixtures.hpp"
+
 namespace pmg::control {
 namespace {
 
-constexpr double kDt_s = 0.01;
+using test::kTick_s;
 
 JointVector two(double a, double b) {
   JointVector q(2);
@@ -24,15 +26,15 @@ TEST(EntryRamp, StartsAtTheMeasuredPostureAndEndsAtTheWantedOne) {
   int ticks = 0;
   while (!ramp.done()) {
     JointVector q = wanted;
-    ramp.apply(kDt_s, q);
+    ramp.apply(kTick_s, q);
     // A smooth step is at most 1.5 times as fast as its mean.
-    EXPECT_LE((q - previous).cwiseAbs().maxCoeff(), 1.5 * 0.5 * kDt_s + 1e-12);
+    EXPECT_LE((q - previous).cwiseAbs().maxCoeff(), 1.5 * 0.5 * kTick_s + 1e-12);
     previous = q;
     ASSERT_LE(++ticks, 301);
   }
   EXPECT_LT((previous - wanted).cwiseAbs().maxCoeff(), 1e-12);
   JointVector q = two(7.0, 8.0);
-  ramp.apply(kDt_s, q);
+  ramp.apply(kTick_s, q);
   EXPECT_EQ(q, two(7.0, 8.0)) << "afterwards it leaves targets alone";
 }
 

@@ -12,7 +12,7 @@
 namespace pmg::control {
 namespace {
 
-constexpr double kTick_s = 0.01;
+using test::kTick_s;
 
 ExcitationPlan plan(const model::RobotModel& robot) {
   ExcitationPlan excitation;

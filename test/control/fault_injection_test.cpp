@@ -18,15 +18,12 @@ namespace {
 
 using test::BreakablePolicy;
 using test::ControlRig;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kCyclesPerTick = 5;
-
-const model::RobotModel& robot() { return test::biped(); }
+using test::kCyclesPerTick;
+using test::kNan;
 
 /// A library that is in order when it is read and overflows when it is played: one step takes 6e-309 s.
 ClipLibrary overflowing_clips() {
-  ClipLibrary library = test::clips(robot());
+  ClipLibrary library = test::clips(test::biped());
   for (auto* clips : {&library.positive, &library.negative}) {
     for (auto& clip : *clips) {
       if (clip) clip->period_s = 6e-309;
@@ -36,14 +33,14 @@ ClipLibrary overflowing_clips() {
 }
 
 TickOptions options_of(FaultCode code) {
-  TickOptions options = tick_options(robot());
+  TickOptions options = tick_options(test::biped());
   // From rest to full speed in one tick, so that the overflow comes in the tick of the injection.
   if (code == FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
   return options;
 }
 
 ClipLibrary clips_of(FaultCode code) {
-  return code == FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(robot());
+  return code == FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(test::biped());
 }
 
 template <typename Spoil>
@@ -70,17 +67,17 @@ void overrun(ControlRig& rig) {
   };
 }
 
-struct Row {
+struct InjectedFault {
   const char* name;
   FaultCode code;
   std::function<void(ControlRig&)> inject;
   /// The reset is refused as long as the cause is there. Otherwise the cause only shows when the robot stands again.
   bool reset_waits;
 
-  friend void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+  friend void PrintTo(const InjectedFault& row, std::ostream* out) { *out << row.name; }
 };
 
-std::vector<Row> rows() {
+std::vector<InjectedFault> rows() {
   return {
       {"BusLost", FaultCode::kBusLost, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kLost; }, true},
       {"StaleState", FaultCode::kStaleState, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kStale; }, true},
@@ -92,18 +89,18 @@ std::vector<Row> rows() {
       {"CommandNan", FaultCode::kCommandNotFinite, give_the_guard_a_nan, false},
       {"StalePolicy", FaultCode::kStalePolicy, in_policy(BreakablePolicy::Break::kLate), false},
       {"Overrun", FaultCode::kOverrun, overrun, false},
-      {"AboveRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].upper_rad + 0.12; }),
-       true},
-      {"BelowRange", FaultCode::kJointLimit, in_state([](auto& s) { s.q[3] = robot().joints[3].lower_rad - 0.12; }),
-       true},
+      {"AboveRange", FaultCode::kJointLimit,
+       in_state([](auto& s) { s.q[3] = test::biped().joints[3].upper_rad + 0.12; }), true},
+      {"BelowRange", FaultCode::kJointLimit,
+       in_state([](auto& s) { s.q[3] = test::biped().joints[3].lower_rad - 0.12; }), true},
       {"TooFast", FaultCode::kJointVelocity,
-       in_state([](auto& s) { s.dq[3] = 1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
+       in_state([](auto& s) { s.dq[3] = 1.6 * test::biped().joints[3].velocity_limit_rad_s; }), true},
       {"TooFastBackwards", FaultCode::kJointVelocity,
-       in_state([](auto& s) { s.dq[3] = -1.6 * robot().joints[3].velocity_limit_rad_s; }), true},
-      {"Torque", FaultCode::kJointTorque, in_state([](auto& s) { s.tau[3] = 1.3 * robot().joints[3].effort_limit_Nm; }),
-       true},
+       in_state([](auto& s) { s.dq[3] = -1.6 * test::biped().joints[3].velocity_limit_rad_s; }), true},
+      {"Torque", FaultCode::kJointTorque,
+       in_state([](auto& s) { s.tau[3] = 1.3 * test::biped().joints[3].effort_limit_Nm; }), true},
       {"TorqueBackwards", FaultCode::kJointTorque,
-       in_state([](auto& s) { s.tau[3] = -1.3 * robot().joints[3].effort_limit_Nm; }), true},
+       in_state([](auto& s) { s.tau[3] = -1.3 * test::biped().joints[3].effort_limit_Nm; }), true},
       {"Tilt", FaultCode::kTilt, in_state([](auto& s) {
          s.orientation_WI = Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()) * s.orientation_WI;
        }),
@@ -135,10 +132,10 @@ struct Range {
 };
 
 /// Whatever the moment between two ticks in which the cause appears.
-Range reaction_of(const Row& row) {
+Range reaction_of(const InjectedFault& row) {
   Range range;
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+    ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
     rig.reach_walk();
     rig.align(moment);
     const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
@@ -181,18 +178,19 @@ TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
   std::map<std::string, Range> documented = documented_reactions();
   for (std::size_t k = 1; k < kFaultCodes; ++k) {
     const auto code = static_cast<FaultCode>(k);
-    const std::vector<Row> all = rows();
-    EXPECT_TRUE(std::ranges::any_of(all, [&](const Row& row) { return row.code == code; })) << to_string(code);
+    const std::vector<InjectedFault> all = rows();
+    EXPECT_TRUE(std::ranges::any_of(all, [&](const InjectedFault& row) { return row.code == code; }))
+        << to_string(code);
     EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/reference/safety.md";
     EXPECT_NE(std::string(advice(code)), "") << to_string(code);
   }
   EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";
 }
 
-class FaultInjection : public testing::TestWithParam<Row> {};
+class FaultInjection : public testing::TestWithParam<InjectedFault> {};
 
 TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
-  const Row& row = GetParam();
+  const InjectedFault& row = GetParam();
   const Range measured = reaction_of(row);
   const Range documented = documented_reactions()[to_string(row.code)];
   EXPECT_EQ(measured.least, documented.least) << row.name;
@@ -200,8 +198,8 @@ TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
 }
 
 TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
-  const Row& row = GetParam();
-  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  const InjectedFault& row = GetParam();
+  ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
   rig.reach_walk();
   const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
   ASSERT_GE(cycles, 0);
@@ -218,7 +216,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   rig.run(0.1);
   EXPECT_EQ(rig.mode(), Mode::kFault);
   EXPECT_EQ(rig.fault(), row.code);
-  const std::string words = describe(rig.tick.result().fault, robot());
+  const std::string words = describe(rig.tick.result().fault, test::biped());
   EXPECT_EQ(words.find(std::string(to_string(row.code)) + ": "), 0u) << words;
   EXPECT_EQ(words.find("nan"), std::string::npos) << words;
 
@@ -245,8 +243,8 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
 }
 
 TEST_P(FaultInjection, IsNoFaultInPassive) {
-  const Row& row = GetParam();
-  ControlRig rig(robot(), clips_of(row.code), options_of(row.code));
+  const InjectedFault& row = GetParam();
+  ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
   rig.run(0.1);
   row.inject(rig);
   int driven = 0;

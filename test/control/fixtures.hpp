@@ -15,20 +15,14 @@
 #include "model/clip_library_file.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
+#include "model/robots.hpp"
 #include "sil/plant.hpp"
 
 namespace pmg::test {
 
-inline const model::RobotModel& biped() {
-  static const model::RobotModel robot =
-      model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "test/data/robots/biped");
-  return robot;
-}
-
-inline const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "config/robots/z1");
-  return robot;
-}
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kTick_s = 0.01;
+inline constexpr int kCyclesPerTick = 5;  // of the bus
 
 inline ClipLibrary clips(const model::RobotModel& robot) {
   return model::load_clip_library(robot.directory / "clips", robot);

@@ -12,7 +12,7 @@
 namespace pmg::control {
 namespace {
 
-constexpr double kTick_s = 0.01;
+using test::kTick_s;
 /// What the filter of 0.02 s adds to a dwell at most, when a load of the whole weight comes or goes at once.
 constexpr int kFilterTicks = 5;
 

@@ -10,7 +10,7 @@
 namespace pmg::control {
 namespace {
 
-constexpr double kDt_s = 0.01;
+using test::kTick_s;
 constexpr double kExact = 1e-9;  // rounding of targets of a few rad, times gains of some hundred
 
 double uniform(std::mt19937_64& random, double lower, double upper) {
@@ -24,7 +24,7 @@ Limiter limiter_of(const model::RobotModel& robot, const LimiterOptions& options
     kp[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
     kd[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
   }
-  return {robot, kp, kd, kDt_s, options};
+  return {robot, kp, kd, kTick_s, options};
 }
 
 TEST(Limiter, LeavesAPlainTargetAlone) {
@@ -96,7 +96,7 @@ TEST(Limiter, TargetsMoveNoFasterThanAllowed) {
   limiter.start_from(state.q);
   const int joint = robot.joint_index.at("left_elbow");
   const double step_rad =
-      robot.joints[static_cast<std::size_t>(joint)].velocity_limit_rad_s * options.target_rate_factor * kDt_s;
+      robot.joints[static_cast<std::size_t>(joint)].velocity_limit_rad_s * options.target_rate_factor * kTick_s;
   JointVector q_des = state.q;
   q_des[joint] -= 10.0 * step_rad;
   const JointVector wanted = q_des;

@@ -11,7 +11,7 @@
 namespace pmg::control {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kNan;
 
 class SupervisorTest : public testing::Test {
  protected:

@@ -14,7 +14,7 @@
 namespace pmg::control {
 namespace {
 
-constexpr double kTick_s = 0.01;
+using test::kTick_s;
 
 TEST(Tick, BeforeAnyRequestTheDrivesGiveNoTorque) {
   test::DrivenTick driven(test::z1());

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr double kNoise_rad = 1e-3;
 const SeparationWanted kWanted{.noise_squares = kNoise_rad * kNoise_rad};
 
-calib::JointModel healthy() {
+calib::JointModel healthy_joint() {
   calib::JointModel model;
   model.actuator.transmission.armature_kg_m2 = 0.01;
   model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
@@ -31,7 +31,7 @@ calib::JointModel healthy() {
 
 NestedModel held(const calib::JointModel& model) { return {model, {}, {}, 0.0, {}, 0.0}; }
 
-NestedModel with(const char* parameter, double value, calib::JointModel model = healthy()) {
+NestedModel with(const char* parameter, double value, calib::JointModel model = healthy_joint()) {
   calib::set(model, parameter, value);
   return held(model);
 }
@@ -43,13 +43,13 @@ AskedFor asked(const bench::Bench& bench, const NestedModel& one, const NestedMo
 }
 
 TEST(NextExcitation, AsksForNothingWhereTwoModelsAreTheSame) {
-  EXPECT_FALSE(asked(test::pd_bench(true), held(healthy()), held(healthy())).next);
+  EXPECT_FALSE(asked(test::pd_bench(true), held(healthy_joint()), held(healthy_joint())).next);
 }
 
 // c (1 + a) one way and c (1 - a) the other is c both ways and a constant torque.
 TEST(NextExcitation, FrictionThatDiffersByDirectionIsAConstantTorqueUnlessItVaries) {
   const auto pair = [](double stribeck_Nm) {
-    calib::JointModel base = healthy();
+    calib::JointModel base = healthy_joint();
     base.actuator.friction.stribeck_Nm = stribeck_Nm;
     base.actuator.friction.stribeck_rad_s = 0.5;
     return asked(test::pd_bench(true), with("friction.asymmetry", -0.4, base), with("ripple.offset_Nm", 0.08, base),
@@ -70,7 +70,7 @@ TEST(NextExcitation, ZeroOffsetAndConstantTorquePartByGravity) {
 
 TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
   const bench::Bench bench = test::pd_bench(true);
-  NestedModel one = held(healthy()), other = with("drive.kp_scale", 1.01);
+  NestedModel one = held(healthy_joint()), other = with("drive.kp_scale", 1.01);
   const AskedFor fixed = asked(bench, one, other);
   const NestedFit fit(test::record(bench, one.model, 2), 1);
   const Unknown gain = unknown("drive.kp_scale", bench, scale_of(bench, fit.runs(), one.model));
@@ -142,7 +142,7 @@ TEST(NextExcitation, StaysWithinTheCommandsThatWereRecorded) {
 
 TEST(NextExcitation, PartsTheRivalsOfEveryCause) {
   const bench::Bench bench = test::pd_bench(true);
-  const NestedModel model = held(healthy());
+  const NestedModel model = held(healthy_joint());
   const Rivals first{{model, with("command.delay_s", 0.01)}, {"a", "delay"}};
   const Rivals second{{model, with("sensor.zero_offset_rad", 0.02)}, {"b", "zero_offset"}};
   const AskedFor found = next_excitation(bench, test::record(bench, model.model, 2), {first, second}, kWanted);
@@ -153,7 +153,7 @@ TEST(NextExcitation, PartsTheRivalsOfEveryCause) {
 
 TEST(NextExcitation, IsWrittenAsWhatCanBePlayedAndAppended) {
   const fs::path folder = fs::temp_directory_path() / ("pmg_next_excitation_" + std::to_string(getpid()));
-  const NestedModel one = held(healthy());
+  const NestedModel one = held(healthy_joint());
   test::write_bench(folder / "bench", test::record(test::pd_bench(true), one.model, 2));
   const bench::Bench bench = bench::read_bench(folder / "bench");
   std::vector<calib::SingleJoint> runs;

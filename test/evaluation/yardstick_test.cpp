@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kTick_s = 0.01;
 
-sil::ScenarioStep step(double start_s, double duration_s, control::Mode mode, const Command& command,
-                       bool beyond_reach = false) {
+sil::ScenarioStep scenario_step(double start_s, double duration_s, control::Mode mode, const Command& command,
+                                bool beyond_reach = false) {
   sil::ScenarioStep made;
   made.start_s = start_s;
   made.duration_s = duration_s;
@@ -37,8 +37,9 @@ Command of(Channel channel, double value) {
 TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
   Command both = of(kVx, 0.4);
   both[kPitch] = 0.2;
-  const sil::Scenario scenario{
-      .name = "hand", .steps = {step(0.0, 1.0, control::Mode::kStand, {}), step(1.0, 4.0, control::Mode::kWalk, both)}};
+  const sil::Scenario scenario{.name = "hand",
+                               .steps = {scenario_step(0.0, 1.0, control::Mode::kStand, {}),
+                                         scenario_step(1.0, 4.0, control::Mode::kWalk, both)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   ASSERT_TRUE(between.nothing.complete);
   // Walking begins some ticks into the second step (entry into the mode): the first one has 4 s less that.
@@ -61,9 +62,9 @@ TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
 TEST(Yardstick, AFollowerThatTurnsIsJudgedInItsOwnHeading) {
   Command circle = of(kVx, 0.5);
   circle[kOmega] = 0.5;
-  const sil::Scenario scenario{
-      .name = "circle",
-      .steps = {step(0.0, 1.0, control::Mode::kStand, {}), step(1.0, 12.0, control::Mode::kWalk, circle)}};
+  const sil::Scenario scenario{.name = "circle",
+                               .steps = {scenario_step(0.0, 1.0, control::Mode::kStand, {}),
+                                         scenario_step(1.0, 12.0, control::Mode::kWalk, circle)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   // The heading averaged over a period lags by half a period's turn: 0.28 rad of 0.5 m/s are 0.14 m/s, no more.
   EXPECT_LT(between.follower.errors[kLinVel], 0.17);
@@ -95,8 +96,8 @@ model::GroundTruth going(double speed_m_s, int tick, double height_m) {
 TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
   const sil::Scenario scenario{.name = "hand",
-                               .steps = {step(0.0, 10.0, control::Mode::kWalk, of(kVx, 0.3)),
-                                         step(10.0, 10.0, control::Mode::kWalk, of(kVx, 0.8), true)}};
+                               .steps = {scenario_step(0.0, 10.0, control::Mode::kWalk, of(kVx, 0.3)),
+                                         scenario_step(10.0, 10.0, control::Mode::kWalk, of(kVx, 0.8), true)}};
   StepMeasure measure(robot, scenario);
   control::TickResult result;
   result.mode = control::Mode::kWalk;
@@ -117,7 +118,7 @@ TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
 
 TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
   Table1 table;
-  table.scenario = {.name = "full", .steps = {step(0.0, 1.0, control::Mode::kWalk, of(kVx, 0.5))}};
+  table.scenario = {.name = "full", .steps = {scenario_step(0.0, 1.0, control::Mode::kWalk, of(kVx, 0.5))}};
   table.cases = {{.name = "pmg", .candidate = {"none", {}}, .plants = {}}};
   Yardstick between;
   between.nothing.errors = {0.5, 0.5, 0.1, 0.1, 0.1};

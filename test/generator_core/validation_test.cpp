@@ -11,7 +11,7 @@
 namespace pmg::test {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 struct Defect {
   const char* name;
@@ -43,7 +43,8 @@ INSTANTIATE_TEST_SUITE_P(
         Defect{"JointCountOfLimits", "q_lower", [](ClipLibrary& l, auto&) { l.q_lower.setConstant(4, -3.0); }},
         Defect{"JointCountOfAClip", "vy_m_s > 0", [](ClipLibrary& l, auto&) { l.positive[kVy]->q[3].setZero(6); }},
         Defect{"JointCountOfSlopes", "dq_dphi", [](ClipLibrary& l, auto&) { l.positive[kVy]->dq_dphi[3].setZero(6); }},
-        Defect{"NotANumberInAClip", "vx_m_s < 0: q[2]", [](ClipLibrary& l, auto&) { l.negative[kVx]->q[2][1] = kNaN; }},
+        Defect{"NotANumberInAClip", "vx_m_s < 0: q[2]",
+               [](ClipLibrary& l, auto&) { l.negative[kVx]->q[2][1] = kNotANumber; }},
         Defect{"StandOutsideLimits", "q_stand[2]", [](ClipLibrary& l, auto&) { l.q_upper[2] = l.q_stand[2] - 0.1; }},
         Defect{"StandWithinTheMargin", "q_stand[2]", [](ClipLibrary& l, auto&) { l.q_lower[2] = l.q_stand[2] - 0.01; }},
         Defect{"TooFewSamples", "samples",

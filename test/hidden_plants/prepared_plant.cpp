@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kCalibrationTake = 1, kRepeatTake = 2;
 
-void write(const std::filesystem::path& file, const std::string& text) {
+void write_text(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file);
   stream << text;
   stream.close();
@@ -112,8 +112,8 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
   }
   std::filesystem::remove_all(healthy);
   std::filesystem::remove_all(without);
-  write(folder / "base.yaml", sim::motor_yaml({{"bench", prepared.base}}, {"the healthy joint, calibrated"}));
-  write(folder / "truth.json", json(truth).dump(2) + "\n");
+  write_text(folder / "base.yaml", sim::motor_yaml({{"bench", prepared.base}}, {"the healthy joint, calibrated"}));
+  write_text(folder / "truth.json", json(truth).dump(2) + "\n");
   return prepared;
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/config_error.hpp"
+#include "model/robots.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {
@@ -17,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::string kBiped = std::string(PMG_SOURCE_DIR) + "/test/data/robots/biped";
+using test::kBipedFolder;
 
 void expect_same(const DynamicClip& a, const DynamicClip& b) {
   EXPECT_EQ(a.q, b.q);
@@ -29,8 +30,8 @@ void expect_same(const DynamicClip& a, const DynamicClip& b) {
 }
 
 TEST(ClipLibrary, IsReadAsWritten) {
-  const RobotModel robot = load_robot(kBiped);
-  ClipLibrary library = load_clip_library(kBiped + "/clips", robot);
+  const RobotModel robot = load_robot(kBipedFolder);
+  ClipLibrary library = load_clip_library(kBipedFolder + "/clips", robot);
   std::mt19937 random(5);  // digits that no short decimal has
   std::uniform_real_distribution<double> jitter(-1e-3, 1e-3);
   for (JointVector& q : library.positive[kVx]->q) q = q.unaryExpr([&](double x) { return x + jitter(random); });
@@ -38,7 +39,7 @@ TEST(ClipLibrary, IsReadAsWritten) {
   library.positive[kVx]->period_s = 0.8 + jitter(random);
   library.positive[kVx]->mean_velocity = {0.4 + jitter(random), jitter(random), jitter(random)};
 
-  const TemporaryCopy copy(kBiped);
+  const TemporaryCopy copy(kBipedFolder);
   const std::filesystem::path clips = copy.file("clips");
   write_dynamic_clip(clips, "forward", *library.positive[kVx], robot, "a \"quoted\" source");
   write_dynamic_clip(clips, "backward", *library.negative[kVx], robot, "made up");
@@ -52,8 +53,8 @@ TEST(ClipLibrary, IsReadAsWritten) {
 }
 
 TEST(ClipLibrary, CarriesTheRobotsPostureLimitsAndMirror) {
-  const RobotModel robot = load_robot(kBiped);
-  const ClipLibrary library = load_clip_library(kBiped + "/clips", robot);
+  const RobotModel robot = load_robot(kBipedFolder);
+  const ClipLibrary library = load_clip_library(kBipedFolder + "/clips", robot);
   EXPECT_EQ(library.q_stand, robot.q_stand());
   EXPECT_EQ(library.q_lower, robot.q_lower());
   EXPECT_EQ(library.q_upper, robot.q_upper());
@@ -63,8 +64,8 @@ TEST(ClipLibrary, CarriesTheRobotsPostureLimitsAndMirror) {
 }
 
 TEST(ClipLibrary, TakesColumnsInAnyOrder) {
-  const RobotModel robot = load_robot(kBiped);
-  const TemporaryCopy copy(kBiped);
+  const RobotModel robot = load_robot(kBipedFolder);
+  const TemporaryCopy copy(kBipedFolder);
   // Swapping two columns with their names changes nothing.
   std::istringstream in(copy.read("clips/turn.csv"));
   std::string out;
@@ -74,7 +75,7 @@ TEST(ClipLibrary, TakesColumnsInAnyOrder) {
   }
   copy.write("clips/turn.csv", out);
   EXPECT_EQ(load_clip_library(copy.file("clips"), robot).positive[kOmega]->q,
-            load_clip_library(kBiped + "/clips", robot).positive[kOmega]->q);
+            load_clip_library(kBipedFolder + "/clips", robot).positive[kOmega]->q);
 }
 
 TEST(ClipLibrary, SlopesAreThoseOfAPeriodicSpline) {
@@ -128,8 +129,8 @@ class RefusedClips : public ::testing::Test {
     copy_.write("clips/" + file, out);
   }
 
-  RobotModel robot_ = load_robot(kBiped);
-  TemporaryCopy copy_{kBiped};
+  RobotModel robot_ = load_robot(kBipedFolder);
+  TemporaryCopy copy_{kBipedFolder};
 };
 
 TEST_F(RefusedClips, TheUnspoiledOnesAreNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }

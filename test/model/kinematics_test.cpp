@@ -8,6 +8,7 @@
 #include "allocation_count.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
+#include "model/robots.hpp"
 
 namespace pmg::model {
 namespace {
@@ -15,8 +16,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-const std::string kZ1 = std::string(PMG_SOURCE_DIR) + "/config/robots/z1";
-const std::string kBiped = std::string(PMG_SOURCE_DIR) + "/test/data/robots/biped";
+using test::kBipedFolder;
+using test::kZ1Folder;
 
 Matrix3d Rx(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix(); }
 Matrix3d Ry(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitY()).toRotationMatrix(); }
@@ -50,13 +51,13 @@ class EveryRobotsKinematics : public ::testing::TestWithParam<std::string> {
   RobotModel robot_ = load_robot(GetParam());
   std::mt19937 random_{11};
 };
-INSTANTIATE_TEST_SUITE_P(Robots, EveryRobotsKinematics, ::testing::Values(kZ1, kBiped),
+INSTANTIATE_TEST_SUITE_P(Robots, EveryRobotsKinematics, ::testing::Values(kZ1Folder, kBipedFolder),
                          [](const auto& robot) { return std::filesystem::path(robot.param).filename().string(); });
 
 // The knees' frames of this robot are turned about z and its right hip rolls about -x: a mistake in the conversion
 // shows.
 TEST(LegKinematics, AgreesWithTheBipedsLegWrittenByHand) {
-  const RobotModel robot = load_robot(kBiped);
+  const RobotModel robot = load_robot(kBipedFolder);
   std::mt19937 random(3);
   LegKinematics legs(robot);
   for (int trial = 0; trial < 50; ++trial) {
@@ -149,7 +150,7 @@ class Attitude : public EveryRobotsKinematics {
   static double roll(const Matrix3d& R) { return std::atan2(R(2, 1), R(2, 2)); }
   static double yaw(const Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
 };
-INSTANTIATE_TEST_SUITE_P(Robots, Attitude, ::testing::Values(kZ1, kBiped),
+INSTANTIATE_TEST_SUITE_P(Robots, Attitude, ::testing::Values(kZ1Folder, kBipedFolder),
                          [](const auto& robot) { return std::filesystem::path(robot.param).filename().string(); });
 
 TEST_P(Attitude, OfAStraightWaistIsTheTorsos) {

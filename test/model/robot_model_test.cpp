@@ -7,11 +7,13 @@
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <random>
 
+#include "model/robots.hpp"
+
 namespace pmg::model {
 namespace {
 
-const std::string kZ1 = std::string(PMG_SOURCE_DIR) + "/config/robots/z1";
-const std::string kBiped = std::string(PMG_SOURCE_DIR) + "/test/data/robots/biped";
+using test::kBipedFolder;
+using test::kZ1Folder;
 
 double top_of(const urdf::Collision& body) {
   if (body.geometry->type != urdf::Geometry::SPHERE) return 0.0;
@@ -42,7 +44,7 @@ JointVector random_posture(const RobotModel& robot, std::mt19937& random) {
 }
 
 TEST(Z1, HasTheMassStatureAndJointsOfItsTable) {
-  const RobotModel robot = load_robot(kZ1);
+  const RobotModel robot = load_robot(kZ1Folder);
   EXPECT_EQ(robot.joints.size(), 31u);
   EXPECT_NEAR(robot.total_mass_kg, 35.0, 0.01 * 35.0);
   const JointVector zero = JointVector::Zero(31);
@@ -53,7 +55,7 @@ TEST(Z1, HasTheMassStatureAndJointsOfItsTable) {
 }
 
 TEST(Z1, LegsCarryTheTablesShareOfTheMass) {
-  const RobotModel robot = load_robot(kZ1);
+  const RobotModel robot = load_robot(kZ1Folder);
   double leg = 0.0;
   for (const auto& [name, link] : robot.urdf->links_) {
     for (const std::string part : {"hip", "knee", "ankle"}) {
@@ -64,7 +66,7 @@ TEST(Z1, LegsCarryTheTablesShareOfTheMass) {
 }
 
 TEST(Z1, StandsWithFeetUnderItsCentreOfMass) {
-  const RobotModel robot = load_robot(kZ1);
+  const RobotModel robot = load_robot(kZ1Folder);
   KDL::Vector moment = robot.base_inertia.getMass() * robot.base_inertia.getCOG();
   for (const auto& [name, element] : robot.tree.getSegments()) {
     const KDL::RigidBodyInertia& inertia = GetTreeElementSegment(element).getInertia();
@@ -82,11 +84,11 @@ TEST(Z1, StandsWithFeetUnderItsCentreOfMass) {
 }
 
 TEST(Z1, UrdfIsWhatItsGeneratorWrites) {
-  EXPECT_EQ(std::system(("python3 " + kZ1 + "/generate.py --check").c_str()), 0);
+  EXPECT_EQ(std::system(("python3 " + kZ1Folder + "/generate.py --check").c_str()), 0);
 }
 
 TEST(Z1, KeepsTheCommandRangesWithinTheVelocityScales) {
-  const RobotModel robot = load_robot(kZ1);
+  const RobotModel robot = load_robot(kZ1Folder);
   for (std::size_t i = 0; i < kVelocityChannels; ++i) {
     EXPECT_LE(robot.command_limits.upper[i], robot.velocity_scale_positive[i]);
     EXPECT_LE(-robot.command_limits.lower[i], robot.velocity_scale_negative[i]);
@@ -94,7 +96,7 @@ TEST(Z1, KeepsTheCommandRangesWithinTheVelocityScales) {
 }
 
 TEST(Z1, PolicyDrivesTheTwelveLegJoints) {
-  const RobotModel robot = load_robot(kZ1);
+  const RobotModel robot = load_robot(kZ1Folder);
   for (const Foot foot : {kLeft, kRight}) {
     EXPECT_EQ(robot.leg_joints[foot].size(), 6u);
     for (const int joint : robot.leg_joints[foot]) EXPECT_TRUE(robot.joints[static_cast<std::size_t>(joint)].policy);
@@ -103,7 +105,7 @@ TEST(Z1, PolicyDrivesTheTwelveLegJoints) {
 }
 
 class EveryRobot : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Robots, EveryRobot, ::testing::Values(kZ1, kBiped),
+INSTANTIATE_TEST_SUITE_P(Robots, EveryRobot, ::testing::Values(kZ1Folder, kBipedFolder),
                          [](const auto& robot) { return std::filesystem::path(robot.param).filename().string(); });
 
 TEST_P(EveryRobot, HasPhysicalInertias) {
@@ -165,7 +167,7 @@ TEST_P(EveryRobot, KeepsJointsInTheOrderOfItsFile) {
 }
 
 TEST(Biped, IsReadWithItsOwnOrderAndConventions) {
-  const RobotModel robot = load_robot(kBiped);
+  const RobotModel robot = load_robot(kBipedFolder);
   EXPECT_EQ(robot.joint_index.name(0), "waist_pitch");
   EXPECT_EQ(robot.joint_index.name(1), "right_hip_yaw");
   const auto sign = [&](const char* name) {
@@ -198,7 +200,7 @@ TEST(JointIndex, FindsJointsByNameAndNamesTheUnknownOne) {
 
 TEST(FindRobot, TakesANameOrADirectoryAndNamesTheKnownOnes) {
   EXPECT_EQ(find_robot("z1").filename(), "z1");
-  EXPECT_EQ(find_robot(kBiped), kBiped);
+  EXPECT_EQ(find_robot(kBipedFolder), kBipedFolder);
   try {
     find_robot("no_such_robot");
     FAIL() << "nothing was thrown";

@@ -9,11 +9,12 @@
 
 #include "allocation_count.hpp"
 #include "model/leg_kinematics.hpp"
+#include "model/robots.hpp"
 
 namespace pmg::model {
 namespace {
 
-const std::string kZ1 = std::string(PMG_SOURCE_DIR) + "/config/robots/z1";
+using test::kZ1Folder;
 
 class SoleLoadsTest : public testing::Test {
  protected:
@@ -51,7 +52,7 @@ class SoleLoadsTest : public testing::Test {
     return torque_Nm;
   }
 
-  RobotModel robot_ = load_robot(kZ1);
+  RobotModel robot_ = load_robot(kZ1Folder);
   SoleLoads loads_{robot_};
   std::mt19937 random_{5};
 };
@@ -102,7 +103,7 @@ TEST_F(SoleLoadsTest, FrictionFalsifiesThemByAFewNewtonsStandingAndBeyondMeasure
 }
 
 TEST_F(SoleLoadsTest, NeverUseTheHeapNorTheRobot) {
-  auto robot = std::make_unique<RobotModel>(load_robot(kZ1));
+  auto robot = std::make_unique<RobotModel>(load_robot(kZ1Folder));
   SoleLoads loads(*robot);
   const JointVector q = robot->q_stand(), torque_Nm = JointVector::Zero(q.size());
   robot.reset();

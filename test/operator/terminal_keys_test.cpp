@@ -8,7 +8,7 @@
 namespace pmg::ops {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMillisecond_ns = 1'000'000;
 using Keys = std::vector<TerminalKey>;
 
 const TerminalKey kEscape{.name = "escape"};
@@ -21,7 +21,7 @@ TEST(TerminalKeys, LettersAndTheirCapitals) {
 TEST(TerminalKeys, ArrowsInBothOfTheirWaysAndWithShift) {
   TerminalKeys keys;
   EXPECT_EQ(keys.take("\x1b[A\x1bOB\x1b[1;2D\x1b[C", 0), (Keys{{"up"}, {"down"}, {"left", true}, {"right"}}));
-  EXPECT_TRUE(keys.wait(1000 * kMs).empty());
+  EXPECT_TRUE(keys.wait(1000 * kMillisecond_ns).empty());
 }
 
 TEST(TerminalKeys, AnEscapeIsToldAfterItsTimeAndOnce) {
@@ -29,32 +29,32 @@ TEST(TerminalKeys, AnEscapeIsToldAfterItsTimeAndOnce) {
   EXPECT_TRUE(keys.take("\x1b", 0).empty());
   EXPECT_TRUE(keys.wait(TerminalKeys::kEscape_ns - 1).empty());
   EXPECT_EQ(keys.wait(TerminalKeys::kEscape_ns), Keys{kEscape});
-  EXPECT_TRUE(keys.wait(10'000 * kMs).empty());
+  EXPECT_TRUE(keys.wait(10'000 * kMillisecond_ns).empty());
 }
 
 TEST(TerminalKeys, WhateverFollowsAnEscapeItIsNotLost) {
   TerminalKeys keys;
   EXPECT_EQ(keys.take("\x1bw", 0), (Keys{kEscape, {"w"}})) << "typed at once, or Alt and w";
   EXPECT_EQ(keys.take("\x1b\x1b", 1), Keys{kEscape});
-  EXPECT_EQ(keys.wait(100 * kMs), Keys{kEscape}) << "the second one";
-  EXPECT_EQ(keys.take("\x1b\x1b[A", 200 * kMs), (Keys{kEscape, {"up"}}));
-  keys.take("\x1b", 300 * kMs);
-  EXPECT_EQ(keys.take("[A", 400 * kMs).front(), kEscape) << "too late for an arrow";
+  EXPECT_EQ(keys.wait(100 * kMillisecond_ns), Keys{kEscape}) << "the second one";
+  EXPECT_EQ(keys.take("\x1b\x1b[A", 200 * kMillisecond_ns), (Keys{kEscape, {"up"}}));
+  keys.take("\x1b", 300 * kMillisecond_ns);
+  EXPECT_EQ(keys.take("[A", 400 * kMillisecond_ns).front(), kEscape) << "too late for an arrow";
 }
 
 TEST(TerminalKeys, AnArrowThatComesInPiecesIsNoEscape) {
   TerminalKeys keys;
   EXPECT_TRUE(keys.take("\x1b", 0).empty());
-  EXPECT_TRUE(keys.take("[", 20 * kMs).empty());
-  EXPECT_TRUE(keys.wait(200 * kMs).empty());
-  EXPECT_EQ(keys.take("A", 300 * kMs), Keys{{"up"}});
+  EXPECT_TRUE(keys.take("[", 20 * kMillisecond_ns).empty());
+  EXPECT_TRUE(keys.wait(200 * kMillisecond_ns).empty());
+  EXPECT_EQ(keys.take("A", 300 * kMillisecond_ns), Keys{{"up"}});
 }
 
 TEST(TerminalKeys, SequencesOfOtherKeysAreDroppedWhole) {
   TerminalKeys keys;
   EXPECT_EQ(keys.take("\x1b[15~\x1b[200~\x1b[I\x1bOPw", 0), Keys{{"w"}});
   EXPECT_TRUE(keys.take("\x1b[9999", 1).empty());
-  EXPECT_EQ(keys.take("w", 1000 * kMs), Keys{{"w"}}) << "one that never ends is forgotten";
+  EXPECT_EQ(keys.take("w", 1000 * kMillisecond_ns), Keys{{"w"}}) << "one that never ends is forgotten";
 }
 
 /// Random bytes in random pieces: an Escape by itself, in a pause, is always told.
@@ -67,7 +67,7 @@ TEST(TerminalKeys, NoGarbageSwallowsAnEscape) {
     std::string garbage;
     for (auto k = random() % 12; k > 0; --k) garbage += static_cast<char>(random() % 4 == 0 ? '\x1b' : random() % 256);
     keys.take(garbage, now_ns);
-    now_ns += static_cast<std::int64_t>(random() % 60) * kMs;
+    now_ns += static_cast<std::int64_t>(random() % 60) * kMillisecond_ns;
     keys.take("\x1b", now_ns);
     now_ns += TerminalKeys::kEscape_ns;
     EXPECT_EQ(keys.wait(now_ns), Keys{kEscape}) << "seed " << seed << ", round " << round;

@@ -108,7 +108,7 @@ Plateaus plateaus(const std::vector<double>& values, double x_step) {
   return line;
 }
 
-void expect_apart(const DrawnAxis& axis, std::size_t unit_characters) {
+void expect_labels_apart(const DrawnAxis& axis, std::size_t unit_characters) {
   for (std::size_t i = 1; i < axis.at.size(); ++i) {
     const auto characters = axis.labels[i].size() + axis.labels[i - 1].size() + 2 * unit_characters;
     EXPECT_GT(axis.at[i] - axis.at[i - 1], kPixel * 0.5 * 6.9 * static_cast<double>(characters))
@@ -146,7 +146,7 @@ TEST_F(ChartCanvas, LinesStandWhereTheirAxesSay) {
     chart.x.expect_sound(kAligned);
     chart.y.expect_sound(kAligned);
     if (testing::Test::HasFatalFailure()) return;
-    expect_apart(chart.x, 2);
+    expect_labels_apart(chart.x, 2);
     double shift = 0.0;
     int read = 0;
     for (std::size_t k = 0; k < data[i].values.size(); ++k) {

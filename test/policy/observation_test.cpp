@@ -6,13 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "model/robots.hpp"
+
 namespace pmg::policy {
 namespace {
 
-const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
-  return robot;
-}
+using test::z1;
 
 /// A state in which every number says what it is: joint i of tick t is at 100 t + i.
 model::RobotState state_of(int tick) {

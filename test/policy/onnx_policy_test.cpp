@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 
+#include "model/robots.hpp"
 #include "policy/linear_policy.hpp"
 #include "policy/observation.hpp"
 
@@ -17,10 +18,7 @@ namespace fs = std::filesystem;
 using test::LinearPolicyFile;
 using testing::HasSubstr;
 
-const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
-  return robot;
-}
+using test::z1;
 
 const fs::path& kFile = test::kLinearPolicy;
 const std::string& kClips = test::kNoClips;
@@ -33,7 +31,7 @@ model::RobotState standing() {
   return state;
 }
 
-Reference reference() {
+Reference standing_reference() {
   Reference reference;
   reference.q = z1().q_stand();
   reference.dq = JointVector::Zero(reference.q.size());
@@ -146,8 +144,8 @@ TEST(OnnxPolicyFile, SaysWhichVariantItIs) {
 TEST(OnnxPolicy, AddsScaledActionsToTheReferenceOfItsJointsAlone) {
   OnnxPolicy policy(kFile, z1(), kClips);
   JointVector q_des;
-  ASSERT_EQ(policy.act(standing(), reference(), Command{}, q_des), Status::kOk);
-  const JointVector added = q_des - reference().q;
+  ASSERT_EQ(policy.act(standing(), standing_reference(), Command{}, q_des), Status::kOk);
+  const JointVector added = q_des - standing_reference().q;
   for (int i = 0; i < z1().joint_index.size(); ++i) {
     const bool driven = z1().joints[static_cast<std::size_t>(i)].policy;
     EXPECT_EQ(added[i] != 0.0, driven) << z1().joint_index.name(i);
@@ -159,11 +157,11 @@ TEST(OnnxPolicy, AddsScaledActionsToTheReferenceOfItsJointsAlone) {
 TEST(OnnxPolicy, SeesItsLastActionUntilItIsReset) {
   OnnxPolicy policy(kFile, z1(), kClips);
   JointVector first, second, anew;
-  policy.act(standing(), reference(), Command{}, first);
-  policy.act(standing(), reference(), Command{}, second);
+  policy.act(standing(), standing_reference(), Command{}, first);
+  policy.act(standing(), standing_reference(), Command{}, second);
   EXPECT_GT((second - first).cwiseAbs().maxCoeff(), 1e-6);
   policy.reset();
-  policy.act(standing(), reference(), Command{}, anew);
+  policy.act(standing(), standing_reference(), Command{}, anew);
   EXPECT_EQ(anew, first);
 }
 
@@ -171,9 +169,9 @@ TEST(OnnxPolicy, AStateThatIsNoNumberGivesNoTarget) {
   OnnxPolicy policy(kFile, z1(), kClips);
   model::RobotState state = standing();
   state.dq[3] = std::numeric_limits<double>::quiet_NaN();
-  JointVector q_des = reference().q;
-  EXPECT_EQ(policy.act(state, reference(), Command{}, q_des), Status::kNotFinite);
-  EXPECT_EQ(q_des, reference().q);
+  JointVector q_des = standing_reference().q;
+  EXPECT_EQ(policy.act(state, standing_reference(), Command{}, q_des), Status::kNotFinite);
+  EXPECT_EQ(q_des, standing_reference().q);
 }
 
 }  // namespace

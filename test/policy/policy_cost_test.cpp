@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "generator_core/allocation_count.hpp"
+#include "model/robots.hpp"
 #include "policy/linear_policy.hpp"
 #include "policy/observation.hpp"
 #include "policy/onnx_policy.hpp"
@@ -12,10 +13,7 @@
 namespace pmg::policy {
 namespace {
 
-const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
-  return robot;
-}
+using test::z1;
 
 /// Standing, swaying with the tick.
 struct Swaying {

@@ -23,7 +23,7 @@ Eigen::VectorXd vector(const json& numbers) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-model::RobotState state_of(const json& tick) {
+model::RobotState recorded_state(const json& tick) {
   model::RobotState state;
   state.gyro_rad_s = vector(tick["gyro_rad_s"]);
   const Eigen::VectorXd wxyz = vector(tick["quat_wxyz"]);
@@ -73,7 +73,7 @@ TEST(TrainingObservation, EqualsTheControllersElementByElement) {
     const json& tick = training["ticks"][t];
     const Eigen::VectorXf action = vector(tick["last_action"]).cast<float>();
     const Eigen::VectorXf& seen =
-        observation.assemble(state_of(tick), reference_of(tick), command_of(tick["command"]), action);
+        observation.assemble(recorded_state(tick), reference_of(tick), command_of(tick["command"]), action);
     const auto expected = tick["observation"].get<std::vector<float>>();
     ASSERT_EQ(expected.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {

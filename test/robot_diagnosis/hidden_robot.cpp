@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "robot_diagnosis/robot_excitation.hpp"
 #include "model/clip_library_file.hpp"
+#include "robot_diagnosis/robot_excitation.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::robot_diagnosis {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "robot_diagnosis/robot_diagnosis.hpp"
 #include "model/robot_model.hpp"
+#include "robot_diagnosis/robot_diagnosis.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::robot_diagnosis {

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <map>
 
+#include "model/robot_model.hpp"
 #include "robot_diagnosis/hidden_robot.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
-#include "model/robot_model.hpp"
 
 namespace {
 

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "model/clip_library_file.hpp"
 #include "robot_diagnosis/hidden_robot.hpp"
 #include "robot_diagnosis/robot_excitation.hpp"
 #include "robot_diagnosis/robot_report.hpp"
-#include "model/clip_library_file.hpp"
 #include "sim/robots.hpp"
 
 namespace pmg::robot_diagnosis {

@@ -13,23 +13,24 @@
 namespace pmg::sil {
 namespace {
 
-constexpr double kDt_s = 0.002;
+constexpr double kStep_s = 0.002;
 using State = runtime::CraneState;
 
-void run(Crane& crane, const CraneView& view, double seconds) {
-  for (double t_s = 0.0; t_s < seconds; t_s += kDt_s) crane.step(view, kDt_s);
+void raise_for(Crane& crane, const CraneView& view, double seconds) {
+  for (double t_s = 0.0; t_s < seconds; t_s += kStep_s) crane.step(view, kStep_s);
 }
 
 /// A robot's legs: they carry what the rope, which gives 0.02 m under the whole weight, leaves.
 double carried(const Crane& crane) { return std::clamp(-crane.lift_m() / 0.02, 0.0, 1.0); }
 
 void set_down(Crane& crane) {
-  for (double t_s = 0.0; t_s < 6.0; t_s += kDt_s) crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
+  for (double t_s = 0.0; t_s < 6.0; t_s += kStep_s)
+    crane.step({.stands = true, .carried_share = carried(crane)}, kStep_s);
 }
 
 TEST(Crane, HoldsALimpRobotForEver) {
   Crane crane;
-  run(crane, {}, 60.0);
+  raise_for(crane, {}, 60.0);
   EXPECT_EQ(crane.state(), State::kHolding);
   EXPECT_EQ(crane.lift_m(), Crane::kLift_m);
   EXPECT_EQ(crane.engaged(), 1.0);
@@ -37,16 +38,16 @@ TEST(Crane, HoldsALimpRobotForEver) {
 
 TEST(Crane, SetsAStandingRobotDownAndLetsGoOnlyWhenItsFeetHaveCarriedForAWhile) {
   Crane crane;
-  run(crane, {.stands = true}, 10.0);
+  raise_for(crane, {.stands = true}, 10.0);
   EXPECT_EQ(crane.state(), State::kLowering) << "nothing carries it yet";
   EXPECT_EQ(crane.engaged(), 1.0);
-  run(crane, {.stands = true, .carried_share = 0.49}, 10.0);
+  raise_for(crane, {.stands = true, .carried_share = 0.49}, 10.0);
   EXPECT_EQ(crane.engaged(), 1.0);
-  run(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
-  run(crane, {.stands = true, .carried_share = 0.1}, 0.01);
-  run(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
+  raise_for(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
+  raise_for(crane, {.stands = true, .carried_share = 0.1}, 0.01);
+  raise_for(crane, {.stands = true, .carried_share = 0.9}, Crane::kCarriedFor_s - 0.01);
   EXPECT_EQ(crane.engaged(), 1.0) << "on its feet for a moment only, twice";
-  run(crane, {.stands = true, .carried_share = 0.9}, 0.02 + Crane::kLetGo_s + 0.01);
+  raise_for(crane, {.stands = true, .carried_share = 0.9}, 0.02 + Crane::kLetGo_s + 0.01);
   EXPECT_EQ(crane.state(), State::kFree);
   EXPECT_EQ(crane.engaged(), 0.0);
 }
@@ -54,10 +55,10 @@ TEST(Crane, SetsAStandingRobotDownAndLetsGoOnlyWhenItsFeetHaveCarriedForAWhile) 
 TEST(Crane, TakesUpARobotThatNoLongerStandsWhileItIsSetDown) {
   for (const double after_s : {0.5, 1.9, 2.4, 2.7}) {
     Crane crane;
-    for (double t_s = 0.0; t_s < after_s; t_s += kDt_s)
-      crane.step({.stands = true, .carried_share = carried(crane)}, kDt_s);
+    for (double t_s = 0.0; t_s < after_s; t_s += kStep_s)
+      crane.step({.stands = true, .carried_share = carried(crane)}, kStep_s);
     ASSERT_NE(crane.state(), State::kFree) << after_s;
-    run(crane, {.torso_height_m = -0.1}, 5.0);
+    raise_for(crane, {.torso_height_m = -0.1}, 5.0);
     EXPECT_EQ(crane.state(), State::kHolding) << after_s;
   }
 }
@@ -66,7 +67,7 @@ TEST(Crane, LetsARobotThatWasLetGoFall) {
   Crane crane;
   set_down(crane);
   ASSERT_EQ(crane.state(), State::kFree);
-  run(crane, {.torso_height_m = -0.7}, 5.0);
+  raise_for(crane, {.torso_height_m = -0.7}, 5.0);
   EXPECT_EQ(crane.state(), State::kFree) << "nobody asked";
 }
 
@@ -75,14 +76,14 @@ TEST(Crane, CatchesARobotWhereItLiesAndLiftsItWithoutAJerk) {
     Crane crane;
     set_down(crane);
     const CraneView lies{.stays_up = true, .torso_height_m = height_m};
-    crane.step(lies, kDt_s);
+    crane.step(lies, kStep_s);
     EXPECT_EQ(crane.engaged(), 0.0);
     EXPECT_LE(crane.lift_m(), std::max(height_m, Crane::kLift_m)) << "it doesn't pull at first";
     double lift_m = crane.lift_m(), engaged = 0.0;
-    for (double t_s = 0.0; t_s < 8.0; t_s += kDt_s) {
-      crane.step(lies, kDt_s);
-      EXPECT_LE(std::abs(crane.lift_m() - lift_m), Crane::kRaise_m_s * kDt_s * 1.001);
-      EXPECT_LE(std::abs(crane.engaged() - engaged), kDt_s / Crane::kCatch_s * 1.001);
+    for (double t_s = 0.0; t_s < 8.0; t_s += kStep_s) {
+      crane.step(lies, kStep_s);
+      EXPECT_LE(std::abs(crane.lift_m() - lift_m), Crane::kRaise_m_s * kStep_s * 1.001);
+      EXPECT_LE(std::abs(crane.engaged() - engaged), kStep_s / Crane::kCatch_s * 1.001);
       lift_m = crane.lift_m();
       engaged = crane.engaged();
     }
@@ -92,7 +93,7 @@ TEST(Crane, CatchesARobotWhereItLiesAndLiftsItWithoutAJerk) {
 
 TEST(Crane, ARobotThatIsToStayUpIsNotSetDown) {
   Crane crane;
-  run(crane, {.stands = true, .stays_up = true}, 5.0);
+  raise_for(crane, {.stands = true, .stays_up = true}, 5.0);
   EXPECT_EQ(crane.state(), State::kHolding);
 }
 

@@ -19,7 +19,7 @@
 namespace pmg::sil {
 namespace {
 
-constexpr double kTick_s = 0.01;
+using test::kTick_s;
 constexpr double kLift_m = 0.20;
 
 /// Tells whether it is run.

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "control/fixtures.hpp"
+
 namespace pmg::sil {
 namespace {
 
-constexpr double kTick_s = 0.01;
+using test::kTick_s;
 
 void run(Hoist& hoist, Support support, double seconds) {
   for (double t_s = 0.0; t_s < seconds; t_s += kTick_s) hoist.step(support, kTick_s);

@@ -1,24 +1,16 @@
 // The robots that the simulation is tested with, and the command that lets them stand.
 #pragma once
 
-#include <filesystem>
 #include <random>
 
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
+#include "model/robots.hpp"
 
 namespace pmg {
 
-inline const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "config/robots/z1");
-  return robot;
-}
-
-inline const model::RobotModel& biped() {
-  static const model::RobotModel robot =
-      model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "test/data/robots/biped");
-  return robot;
-}
+using test::biped;
+using test::z1;
 
 inline model::JointCommand standing_command(const model::RobotModel& robot) {
   const int n = robot.joint_index.size();

@@ -22,7 +22,7 @@ constexpr double kStep_s = 0.002;
 constexpr int kSteps = 120;
 constexpr double kOtherLibm_Nm = 1e-9;
 
-const std::string kRecord = PMG_SOURCE_DIR "/test/data/training/actuators.json";
+const std::string kActuatorRecord = PMG_SOURCE_DIR "/test/data/training/actuators.json";
 
 /// Each effect by itself, then with what it meets.
 const std::map<std::string, Values> kCases = {
@@ -151,7 +151,7 @@ ordered_json outputs(const Values& values) {
   return {{"parameters", values}, {"torque_Nm", torque_Nm}, {"slope_Nm_s_per_rad", slope}};
 }
 
-ordered_json record_now() {
+ordered_json actuators_now() {
   ordered_json names = ordered_json::array(), cases = ordered_json::object();
   for (const sim::ActuatorParameter& parameter : sim::actuator_parameters()) names.push_back(parameter.name);
   for (const auto& [name, values] : kCases) cases[name] = outputs(values);
@@ -172,9 +172,9 @@ TEST(ActuatorRecord, ShowsEveryEffectAtWork) {
 }
 
 TEST(ActuatorRecord, IsWhatTheActuatorModelsGive) {
-  const ordered_json now = record_now();
-  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kRecord) << now.dump() << '\n';
-  const auto record = ordered_json::parse(std::ifstream(kRecord));
+  const ordered_json now = actuators_now();
+  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kActuatorRecord) << now.dump() << '\n';
+  const auto record = ordered_json::parse(std::ifstream(kActuatorRecord));
   ASSERT_EQ(record["names"], now["names"]);
   for (const auto& [name, values] : kCases) {
     const ordered_json &then = record["cases"][name], &there = now["cases"][name];

@@ -23,7 +23,7 @@ constexpr int kTicks = 20, kStepsPerTick = 5;
 constexpr double kTick_s = 0.01;
 constexpr double kOtherEngine_rad = 1e-4;  // of the same equations in another version of MuJoCo
 
-const std::string kRecord = PMG_SOURCE_DIR "/test/data/training/rollout.json";
+const std::string kRolloutRecord = PMG_SOURCE_DIR "/test/data/training/rollout.json";
 
 /// Soft as a policy's: by kind of leg joint.
 const std::map<std::string, std::array<double, 2>> kGains = {{"hip_pitch", {120, 4.0}}, {"hip_roll", {120, 4.0}},
@@ -103,7 +103,7 @@ ordered_json rollout(const model::RobotModel& robot, const sim::ActuatorsByJoint
   return q;
 }
 
-ordered_json record_now(const model::RobotModel& robot) {
+ordered_json rollout_now(const model::RobotModel& robot) {
   ordered_json q_des = ordered_json::array();
   for (int tick = 0; tick < kTicks; ++tick) q_des.push_back(target(robot.q_stand(), tick));
   return {{"joints", robot.joint_index.names()},
@@ -116,9 +116,9 @@ ordered_json record_now(const model::RobotModel& robot) {
 
 TEST(Rollout, InTheAirIsWhatTheRecordForTrainingSays) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
-  const ordered_json now = record_now(robot);
-  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kRecord) << now.dump() << '\n';
-  const auto record = ordered_json::parse(std::ifstream(kRecord));
+  const ordered_json now = rollout_now(robot);
+  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kRolloutRecord) << now.dump() << '\n';
+  const auto record = ordered_json::parse(std::ifstream(kRolloutRecord));
   ASSERT_EQ(record["joints"], now["joints"]);
   ASSERT_EQ(record["gains"], now["gains"]);
   ASSERT_EQ(record["motors"], now["motors"]);

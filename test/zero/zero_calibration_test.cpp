@@ -6,8 +6,8 @@
 
 #include <kdl/chaindynparam.hpp>
 
-#include "zero/zero_stances.hpp"
 #include "sim/robots.hpp"
+#include "zero/zero_stances.hpp"
 
 namespace pmg::zero {
 namespace {
