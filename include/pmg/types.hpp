@@ -4,8 +4,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <numbers>
 
 namespace pmg {
+
+inline constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 /// Upper bound on a robot's joints: vectors of this capacity live on the stack, so no step of the loop allocates.
 inline constexpr int kMaxJoints = 48;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "io/clock.hpp"
+
 namespace pmg::control {
 
 namespace {

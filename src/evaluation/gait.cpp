@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <stdexcept>
 
 #include "control/control_cycle.hpp"
@@ -40,9 +39,8 @@ sil::Scenario gait_scenario(const GaitTest& test) {
 
 /// Flexions [deg] of one leg; positive as in gait analysis.
 std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  return {-kDegrees * q[leg[generator::kHipPitch]], kDegrees * q[leg[generator::kKnee]],
-          -kDegrees * q[leg[generator::kAnklePitch]]};
+  return {-q[leg[generator::kHipPitch]] / kRadPerDegree, q[leg[generator::kKnee]] / kRadPerDegree,
+          -q[leg[generator::kAnklePitch]] / kRadPerDegree};
 }
 
 FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {

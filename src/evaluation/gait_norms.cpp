@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "bench/csv_table.hpp"
 #include "generator/published_gait.hpp"
@@ -40,10 +39,9 @@ GaitNorms built_in_norms() {
   GaitNorms norms{.source = "CGM2.3 adults at spontaneous speed (Leboeuf et al. 2019)", .deg = {}};
   for (std::size_t k = 0; k < kCyclePoints; ++k) {
     const double phase = static_cast<double>(k) / kCyclePoints;
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
-    norms.deg[kHip].push_back(kDegrees * gait.hip_flexion.at_rad(phase) - gait.pelvic_tilt_deg);
-    norms.deg[kKneeFlexion].push_back(kDegrees * gait.knee_flexion.at_rad(phase));
-    norms.deg[kAnkle].push_back(kDegrees * gait.ankle_dorsiflexion.at_rad(phase));
+    norms.deg[kHip].push_back(gait.hip_flexion.at_rad(phase) / kRadPerDegree - gait.pelvic_tilt_deg);
+    norms.deg[kKneeFlexion].push_back(gait.knee_flexion.at_rad(phase) / kRadPerDegree);
+    norms.deg[kAnkle].push_back(gait.ankle_dorsiflexion.at_rad(phase) / kRadPerDegree);
   }
   return norms;
 }

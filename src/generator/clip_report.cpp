@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 
 #include "generator/joint_roles.hpp"
@@ -186,7 +185,6 @@ std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms) {
   const JointRoles roles = find_joint_roles(robot);
-  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
   const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kRadPerDegree;
   std::vector<double> hip_deg;
   std::vector<double> thigh_deg;

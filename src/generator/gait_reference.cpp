@@ -39,8 +39,7 @@ std::vector<LegPose> published_reference(const RobotLegs& legs) {
   for (std::size_t k = 0; k < kClipSamples; ++k) {
     for (const Foot foot : {kLeft, kRight}) {
       const double phase = sample_phase(k) + (foot == kRight ? 0.5 : 0.0);
-      reference[k][foot][kHipPitch] =
-          -(gait.hip_flexion.at_rad(phase) - gait.pelvic_tilt_deg * std::numbers::pi / 180.0);
+      reference[k][foot][kHipPitch] = -(gait.hip_flexion.at_rad(phase) - gait.pelvic_tilt_deg * kRadPerDegree);
       reference[k][foot][kKnee] = gait.knee_flexion.at_rad(phase);
       reference[k][foot][kAnklePitch] = -gait.ankle_dorsiflexion.at_rad(phase);
     }

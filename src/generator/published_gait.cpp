@@ -11,7 +11,7 @@ double PublishedCurve::at_rad(double phase) const {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(k + 1) * phase;
     value_deg += cosine_deg[k] * std::cos(angle) + sine_deg[k] * std::sin(angle);
   }
-  return value_deg * std::numbers::pi / 180.0;
+  return value_deg * kRadPerDegree;
 }
 
 const PublishedGait& published_gait() {

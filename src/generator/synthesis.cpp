@@ -4,7 +4,6 @@
 #include <functional>
 #include <future>
 #include <mutex>
-#include <numbers>
 #include <utility>
 
 #include "generator/corner_synthesis.hpp"
@@ -14,8 +13,6 @@
 
 namespace pmg::generator {
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 GaitTask forward_task(const Making& making) {
   GaitTask task;

@@ -11,7 +11,6 @@ namespace pmg::generator {
 namespace {
 
 void swing_arm(const JointRoles& roles, const UpperBody& body, Foot side, double own_phase, JointVector& q) {
-  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
   const PublishedGait& gait = published_gait();
   const double flexion = gait.shoulder_flexion.at_rad(own_phase) - gait.shoulder_flexion.mean_deg * kRadPerDegree;
   const double bend = gait.elbow_flexion.at_rad(own_phase) - gait.elbow_flexion.mean_deg * kRadPerDegree;

@@ -16,10 +16,10 @@ namespace pmg::pages {
 
 namespace {
 
-constexpr int kWidth = 640, kAxis = 22, kGap = 7;
+constexpr int kTicksHeight = 22, kGap = 7;
 constexpr double kLeastNames = 90.0, kMostNames = 270.0;
 constexpr int kRoomyBars = 12;  // few enough for a number at each
-constexpr int kLabels = 5;
+constexpr int kFewLabels = 5;
 constexpr int kMargin = 6, kMarkRow = 13;  // above the bars, and for each row of marks' words
 
 double value_of(const Bars::Set& set, std::size_t row) {
@@ -56,7 +56,7 @@ class BarDrawing {
     names_ = std::min(names, kMostNames) + 12.0;
     const double beside = numbered_ ? widest + 10.0 : 10.0;
     from_px_ = names_ + (range_.from < 0.0 ? beside : 0.0);
-    to_px_ = kWidth - std::max(beside, text_width(bars.unit) + 34.0);
+    to_px_ = kPictureWidth - std::max(beside, text_width(bars.unit) + 34.0);
     place_marks();
     top_ = kMargin + kMarkRow * mark_rows_;
     bottom_ = top_ + row_ * static_cast<int>(bars.names.size());
@@ -64,8 +64,8 @@ class BarDrawing {
 
   std::string svg() {
     const Legend names = legend();
-    out_ = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)", kWidth,
-                       bottom_ + kAxis + names.height(), escape_html(bars_.title));
+    out_ = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
+                       kPictureWidth, bottom_ + kTicksHeight + names.height(), escape_html(bars_.title));
     axis();
     for (std::size_t row = 0; row < bars_.names.size(); ++row) {
       name(row);
@@ -74,7 +74,7 @@ class BarDrawing {
     if (range_.from < 0.0) add(R"(<path d="M{:.1f} {}V{}" stroke="{}"/>)", x(0.0), top_, bottom_, colour::kInk);
     for (const PlacedMark& mark : marks_) show(mark);
     out_ += numbers_;  // on top of the marks' lines
-    return out_ + names.svg(bottom_ + kAxis) + "</svg>";
+    return out_ + names.svg(bottom_ + kTicksHeight) + "</svg>";
   }
 
  private:
@@ -86,7 +86,7 @@ class BarDrawing {
   }
 
   void axis() {
-    for (const AxisTick& tick : axis_ticks(range_, kLabels)) {
+    for (const AxisTick& tick : axis_ticks(range_, kFewLabels)) {
       add(R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
           x(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
@@ -146,7 +146,7 @@ class BarDrawing {
     std::vector<double> row_ends_px;
     for (const Mark* mark : in_order) {
       const double half = 0.5 * text_width(mark->text);
-      const double middle = std::clamp(x(mark->x), half, kWidth - half);
+      const double middle = std::clamp(x(mark->x), half, kPictureWidth - half);
       const auto free = std::ranges::find_if(row_ends_px, [&](double end) { return end + 6.0 < middle - half; });
       const auto row = static_cast<int>(free - row_ends_px.begin());
       if (free == row_ends_px.end()) row_ends_px.push_back(0.0);
@@ -165,7 +165,7 @@ class BarDrawing {
   }
 
   Legend legend() const {
-    Legend legend(names_, kWidth);
+    Legend legend(names_, kPictureWidth);
     for (const Bars::Set& set : bars_.sets) {
       if (bars_.sets.size() > 1) legend.add(set.colour, set.name);
     }

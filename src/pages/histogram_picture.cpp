@@ -15,7 +15,7 @@ namespace pmg::pages {
 
 namespace {
 
-constexpr int kWidth = 640, kPlot = 180, kLeft = 58, kRight = 16, kTop = 8, kAxis = 38, kBins = 60, kLabels = 6;
+constexpr int kPlot = 180, kLeft = 58, kRight = 16, kBins = 60, kMostLabels = 6;
 constexpr int kBottom = kTop + kPlot;
 
 /// Where a set's values are. Stragglers are left out: the outermost thousandth, and what lies more than four times as
@@ -63,7 +63,7 @@ std::string svg(const Histogram& histogram) {
   const Range range = histogram_range(histogram);
   std::vector<Bins> bins;
   double highest = 1.0;
-  Legend legend(kLeft, kWidth);
+  Legend legend(kLeft, kPictureWidth);
   for (const Histogram::Set& set : histogram.sets) {
     bins.push_back(count(set.values, range.from, range.to, kBins));
     for (const std::int64_t n : bins.back().counts) highest = std::max(highest, static_cast<double>(n));
@@ -74,22 +74,24 @@ std::string svg(const Histogram& histogram) {
   const auto y = [&](double n) {
     return n < 1.0 ? kBottom : kTop + kPlot * (1.0 - (std::log10(n) + 0.5) / (decades + 0.5));
   };
-  const auto x = [&](double value) { return kLeft + (value - range.from) / range.span() * (kWidth - kLeft - kRight); };
+  const auto x = [&](double value) {
+    return kLeft + (value - range.from) / range.span() * (kPictureWidth - kLeft - kRight);
+  };
 
   std::string out = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
-                                kWidth, kBottom + kAxis + legend.height(), escape_html(histogram.title));
+                                kPictureWidth, kBottom + kAxisHeight + legend.height(), escape_html(histogram.title));
   const auto add = std::back_inserter(out);
   for (int decade = 0; decade <= static_cast<int>(decades); ++decade) {
     const double at = y(std::pow(10.0, decade));
     fmt::format_to(add, R"(<path class="grid" d="M{} {:.1f}H{}"/><text class="name" x="{}" y="{:.1f}">{}</text>)",
-                   kLeft, at, kWidth - kRight, kLeft - 6, at + 4, number(std::pow(10.0, decade)));
+                   kLeft, at, kPictureWidth - kRight, kLeft - 6, at + 4, number(std::pow(10.0, decade)));
   }
-  for (const AxisTick& tick : axis_ticks(range, kLabels)) {
+  for (const AxisTick& tick : axis_ticks(range, kMostLabels)) {
     fmt::format_to(add, R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
                    x(tick.value), kTop, kBottom, kBottom + 16, tick.label);
   }
-  fmt::format_to(add, R"(<text class="tick" x="{}" y="{}">{}</text>)", (kLeft + kWidth - kRight) / 2, kBottom + 31,
-                 escape_html(histogram.unit));
+  fmt::format_to(add, R"(<text class="tick" x="{}" y="{}">{}</text>)", (kLeft + kPictureWidth - kRight) / 2,
+                 kBottom + 31, escape_html(histogram.unit));
   for (std::size_t set = 0; set < bins.size(); ++set) {
     const Bins& b = bins[set];
     std::string path = fmt::format("M{} {}", kLeft, kBottom);
@@ -100,7 +102,7 @@ std::string svg(const Histogram& histogram) {
     fmt::format_to(add, R"(<path class="bins" d="{}V{}Z" fill="{}" fill-opacity="0.45" stroke="{}"/>)", path, kBottom,
                    histogram.sets[set].colour, histogram.sets[set].colour);
   }
-  return out + legend.svg(kBottom + kAxis) + "</svg>";
+  return out + legend.svg(kBottom + kAxisHeight) + "</svg>";
 }
 
 }  // namespace pmg::pages

@@ -17,10 +17,10 @@ namespace pmg::pages {
 
 namespace {
 
-constexpr int kWidth = 640, kNarrowestLeft = 58, kRight = 14, kTop = 8, kAxis = 38;
+constexpr int kNarrowestLeft = 58, kRightEdge = 14;
 constexpr std::size_t kColumns = 280;  // of a line: two points each are all that can be seen
 constexpr double kRangeMargin = 0.04;  // of the range of y, above and below
-constexpr int kMostLabels = 6;         // along x: far enough apart for long ones
+constexpr int kLabelsAlongX = 6;       // along x: far enough apart for long ones
 constexpr const char* kStyle =
     "text{font:12px sans-serif;fill:#1b1f24}.grid{stroke:#e6e9ed}.tick{text-anchor:middle}.name{text-anchor:end}";
 
@@ -79,7 +79,7 @@ class PlotDrawing {
     for (const AxisTick& tick : y_ticks_) widest = std::max(widest, text_width(tick.label));
     left_ = std::max(kNarrowestLeft, static_cast<int>(std::ceil(widest)) + 10);
     x_.at_from = left_;
-    x_.at_to = kWidth - kRight;
+    x_.at_to = kPictureWidth - kRightEdge;
     y_.at_from = bottom_;
     y_.at_to = top_;
   }
@@ -92,10 +92,10 @@ class PlotDrawing {
       dots(plot_.lines[i], lines_[i]);
     }
     for (const Mark& mark : plot_.marks) show(mark);
-    return out_ + legend().svg(bottom_ + kAxis);
+    return out_ + legend().svg(bottom_ + kAxisHeight);
   }
 
-  int end() const { return bottom_ + kAxis + legend().height(); }  ///< where the next may begin
+  int end() const { return bottom_ + kAxisHeight + legend().height(); }  ///< where the next may begin
 
  private:
   void include(double x, double y) {
@@ -112,16 +112,16 @@ class PlotDrawing {
     for (const AxisTick& tick : y_ticks_) {
       const double at = y_(tick.value);
       add(R"(<path class="grid" d="M{} {:.1f}H{}"/><text class="name" x="{}" y="{:.1f}">{}</text>)", left_, at,
-          kWidth - kRight, left_ - 6, at + 4, tick.label);
+          kPictureWidth - kRightEdge, left_ - 6, at + 4, tick.label);
     }
-    for (const AxisTick& tick : x_.ticks(kMostLabels)) {
+    for (const AxisTick& tick : x_.ticks(kLabelsAlongX)) {
       add(R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
           x_(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
-    add(R"(<text class="tick" x="{}" y="{}">{}</text>)", (left_ + kWidth - kRight) / 2, bottom_ + 31,
+    add(R"(<text class="tick" x="{}" y="{}">{}</text>)", (left_ + kPictureWidth - kRightEdge) / 2, bottom_ + 31,
         escape_html(plot_.x_name));
     if (plot_.show_zero && !y_.logarithmic) {
-      add(R"(<path d="M{} {:.1f}H{}" stroke="{}"/>)", left_, y_(0.0), kWidth - kRight, colour::kGrey);
+      add(R"(<path d="M{} {:.1f}H{}" stroke="{}"/>)", left_, y_(0.0), kPictureWidth - kRightEdge, colour::kGrey);
     }
   }
 
@@ -168,14 +168,14 @@ class PlotDrawing {
   void show(const Mark& mark) {
     if (!x_.shows(mark.x)) return;
     const double at = x_(mark.x);
-    const bool to_the_left = at + 4 + text_width(mark.text) > kWidth;
+    const bool to_the_left = at + 4 + text_width(mark.text) > kPictureWidth;
     add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-dasharray="4 3"/>)", at, top_, bottom_, colour::kInk);
     add(R"(<text{} x="{:.1f}" y="{}">{}</text>)", to_the_left ? R"( class="name")" : "", at + (to_the_left ? -4 : 4),
         top_ + 12, escape_html(mark.text));
   }
 
   Legend legend() const {
-    Legend legend(left_, kWidth);
+    Legend legend(left_, kPictureWidth);
     for (const PlotLine& line : plot_.lines) {
       if (!line.name.empty()) legend.add(line.colour, line.name);
     }
@@ -194,8 +194,8 @@ class PlotDrawing {
 
 std::string svg(const Plot& plot) {
   PlotDrawing drawing(plot, 0);
-  return fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)", kWidth,
-                     drawing.end(), escape_html(plot.title)) +
+  return fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
+                     kPictureWidth, drawing.end(), escape_html(plot.title)) +
          drawing.svg() + "</svg>";
 }
 
@@ -214,7 +214,7 @@ std::string svg_file(const std::vector<Plot>& plots) {
   }
   return fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}">)"
                      R"(<style>{2}</style><rect width="{0}" height="{1}" fill="#fff"/>)",
-                     kWidth, top, kStyle) +
+                     kPictureWidth, top, kStyle) +
          body + "</svg>\n";
 }
 

@@ -7,6 +7,10 @@
 
 namespace pmg::pages {
 
+inline constexpr int kPictureWidth = 640;  ///< of all pictures, so that those below each other line up
+inline constexpr int kTop = 8;             ///< above a plot
+inline constexpr int kAxisHeight = 38;     ///< below it: labels, and the axis's name under them
+
 /// About how wide a text of the pictures' font is, in the picture's units: on the safe side.
 double text_width(const std::string& text);
 

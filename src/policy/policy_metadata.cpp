@@ -19,28 +19,29 @@ constexpr int kFormat = 1;
 constexpr double kLargestGoldenTolerance = 0.01;  // of actions of order one: beyond, the pairs would prove nothing
 constexpr double kPostureTolerance_rad = 1e-6;    // the same number, written and read as text
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void refuse_metadata(const std::string& what) { throw std::invalid_argument(what); }
 
 template <typename T>
 void expect_equal(const char* name, const T& found, const T& expected) {
-  if (found != expected) refuse(fmt::format("{} is {}; this controller has {}", name, found, expected));
+  if (found != expected) refuse_metadata(fmt::format("{} is {}; this controller has {}", name, found, expected));
 }
 
 /// Names in their order: the first difference is told, not both lists.
 void expect_names(const char* name, const std::vector<std::string>& found, const std::vector<std::string>& expected) {
   for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i) {
     if (found[i] != expected[i]) {
-      refuse(fmt::format("{}: number {} is {}; this robot has {}", name, i, found[i], expected[i]));
+      refuse_metadata(fmt::format("{}: number {} is {}; this robot has {}", name, i, found[i], expected[i]));
     }
   }
   if (found.size() != expected.size()) {
-    refuse(fmt::format("{}: {} of them; this robot has {}", name, found.size(), expected.size()));
+    refuse_metadata(fmt::format("{}: {} of them; this robot has {}", name, found.size(), expected.size()));
   }
 }
 
 Variant known_variant(const std::string& name) {
   const std::optional<Variant> variant = variant_named(name);
-  if (!variant) refuse(fmt::format("its variant is {}; this controller has {}", name, fmt::join(kVariantNames, ", ")));
+  if (!variant)
+    refuse_metadata(fmt::format("its variant is {}; this controller has {}", name, fmt::join(kVariantNames, ", ")));
   return *variant;
 }
 
@@ -60,7 +61,7 @@ void expect_layout(const nlohmann::json& found, const model::RobotModel& robot) 
     expect_names(fmt::format("elements of observation term {} ({})", i, text).c_str(),
                  theirs[i].at("elements").get<std::vector<std::string>>(),
                  ours[i].at("elements").get<std::vector<std::string>>());
-    refuse(fmt::format("observation term {} ({}) has other properties than this controller's", i, text));
+    refuse_metadata(fmt::format("observation term {} ({}) has other properties than this controller's", i, text));
   }
   expect_equal("the number of observation terms", theirs.size(), ours.size());
   expect_equal("the observation's size", found.at("size").get<int>(), expected.at("size").get<int>());
@@ -69,11 +70,11 @@ void expect_layout(const nlohmann::json& found, const model::RobotModel& robot) 
 JointVector joint_values(const nlohmann::json& json, const char* key, const model::RobotModel& robot) {
   const auto values = json.at(key).get<std::vector<double>>();
   if (static_cast<int>(values.size()) != robot.joint_index.size()) {
-    refuse(fmt::format("{} has {} values; expected one for each of {} joints", key, values.size(),
-                       robot.joint_index.size()));
+    refuse_metadata(fmt::format("{} has {} values; expected one for each of {} joints", key, values.size(),
+                                robot.joint_index.size()));
   }
   const JointVector vector = Eigen::Map<const Eigen::VectorXd>(values.data(), robot.joint_index.size());
-  if (!vector.allFinite()) refuse(fmt::format("{} has a value that is no number", key));
+  if (!vector.allFinite()) refuse_metadata(fmt::format("{} has a value that is no number", key));
   return vector;
 }
 
@@ -81,8 +82,8 @@ void expect_posture(const JointVector& stand, const model::RobotModel& robot) {
   Eigen::Index joint = 0;
   const double largest = (stand - robot.q_stand()).cwiseAbs().maxCoeff(&joint);
   if (largest > kPostureTolerance_rad) {
-    refuse(fmt::format("it was trained to stand with {} at {} rad; robot.yaml has {} rad",
-                       robot.joint_index.name(static_cast<int>(joint)), stand[joint], robot.q_stand()[joint]));
+    refuse_metadata(fmt::format("it was trained to stand with {} at {} rad; robot.yaml has {} rad",
+                                robot.joint_index.name(static_cast<int>(joint)), stand[joint], robot.q_stand()[joint]));
   }
 }
 
@@ -91,11 +92,12 @@ std::vector<GoldenPair> golden_pairs(const nlohmann::json& json, std::size_t see
   for (const nlohmann::json& pair : json) {
     pairs.push_back({pair.at("observation").get<std::vector<float>>(), pair.at("action").get<std::vector<float>>()});
     if (pairs.back().observation.size() != seen || pairs.back().action.size() != actions) {
-      refuse(fmt::format("golden pair {} has {} observations and {} actions; expected {} and {}", pairs.size() - 1,
-                         pairs.back().observation.size(), pairs.back().action.size(), seen, actions));
+      refuse_metadata(fmt::format("golden pair {} has {} observations and {} actions; expected {} and {}",
+                                  pairs.size() - 1, pairs.back().observation.size(), pairs.back().action.size(), seen,
+                                  actions));
     }
   }
-  if (pairs.empty()) refuse("it has no golden pair; expected at least one observation with its action");
+  if (pairs.empty()) refuse_metadata("it has no golden pair; expected at least one observation with its action");
   return pairs;
 }
 
@@ -116,17 +118,17 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
                clip_library_sha256);
   metadata.action_scale = json.at("action_scale").get<double>();
   if (!(metadata.action_scale > 0.0) || !std::isfinite(metadata.action_scale)) {
-    refuse(fmt::format("action_scale is {}; expected a positive number of rad", metadata.action_scale));
+    refuse_metadata(fmt::format("action_scale is {}; expected a positive number of rad", metadata.action_scale));
   }
   metadata.action_limit = json.at("action_limit").get<double>();
   if (!(metadata.action_limit > 0.0) || !std::isfinite(metadata.action_limit)) {
-    refuse(fmt::format("action_limit is {}; expected a positive number", metadata.action_limit));
+    refuse_metadata(fmt::format("action_limit is {}; expected a positive number", metadata.action_limit));
   }
   metadata.gains = {joint_values(json, "kp_Nm_per_rad", robot), joint_values(json, "kd_Nm_s_per_rad", robot)};
   metadata.golden_tolerance = json.at("golden_tolerance").get<double>();
   if (!(metadata.golden_tolerance > 0.0) || metadata.golden_tolerance > kLargestGoldenTolerance) {
-    refuse(fmt::format("golden_tolerance is {}; expected above 0 and at most {}", metadata.golden_tolerance,
-                       kLargestGoldenTolerance));
+    refuse_metadata(fmt::format("golden_tolerance is {}; expected above 0 and at most {}", metadata.golden_tolerance,
+                                kLargestGoldenTolerance));
   }
   metadata.golden =
       golden_pairs(json.at("golden"), static_cast<std::size_t>(layout.size()), layout.action_joints().size());
@@ -140,7 +142,7 @@ PolicyMetadata parse_policy_metadata(const std::string& json, const model::Robot
   try {
     return checked(nlohmann::json::parse(json), robot, clip_library_sha256, control_rate_Hz);
   } catch (const nlohmann::json::exception& error) {
-    refuse(fmt::format("its metadata can't be read: {}", error.what()));
+    refuse_metadata(fmt::format("its metadata can't be read: {}", error.what()));
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 #include <vector>
 
 #include "generator/center_of_mass.hpp"
@@ -96,7 +95,6 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeans) {
 }
 
 TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const JointRoles roles = find_joint_roles(*robot_);
   const DynamicClip& forward = *library_->positive[kVx];
   const auto ankle_pitch = static_cast<Eigen::Index>(roles.leg[kLeft][kAnklePitch]);
@@ -105,7 +103,7 @@ TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
     dorsiflexion_rad.push_back(-q[ankle_pitch]);
   }
   const auto [low, high] = std::minmax_element(dorsiflexion_rad.begin(), dorsiflexion_rad.end());
-  EXPECT_GE(*high - *low, 20.0 * kDegree);  // three quarters of the published 26
+  EXPECT_GE(*high - *low, 20.0 * kRadPerDegree);  // three quarters of the published 26
   // Published: most bent at 44 % of the cycle, most stretched at 63 %; a sampling knot of the clip's spline is 4 %.
   EXPECT_NEAR(static_cast<double>(high - dorsiflexion_rad.begin()) / kClipSamples, 0.44, 0.04);
   EXPECT_NEAR(static_cast<double>(low - dorsiflexion_rad.begin()) / kClipSamples, 0.63, 0.04);
