@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSilStep_s = 0.002;
 
-/// Reads the groups in the table's order; a group's keys stand together there.
+/// Reads the groups in the table's order, in which the keys of a group are neighbours.
 ActuatorParameters read_actuator(model::ConfigReader& joint) {
   ActuatorParameters parameters;
   const auto table = actuator_parameters();
