@@ -22,7 +22,7 @@ struct ActuatorParameters {
 
   /// output = clip(kp e + kd de + feed-forward, +-limit); torque = torque_per_unit (output supply - back_emf dq).
   struct Drive {
-    double kp_scale = 1.0, kd_scale = 1.0;  ///< what a gain really is over what it is called
+    double kp_scale = 1.0, kd_scale = 1.0;  ///< real gain over nominal gain
     double limit = std::numeric_limits<double>::infinity();
     double dead_band_rad = 0.0;       ///< position errors below it give no output
     double torque_per_unit_Nm = 1.0;  ///< per unit of output times supply
