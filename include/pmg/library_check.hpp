@@ -14,11 +14,9 @@
 
 namespace pmg::check {
 
-inline constexpr std::size_t kMinSamples = 8;  ///< fewer can't hold the shape of a step
-inline constexpr double kMaxContactCenterSpread =
-    0.15;  ///< of one foot's mu [cycles]; clips further apart have no stance to average
-inline constexpr double kMaxStandDifference_rad =
-    0.01;  ///< between a static clip's row at command 0 and the standing posture
+inline constexpr std::size_t kMinSamples = 8;            ///< fewer can't hold the shape of a step
+inline constexpr double kMaxContactCenterSpread = 0.15;  ///< of one foot's mu [cycles]: else no stance to average
+inline constexpr double kMaxStandDifference_rad = 0.01;  ///< of a static clip's row at command 0 from the stand
 
 inline void require(bool condition, const std::string& message) {
   if (!condition) throw std::invalid_argument(message);

@@ -11,10 +11,9 @@
 namespace pmg::model {
 
 struct SoleLoad {
-  double force_N = 0.0;     ///< along the sole's normal, positive when the ground pushes
-  double vertical_N = 0.0;  ///< against gravity; positive when the ground pushes
-  Eigen::Vector2d moment_Nm =
-      Eigen::Vector2d::Zero();  ///< of the ground on the sole about its centre; x and y of the foot
+  double force_N = 0.0;                                 ///< along the sole's normal, positive when the ground pushes
+  double vertical_N = 0.0;                              ///< against gravity; positive when the ground pushes
+  Eigen::Vector2d moment_Nm = Eigen::Vector2d::Zero();  ///< of the ground on the sole about its centre, its x and y
   /// Distance from the centre of pressure to the nearest edge of the sole [m]: about 0 for a sole that stands on an
   /// edge, larger for one that lies flat.  min(half_x - |M_y / F|, half_y - |M_x / F|).
   double inside_m = 0.0;

@@ -32,16 +32,14 @@ struct ActuatorParameters {
     double supply_sag_per_Nm = 0.0;
     double brake_when_disabled = 0.0;  ///< share of the back-EMF torque that stays when the drive is switched off
     double stall_torque_Nm = std::numeric_limits<double>::infinity();  ///< torque-speed line: torque at rest
-    double no_load_rad_s =
-        std::numeric_limits<double>::infinity();  ///< torque-speed line: speed at which no torque is left
+    double no_load_rad_s = std::numeric_limits<double>::infinity();    ///< torque-speed line: speed without torque
     bool operator==(const Drive&) const = default;
   } drive;
 
   /// Errors of the drive's measurement of its joint.
   struct Sensor {
-    double zero_offset_rad = 0.0;  ///< reading minus true angle
-    double hysteresis_rad =
-        0.0;  ///< play between joint and sensor, from end to end: the reading stands still after a reversal
+    double zero_offset_rad = 0.0;   ///< reading minus true angle
+    double hysteresis_rad = 0.0;    ///< play between joint and sensor, end to end: the reading waits at a reversal
     double eccentricity_rad = 0.0;  ///< of the sensor's disc or magnet: adds eccentricity sin(q + phase) to the reading
     double eccentricity_phase_rad = 0.0;
     double quantum_rad = 0.0;

@@ -92,8 +92,7 @@ struct Viewer::Impl {
   Impl(const mjModel* mj_model, const ViewerOptions& options)
       : model(mj_model), on_key(options.on_key), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
     mjr_defaultContext(&context);
-    mjr_makeContext(model, &context,
-                    on_key ? mjFONTSCALE_100 : mjFONTSCALE_150);  // a panel has more text than a caption
+    mjr_makeContext(model, &context, on_key ? mjFONTSCALE_100 : mjFONTSCALE_150);  // panels have more text
     mjr_setBuffer(mjFB_WINDOW, &context);
     mjv_defaultCamera(&camera);
     camera.distance = 3.2;

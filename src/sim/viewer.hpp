@@ -40,8 +40,7 @@ struct ViewerPanel {
 struct ViewerOptions {
   int width = 1280, height = 800;  ///< of the window, in screen coordinates
   std::string title = "PMG";
-  std::function<void(const ViewerKey&)>
-      on_key{};  ///< called from show() or poll(); if set, Esc and q don't close the window
+  std::function<void(const ViewerKey&)> on_key{};  ///< called from show() or poll(); then Esc and q don't close
 };
 
 /// Belongs to the main thread, as window systems require. It draws from a copy of the positions, so the simulation may

@@ -14,9 +14,8 @@ namespace pmg::sim {
 
 namespace {
 
-constexpr double kGantryLift_m = 0.2;  // of a world that starts hanging
-constexpr double kClampInertia =
-    1e12;  // [kg, kg m^2]: in 1000 s, 100 Nm turn it by 0.5 * 100 / 1e12 * 1000^2 = 0.05 mrad
+constexpr double kGantryLift_m = 0.2;            // of a world that starts hanging
+constexpr double kClampInertia = 1e12;           // [kg, kg m^2] 100 Nm turn it by 0.05 mrad in 1000 s
 constexpr double kRopeLength_m = 4.0;            // in pictures
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
@@ -117,8 +116,7 @@ struct World::Impl {
   std::unique_ptr<mjData, FreeData> data;
   Suspension suspension;
   SensorNoise noise;
-  std::vector<model::JointCommand>
-      underway;  // commands on their way to the drives: a ring as long as the delay, the newest included
+  std::vector<model::JointCommand> underway;  // to the drives: a ring as long as the delay, the newest included
   std::size_t newest_command = 0;
   std::vector<ActuatorModel> motors;  // in joint order
   Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
