@@ -14,7 +14,7 @@
 namespace pmg {
 
 /// Clips are blended in joint space. So a mixture walks a little faster, slower, lower or more sideways than the sum of
-/// its commands (a crouched turn of the Z1 drifts by 0.08 m/s). The ground-aware optimisation gives the difference.
+/// its commands (docs/explanation/method.md has figures). The ground-aware optimisation gives the difference.
 /// This table holds the correction that cancels it, on a grid of commands: multilinear inside the grid, constant
 /// outside. Empty: no correction.
 class CommandInverse {
