@@ -80,7 +80,7 @@ struct Mixture {
 inline constexpr double kCornerReach = 1.8;
 
 /// (command, u_max) => (gains, weights). Multilinear between rest (q_stand), the clips of single directions and those
-/// of their combinations. With n_i in [0, 1], the corner that uses the channels A of the commanded channels C has the
+/// of their combinations. With n_i in [0, 1] and the commanded channels C, the corner that uses the channels A has the
 /// gain
 ///   prod over A of n_i * prod over C \ A of (1 - n_i).
 /// This is a convex combination, as the paper's; one channel alone gives the paper's formula. Before, all amplitudes
@@ -131,7 +131,7 @@ inline Mixture mix_corners(const Command& command, const PerDirection<double>& s
 ///   kCorners  mix_corners().
 inline Mixture mix(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
   if (blend == Blend::kCorners) return mix_corners(command, scale);
-  constexpr double kEpsilon = 1e-6;  // the paper's epsilon; it gives no value
+  constexpr double kEpsilon = 1e-6;  // the paper's epsilon (eq. 6), for which it gives no value
   Mixture mixture;
   double amplitude_sum = 0.0, speed_sum = 0.0;
   PerDirection<double> amplitude{}, speed{};

@@ -35,8 +35,9 @@ class ClipCurve {
     dq_dphi.noalias() = x * s.slope;
   }
 
-  /// q += g q(phi);  dq += g dq/dphi dphi/dt + dg/dt q(phi). Gains and Hermite weights are multiplied first, so each
-  /// sum costs four multiply-adds of a joint vector. q and dq must be different vectors.
+  /// Gains and Hermite weights are multiplied first, so each sum costs four multiply-adds of a joint vector. q and dq
+  /// must be different vectors.
+  ///   q += g q(phi),  dq += g dq/dphi dphi/dt + dg/dt q(phi).
   void add_blended(double phase, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
                    JointVector& dq) const noexcept {
     const Segment s = segment(phase);
@@ -91,8 +92,8 @@ class ClipCurve {
     return {-dh01, (1.0 - t) * (1.0 - 3.0 * t), dh01, t * (3.0 * t - 2.0)};
   }
 
-  /// knots: q, q', q, q' of one joint at both ends. The extremes inside the segment are the roots of dq/dt = a t^2 + b
-  /// t + c = 0.
+  /// knots: q, q', q, q' of one joint at both ends. The extremes inside the segment are the roots of
+  ///   dq/dt = a t^2 + b t + c = 0.
   void widen_by_segment(const Eigen::Vector4d& knots, double& highest, double& lowest) const {
     const double m0 = knots[1] / samples_, m1 = knots[3] / samples_, rise = knots[2] - knots[0];
     const double a = 3.0 * (m0 + m1 - 2.0 * rise), b = 2.0 * (3.0 * rise - 2.0 * m0 - m1), c = m0;

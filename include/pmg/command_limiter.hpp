@@ -32,8 +32,9 @@ class CommandLimiter {
   }
 
   /// (user, double_support, dt) => (command). double_support in [0, 1] is the product of the feet's contact weights. A
-  /// channel that isn't finite keeps its previous target. With step = rate dt, for velocities times 1 - (1 -
-  /// double_support_rate) double_support:  u += clamp(target - u, -step, step).
+  /// channel that isn't finite keeps its previous target.
+  ///   u += clamp(target - u, -step, step),
+  ///   step = rate dt, for velocities times 1 - (1 - double_support_rate) double_support.
   const Command& step(const Command& user, double double_support, double dt_s) noexcept {
     limited_ = false;
     for (std::size_t channel = 0; channel < kChannels; ++channel) set_target(channel, user.u[channel]);

@@ -14,10 +14,12 @@ inline bool in_contact(double phase, double contact_center, double duty_factor) 
   return std::abs(wrap_half_cycle(phase - contact_center)) <= 0.5 * duty_factor;
 }
 
-/// Contact weight w = (1 - cos(pi x)) / 2 with x = clip((b - |wrap(phi - mu)|) / edge, 0, 1) and the stance boundary b
-/// = r / 2 + max(0, edge - (1 - r) / 2) [cycles]. The cosine edge lies inside the stance, so in single support the
-/// other foot alone determines the base. A swing shorter than two edges occurs only between walking and standing. Then
-/// the second term moves b outwards, until at r = 1 the weight is 1 everywhere. So w is continuous in r too.
+/// Contact weight in [0, 1], with cosine edges inside the stance:
+///   w = (1 - cos(pi x)) / 2,  x = clip((b - |wrap(phi - mu)|) / edge, 0, 1),
+///   b = r / 2 + max(0, edge - (1 - r) / 2), the stance boundary [cycles].
+/// Because the edge lies inside the stance, in single support the other foot alone determines the base. A swing shorter
+/// than two edges occurs only between walking and standing. Then the second term moves b outwards, until at r = 1 the
+/// weight is 1 everywhere. So w is continuous in r too.
 inline double contact_weight(double phase, double contact_center, double duty_factor, double edge_cycle) noexcept {
   const double distance = std::abs(wrap_half_cycle(phase - contact_center));
   const double boundary = 0.5 * duty_factor + std::max(0.0, edge_cycle - 0.5 * (1.0 - duty_factor));

@@ -46,8 +46,8 @@ struct GeneratorOptions {
   StanceRule stance_rule = StanceRule::kRestRamp;
   double stance_ramp_s = 0.2;
   double double_support_rate = 0.15;  ///< share of the velocity channels' rates in double support, in (0, 1]
-  /// From the command of zero velocity to zero gains, in any phase. The robot shall be told to rest within 0.5 s of the
-  /// release of a key; 0.05 s of it are for the release to arrive.
+  /// From the command of zero velocity to zero gains, in any phase: 0.5 s from the release of a key to rest, minus
+  /// 0.05 s until the release arrives.
   double stop_within_s = 0.45;
 };
 

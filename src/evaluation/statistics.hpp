@@ -20,9 +20,9 @@ Estimate mean_interval(std::span<const double> samples);
 /// if the numbers of samples differ.
 Estimate paired_difference(std::span<const double> a, std::span<const double> b);
 
-/// Share p of successes with Wilson's score interval (E. B. Wilson, JASA 22:209, 1927): (p + z^2 / 2n +- z sqrt(p (1 -
-/// p) / n + z^2 / 4n^2)) / (1 + z^2 / n), z = 1.96. It stays within [0, 1] and is good for shares near its ends.
-/// Without trials: NaN with [0, 1].
+/// Share p of successes with Wilson's score interval (E. B. Wilson, JASA 22:209, 1927), z = 1.96:
+///   (p + z^2 / 2n +- z sqrt(p (1 - p) / n + z^2 / 4n^2)) / (1 + z^2 / n).
+/// It stays within [0, 1] and is good for shares near its ends. Without trials: NaN with [0, 1].
 Estimate share_interval(std::int64_t successes, std::int64_t trials);
 
 }  // namespace pmg::evaluation

@@ -23,8 +23,8 @@ enum Configuration {
 inline constexpr std::array<const char*, kConfigurations> kConfigurationNames = {
     "baseline", "physically informed gains", "dynamic calibration", "dynamic and zero-point calibration"};
 
-/// kp = I omega^2, kd = 2 zeta I omega for the rotor inertia I at the joint, with omega = 10 Hz and zeta = 2 from Liao
-/// et al., BeyondMimic (arXiv:2508.08241).
+/// kp = I omega^2, kd = 2 zeta I omega for the rotor inertia I at the joint, with omega = 2 pi 10 Hz and zeta = 2 from
+/// Liao et al., BeyondMimic (arXiv:2508.08241).
 inline constexpr double kNaturalFrequency_Hz = 10.0, kDampingRatio = 2.0;
 Gains informed_gains(const model::RobotModel& robot, const Gains& otherwise);
 

@@ -27,8 +27,9 @@ struct Stepping {
 };
 std::vector<LegPose> stepping_reference(const RobotLegs& legs, const GaitTask& task, const Stepping& stepping);
 
-/// Joint angles that put a foot into this pose, by damped Gauss-Newton from the start: (J^T J + 1e-8 I) dq = J^T e,
-/// |dq_i| at most 0.2 rad. Throws std::runtime_error if the error stays above 0.1 mm or 1e-4 rad.
+/// Joint angles that put a foot into this pose, by damped Gauss-Newton from the start:
+///   (J^T J + 1e-8 I) dq = J^T e, |dq_i| at most 0.2 rad.
+/// Throws std::runtime_error if the error stays above 0.1 mm or 1e-4 rad.
 LegVector<double> reach(const LegGeometry& leg, const Eigen::Matrix3d& R_BF, const Eigen::Vector3d& p_BF,
                         const LegVector<double>& start);
 

@@ -82,7 +82,7 @@ struct SoleContact {
   Vector3<T> v;  ///< velocity of the sole's material point there
 };
 
-/// p = sum w_c c / sum w_c over the corners c, w_c = exp((lowest z - c_z) / softness_m).
+/// Contact point p = sum w_c c / sum w_c over the corners c, w_c = exp((lowest z - c_z) / softness_m).
 template <typename T>
 SoleContact<T> sole_contact(const LegGeometry& leg, const FootMotion<T>& foot, double softness_m) {
   using std::exp;

@@ -6,8 +6,8 @@
 
 namespace pmg::generator {
 
-/// A mean curve over the gait cycle [deg]: mean + sum over k of cosine[k-1] cos(2 pi k phi) + sine[k-1] sin(2 pi k
-/// phi). phi = 0 is initial contact of the same side.
+/// A mean curve over the gait cycle [deg]; phi = 0 is initial contact of the same side:
+///   mean + sum over k of cosine[k-1] cos(2 pi k phi) + sine[k-1] sin(2 pi k phi).
 struct PublishedCurve {
   static constexpr std::size_t kHarmonics = 7;
   double mean_deg;

@@ -27,7 +27,7 @@ Bundle bundle(const RobotModel& robot, const std::filesystem::path& clips,
 /// ConfigError naming a file that can't be read.
 std::string files_sha256(std::vector<std::filesystem::path> files);
 
-/// files_sha256 of the library's files. A policy's metadata names the clips that it was trained on by this hash.
+/// files_sha256 of the library's files. A policy's metadata identifies its clips by this hash.
 std::string clip_library_sha256(const std::filesystem::path& clips);
 
 }  // namespace pmg::model

@@ -14,13 +14,14 @@ struct SoleLoad {
   double force_N = 0.0;                                 ///< along the sole's normal, positive when the ground pushes
   double vertical_N = 0.0;                              ///< against gravity; positive when the ground pushes
   Eigen::Vector2d moment_Nm = Eigen::Vector2d::Zero();  ///< of the ground on the sole about its centre, its x and y
-  /// Distance from the centre of pressure to the nearest edge of the sole [m]: about 0 for a sole that stands on an
-  /// edge, larger for one that lies flat.  min(half_x - |M_y / F|, half_y - |M_x / F|).
+  /// Distance from the centre of pressure to the nearest edge of the sole [m]:
+  ///   min(half_x - |M_y / F|, half_y - |M_x / F|).
+  /// About 0 for a sole that stands on an edge, larger for one that lies flat.
   double inside_m = 0.0;
 };
 
-/// Statics of each leg in one posture: J^T f = gravity torque of the leg - joint torques, solved by f = (J^T)^+ (...).
-/// Neglected: the leg's inertia, and joint friction, whose effect friction_N() bounds. For a leg with fewer than six
+/// Statics of each leg in one posture: J^T f = gravity torque of the leg - joint torques, so f = (J^T)^+ (...).
+/// Neglected: the leg's inertia, and joint friction, whose effect friction_N() estimates. For a leg with fewer than six
 /// joints f is the smallest wrench that explains its torques.
 class SoleLoads {
  public:
@@ -31,9 +32,10 @@ class SoleLoads {
   /// (torques of all joints in this posture [Nm]) => (loads).
   PerFoot<SoleLoad> of(const JointVector& torque_Nm) const noexcept;
 
-  /// Error of vertical_N that friction may cause in this posture [N]: sqrt(sum of (lift_i friction_i)^2) over the leg's
-  /// joints, with robot.yaml's friction [Nm] and lift_i, joint i's rate that raises the foot by 1 m/s [rad/m]. Infinite
-  /// where the torques don't determine the load, for example in a straight leg.
+  /// Error of vertical_N that friction may cause in this posture [N]:
+  ///   sqrt(sum of (lift_i friction_i)^2) over the leg's joints,
+  /// with robot.yaml's friction [Nm] and lift_i, joint i's rate that raises the foot by 1 m/s [rad/m]. Infinite where
+  /// the torques don't determine the load, for example in a straight leg.
   double friction_N(Foot foot) const noexcept { return legs_[foot].friction_N; }
 
  private:

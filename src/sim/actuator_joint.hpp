@@ -11,8 +11,9 @@ namespace pmg::sim {
 /// Call mj_setConst afterwards.
 void hand_over(mjModel* model, int actuator, const ActuatorModel& by);
 
-/// Sets the torque of the next step:  ctrl = torque - slope dq,  actuator force = ctrl + slope dq'. The integrator
-/// (`implicit`) takes the slope implicitly. dq_rad_s: the joint's speed in data.
+/// Sets the torque of the next step: ctrl = torque - slope dq, and MuJoCo's force is ctrl + slope dq' with the speed
+/// dq' at the step's end, because the integrator (`implicit`) takes the slope implicitly. dq_rad_s: the joint's speed
+/// in data.
 void apply(mjModel* model, mjData* data, int actuator, const ActuatorTorque& torque, double dq_rad_s) noexcept;
 
 }  // namespace pmg::sim

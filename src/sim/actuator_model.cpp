@@ -173,10 +173,10 @@ ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_ra
   return {-brake * dq_rad_s, -brake};
 }
 
-/// Share that the supply loses, sag duty^2 F. A bridge takes duty times the motor's current from the bus. With the
-/// torque T and F = unit supply, the torque at full duty, T = unit (supply (1 - sag duty T) duty - back_emf dq), hence
-/// T = unit (supply duty - back_emf dq) / (1 + sag duty^2 F): the motor sees duty^2 of the source's resistance. A
-/// braking motor feeds the bus.
+/// The term x = sag duty^2 F of a supply with a source resistance. A bridge takes duty times the motor's current from
+/// the bus. With the torque T and F = unit supply, the torque at full duty:
+///   T = unit (supply (1 - sag duty T) duty - back_emf dq) = unit (supply duty - back_emf dq) / (1 + x).
+/// So the motor sees duty^2 of the source's resistance. A braking motor feeds the bus.
 double ActuatorModel::sag(double full_Nm) const noexcept {
   const double duty = held_output_ / parameters_.drive.limit;  // 0 without a limit: such a drive regulates its current
   return parameters_.drive.supply_sag_per_Nm * full_Nm * duty * duty;
@@ -212,8 +212,9 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   return {along * available_Nm, on_slope ? -p.stall_torque_Nm / p.no_load_rad_s : 0.0};
 }
 
-/// (coulomb + stribeck exp(-(dq / stribeck_rad_s)^2) + load factor |torque through the gear|) /// * thermal factor * (1
-/// +- asymmetry).
+/// Largest dry friction at the speed dq, for a motion in this direction (1 or -1):
+///   (coulomb + stribeck exp(-(dq / stribeck_rad_s)^2) + load factor |torque through the gear|)
+///   * thermal factor * (1 + asymmetry direction).
 double ActuatorModel::most_dry_friction_Nm(double dq_rad_s, double direction) const noexcept {
   const ActuatorParameters::Friction& p = parameters_.friction;
   double most_Nm = p.coulomb_Nm;
@@ -245,8 +246,10 @@ double ActuatorModel::ripple_Nm(double motor_rad) const noexcept {
   return p.offset_Nm + p.amplitude_Nm * std::sin(p.order * motor_rad + p.phase_rad);
 }
 
-/// heat += h (torque^2 - heat / cooling); friction factor exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s heat);
-/// /// torque factor 1 + torque_per_K (T - 25 degC).
+/// With the heat H and the temperature T:
+///   H += h (torque^2 - H / cooling),
+///   friction factor = exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s H),
+///   torque factor = 1 + torque_per_K (T - 25 degC), at least 0.
 void ActuatorModel::warm(double temperature_C) noexcept {
   const ActuatorParameters::Thermal& p = parameters_.thermal;
   const bool heats = p.friction_per_Nm2_s != 0.0;
@@ -281,9 +284,10 @@ ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, dou
   return given_;
 }
 
-/// First the rotor moves, against a shaft whose joint end keeps its speed: w' = w + (motor - shaft) / (J / h - motor
-/// slope + shaft slope). Then the shaft's torque at w' acts on the joint. Both are implicit in their own speed, so a
-/// stiff shaft stays stable.
+/// First the rotor moves, against a shaft whose joint end keeps its speed:
+///   w' = w + (motor - shaft) / (J / h - motor slope + shaft slope).
+/// Then the shaft's torque at w' acts on the joint. Both are implicit in their own speed, so a stiff shaft stays
+/// stable.
 ActuatorTorque ActuatorModel::elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept {
   const ActuatorParameters::Transmission& p = parameters_.transmission;
   const double half_play_rad = 0.5 * p.backlash_rad;

@@ -17,8 +17,9 @@ struct ActuatorInput {
   double temperature_C = kReferenceTemperature_C;  ///< of gear and winding
 };
 
-/// Torque at the joint as a line in the joint's speed. The integrator takes the slope implicitly, dq' = dq + h torque /
-/// (I - h slope), as MuJoCo's `implicit` does with an actuator's velocity bias.
+/// Torque at the joint as a line in the joint's speed. The integrator takes the slope implicitly, as MuJoCo's
+/// `implicit` does with an actuator's velocity bias:
+///   dq' = dq + h torque / (I - h slope).
 struct ActuatorTorque {
   double torque_Nm = 0.0;           ///< at the given speed
   double slope_Nm_s_per_rad = 0.0;  ///< d torque / d dq, never positive
@@ -47,8 +48,8 @@ class ActuatorModel {
   /// Rotor inertia that adds to the joint's own; 0 with an elastic transmission, whose rotor has its own speed.
   double joint_armature_kg_m2() const;
 
-  /// The drive's reading [rad] of a joint that has moved to q since the last step: quantised(s + zero_offset +
-  /// eccentricity sin(s + phase)), s being q behind the sensor's hysteresis.
+  /// The drive's reading [rad] of a joint that has moved to q since the last step, with s = q behind the hysteresis:
+  ///   quantised(s + zero_offset + eccentricity sin(s + phase)).
   double reading_rad(double q_rad) const;
 
   /// Inverse of reading_rad without quantum, for a joint in the middle of the sensor's hysteresis [rad].

@@ -57,10 +57,10 @@ struct ActuatorParameters {
     bool operator==(const Transmission&) const = default;
   } transmission;
 
-  /// Torque against the motion: viscous_Nm_s_per_rad |dq| plus a dry part, coulomb + stribeck
-  /// exp(-(dq/stribeck_rad_s)^2) + (load_driving or load_backdriving) |torque through the gear|. The dry part is a
-  /// bristle that bends by presliding_rad and then slides (Dahl's model with a corner), so a joint at rest stays at
-  /// rest. stribeck_Nm is negative if friction grows with speed and levels off, as in greased gears.
+  /// Torque against the motion: viscous_Nm_s_per_rad |dq| plus a dry part,
+  ///   coulomb + stribeck exp(-(dq/stribeck_rad_s)^2) + (load_driving or load_backdriving) |torque through the gear|.
+  /// The dry part is a bristle that bends by presliding_rad and then slides (Dahl's model with a corner), so a joint at
+  /// rest stays at rest. stribeck_Nm is negative if friction grows with speed and levels off, as in greased gears.
   struct Friction {
     double viscous_Nm_s_per_rad = 0.0;
     double coulomb_Nm = 0.0;
@@ -73,10 +73,11 @@ struct ActuatorParameters {
     bool operator==(const Friction&) const = default;
   } friction;
 
-  /// Effects of temperature T and of heat H. Friction is multiplied by exp(friction_per_K (T - 25 degC) +
-  /// friction_per_Nm2_s H), because lubricants thin exponentially. H is the heat that the drive's torque has put into
-  /// its winding since the start, dH/dt = torque^2 - H / cooling_s; it serves where no temperature is known. Torque per
-  /// unit of output is multiplied by 1 + torque_per_K (T - 25 degC), as data sheets give it for magnets and copper.
+  /// Effects of temperature T and of heat H. Friction is multiplied by
+  ///   exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s H),
+  /// because lubricants thin exponentially. H is the heat that the drive's torque has put into its winding since the
+  /// start, dH/dt = torque^2 - H / cooling_s; it serves where no temperature is known. Torque per unit of output is
+  /// multiplied by 1 + torque_per_K (T - 25 degC), as data sheets give it for magnets and copper.
   struct Thermal {
     double friction_per_K = 0.0;  ///< negative: a warm gear turns more easily
     double torque_per_K = 0.0;

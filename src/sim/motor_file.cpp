@@ -10,7 +10,7 @@ namespace pmg::sim {
 
 namespace {
 
-constexpr double kSilStep_s = 0.002;  // WorldOptions' step: every actuator in a file must be possible with it
+constexpr double kSilStep_s = 0.002;  // WorldOptions' step: read_motor_file checks actuators with it
 
 /// Reads the groups in the table's order, in which the keys of a group are neighbours.
 ActuatorParameters read_actuator(model::ConfigReader& joint) {

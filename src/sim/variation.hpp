@@ -1,4 +1,4 @@
-// Differences of a simulated robot and its ground from the model, unknown ones and daily ones.
+// Differences of a simulated robot and its ground from the model: unknown ones, and ones that change from day to day.
 #pragma once
 
 #include <mujoco/mujoco.h>

@@ -29,7 +29,7 @@ class Window {
  public:
   explicit Window(const ViewerOptions& options) {
     glfwSetErrorCallback(keep_complaint);
-#ifdef GLFW_PLATFORM  // From 3.4 on GLFW tries Wayland first, whose library prints errors if there is none
+#ifdef GLFW_PLATFORM  // GLFW 3.4 tries Wayland first, whose library prints errors if there is none
     if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
     if (glfwInit() == GLFW_FALSE) refuse();
