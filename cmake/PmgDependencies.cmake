@@ -12,7 +12,7 @@ find_package(Boost REQUIRED) # headers: wait-free queues between threads
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(spdlog REQUIRED)
 find_package(glfw3 REQUIRED)
-find_package(console_bridge REQUIRED) # urdfdom's log: it carries urdfdom's error messages
+find_package(console_bridge REQUIRED) # urdfdom's log: what it says of a file is heard there
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
 pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)
@@ -36,7 +36,7 @@ add_library(pmg_lcm INTERFACE)
 target_include_directories(pmg_lcm SYSTEM INTERFACE ${LCM_INCLUDE_DIR})
 target_link_libraries(pmg_lcm INTERFACE ${LCM_LIBRARY})
 
-# pagmo's package file requires libraries that CMA-ES doesn't need; one source file of the calibration includes it.
+# pagmo's package file asks for libraries that CMA-ES doesn't need; one source file of the calibration includes it.
 add_library(pmg_pagmo INTERFACE)
 target_include_directories(pmg_pagmo SYSTEM INTERFACE ${PAGMO_INCLUDE_DIR})
 target_link_libraries(pmg_pagmo INTERFACE ${PAGMO_LIBRARY} boost_serialization Threads::Threads)

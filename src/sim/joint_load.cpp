@@ -23,7 +23,7 @@ HangingLoad hanging_load(const model::RobotModel& robot, const std::string& join
   mj_fullM(model, mass.data(), data->qM);
   load.inertia_kg_m2 = mass(dof, dof) - model->dof_armature[dof];
 
-  // At rest the bias force is the torque that holds the joint: gravity_Nm sin(q - hangs_at).
+  // At rest the bias is what holds the joint against gravity: gravity_Nm sin(q - hangs_at).
   const auto holding_Nm = [&](double q_rad) {
     data->qpos[address] = q_rad;
     mju_zero(data->qvel, model->nv);

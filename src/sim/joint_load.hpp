@@ -1,4 +1,4 @@
-// The load of one joint of a hanging robot while all other joints hold: the bench is then the robot itself.
+// What one joint of a hanging robot moves while all others hold: the load of a bench that is made of a robot.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace pmg::sim {
 
 struct HangingLoad {
   double mass_kg = 0.0;        ///< of all links beyond the joint
-  double inertia_kg_m2 = 0.0;  ///< about the axis, without the rotor; all other joints are rigid
+  double inertia_kg_m2 = 0.0;  ///< about the axis, without the rotor; nothing else gives way
   double gravity_Nm = 0.0;     ///< torque on the joint is -gravity_Nm sin(q - hangs_at_rad)
   double hangs_at_rad = 0.0;
 };
 
-/// In the standing posture, base upright and fixed. (A robot in straps recoils, so its limbs seem lighter.) Throws
-/// std::runtime_error if MuJoCo refuses the robot, std::invalid_argument if there is no such joint.
+/// In the standing posture, base upright and held. (A robot in straps recoils: its limbs seem lighter.) Throws
+/// std::runtime_error when MuJoCo refuses the robot, std::invalid_argument when there is no such joint.
 HangingLoad hanging_load(const model::RobotModel& robot, const std::string& joint);
 
 }  // namespace pmg::sim

@@ -106,7 +106,7 @@ class IdealBus final : public hal::Hal {
   model::RobotState state_;
 };
 
-/// A plant with the truth that a test sets.
+/// A plant whose truth is whatever a test wants.
 class ScriptedPlant final : public sil::Plant {
  public:
   model::GroundTruth truth() const noexcept override { return value; }
@@ -119,7 +119,7 @@ class ScriptedPlant final : public sil::Plant {
   double lift = 0.0, hold = 0.0;
 };
 
-/// Follows the reference until a test breaks it.
+/// Follows the reference until told to break.
 class BreakablePolicy final : public policy::Policy {
  public:
   enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
