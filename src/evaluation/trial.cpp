@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
-/// MuJoCo 2.2.2's XML reader and error handlers are global.
+/// Serialised: MuJoCo 2.2.2's XML reader and error handlers are global.
 std::unique_ptr<sim::World> build(const model::RobotModel& robot, const sim::WorldOptions& options) {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
@@ -36,7 +36,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
   sil::SilHal bus(*simulated);
   sil::WorldPlant plant(*simulated);
-  // Nobody carries a robot that is evaluated, whether or not a policy balances it.
+  // The gantry never carries the robot, whether or not a policy balances it.
   sil::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
                          {.balanced_by_policy = true, .always_hoisted = options.gantry});
   StepMeasure measure(robot, scenario);

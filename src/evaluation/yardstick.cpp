@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTickPeriod_s = static_cast<double>(control::ControlCycle::kPeriod_ns) * 1e-9;
 
-/// A body that moves exactly as commanded.
+/// A body that moves exactly as commanded: v, omega, pitch, roll and height are the command's.
 class IdealRobot {
  public:
   explicit IdealRobot(double standing_height_m) : standing_height_m_(standing_height_m) {}
@@ -58,7 +58,7 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
     return true;
   };
   Candidate hanging = candidate;
-  hanging.control.policy = "none";  // a policy isn't run in the air
+  hanging.control.policy = "none";  // no policy runs in the air
   const TrialResult hung =
       run_trial(hanging, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
   Yardstick result;
