@@ -1,4 +1,4 @@
-# Every external library, found once. From the distribution unless third_party/ says otherwise; scripts/setup installs them.
+# Finds every external library, once. Libraries come from the distribution unless third_party/ has them; scripts/setup installs them.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
@@ -28,7 +28,7 @@ if(NOT TARGET yaml-cpp::yaml-cpp) # yaml-cpp 0.7 and earlier export the bare nam
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
 
-# LCM before 1.4 has no package file for CMake, and its pkg-config file asks for GLib's development files, which nothing here needs.
+# LCM before 1.4 has no package file for CMake, and its pkg-config file requires GLib's development files, which nothing here needs.
 find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
 find_library(LCM_LIBRARY lcm REQUIRED)
 find_program(LCM_GEN lcm-gen REQUIRED)
@@ -41,13 +41,13 @@ add_library(pmg_pagmo INTERFACE)
 target_include_directories(pmg_pagmo SYSTEM INTERFACE ${PAGMO_INCLUDE_DIR})
 target_link_libraries(pmg_pagmo INTERFACE ${PAGMO_LIBRARY} boost_serialization Threads::Threads)
 
-# KDL's package file names no target of its own.
+# KDL's package file defines no target.
 add_library(pmg_kdl INTERFACE)
 target_include_directories(pmg_kdl SYSTEM INTERFACE ${orocos_kdl_INCLUDE_DIRS})
 target_link_libraries(pmg_kdl INTERFACE ${orocos_kdl_LIBRARIES} Eigen3::Eigen)
 
-# MuJoCo 2.2.2, ONNX Runtime 1.21 and uPlot: third_party/fetch unpacks them, checked, into third_party/prefix, and does
-# nothing when they are there as pinned.
+# MuJoCo 2.2.2, ONNX Runtime 1.21 and uPlot: third_party/fetch checks them and unpacks them into third_party/prefix. It does nothing if the
+# pinned versions are there.
 set(PMG_THIRD_PARTY ${CMAKE_SOURCE_DIR}/third_party/prefix)
 execute_process(COMMAND ${CMAKE_SOURCE_DIR}/third_party/fetch RESULT_VARIABLE fetched)
 if(NOT fetched EQUAL 0)

@@ -1,5 +1,5 @@
-# pmg_software_version: a header with version and git revision, made at every build and rewritten only when they change, so
-# that a log tells which code ran.
+# pmg_software_version: a header with version and git revision, so that a log identifies the code that ran. Made at every build; rewritten
+# only if they change.
 set(PMG_VERSION_HEADER ${CMAKE_BINARY_DIR}/software_version/software_version.hpp)
 add_custom_target(pmg_software_version_header
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${CMAKE_SOURCE_DIR} -DVERSION=${PROJECT_VERSION} -DHEADER=${PMG_VERSION_HEADER}

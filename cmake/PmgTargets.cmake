@@ -1,5 +1,5 @@
-# How this project's targets are made. Flags: baseline x86-64 everywhere, because -march=native or AVX changes Eigen's
-# alignment and with it the ABI of the distribution's KDL.
+# The project's target functions. Flags: baseline x86-64 everywhere, because -march=native or AVX changes Eigen's alignment, and with it the
+# ABI of the distribution's KDL.
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -13,7 +13,7 @@ endif()
 if(PMG_SANITIZE)
   add_compile_options(-fsanitize=${PMG_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${PMG_SANITIZE})
-  # Under AddressSanitizer Eigen aligns by hand, which libraries that free our Eigen memory (pagmo, KDL) don't know.
+  # Under AddressSanitizer Eigen aligns memory itself; libraries that free our Eigen memory (pagmo, KDL) don't know that.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
@@ -33,8 +33,8 @@ if(PMG_WARNINGS_AS_ERRORS)
   target_compile_options(pmg_warnings INTERFACE -Werror)
 endif()
 
-# pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_room_NAME from src/NAME. Includes are written from
-# src/: #include "model/robot_model.hpp".
+# pmg_add_room(NAME SOURCES... LINK targets...): the static library pmg_room_NAME from src/NAME. Includes are relative to src/: #include
+# "model/robot_model.hpp".
 function(pmg_add_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(pmg_room_${name} STATIC ${ROOM_SOURCES})
@@ -51,12 +51,12 @@ function(pmg_add_app name)
   add_dependencies(programs ${name})
 endfunction()
 
-# Tests are compiled as often as they are run: what they test is optimised, they themselves hardly.
+# Tests are compiled about as often as they run, so they are hardly optimised; the code under test is.
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(PMG_TEST_OPTIONS -O1)
 endif()
 
-# pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry a TEST, run from the source root.
+# pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry per TEST, run from the source root.
 function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})

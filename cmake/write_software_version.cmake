@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.22)
-# Script: writes HEADER with VERSION and the git revision of SOURCE_DIR; "-dirty" when files differ from it. A source tree
-# without git has the version alone.
+# Script: writes HEADER with VERSION and the git revision of SOURCE_DIR, and "-dirty" if files differ from it. A source tree without git gives
+# only the version.
 execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=12 --exclude=*
                 OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
 set(version ${VERSION})

@@ -1,5 +1,5 @@
-# quiet_step NAME LOG COMMAND...: runs a command whose words go to the end of a log file. Here one line says how it goes: its build
-# step or seconds, renewed on a terminal, a line every ten seconds elsewhere. When it fails, the log's last lines follow. Returns its status.
+# quiet_step NAME LOG COMMAND...: runs a command and appends its output to a log file. One line shows the progress, as build step or seconds:
+# renewed on a terminal, every ten seconds elsewhere. If the command fails, the log's last lines follow. Returns its status.
 quiet_step() {
   local name=$1 log=$2 status
   shift 2

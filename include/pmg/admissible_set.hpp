@@ -1,4 +1,4 @@
-// Which commands keep every joint away from its limits at every phase; computed when the library is loaded.
+// The commands that keep every joint away from its limits at every phase; computed when the library is loaded.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,13 +13,13 @@ namespace pmg {
 
 /// The set of gains g and posture offsets q_s with
 ///   q_lower + margin <= q_stand + q_s + sum g_i (q_i(phi_i) - q_stand) <= q_upper - margin   for all joints and phi_i.
-/// Each clip is taken at its own worst phase: conservative for mixtures, exact for one corner alone, and linear in
-/// the gains.
+/// Each clip counts with its own worst phase: exact for one corner alone, conservative for mixtures, linear in the
+/// gains.
 class AdmissibleSet {
  public:
   AdmissibleSet() = default;
 
-  /// q_stand lies within the limits by the margin or more.
+  /// q_stand must lie inside the limits by at least the margin.
   AdmissibleSet(const JointVector& q_stand, const JointVector& q_lower, const JointVector& q_upper, double margin_rad)
       : room_up_((q_upper - q_stand).array() - margin_rad), room_down_((q_stand - q_lower).array() - margin_rad) {
     for (std::size_t d = 0; d < kCorners; ++d) {
@@ -28,6 +28,7 @@ class AdmissibleSet {
     }
   }
 
+  /// corner: index in kCornerTable.
   void add(std::size_t corner, const ClipCurve& curve, const JointVector& q_stand) {
     curve.extremes(up_[corner], down_[corner]);
     up_[corner] -= q_stand;
@@ -38,7 +39,8 @@ class AdmissibleSet {
     return (q_s - room_up_).maxCoeff() <= 0.0 && (q_s + room_down_).minCoeff() >= 0.0;
   }
 
-  /// The largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s. size: gains behind it are 0.
+  /// (gains, q_s) => (s): the largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s. Gains
+  /// from index `size` on are 0.
   double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s,
                         std::size_t size = kCorners) const noexcept {
     JointVector rise = JointVector::Zero(q_s.size());
@@ -58,6 +60,7 @@ class AdmissibleSet {
   }
 
  private:
+  /// The largest s in [0, 1] with s * excursion <= room.
   static double allowed(double excursion, double room) noexcept {
     return excursion > room ? std::max(room, 0.0) / excursion : 1.0;
   }
@@ -68,15 +71,15 @@ class AdmissibleSet {
   PerCorner<JointVector> down_;  ///< largest q_stand - q_i(phi) over phi [rad]
 };
 
-/// The largest found s in [0, 1] for which the posture command scaled by s is admissible, and its offset q_s. Posture
-/// curves bend, so s is bisected; where joints move monotonically with the command (any sensible squat, bend and lean)
-/// it is the largest there is and continuous in the command.
+/// (offset_at) => (s, q_s): the largest s in [0, 1] for which the posture command scaled by s is admissible, and its
+/// offset q_s. Posture curves bend, so s is bisected. If joints move monotonically with the command, as in any sensible
+/// squat, bend or lean, s is the true maximum and continuous in the command.
 template <typename Offset>
 double posture_scale(const AdmissibleSet& set, const Offset& offset_at, JointVector& q_s) noexcept {
   offset_at(1.0, q_s);
   if (set.contains_posture(q_s)) return 1.0;
   double inside = 0.0, outside = 1.0;
-  for (int i = 0; i < 30; ++i) {  // to 1e-9 of the command: far below what dq_ref could show
+  for (int i = 0; i < 30; ++i) {  // 2^-30 = 1e-9 of the command: far below what dq_ref could show
     const double middle = 0.5 * (inside + outside);
     offset_at(middle, q_s);
     (set.contains_posture(q_s) ? inside : outside) = middle;

@@ -1,5 +1,4 @@
-// How much of each clip: the gains of the six directions and of the corners between them, and the gait timing they
-// give.
+// The gains of the clips for a command, and the gait timing of the mixture.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +13,24 @@
 
 namespace pmg {
 
-/// Each velocity channel has a clip a sign: vx+, vx-, vy+, vy-, omega+, omega-.
+/// Each velocity channel has one clip per sign: vx+, vx-, vy+, vy-, omega+, omega-.
 inline constexpr std::size_t kDirections = 2 * kVelocityChannels;
 constexpr std::size_t direction_of(std::size_t channel, bool negative) noexcept {
   return 2 * channel + (negative ? 1 : 0);
 }
 
-/// One value a direction.
+/// One value per direction.
 template <typename T>
 using PerDirection = std::array<T, kDirections>;
 
-/// A place of the normalised command box where a clip can be: -1, 0 or 1 for each of vx, vy and omega, not all 0.
+/// A point of the normalised command box that can have a clip: -1, 0 or 1 for each of vx, vy and omega, not all 0.
 struct Corner {
   std::array<int, kVelocityChannels> sign{};
   friend constexpr bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// Six directions, twelve pairs and eight triples. The directions come first, in their own order, so that a
-/// direction's index is its corner's too; pairs come before triples.
+/// Six directions, twelve pairs and eight triples, in this sequence. The directions keep their own order, so a
+/// direction has the same index as its corner.
 inline constexpr std::size_t kCorners = 26;
 inline constexpr std::array<Corner, kCorners> kCornerTable = [] {
   std::array<Corner, kCorners> table{};
@@ -51,7 +50,7 @@ inline constexpr std::array<Corner, kCorners> kCornerTable = [] {
   return table;
 }();
 
-/// Index in kCornerTable of three signs, not all 0.
+/// (three signs, not all 0) => (index in kCornerTable).
 constexpr std::size_t corner_of(const Corner& corner) noexcept {
   constexpr auto code = [](const Corner& c) {
     return static_cast<std::size_t>(9 * (c.sign[0] + 1) + 3 * (c.sign[1] + 1) + c.sign[2] + 1);
@@ -64,7 +63,7 @@ constexpr std::size_t corner_of(const Corner& corner) noexcept {
   return index[code(corner)];
 }
 
-/// One value a corner.
+/// One value per corner.
 template <typename T>
 using PerCorner = std::array<T, kCorners>;
 
@@ -72,19 +71,21 @@ struct Mixture {
   PerCorner<double> gain{};        ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
   PerCorner<double> weight{};      ///< for T, mu and r; sums to 1, or all 0 for a zero command
   double gain_sum = 0.0;           ///< at most 1
-  std::size_t size = kDirections;  ///< corners that the blend can ask for; the others' gains and weights are 0
-  bool normalised = false;         ///< the amplitudes asked for were more than the clips give together
+  std::size_t size = kDirections;  ///< corners that the rule uses; gains and weights behind them are 0
+  bool normalised = false;         ///< the command asks for more than the clips give together
 };
 
-/// kCorners: by how much the amplitudes n_i = |u_i| / u_max_i may add up. Two channels at 90 % of their ranges, or all
-/// three at 60 %: the hips of a person who strides, sidesteps and turns at full size at once don't give more.
+/// kCorners: largest sum of the amplitudes n_i = |u_i| / u_max_i. 1.8 is two channels at 90 % of their ranges or three
+/// at 60 %. A person's hips do not allow a full stride, sidestep and turn at once.
 inline constexpr double kCornerReach = 1.8;
 
-/// Multilinear between rest (q_stand), the clips of single directions and those of their combinations: with n_i in
-/// [0, 1], the corner that uses the channels A among the commanded ones C has the gain
-///   prod over A of n_i * prod over C \ A of (1 - n_i),
-/// a convex combination, as the paper's. One channel alone is the paper's formula. The amplitudes are first scaled
-/// together until each is at most 1 and their sum at most kCornerReach: the direction of the command stays.
+/// (command, u_max) => (gains, weights). Multilinear between rest (q_stand), the clips of single directions and those
+/// of their combinations. With n_i in [0, 1] and the commanded channels C, the corner that uses the channels A has the
+/// gain
+///   prod over A of n_i * prod over C \ A of (1 - n_i).
+/// This is a convex combination, as the paper's; one channel alone gives the paper's formula. Before, all amplitudes
+/// are scaled by one factor until each is at most 1 and their sum at most kCornerReach, so the command keeps its
+/// direction.
 inline Mixture mix_corners(const Command& command, const PerDirection<double>& scale) noexcept {
   Mixture mixture;
   mixture.size = kCorners;
@@ -121,16 +122,16 @@ inline Mixture mix_corners(const Command& command, const PerDirection<double>& s
   return mixture;
 }
 
-/// The gains of a velocity command. Every rule ends in the same form q_d = sum g q + (1 - sum g) q_stand:
-///  kGain   n_i = |u_i| / u_max_i, g_i = n_i / max(1, sum n), weights g_i / sum g. Mixtures keep their amplitude.
-///  kPaper  alpha_i = clip(|u_i| / u_max_i, 0, 1), w_i = |u_i| / (sum |u| + 1e-6), q_d = sum w_i (alpha_i q_i +
-///          (1 - alpha_i) q_stand), hence g_i = w_i alpha_i. The weights sum to a little less than 1, and to 0 at rest,
-///          where the paper's sum would be the zero posture: what is missing goes to q_stand. T, mu and r take w_i /
-///          sum w for the same reason.
-///  kCorners  mix_corners().
+/// (rule, command, u_max) => (gains, weights). Every rule gives q_d = sum g_i q_i + (1 - sum g_i) q_stand:
+///   kGain   n_i = |u_i| / u_max_i, g_i = n_i / max(1, sum n), weights g_i / sum g. Mixtures keep their amplitude.
+///   kPaper  alpha_i = clip(|u_i| / u_max_i, 0, 1) (eq. 4), w_i = |u_i| / (sum |u| + 1e-6) (eq. 6), and with eq. 5 in
+///           eq. 7: q_d = sum w_i (alpha_i q_i + (1 - alpha_i) q_stand), so g_i = w_i alpha_i. The paper's weights sum
+///           to a little less than 1, and to 0 at rest, where its q_d is the zero posture. Here the missing share goes
+///           to q_stand. T, mu and r use w_i / sum w for the same reason.
+///   kCorners  mix_corners().
 inline Mixture mix(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
   if (blend == Blend::kCorners) return mix_corners(command, scale);
-  constexpr double kEpsilon = 1e-6;  // the paper's, for numerical stability
+  constexpr double kEpsilon = 1e-6;  // the paper's epsilon (eq. 6), for which it gives no value
   Mixture mixture;
   double amplitude_sum = 0.0, speed_sum = 0.0;
   PerDirection<double> amplitude{}, speed{};
@@ -166,15 +167,15 @@ struct GaitTiming {
   PerFoot<double> duty_factor{1.0, 1.0};
 };
 
-/// The clips' timings and their weighted averages (paper III-A.2: r_d, mu_d, T_u). mu is averaged on the circle, as the
-/// way from one clip's mu to the others'.
+/// The clips' timings and their weighted averages (paper eq. 8, 9 and 12). mu is averaged on the circle, as differences
+/// from one clip's mu.
 class GaitTimings {
  public:
   GaitTimings() = default;
   explicit GaitTimings(const PerCorner<std::optional<DynamicClip>>& clips) {
     for (std::size_t d = kCorners; d-- > 0;) {
       if (!clips[d]) continue;
-      origin_ = {clips[d]->period_s, clips[d]->contact_center, clips[d]->duty_factor};  // ends as the first there is
+      origin_ = {clips[d]->period_s, clips[d]->contact_center, clips[d]->duty_factor};  // ends as the first clip's
     }
     for (std::size_t d = 0; d < kCorners; ++d) {
       if (!clips[d]) continue;
@@ -186,10 +187,10 @@ class GaitTimings {
     }
   }
 
-  /// Of the first clip there is: what a robot has that never walked.
+  /// Timing of the first clip; in force until the robot first walks.
   const GaitTiming& first() const noexcept { return origin_; }
 
-  /// weight: sums to 1 over corners that have a clip.
+  /// (weights) => (T, mu, r) = sum of weight * the clip's value. The weights sum to 1 over corners that have a clip.
   GaitTiming average(const PerCorner<double>& weight, std::size_t size = kCorners) const noexcept {
     GaitTiming mean{0.0, origin_.contact_center, {}};
     for (std::size_t d = 0; d < size; ++d) {

@@ -1,5 +1,5 @@
-// Motion clips (paper III-A.1): D_d-clip = {q, dq, v, omega, c = {mu, r}, T} and D_s = {q, p, r, h}.
-// Plain data, filled by model::load_clip_library (src/model/clip_library_file.hpp); nothing here reads files.
+// Motion clips (paper III-A.1): D_d-clip = {q, dq, v, omega, c = {mu, r}, T} (eq. 3) and D_s = {q, p, r, h} (eq. 2).
+// Plain data, filled by model::load_clip_library (src/model/clip_library_file.hpp).
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace pmg {
 
-/// One gait cycle of a single-direction movement. Sample k of N is at phase k/N; the end is not repeated; phase 0 is
+/// One gait cycle of a movement in one direction. Sample k of N is at phase k/N; the end is not repeated. Phase 0 is
 /// the left foot's initial contact.
 struct DynamicClip {
   std::vector<JointVector> q;        ///< N samples [rad]
@@ -24,10 +24,10 @@ struct DynamicClip {
       mean_velocity{};  ///< vx, vy [m/s], omega [rad/s] of the stance feet's kinematics
 };
 
-/// A posture channel's joint angles over its command, piecewise linear between rows.
+/// Joint angles of one posture channel as a function of its command; linear between rows.
 struct StaticClip {
-  std::vector<double> command;  ///< strictly increasing, deviation from stand [rad or m]; contains 0 in its range
-  std::vector<JointVector> q;   ///< one a command [rad]; at command 0 it is q_stand
+  std::vector<double> command;  ///< strictly increasing deviation from stand [rad or m]; the range contains 0
+  std::vector<JointVector> q;   ///< one per command [rad]; at command 0 it is q_stand
 };
 
 /// Joint i's counterpart under reflection in the sagittal plane: q_mirrored[i] = sign[i] * q[partner[i]].
@@ -39,28 +39,28 @@ struct MirrorMap {
 /// How the generator mixes clips (blending.hpp).
 enum class Blend {
   kGain,     ///< g_i = n_i / max(1, sum n), q_d = sum g_i q_i + (1 - sum g_i) q_stand
-  kPaper,    ///< the paper's w and alpha literally
-  kCorners,  ///< multilinear between the clips at the corners of the command box: combined commands keep their size
+  kPaper,    ///< the paper's w and alpha literally (eq. 4 to 7)
+  kCorners,  ///< multilinear between clips at the corners of the command box: combined commands keep their amplitude
 };
 inline constexpr std::array<const char*, 3> kBlendNames = {"gain", "paper", "corners"};
 
-/// A clip of several velocities at once, at full amplitude of each: a walked circle, say.
+/// A clip of several velocities at once, each at full amplitude: a walked circle, for example.
 struct CornerClip {
   std::array<int, kVelocityChannels> sign{};  ///< of vx, vy, omega: -1, 0 or 1; at least two aren't 0
   DynamicClip clip;
 };
 
-/// Everything the generator blends. A missing negative velocity clip means: mirror the positive one (vy, omega).
+/// Everything the generator blends. If vy or omega lacks the clip of one direction, the generator mirrors the other's.
 struct ClipLibrary {
   std::array<std::optional<DynamicClip>, kVelocityChannels> positive;  ///< vx, vy, omega > 0
   std::array<std::optional<DynamicClip>, kVelocityChannels> negative;  ///< vx, vy, omega < 0
-  std::vector<CornerClip> corners;    ///< used by Blend::kCorners; any may be missing (corner_clips.hpp)
+  std::vector<CornerClip> corners;    ///< for Blend::kCorners; corner_clips.hpp makes missing ones
   std::array<StaticClip, 3> posture;  ///< pitch, roll, height
   JointVector q_stand;                ///< [rad]
   JointVector q_lower, q_upper;       ///< joint limits [rad]
   MirrorMap mirror;
-  Blend blend = Blend::kGain;  ///< that the library was made for
-  CommandInverse inverse;      ///< for that blend; empty: the command as it is
+  Blend blend = Blend::kGain;  ///< the rule that the library was made for
+  CommandInverse inverse;      ///< made for that rule; empty: commands stay as they are
 };
 
 }  // namespace pmg

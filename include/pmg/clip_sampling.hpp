@@ -11,17 +11,16 @@
 
 namespace pmg {
 
-/// q(phi) through a clip's samples with the clip's slopes there, so that q and dq/dphi are both continuous and
-/// periodic.
+/// q(phi): the periodic cubic Hermite curve through a clip's samples and slopes. q and dq/dphi are continuous.
 class ClipCurve {
  public:
   ClipCurve() = default;
 
-  /// Copies the samples; allocates. The clip has at least one sample and as many slopes.
+  /// Copies the samples; allocates. The clip must have at least one sample and as many slopes.
   explicit ClipCurve(const DynamicClip& clip)
       : samples_(static_cast<double>(clip.q.size())),
         knots_(clip.q.front().size(), 2 * static_cast<Eigen::Index>(clip.q.size() + 1)) {
-    for (std::size_t k = 0; k <= clip.q.size(); ++k) {  // the first sample again at the end: no wrap between two knots
+    for (std::size_t k = 0; k <= clip.q.size(); ++k) {  // the last knot repeats the first sample: no segment wraps
       const auto column = 2 * static_cast<Eigen::Index>(k);
       knots_.col(column) = clip.q[k % clip.q.size()];
       knots_.col(column + 1) = clip.dq_dphi[k % clip.q.size()];
@@ -36,14 +35,15 @@ class ClipCurve {
     dq_dphi.noalias() = x * s.slope;
   }
 
-  /// Adds g q(phi) to q and its time derivative, g dq/dphi dphi/dt + dg/dt q(phi), to dq: four multiply-adds of a joint
-  /// vector each, because gains and Hermite weights are multiplied first. q and dq are different vectors.
+  /// Gains and Hermite weights are multiplied first, so each sum costs four multiply-adds of a joint vector. q and dq
+  /// must be different vectors.
+  ///   q += g q(phi),  dq += g dq/dphi dphi/dt + dg/dt q(phi).
   void add_blended(double phase, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
                    JointVector& dq) const noexcept {
     const Segment s = segment(phase);
     const Eigen::Vector4d a = gain * s.value;
     const Eigen::Vector4d b = gain * phase_rate_per_s * s.slope + gain_rate_per_s * s.value;
-    // One pass that reads each knot once for both sums; Eigen's expressions would take two, and half as long again.
+    // One pass reads each knot once for both sums. Eigen's expressions need two passes and 1.5 times the time.
     const Eigen::Index joints = knots_.rows();
     const double* const x = knots_.data() + s.column * joints;
     double* __restrict const q_out = q.data();
@@ -92,12 +92,13 @@ class ClipCurve {
     return {-dh01, (1.0 - t) * (1.0 - 3.0 * t), dh01, t * (3.0 * t - 2.0)};
   }
 
-  /// knots: q, q', q, q' of one joint at both ends. The inner extremes of a cubic are the roots of a t^2 + b t + c = 0.
+  /// knots: q, q', q, q' of one joint at both ends. The extremes inside the segment are the roots of
+  ///   dq/dt = a t^2 + b t + c = 0.
   void widen_by_segment(const Eigen::Vector4d& knots, double& highest, double& lowest) const {
     const double m0 = knots[1] / samples_, m1 = knots[3] / samples_, rise = knots[2] - knots[0];
     const double a = 3.0 * (m0 + m1 - 2.0 * rise), b = 2.0 * (3.0 * rise - 2.0 * m0 - m1), c = m0;
     const auto widen_at = [&](double t) {
-      if (!(t >= 0.0 && t <= 1.0)) return;  // also when a division below gave NaN
+      if (!(t >= 0.0 && t <= 1.0)) return;  // false for NaN too, which the divisions below can give
       const double q = value_weights(t).dot(knots);
       highest = std::max(highest, q);
       lowest = std::min(lowest, q);
@@ -105,7 +106,7 @@ class ClipCurve {
     widen_at(0.0);
     const double discriminant = b * b - 4.0 * a * c;
     if (discriminant < 0.0) return;
-    const double half_sum = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));  // no cancellation
+    const double half_sum = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));  // this form avoids cancellation
     widen_at(half_sum / a);
     widen_at(c / half_sum);
   }

@@ -6,9 +6,9 @@
 
 namespace pmg {
 
-/// The channels of a command. The first three are u_d (velocity of the pelvis in its heading frame H), the last three
-/// u_s (posture). Heights are deviations from the standing height, positive up; pitch is positive forward, roll
-/// positive to the right, both of the torso link in H.
+/// The channels of a command. The first three are u_d, the velocity of the pelvis in its heading frame H. The last
+/// three are u_s, the posture. Height is the deviation from the standing height, positive up. Pitch is positive
+/// forward, roll positive to the right; both are the torso link's in H.
 enum Channel : std::size_t { kVx = 0, kVy, kOmega, kPitch, kRoll, kHeight };
 inline constexpr std::size_t kChannels = 6;
 inline constexpr std::size_t kVelocityChannels = 3;
@@ -24,11 +24,11 @@ struct Command {
   friend bool operator==(const Command&, const Command&) = default;
 };
 
-/// What a command may be and how fast it may change.
+/// Range and largest rate of change of each channel.
 struct CommandLimits {
   std::array<double, kChannels> lower{};       ///< same units as Command
   std::array<double, kChannels> upper{};       ///< same units as Command
-  std::array<double, kChannels> rate_per_s{};  ///< largest |du/dt|
+  std::array<double, kChannels> rate_per_s{};  ///< largest |du/dt| [unit/s]
 };
 
 }  // namespace pmg

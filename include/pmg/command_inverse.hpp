@@ -1,5 +1,5 @@
-// What to ask of the generator so that the robot does what the user asks: the precomputed inverse of "command in,
-// cycle-mean of the optimised command out".
+// The command inverse: a correction of the user's command, so that the cycle mean of the optimised command u' equals
+// the user's command.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,21 @@
 
 namespace pmg {
 
-/// Clips are blended in joint space, so mixtures of them walk a little faster, slower, lower or more sideways than the
-/// sum of their commands says (a crouched turn of the Z1 drifts by 0.08 m/s). The ground-aware optimisation tells how
-/// much; this table holds, on a grid of commands, the correction that makes up for it. Multilinear in between, constant
-/// beyond. Empty: no correction.
+/// Clips are blended in joint space. So a mixture walks a little faster, slower, lower or more sideways than the sum of
+/// its commands (docs/explanation/method.md has figures). The ground-aware optimisation gives the difference.
+/// This table holds the correction that cancels it, on a grid of commands: multilinear inside the grid, constant
+/// outside. Empty: no correction.
 class CommandInverse {
  public:
-  /// The channels that the correction depends on and that it corrects; pitch and roll hardly matter to it and come out
-  /// right without it.
+  /// The channels on which the correction depends, and which it corrects. Pitch and roll hardly affect it and are right
+  /// without it.
   static constexpr std::array<Channel, 4> kAxes = {kVx, kVy, kOmega, kHeight};
-  using Node = std::array<double, kAxes.size()>;  ///< one value an axis: m/s, m/s, rad/s, m
+  using Node = std::array<double, kAxes.size()>;  ///< one value per axis: m/s, m/s, rad/s, m
 
   CommandInverse() = default;
 
-  /// axis: strictly increasing commands of each channel of kAxes, at least one; correction: one a node, the last axis
-  /// fastest. Allocates.
+  /// axis: strictly increasing commands of each channel of kAxes, at least one. correction: one per node, the last axis
+  /// varies fastest. Allocates.
   CommandInverse(std::array<std::vector<double>, kAxes.size()> axis, std::vector<Node> correction)
       : axis_(std::move(axis)), correction_(std::move(correction)) {}
 
@@ -35,7 +35,8 @@ class CommandInverse {
   const std::array<std::vector<double>, kAxes.size()>& axis() const noexcept { return axis_; }
   const std::vector<Node>& correction() const noexcept { return correction_; }
 
-  /// What to ask of the generator. Unchanged when a channel isn't finite. No heap, no exception.
+  /// (user) => (command for the clips) = user + sum over the cell's nodes of weight * correction. Returns user
+  /// unchanged if a channel of kAxes isn't finite. No heap, no exception.
   Command apply(const Command& user) const noexcept {
     if (empty()) return user;
     std::array<Cell, kAxes.size()> cell;
@@ -60,9 +61,10 @@ class CommandInverse {
   }
 
  private:
+  /// The two grid nodes around a value.
   struct Cell {
     std::size_t below = 0, above = 0;
-    double share = 0.0;  ///< of the node above
+    double share = 0.0;  ///< weight of the node above
   };
 
   static Cell find(const std::vector<double>& nodes, double value) noexcept {

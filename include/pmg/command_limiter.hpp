@@ -1,4 +1,4 @@
-// From what the user asks to what may be asked now: ranges, rates, and when a gait may change its amplitude.
+// Range and rate limits of the user's command. In double support the velocities change slowly.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace pmg {
 
 /// Clamps a command to its range and limits its rate of change, channel by channel.
 ///
-/// The feet's distance scales with the gains, so a gain that changes while both feet are loaded makes them slide
-/// against each other. The velocity channels therefore run at their full rate in single support and at a fraction of it
-/// in double support. A stop does not wait for the feet: from the tick on in which all three velocities are commanded
-/// to zero, every channel is at least so fast that it reaches zero in stop_within_s.
+/// The distance between the feet scales with the gains. So a gain that changes in double support makes the feet slide
+/// against each other. Velocity channels therefore change at their full rate in single support, and at a fraction of it
+/// in double support. A stop does not wait: once all three velocities are commanded to zero, each of them reaches zero
+/// within stop_within_s.
 class CommandLimiter {
  public:
   CommandLimiter() = default;
@@ -31,7 +31,10 @@ class CommandLimiter {
     limited_ = false;
   }
 
-  /// A channel that isn't finite keeps its previous target. double_support in [0, 1]: how far both feet are loaded.
+  /// (user, double_support, dt) => (command). double_support in [0, 1] is the product of the feet's contact weights. A
+  /// channel that isn't finite keeps its previous target.
+  ///   u += clamp(target - u, -step, step),
+  ///   step = rate dt, for velocities times 1 - (1 - double_support_rate) double_support.
   const Command& step(const Command& user, double double_support, double dt_s) noexcept {
     limited_ = false;
     for (std::size_t channel = 0; channel < kChannels; ++channel) set_target(channel, user.u[channel]);
@@ -61,6 +64,7 @@ class CommandLimiter {
     limited_ = limited_ || target_.u[channel] != user;
   }
 
+  /// |u| dt / (time left to stop): reaches zero exactly at the end of that time.
   double stopping_step(std::size_t channel, double dt_s) const noexcept {
     constexpr double kRounding_s = 1e-9;  // stop_left_s_ is a difference of many dt
     const double speed = std::abs(command_.u[channel]);

@@ -1,4 +1,4 @@
-// When a foot carries the robot: contact centre mu and duty factor r over the phase.
+// Contact of a foot over the phase, from its contact centre mu and duty factor r.
 #pragma once
 
 #include <algorithm>
@@ -9,15 +9,17 @@
 
 namespace pmg {
 
-/// |wrap(phi - mu)| <= r / 2.
+/// True in stance: |wrap(phi - mu)| <= r / 2.
 inline bool in_contact(double phase, double contact_center, double duty_factor) noexcept {
   return std::abs(wrap_half_cycle(phase - contact_center)) <= 0.5 * duty_factor;
 }
 
-/// The same as a weight in [0, 1] with cosine edges, edge_cycle wide, inside the stance: 0 on its boundaries and
-/// outside, so that the other foot alone determines the base in single support, 1 from edge_cycle inwards. A swing
-/// shorter than two edges is on its way to standing: there the boundaries move outwards until at r = 1 the weight is 1
-/// everywhere, so that the weight is continuous in the duty factor too.
+/// Contact weight in [0, 1], with cosine edges inside the stance:
+///   w = (1 - cos(pi x)) / 2,  x = clip((b - |wrap(phi - mu)|) / edge, 0, 1),
+///   b = r / 2 + max(0, edge - (1 - r) / 2), the stance boundary [cycles].
+/// Because the edge lies inside the stance, in single support the other foot alone determines the base. A swing shorter
+/// than two edges occurs only between walking and standing. Then the second term moves b outwards, until at r = 1 the
+/// weight is 1 everywhere. So w is continuous in r too.
 inline double contact_weight(double phase, double contact_center, double duty_factor, double edge_cycle) noexcept {
   const double distance = std::abs(wrap_half_cycle(phase - contact_center));
   const double boundary = 0.5 * duty_factor + std::max(0.0, edge_cycle - 0.5 * (1.0 - duty_factor));
@@ -27,8 +29,8 @@ inline double contact_weight(double phase, double contact_center, double duty_fa
   return 0.5 * (1.0 - std::cos(std::numbers::pi * inside));
 }
 
-/// How much of the swing is taken away because the robot stands: 0 while walking, 1 at rest, moving between the two
-/// over a short time so that no foot is declared loaded from one tick to the next.
+/// The share s in r = r_clips + s (1 - r_clips): 0 while walking, 1 at rest. It ramps between the two, so no foot
+/// becomes loaded from one tick to the next.
 class StanceRamp {
  public:
   void reset() noexcept { standing_ = 1.0; }

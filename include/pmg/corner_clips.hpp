@@ -1,5 +1,5 @@
-// The clips at the corners of the command box (Blend::kCorners): the library's own, mirrored ones, and for the rest
-// what superposition gives.
+// The clips at the corners of the command box (Blend::kCorners): the library's own, their mirror images, and
+// superpositions for the rest.
 #pragma once
 
 #include <cmath>
@@ -16,13 +16,14 @@
 
 namespace pmg {
 
-/// Superposition of clips with the lift of the feet shared. Opposite directions have the lift in common and everything
-/// else with opposite signs, so the mean deviation from standing over opposite directions, M(phi), is stepping on the
-/// spot. What two clips do together is the sum of their deviations less one M, or the feet would be lifted twice; three
-/// are a pair and one more in the same way, the mean of the three ways to choose the pair.
+/// Superposition of clips that lifts the feet only once. Let d_i(phi) = q_i(phi) - q_stand. Opposite directions have
+/// the lift of the feet in common; the rest of their motion has opposite signs. So M(phi), the mean of d_i over
+/// opposite directions, is stepping on the spot. Then
+///   pair:    d_ab = d_a + d_b - M,
+///   triple:  d_abc = mean over its three pairs of (d_pair + d_single) - M.
 class Superposition {
  public:
-  /// Copies; allocates. clips: directions checked, corners as far as they are known.
+  /// clips: the checked directions, and the corners known so far. Copies; allocates.
   Superposition(const PerCorner<std::optional<DynamicClip>>& clips, const JointVector& q_stand)
       : clips_(clips), q_stand_(q_stand) {
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -33,7 +34,8 @@ class Superposition {
     }
   }
 
-  /// Of a corner whose parts (its directions, and the pairs in it) all have clips.
+  /// The clip at a corner; the corner's directions, and the pairs in it, must have clips. T, mu and r are the mean over
+  /// the directions, the mean velocity is their sum.
   DynamicClip at(const Corner& corner) const {
     const std::size_t samples = clips_[parts(corner, 1).front()]->q.size();
     DynamicClip clip;
@@ -60,7 +62,7 @@ class Superposition {
   }
 
  private:
-  /// Indices of the corners that use so many of a corner's channels.
+  /// Indices of the corners that use this number of the corner's channels, with its signs.
   static std::vector<std::size_t> parts(const Corner& corner, int channels) {
     std::vector<std::size_t> found;
     for (std::size_t c = 0; c < kCorners; ++c) {
@@ -76,6 +78,7 @@ class Superposition {
     return found;
   }
 
+  /// Adds factor * d_c(phi) and its slope.
   void add(std::size_t c, double factor, double phase, JointVector& q, JointVector& dq_dphi) const {
     JointVector sample(q.size()), slope(q.size());
     curve_[c].sample(phase, sample, slope);
@@ -83,7 +86,7 @@ class Superposition {
     dq_dphi += factor * slope;
   }
 
-  /// factor * M(phi).
+  /// Adds factor * M(phi).
   void add_lift(double factor, double phase, JointVector& q, JointVector& dq_dphi) const {
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
       const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
@@ -92,7 +95,8 @@ class Superposition {
     }
   }
 
-  /// The mean, over the channels used, of the corner without that channel plus the channel's own direction less M.
+  /// Adds d(phi) of the corner: the mean over its channels of d without the channel plus d of the channel alone, less
+  /// M.
   void add_deviations(const Corner& corner, double phase, JointVector& q, JointVector& dq_dphi) const {
     const auto directions = parts(corner, 1);
     const auto used = static_cast<double>(directions.size());
@@ -112,8 +116,8 @@ class Superposition {
   double both_ways_ = 0.0;  ///< channels that have both directions
 };
 
-/// Fills every corner of which all directions have a clip: the library's own; the mirrored one of the library's; or
-/// the superposition of its parts. Throws std::invalid_argument as the checks of library_check.hpp do.
+/// Fills every corner whose directions all have clips: with the library's clip, else with a mirror image of one, else
+/// with the superposition. Throws std::invalid_argument as the checks of library_check.hpp do.
 inline void add_corner_clips(const ClipLibrary& library, PerCorner<std::optional<DynamicClip>>& clips) {
   for (const CornerClip& given : library.corners) {
     const std::size_t c = corner_of({given.sign});

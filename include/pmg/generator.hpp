@@ -1,4 +1,4 @@
-// The parameterized motion generator (paper III-A.2) as one class: command in, reference out, once a tick.
+// The parameterized motion generator (paper III-A.2) as one class: command in, reference out, once per tick.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,11 @@
 
 namespace pmg {
 
-/// The duty factor between standing (1) and walking (the clips' average).
+/// The duty factor r between standing (r = 1) and walking (r_d, the clips' average, paper eq. 8).
 enum class StanceRule {
-  /// The clips' average as soon as any gain is positive, 1 at rest, over stance_ramp_s between the two. The default: a
-  /// small
-  /// gain lifts the feet in the clips' own swing windows, only less high, and a longer stance would call a moving foot
-  /// loaded.
+  /// r = r_d as soon as any gain is positive, r = 1 at rest; between the two it ramps over stance_ramp_s. The default,
+  /// because a small gain lifts the feet in the clips' own swing windows, only less high: a longer stance would declare
+  /// a moving foot loaded.
   kRestRamp,
   /// r = sum g_i r_i + (1 - sum g_i): standing counts with its share of the motion.
   kGainWeighted,
@@ -46,24 +45,27 @@ struct GeneratorOptions {
   double rest_before_freeze_s = 0.5;
   StanceRule stance_rule = StanceRule::kRestRamp;
   double stance_ramp_s = 0.2;
-  double double_support_rate =
-      0.15;  ///< velocity channels' rate while both feet are loaded, as a share of the full rate, > 0
-  /// From the command of zero velocity to zero gains, whatever the phase: a key that is let go has 0.05 s to be heard
-  /// of, and the robot is told to rest within 0.5 s.
+  double double_support_rate = 0.15;  ///< share of the velocity channels' rates in double support, in (0, 1]
+  /// From the command of zero velocity to zero gains, in any phase: 0.5 s from the release of a key to rest, minus
+  /// 0.05 s until the release arrives.
   double stop_within_s = 0.45;
 };
 
-/// q_ref(phi) = q_d + q_s with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand, and everything that goes with it.
+/// q_ref(phi) = q_d + q_s (paper eq. 10) with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand.
 ///
-/// A tick: the user's command is clamped to its range and rate-limited; the library's inverse says what to ask of the
-/// clips for it; posture, then velocity, are scaled into the admissible set; the phase advances by dt / T; the clips
-/// are sampled and blended; contacts follow from mu and r. A velocity direction without a clip (vx < 0 without a
-/// backward one) and a posture channel without rows have the range 0.
+/// The stages of a tick:
+///   (user, dt) => (wanted)              CommandLimiter: range and rate limits
+///   (wanted) => (asked)                 CommandInverse: the command to ask of the clips
+///   (asked) => (q_s, gains)             posture, then velocities, are scaled into the AdmissibleSet
+///   (weights, dt) => (phi, contacts)    phi advances by dt / T; contacts follow from mu and r
+///   (phi, gains, q_s) => (q_ref, dq_ref)
+/// A velocity direction without a clip (vx < 0 without a backward clip) and a posture channel without rows have the
+/// range 0.
 class Generator {
  public:
   /// Allocates. Throws std::invalid_argument, saying what was expected, for: joint counts that differ, fewer than 8
   /// samples, values that aren't finite, period <= 0, duty factor outside (0, 1], contact centres of one foot more than
-  /// 0.15 cycles apart, posture ranges without 0, q_stand nearer to a joint limit than the margin, options out of
+  /// 0.15 cycles apart, posture ranges without 0, q_stand closer to a joint limit than the margin, options out of
   /// range.
   Generator(const ClipLibrary& library, const GeneratorOptions& options) : options_(options) {
     check_options();
@@ -94,7 +96,7 @@ class Generator {
     reset();
   }
 
-  /// Rest, q_stand, phase frozen in the middle of a double support.
+  /// Goes to rest: q_stand, phase frozen in the middle of a double support.
   void reset() noexcept {
     limiter_.reset();
     stance_.reset();
@@ -109,8 +111,8 @@ class Generator {
     set_contacts(0.0);
   }
 
-  /// One tick. No heap, no exception. A channel that isn't finite keeps its last value; a dt that isn't positive
-  /// changes nothing.
+  /// One tick: (user, dt) => (reference). No heap, no exception. A channel that isn't finite keeps its last value. A dt
+  /// that isn't positive changes nothing.
   const Reference& step(const Command& user, double dt_s) noexcept {
     if (!(dt_s > 0.0 && std::isfinite(dt_s))) return reference_;
     const Command& wanted =
@@ -124,7 +126,7 @@ class Generator {
     mixture.gain_sum *= velocity_share;
 
     report_command(wanted, asked, mixture, posture_share, dt_s);
-    // What the inverse adds to a full command is no limit that the user has met.
+    // A limit counts only if the user's command exceeds it without the inverse's correction.
     const bool too_much = mixture.normalised && mix(blend_, wanted, scale_).normalised;
     reference_.command_limited = limiter_.limited() || too_much || posture_share < 1.0 || velocity_share < 1.0;
     advance_gait(mixture, dt_s);
@@ -135,8 +137,8 @@ class Generator {
 
   const Reference& reference() const noexcept { return reference_; }
 
-  /// The library with a clip at every corner that its blend can ask for. Generators made of it have that work behind
-  /// them: for thousands at once. Allocates; throws as the constructor does.
+  /// The library with a clip at every corner that its rule uses, so constructors of many generators do that work only
+  /// once. Allocates; throws as the constructor does.
   static ClipLibrary completed(ClipLibrary library) {
     if (library.blend != Blend::kCorners) return library;
     const auto directions = all_directions(library);
@@ -163,7 +165,7 @@ class Generator {
     check::require(options_.stop_within_s > 0.0, "stop_within_s; expected more than 0");
   }
 
-  /// The library's clips, checked, and mirrored ones where the other side's clip is missing.
+  /// The library's clips, checked; a missing side of vy or omega is mirrored from the other.
   static PerDirection<std::optional<DynamicClip>> all_directions(const ClipLibrary& library) {
     PerDirection<std::optional<DynamicClip>> clips;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -183,7 +185,7 @@ class Generator {
     return clips;
   }
 
-  /// The ranges of the options, less what no clip can show; also sets scale_.
+  /// The options' limits, narrowed to the directions and postures that have clips. Also sets scale_.
   CommandLimits realisable_limits(const PerDirection<std::optional<DynamicClip>>& clips) {
     CommandLimits limits = options_.limits;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -204,7 +206,7 @@ class Generator {
     return limits;
   }
 
-  /// Where both feet are furthest from leaving the ground.
+  /// The phase that maximises the smaller of both feet's r / 2 - |wrap(phi - mu)|: the middle of a double support.
   static double double_support_phase(const GaitTiming& timing) noexcept {
     double best_phase = 0.0, best_margin = -1.0;
     for (int k = 0; k < 200; ++k) {
@@ -222,7 +224,7 @@ class Generator {
     return best_phase;
   }
 
-  /// What the clips shall be asked for, within what they can show.
+  /// (wanted) => (asked): the inverse's result, clamped to limits_ in the channels that it changed.
   Command ask_for(const Command& wanted) const noexcept {
     Command asked = inverse_.apply(wanted);
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
@@ -232,7 +234,8 @@ class Generator {
     return asked;
   }
 
-  /// What was wanted, less what the clips weren't given of what they were asked for.
+  /// (gains, posture share) => (Reference::command): the command that the clips realise, less the inverse's correction
+  /// asked - wanted.
   void report_command(const Command& wanted, const Command& asked, const Mixture& mixture, double posture_share,
                       double dt_s) noexcept {
     const Command previous = reference_.command;
@@ -253,6 +256,7 @@ class Generator {
     }
   }
 
+  /// (weights, dt) => (T, mu, r, phi, contacts).
   void advance_gait(const Mixture& mixture, double dt_s) noexcept {
     const bool at_rest = mixture.gain_sum == 0.0;
     if (!at_rest) timing_ = timings_.average(mixture.weight, mixture.size);
@@ -277,8 +281,8 @@ class Generator {
     }
   }
 
-  /// q_ref and its time derivative; gains and offsets by their backward difference, so that dq_ref is what q_ref really
-  /// does.
+  /// (phi, dphi/dt, gains, q_s) => (q_ref, dq_ref). Rates of gains and offsets are backward differences, so dq_ref is
+  /// the derivative of the q_ref that is put out.
   void blend(const Mixture& mixture, double dt_s) noexcept {
     PerCorner<double> gain_rate_per_s;
     double gain_sum_rate_per_s = 0.0;
@@ -298,7 +302,7 @@ class Generator {
   }
 
   GeneratorOptions options_;
-  CommandLimits limits_;  ///< of the options, less what no clip can show
+  CommandLimits limits_;  ///< the options' limits, narrowed by realisable_limits()
   CommandInverse inverse_;
   Blend blend_ = Blend::kGain;
   JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]

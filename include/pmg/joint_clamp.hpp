@@ -1,11 +1,11 @@
-// The last guard: no reference leaves the joint limits, whatever came before.
+// The last guard of the joint limits.
 #pragma once
 
 #include "pmg/types.hpp"
 
 namespace pmg {
 
-/// Clamps q [rad] to its limits and stops them (dq = 0). True if any joint was clamped.
+/// q = clamp(q, q_lower, q_upper) [rad], and dq = 0 where that changes q. True if any joint was clamped.
 inline bool clamp_joints(const JointVector& q_lower, const JointVector& q_upper, JointVector& q,
                          JointVector& dq) noexcept {
   if ((q - q_upper).maxCoeff() <= 0.0 && (q - q_lower).minCoeff() >= 0.0) return false;

@@ -1,4 +1,4 @@
-// What a clip library and the generator's options must be before a robot moves by them.
+// Checks of a clip library and of the generator's options; each throws std::invalid_argument with the expected value.
 #pragma once
 
 #include <cmath>
@@ -15,14 +15,14 @@
 namespace pmg::check {
 
 inline constexpr std::size_t kMinSamples = 8;            ///< fewer can't hold the shape of a step
-inline constexpr double kMaxContactCenterSpread = 0.15;  ///< of one foot's mu between clips, in cycles
-inline constexpr double kMaxStandDifference_rad = 0.01;  ///< between a static clip's row 0 and the standing posture
+inline constexpr double kMaxContactCenterSpread = 0.15;  ///< of one foot's mu [cycles]: else no stance to average
+inline constexpr double kMaxStandDifference_rad = 0.01;  ///< of a static clip's row at command 0 from the stand
 
 inline void require(bool condition, const std::string& message) {
   if (!condition) throw std::invalid_argument(message);
 }
 
-/// As "clip vx_m_s > 0, omega_rad_s < 0".
+/// For example "clip vx_m_s > 0, omega_rad_s < 0".
 inline std::string corner_name(std::size_t c) {
   std::string name;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {

@@ -1,4 +1,4 @@
-// A clip reflected in the sagittal plane: what turns a step to the left into a step to the right.
+// Reflection of a clip in the sagittal plane: a step to the left becomes a step to the right.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ inline JointVector mirrored(const MirrorMap& mirror, const JointVector& q) {
   return reflected;
 }
 
-/// q_m(phi)[i] = sign[i] q(phi + 0.5)[partner[i]]. The half cycle keeps phase 0 the left foot's initial contact;
-/// contacts swap sides, and vy and omega change sign.
+/// q_m(phi)[i] = sign[i] q(phi + 0.5)[partner[i]]. The half cycle keeps phase 0 at the left foot's initial contact.
+/// Contacts swap sides; vy and omega change sign.
 inline DynamicClip mirrored(const MirrorMap& mirror, const DynamicClip& clip) {
   DynamicClip reflected = clip;
   const ClipCurve curve(clip);
   JointVector q(curve.joints()), dq_dphi(curve.joints());
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
-    // By interpolation, because half a cycle is no whole number of samples when N is odd.
+    // Interpolated: half a cycle is no whole number of samples when N is odd.
     curve.sample(wrap_cycle(static_cast<double>(k) / static_cast<double>(clip.q.size()) + 0.5), q, dq_dphi);
     reflected.q[k] = mirrored(mirror, q);
     reflected.dq_dphi[k] = mirrored(mirror, dq_dphi);

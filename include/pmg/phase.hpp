@@ -1,4 +1,4 @@
-// The gait phase phi (paper III-A.2) and when it stands still.
+// The gait phase phi (paper eq. 11). It freezes at rest.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,11 @@ inline double wrap_cycle(double x) noexcept {
   return fraction < 1.0 ? fraction : 0.0;  // a tiny negative x rounds up to 1
 }
 
-/// The same angle in [-0.5, 0.5): the signed way from one phase to another.
+/// x modulo one cycle, in [-0.5, 0.5): the signed difference of two phases.
 inline double wrap_half_cycle(double x) noexcept { return wrap_cycle(x + 0.5) - 0.5; }
 
-/// phi advances by dt / T a tick. After a while at rest it freezes, and goes on from there when the rest ends.
+/// phi <- (phi + dt / T) mod 1 once per tick (paper eq. 11). After some time at rest phi freezes. It continues from
+/// there when the rest ends.
 class GaitPhase {
  public:
   void reset(double phase) noexcept {
@@ -24,6 +25,7 @@ class GaitPhase {
     frozen_ = true;
   }
 
+  /// (T, at rest, dt) => (phi, dphi/dt).
   void advance(double period_s, bool at_rest, double dt_s) noexcept {
     rest_s_ = at_rest ? rest_s_ + dt_s : 0.0;
     frozen_ = frozen_ && at_rest;
@@ -31,7 +33,8 @@ class GaitPhase {
     phase_ = wrap_cycle(phase_ + rate_per_s_ * dt_s);
   }
 
-  /// To be asked after advance(): freezes from the next tick on if the rest has lasted and both feet carry the robot.
+  /// Call after advance(). If the rest has lasted long enough and both feet are in contact, phi freezes from the next
+  /// tick on.
   void freeze_after_rest(double rest_before_freeze_s, bool both_feet_in_contact) noexcept {
     constexpr double kRounding_s = 1e-9;  // rest_s_ is a sum of many dt
     if (both_feet_in_contact && rest_s_ > 0.0 && rest_s_ >= rest_before_freeze_s - kRounding_s) frozen_ = true;

@@ -1,4 +1,4 @@
-// Posture offsets q_s (paper III-A.2): what pitch, roll and height commands add to the walking or standing robot.
+// Posture offsets q_s (paper III-A.2, eq. 10): the joint offsets of the pitch, roll and height commands.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@ class PostureCurve {
  public:
   PostureCurve() = default;
 
-  /// Copies the rows; allocates. A clip without a row at command 0 gets one: between two rows the stand need not lie on
-  /// the straight line. An empty clip gives no offset.
+  /// Copies the rows; allocates. A clip without a row at command 0 gets one with offset 0, because interpolation
+  /// between its neighbours need not give q_stand. An empty clip gives no offset.
   PostureCurve(const StaticClip& clip, const JointVector& q_stand) : command_(clip.command) {
     if (command_.empty()) return;
     const auto zero = std::lower_bound(command_.begin(), command_.end(), 0.0);
@@ -40,7 +40,7 @@ class PostureCurve {
   double lower() const noexcept { return command_.empty() ? 0.0 : command_.front(); }
   double upper() const noexcept { return command_.empty() ? 0.0 : command_.back(); }
 
-  /// Adds the offset [rad] at a command, clamped to the clip's range, to q_s.
+  /// Adds the offset [rad] to q_s, at the command clamped to the clip's range.
   void add(double command, JointVector& q_s) const noexcept {
     if (command == 0.0 || command_.size() < 2) return;
     const double inside = std::clamp(command, command_.front(), command_.back());
@@ -63,7 +63,7 @@ class Posture {
     for (std::size_t i = 0; i < kPostureChannels; ++i) curve_[i] = PostureCurve(clips[i], q_stand);
   }
 
-  /// q_s = sum of the channels' offsets at scale * command.
+  /// (command, scale) => (q_s): the sum of the channels' offsets at scale * command [rad].
   void offset(const Command& command, double scale, JointVector& q_s) const noexcept {
     q_s.setZero();
     for (std::size_t i = 0; i < kPostureChannels; ++i) curve_[i].add(scale * command.u[kVelocityChannels + i], q_s);

@@ -1,5 +1,4 @@
-// The three policies of the paper's Table I differ in what they imitate and which command they observe, in nothing
-// else.
+// The three policies of the paper's Table I. They differ only in the imitated motion and in the observed command.
 #pragma once
 
 #include <array>
@@ -10,12 +9,12 @@
 namespace pmg {
 
 enum class Variant {
-  kPmg,         ///< generator and ground-aware optimisation: u' is what the policy observes
-  kWithoutGco,  ///< the same references; it observes u, the admissible command
-  kSingleGait,  ///< the forward clip alone, played as strongly as the command is large; it observes u
+  kPmg,         ///< generator and ground-aware optimisation; the policy observes u'
+  kWithoutGco,  ///< the same references; the policy observes u, the admissible command
+  kSingleGait,  ///< the forward clip alone, its gain set by the size of the command; the policy observes u
 };
 
-/// As ONNX metadata and command lines spell them, in the order of Variant.
+/// Spellings in ONNX metadata and on command lines, in the order of Variant.
 inline constexpr std::array<const char*, 3> kVariantNames = {"pmg", "without_gco", "single_gait"};
 
 inline const char* to_string(Variant variant) noexcept { return kVariantNames[static_cast<std::size_t>(variant)]; }

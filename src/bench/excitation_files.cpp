@@ -38,7 +38,7 @@ ExcitationTrajectory read_trajectory(const fs::path& file, const std::string& na
   return trajectory;
 }
 
-double number(const CsvTable& table, std::size_t row, const std::string& column) {
+double finite_number(const CsvTable& table, std::size_t row, const std::string& column) {
   const auto at = table.find(column);
   if (!at) model::raise({table.file.string(), table.header_line}, column, "is missing", "a column of an excitation");
   const auto value = to_number(table.rows[row][*at]);
@@ -96,8 +96,8 @@ Excitation read_excitation(const fs::path& folder) {
     };
     ExcitationRow found{text("file"),
                         text("trajectory"),
-                        static_cast<int>(number(table, row, "repeat")),
-                        {number(table, row, "kp_Nm_per_rad"), number(table, row, "kd_Nm_s_per_rad")}};
+                        static_cast<int>(finite_number(table, row, "repeat")),
+                        {finite_number(table, row, "kp_Nm_per_rad"), finite_number(table, row, "kd_Nm_s_per_rad")}};
     if (!files.insert(found.file).second)
       model::raise(table.place(row), "file", found.file + " is there twice", "one row a file");
     if (fs::path(found.file).filename() != found.file) model::raise(table.place(row), "file", "has a folder", "a name");

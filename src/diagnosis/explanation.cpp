@@ -20,7 +20,7 @@ namespace {
 // Besides kApartDeviations: closer to what they would show were it the truth (1) than to showing nothing (0), on so
 // many blocks of half a second in which the two differ.
 constexpr double kApartShare = 0.5;
-constexpr int kFewestBlocks = 6;
+constexpr int kFewestBlocksApart = 6;
 
 std::string in_its_place(const std::string& cause, const std::string& other, const SeenSeparation& apart) {
   if (apart.blocks == 0) return fmt::format("{} in its place does nowhere anything else", other);
@@ -107,7 +107,8 @@ class Explaining {
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
       if (stiffest) return false;  // a shaft as stiff as any bends nowhere
     }
-    return apart.blocks < kFewestBlocks || apart.deviations < kApartDeviations || apart.share_of_expected < kApartShare;
+    return apart.blocks < kFewestBlocksApart || apart.deviations < kApartDeviations ||
+           apart.share_of_expected < kApartShare;
   }
 
   double judged_error(const calib::JointModel& model) const {

@@ -46,7 +46,7 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& s
   campaign.courses.resize(cases.size());
   std::vector<model::RobotModel> robots;
   for (const Case& c : cases) robots.push_back(model::load_robot(model::find_robot(c.candidate.control.robot)));
-  // Seed by seed, so that what an interruption leaves is paired.
+  // seed by seed, so that an interruption leaves paired results
   for_each_piece(cases.size() * static_cast<std::size_t>(seeds), supervision, [&](std::size_t piece) {
     const std::size_t c = piece % cases.size(), seed = piece / cases.size();
     TrialOptions options{.gantry = gantry, .interrupted = supervision.interrupted, .observer = {}};

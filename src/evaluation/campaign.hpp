@@ -1,4 +1,4 @@
-// Many trials: every case under the same seeds, in parallel.
+// Many trials in parallel; every case meets the same seeds.
 #pragma once
 
 #include <filesystem>
@@ -16,47 +16,46 @@
 
 namespace pmg::evaluation {
 
-/// Where simulated robots come from. A seed is the same robot, ground and noise for every policy.
+/// Source of simulated robots. A seed gives the same robot, ground and noise to every policy.
 struct Plants {
-  std::optional<sim::VariationRanges> ranges;  ///< nothing: as the model says, sensor noise as pmg_sil's
-  /// What a case asks for on top, whatever was drawn; may be empty.
+  std::optional<sim::VariationRanges> ranges;  ///< nullopt: the robot model itself, with pmg_sil's sensor noise
+  /// A case's own conditions, applied after the draw; may be empty.
   std::function<void(sim::WorldOptions&)> fixed;
 
   sim::WorldOptions of(const model::RobotModel& robot, std::uint64_t seed) const;
 };
 
-/// The scalars of a drawn world, for people who ask why a seed fell.
+/// The scalars of a drawn world, to find out why a seed fell.
 nlohmann::ordered_json plant_json(const sim::WorldOptions& world);
 
-/// One column of trials.
+/// One policy on one set of plants.
 struct Case {
   std::string name;
   Candidate candidate;
   Plants plants;
 };
 
-/// runs[case][seed]; a trial that was not begun or not ended is not complete.
+/// runs[case][seed]; a trial that did not begin or did not end is not complete.
 struct CampaignRuns {
   std::vector<std::vector<TrialResult>> runs;
-  std::vector<Course> courses;  ///< by case, of its first seed
+  std::vector<Course> courses;  ///< by case; each of its first seed
   bool complete = true;
 };
 
-/// Seeds 1 .. seeds. The result doesn't depend on how many jobs there are.
+/// Seeds 1 to `seeds`. The result doesn't depend on the number of jobs.
 CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,
                           const Supervision& supervision);
 
-/// Films a case's first seed, as far as the supervision lets it. Returns what went wrong with the film, one line;
-/// empty: nothing.
+/// Films a case's first seed, until the supervision interrupts. Returns the film's error in one line; empty: none.
 std::string film_case(const Case& filmed, const sil::Scenario& scenario, const std::filesystem::path& file,
                       const Supervision& supervision);
 
-/// Of the complete trials of one case.
+/// Figures of one case's complete trials.
 struct CaseSummary {
   int trials = 0, falls = 0, survived = 0;
   std::array<Estimate, kErrors> errors;
   std::array<Estimate, kErrors> errors_raw;           ///< velocities not averaged over a gait period
-  std::array<Estimate, kErrors> errors_beyond_reach;  ///< of the steps that ask for more than clips give together
+  std::array<Estimate, kErrors> errors_beyond_reach;  ///< of the steps that ask for more than the clips give together
   std::vector<Errors> step_errors;                    ///< means over seeds, by step of the scenario
 };
 CaseSummary summarise(const std::vector<TrialResult>& runs);

@@ -1,4 +1,4 @@
-// What a robot did over time beside what it was asked.
+// A robot's motion over time, beside its command.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace pmg::evaluation {
 
-/// One value a tick. Velocities are means over the last gait period, in the heading frame of the moment.
+/// One value per tick. Velocities are means over the last gait period, in the momentary heading frame.
 struct Course {
   std::vector<double> time_s;
   std::array<std::vector<double>, kChannels> asked, did;
@@ -26,7 +26,7 @@ class CourseRecorder {
  private:
   Course& course_;
   double standing_height_m_;
-  double gait_period_s_ = 1.0;                                    // until the generator has told one
+  double gait_period_s_ = 1.0;                                    // until the generator has given one
   std::array<std::vector<double>, kVelocityChannels> travelled_;  // sums of velocities since the start
 };
 

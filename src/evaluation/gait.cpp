@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 
 constexpr double kStandBeforeWalk_s = 1.5, kUntilSteady_s = 4.0;
 constexpr double kLoadedFoot_N = 20.0;
-constexpr double kShortestSwing_s = 0.1;  // a shorter one is a foot that bounces
+constexpr double kShortestSwing_s = 0.1;  // a shorter one is a bouncing foot
 constexpr const char* kSideNames[] = {"left", "right"};
 
 sil::Scenario gait_scenario(const GaitTest& test) {

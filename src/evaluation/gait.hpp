@@ -1,4 +1,4 @@
-// How human steady walking is: measured joint angles and foot contacts over the cycle beside published means.
+// Human likeness of steady walking: joint angles and foot contacts over the cycle, beside published means.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,11 +12,11 @@
 namespace pmg::evaluation {
 
 inline constexpr double kAskedCorrelation = 0.9, kAskedDutyDifference = 0.05;
-/// Foot off at 62 % of the cycle (sd 2 %) at a dimensionless speed of 0.29, which is 0.8 m/s for legs of 0.8 m: M.
-/// Schwartz, A. Rozumalski, J. Trost, J. Biomech. 41:1639-1650, 2008.
+/// Foot off at 62 % of the cycle (standard deviation 2 %) at a dimensionless speed of 0.29, which is 0.8 m/s for legs
+/// of 0.8 m: M. Schwartz, A. Rozumalski, J. Trost, J. Biomech. 41:1639-1650, 2008.
 inline constexpr double kPublishedDutyFactor = 0.62;
 
-/// One foot's cycle as recorded, a value a control tick.
+/// The recording of one foot, one value per control tick.
 struct FootRecording {
   std::vector<bool> loaded;
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;
@@ -25,13 +25,14 @@ struct FootRecording {
 /// Ticks at which the foot comes down after at least 0.1 s in the air.
 std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s);
 
-/// Mean over whole cycles at kCyclePoints, each cycle stretched from one contact to the next. At least two contacts.
+/// Mean over whole cycles at kCyclePoints; each cycle is stretched from one contact to the next. Needs two contacts.
 std::vector<double> mean_cycle(const std::vector<double>& values, const std::vector<std::size_t>& contacts);
 
 struct CurveAgreement {
   double correlation = 0.0;
   double rms_deg = 0.0;
-  double shape_rms_deg = 0.0;  ///< with both means taken off
+  double shape_rms_deg = 0.0;  ///< RMS after both means are subtracted
+  /// Correlation and RMS differences of two curves of equal length.
 };
 CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published);
 
@@ -39,7 +40,7 @@ struct FootGait {
   int cycles = 0;
   double period_s = 0.0, duty_factor = 0.0;
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;  ///< means over cycles
-  std::array<CurveAgreement, kGaitJoints> measured, reference;               ///< with the published
+  std::array<CurveAgreement, kGaitJoints> measured, reference;               ///< against the published curves
 };
 
 struct GaitTest {
@@ -56,14 +57,14 @@ struct GaitTest {
   bool reached() const;
 };
 
-/// Robot seed 1. Throws std::runtime_error when the robot makes no two steps with a foot.
+/// Uses robot seed 1. Throws std::runtime_error if the robot does not make two steps with each foot.
 void run_gait(GaitTest& test, const Supervision& supervision);
 
 nlohmann::ordered_json to_json(const GaitTest& test);
 pages::Page page_of(const GaitTest& test);
 std::vector<std::string> text_of(const GaitTest& test);
-/// Speed, and how far joints are from the published means in degrees, with their offset and without: what a correlation
-/// doesn't tell.
+/// Speed, and RMS differences of the joints from the published means with and without the constant offset [deg], which
+/// a correlation doesn't show.
 std::string difference_text(const GaitTest& test);
 
 }  // namespace pmg::evaluation

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kFewestRows = 11;  // steps of 10 %
 
-/// Degrees of the column whose name begins and ends so, whatever the source says of its sign between.
+/// Degrees of the column whose name begins with `begin` and ends with _mean; between them a source may state its sign.
 std::vector<double> means(const bench::CsvTable& table, const std::string& begin) {
   for (const std::string& name : table.header) {
     if (name.starts_with(begin) && name.ends_with("_mean")) return table.numbers(name);
@@ -21,7 +21,7 @@ std::vector<double> means(const bench::CsvTable& table, const std::string& begin
   model::raise({table.file.string(), table.header_line}, begin + "..._mean", "is missing", "a column of that name");
 }
 
-/// Equal steps from 0 to 100 % of the cycle, linearly onto kCyclePoints.
+/// Linear interpolation of equal steps from 0 to 100 % of the cycle at kCyclePoints.
 std::vector<double> resampled(const std::vector<double>& values) {
   std::vector<double> out(kCyclePoints);
   for (std::size_t k = 0; k < kCyclePoints; ++k) {

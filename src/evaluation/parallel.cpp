@@ -11,7 +11,7 @@ namespace pmg::evaluation {
 
 void for_each_piece(std::size_t count, const Supervision& supervision, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards `done`, `failure` and the progress call
   std::size_t done = 0;
   std::exception_ptr failure;
   if (supervision.progress) supervision.progress(0, count);

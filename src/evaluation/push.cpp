@@ -17,7 +17,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kStandBeforePush_s = 1.5, kEarliestPush_s = 4.0;
-constexpr double kPushWindow_s = 1.0;  // about a gait period, so that every phase is met
+constexpr double kPushWindow_s = 1.0;  // about a gait period, so that every phase occurs
 constexpr double kAfterPush_s = 4.0, kWalking_m_s = 0.5;
 
 double heading_rad(const model::GroundTruth& truth) {
@@ -32,7 +32,7 @@ ordered_json share_json(const Estimate& share) {
   return json;
 }
 
-/// How trials ended, by the first fault's code; a fall without one is "fell".
+/// Number of trials by their end: the first fault's code, "fell" without a fault, or "survived".
 std::map<std::string, int> ends(const PushTrials& at) {
   std::map<std::string, int> count;
   for (const TrialResult& run : at.runs) {
@@ -75,7 +75,7 @@ sil::Scenario push_scenario(const PushPlan& plan) {
   return scenario;
 }
 
-// Between two ticks the world makes whole steps, so so many ticks are the push's time exactly.
+// Whole physics steps fit into a tick, so the push lasts exactly kPush_s.
 bool Pusher::operator()(const sil::RunProgress& now, sim::World& world) {
   const bool pushing =
       now.time_s >= plan_.at_s && ticks_pushed_ < std::lround(kPush_s / control::ControlCycle::kPeriod_s);
@@ -104,7 +104,7 @@ void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const S
   for (const double impulse_N_s : impulses_N_s) {
     test.strengths.push_back({impulse_N_s, std::vector<TrialResult>(trials)});
   }
-  // Trial by trial, so that an interruption leaves every strength equally many.
+  // Trial by trial, so that an interruption leaves equally many for every strength.
   for_each_piece(test.strengths.size() * trials, supervision, [&](std::size_t piece) {
     PushTrials& at = test.strengths[piece % test.strengths.size()];
     const std::size_t trial = piece / test.strengths.size();

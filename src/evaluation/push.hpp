@@ -1,4 +1,4 @@
-// Pushes at the torso: how strong an impulse is survived, in which direction, standing and walking.
+// Pushes at the torso: survival by strength and direction of the impulse, standing and walking.
 #pragma once
 
 #include <array>
@@ -16,23 +16,23 @@ namespace pmg::evaluation {
 inline constexpr int kPushDirections = 8;
 inline constexpr std::array<const char*, kPushDirections> kPushDirectionNames = {
     "forward", "forward left", "left", "backward left", "backward", "backward right", "right", "forward right"};
-inline constexpr double kPush_s = 0.1;                                 ///< an impulse lasts so long
-inline constexpr double kJudgedPush_N_s = 35.0, kPushSurvival = 0.95;  ///< asked of a policy
+inline constexpr double kPush_s = 0.1;                                 ///< duration of an impulse
+inline constexpr double kJudgedPush_N_s = 35.0, kPushSurvival = 0.95;  ///< required of a policy
 
-/// One push, whatever its strength: trial i is the same robot, moment and direction for every strength.
+/// One push without its strength: trial i has the same robot, moment and direction for every strength.
 struct PushPlan {
-  int direction = 0;  ///< times 45 degrees, counter-clockwise from the pelvis' heading
+  int direction = 0;  ///< multiples of 45 degrees, counter-clockwise from the pelvis' heading
   bool walking = false;
-  double at_s = 0.0;  ///< in the scenario: somewhere in the gait cycle
+  double at_s = 0.0;  ///< in the scenario; a random moment of the gait cycle
 
   static PushPlan of(int trial);
   double direction_rad() const;
 };
 
-/// Stands, walks at 0.5 m/s if the plan says so, and goes on for 4 s after the push.
+/// Stands, walks at 0.5 m/s if the plan says so, and lasts until 4 s after the push.
 sil::Scenario push_scenario(const PushPlan& plan);
 
-/// Applies the impulse at the torso's centre of mass and ends a trial that is lost.
+/// Applies the impulse at the torso's centre of mass, and ends a trial at its first fault.
 class Pusher {
  public:
   Pusher(const PushPlan& plan, double impulse_N_s) : plan_(plan), force_N_(impulse_N_s / kPush_s) {}
@@ -52,11 +52,11 @@ struct PushTrials {
 struct PushTest {
   std::string robot, ranges_file;
   Case evaluated;
-  int trials = 0;  ///< a strength
+  int trials = 0;  ///< per strength
   std::vector<PushTrials> strengths;
   bool complete = true;
 
-  /// Share that survived among the complete trials that keep() picks.
+  /// Share of survivors among the complete trials that keep() selects.
   template <typename Keep>
   Estimate survival(const PushTrials& at, Keep&& keep) const {
     std::int64_t survived = 0, count = 0;
@@ -70,11 +70,11 @@ struct PushTest {
   Estimate survival(const PushTrials& at) const {
     return survival(at, [](const PushPlan&) { return true; });
   }
-  /// Whether the judged push is survived as often as asked; nothing when it was not tried.
+  /// Whether the judged push is survived as often as required; nullopt if it was not tried.
   std::optional<bool> reached() const;
 };
 
-/// Runs trials of every strength. The result doesn't depend on how many jobs there are.
+/// Runs all trials of every strength. The result doesn't depend on the number of jobs.
 void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const Supervision& supervision);
 
 nlohmann::ordered_json to_json(const PushTest& test);

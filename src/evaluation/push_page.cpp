@@ -1,4 +1,4 @@
-// Pushes in pictures.
+// The page of the push test.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Whether a policy walks a scenario under conditions at the end of what robots meet.
+// Survival of a scenario under conditions at the limits of practice.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,9 +10,9 @@
 
 namespace pmg::evaluation {
 
-/// The conditions that a policy is asked to bear, as cases of one candidate: as pmg_sil simulates it, 1.5 kg in each
-/// hand, friction 0.4 and 1.2, 20 ms from action to torque, and the first, second and last of these at once. plants:
-/// what differs besides.
+/// The conditions, as cases of one candidate: pmg_sil's own simulation, 1.5 kg in each hand, friction 0.4, friction
+/// 1.2, 20 ms from action to torque, and payload, low friction and delay together. plants: variation in addition to the
+/// condition; the first case has none.
 std::vector<Case> robustness_cases(const Candidate& candidate, const Plants& plants);
 
 struct RobustnessTest {

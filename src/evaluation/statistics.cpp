@@ -42,7 +42,7 @@ Estimate share_interval(std::int64_t successes, std::int64_t trials) {
   const double center = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
   const double half_width =
       kNormalQuantile * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
-  // At its ends the interval ends there exactly; rounding would miss it.
+  // With no or only successes the interval ends exactly at 0 or 1; rounding would miss it.
   return {share, successes == 0 ? 0.0 : center - half_width, successes == trials ? 1.0 : center + half_width};
 }
 

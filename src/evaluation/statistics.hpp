@@ -12,16 +12,17 @@ struct Estimate {
   bool excludes_zero() const { return lower > 0.0 || upper < 0.0; }
 };
 
-/// Mean of independent samples with Student's t interval; both ends NaN for fewer than two samples, the mean too for
-/// none.
+/// Mean of independent samples with Student's t interval: mean +- t_(0.975, n-1) s / sqrt(n). The ends are NaN for
+/// fewer than two samples; for none the mean is NaN too.
 Estimate mean_interval(std::span<const double> samples);
 
-/// Of a - b, sample by sample: a[i] and b[i] were measured under the same circumstances. Throws std::invalid_argument
-/// when they aren't equally many.
+/// mean_interval of a[i] - b[i]; a[i] and b[i] were measured under the same circumstances. Throws std::invalid_argument
+/// if the numbers of samples differ.
 Estimate paired_difference(std::span<const double> a, std::span<const double> b);
 
-/// Share of successes with Wilson's score interval (E. B. Wilson, JASA 22:209, 1927), which stays within [0, 1] and is
-/// good for shares near its ends. [0, 1] about NaN for no trials.
+/// Share p of successes with Wilson's score interval (E. B. Wilson, JASA 22:209, 1927), z = 1.96:
+///   (p + z^2 / 2n +- z sqrt(p (1 - p) / n + z^2 / 4n^2)) / (1 + z^2 / n).
+/// It stays within [0, 1] and is good for shares near its ends. Without trials: NaN with [0, 1].
 Estimate share_interval(std::int64_t successes, std::int64_t trials);
 
 }  // namespace pmg::evaluation

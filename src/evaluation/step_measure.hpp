@@ -1,4 +1,4 @@
-// What a run measured, by step of its scenario.
+// The measures of a run, by step of its scenario.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace pmg::evaluation {
 
-/// A run's measure, and the same by step of the scenario and by whether a step is beyond the clips' reach.
+/// A run's measure; also by step of the scenario, and separately for steps beyond the clips' reach.
 class StepMeasure {
  public:
   StepMeasure(const model::RobotModel& robot, const sil::Scenario& scenario)
@@ -19,7 +19,7 @@ class StepMeasure {
   void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
            const sil::ScenarioStep& step);
 
-  /// What is left of a run whose simulation diverged: the robot counts as fallen.
+  /// Completes a run whose simulation diverged: for the rest of the scenario the robot counts as fallen.
   void count_as_fallen(double from_s, const control::TickResult& result, model::GroundTruth last);
 
   sil::RunOutcome outcome() const { return measure_.outcome(); }

@@ -58,7 +58,7 @@ double Table1::figure(std::size_t error) const {
   return gentle() ? summaries[judged].errors[error].mean : shares(judged)[error];
 }
 
-/// A channel of which the scenario asks nothing has no share to be judged.
+/// A channel without any command in the scenario has no share and passes.
 bool Table1::reached(std::size_t error) const {
   const double value = figure(error);
   return value <= limit(error) || (!gentle() && std::isnan(value) && summaries[judged].trials > 0);

@@ -1,4 +1,4 @@
-// The paper's Table I: how well policies follow the same sequence of commands on the same simulated robots.
+// The paper's Table I: tracking errors of policies on the same commands and the same simulated robots.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace pmg::evaluation {
 
-/// What a policy of this project shall reach on the gentle sequence (config/scenarios/table1.yaml): half of what the
-/// paper's did, and on linear velocity less than its baseline's. A robot that stands still comes near to that there.
+/// Limits for this project's policies on the gentle sequence (config/scenarios/table1.yaml): about half of the paper's
+/// PMG errors, and less than the baseline's for linear velocity. There even a robot that stands still is close to them.
 inline constexpr Errors kErrorLimits = {0.06, 0.08, 0.035, 0.035, 0.0175};
 inline constexpr const char* kGentleScenario = "table1";
 
-/// On every other sequence: of what lies between a perfect follower and doing nothing (share_left).
+/// Limits on every other sequence, as shares between a perfect follower and doing nothing (share_left).
 inline constexpr Errors kShareLimits = {0.15, 0.15, 0.20, 0.15, 0.15};
 
-/// The paper's figures for this kind of policy (Table I); nothing for names that it doesn't know.
+/// The paper's figures for this kind of policy (Table I); nullopt for other names.
 std::optional<Errors> published_errors(const std::string& policy);
 
-/// PMG - another policy, by seed.
+/// PMG minus another policy, paired by seed.
 struct Comparison {
   std::string policy, other;
   int pairs = 0;
@@ -32,7 +32,7 @@ struct Comparison {
 };
 
 struct Table1 {
-  std::string robot, scenario_file, ranges_file;  ///< as the user named them; ranges_file empty: as the model says
+  std::string robot, scenario_file, ranges_file;  ///< as the user named them; ranges_file empty: the robot model itself
   sil::Scenario scenario;
   std::vector<Case> cases;
   int seeds = 0;
@@ -40,26 +40,26 @@ struct Table1 {
   std::vector<Yardstick> yardsticks;   ///< by case
   std::vector<CaseSummary> summaries;  ///< by case
   std::vector<Comparison> comparisons;
-  std::size_t judged = 0;                 ///< case that is held against limits and others: "pmg", or the first
+  std::size_t judged = 0;                 ///< the case held against the limits and the others: "pmg", or the first
   std::vector<sim::WorldOptions> plants;  ///< by seed
 
   std::vector<std::string> films;  ///< files beside the page
 
   bool gentle() const { return scenario.name == kGentleScenario; }
   Errors shares(std::size_t c) const;      ///< share_left of a case's mean errors
-  double figure(std::size_t error) const;  ///< of the judged policy, as its limit counts it: mean error or share
+  double figure(std::size_t error) const;  ///< of the judged policy: mean error or share, as its limit counts
   double limit(std::size_t error) const { return gentle() ? kErrorLimits[error] : kShareLimits[error]; }
-  bool reached(std::size_t error) const;  ///< the judged policy's figure is within its limit
-  bool all_reached() const;               ///< and it never fell
+  bool reached(std::size_t error) const;  ///< figure(error) is within its limit
+  bool all_reached() const;               ///< all errors reached, and no fall
 };
 
-/// Fills yardsticks: a run with the robot hung up for each case.
+/// Fills yardsticks by one run per case with the robot on the gantry.
 void measure_yardsticks(Table1& table, const Supervision& supervision);
 
 /// Fills summaries, comparisons and judged from cases, campaign and yardsticks.
 void evaluate(Table1& table);
 
-/// Paired over the seeds that both have ended.
+/// Paired over the seeds that both policies completed.
 Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, const Case& other,
                    const std::vector<TrialResult>& other_runs);
 

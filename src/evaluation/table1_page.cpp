@@ -1,4 +1,4 @@
-// The tracking table in pictures.
+// The page of the tracking table.
 #include <fmt/format.h>
 
 #include <array>
@@ -132,7 +132,7 @@ pages::Table errors_table(const Table1& table) {
   return out;
 }
 
-/// Lines refer to the courses.
+/// Lines point to the courses' data.
 pages::Chart course_chart(const Table1& table, Channel channel) {
   constexpr std::array<const char*, kChannels> kTitles = {"forward [m/s]",        "to the left [m/s]",
                                                           "turning left [rad/s]", "pitch, forward [rad]",

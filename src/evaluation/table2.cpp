@@ -25,7 +25,7 @@ std::vector<int> policy_joints(const model::RobotModel& robot) {
   return joints;
 }
 
-/// Takes the policy's joints out of a walking simulation: where they truly are, not what their encoders say.
+/// Records the policy's joints in a walking simulation: their true angles, not the encoders' readings.
 class WalkObserver {
  public:
   WalkObserver(Walk& walk, const model::RobotModel& robot, const sil::Scenario& scenario)
@@ -55,14 +55,15 @@ class WalkObserver {
   std::vector<int> joints_;
 };
 
-/// One walk to be made, and where it goes.
+/// A walk to simulate, and the place for its result.
 struct Errand {
   Walk* walk;
   sim::ActuatorsByJoint motors;
   std::uint64_t seed;
 };
 
-/// Drives that are told other gains than the policy's: the simulation knows the policy's only.
+/// The same motors with other commanded gains than the policy's: the simulation always commands the policy's, so the
+/// ratio becomes the drives' gain scale.
 sim::ActuatorsByJoint told(sim::ActuatorsByJoint motors, const model::RobotModel& robot, const Gains& policy,
                            const Gains& gains) {
   for (const int joint : policy_joints(robot)) {
@@ -113,7 +114,7 @@ void calibrate(Table2& table, const model::RobotModel& robot, const Gains& gains
   if (supervision.over()) table.complete = false;
 }
 
-/// Every walk of the table: three kinds of robot a plant, three kinds of simulation.
+/// Every walk of the table: three kinds of robot per plant, three kinds of simulation.
 struct Walks {
   std::vector<Walk> as_it_is, informed, corrected;  // by plant
   std::vector<Walk> nominal, informed_nominal;      // by seed
@@ -255,7 +256,7 @@ void run_table2(Table2& table, const std::filesystem::path& folder, const Superv
   std::vector<Errand> errands;
   for (std::size_t s = 0; s < seeds; ++s) {
     errands.push_back({&walks.nominal[s], {}, s + 1});
-    // A joint whose gains alone are scaled keeps the model's rotor and friction.
+    // A joint with scaled gains only keeps the model's rotor and friction.
     errands.push_back({&walks.informed_nominal[s], told({}, robot, gains, informed), s + 1});
   }
   for (std::size_t k = 0; k < plants; ++k) {

@@ -1,4 +1,4 @@
-// The paper's Table II: how far a simulation is from the robot with four ways of fitting one to the other.
+// The paper's Table II: distance between simulation and robot for four ways to fit one to the other.
 #pragma once
 
 #include <array>
@@ -12,38 +12,38 @@
 
 namespace pmg::evaluation {
 
-/// The paper's four configurations (IV-C). One policy walks in all of them.
+/// The paper's four configurations (IV-C). The same policy walks in all of them.
 enum Configuration {
-  kBaseline,            ///< the simulation is the model, the robot is as it is
+  kBaseline,            ///< the simulation is the model; the robot is uncalibrated
   kPhysicallyInformed,  ///< gains from the rotor's inertia, in simulation and robot
-  kDynamicCalibration,  ///< the simulation has the motors that calibration found
-  kFullCalibration,     ///< and the robot's firmware the zero points
+  kDynamicCalibration,  ///< the simulation has the calibrated motors
+  kFullCalibration,     ///< the robot's firmware also has the calibrated zero points
   kConfigurations
 };
 inline constexpr std::array<const char*, kConfigurations> kConfigurationNames = {
     "baseline", "physically informed gains", "dynamic calibration", "dynamic and zero-point calibration"};
 
-/// kp = I omega^2, kd = 2 zeta I omega of the rotor's inertia I at the joint, with omega and zeta of Liao et al.,
-/// BeyondMimic (arXiv:2508.08241): 10 Hz and 2.
+/// kp = I omega^2, kd = 2 zeta I omega for the rotor inertia I at the joint, with omega = 2 pi 10 Hz and zeta = 2 from
+/// Liao et al., BeyondMimic (arXiv:2508.08241).
 inline constexpr double kNaturalFrequency_Hz = 10.0, kDampingRatio = 2.0;
 Gains informed_gains(const model::RobotModel& robot, const Gains& otherwise);
 
-/// Mean joint angles over the gait cycle, by step of the scenario: what is left of a walk when phases are aligned. The
-/// reference is the same in every run, so its phase is the common clock.
+/// Mean joint angles over the gait cycle, by step of the scenario: walks become comparable once their phases are
+/// aligned. The reference is the same in every run, so its phase is the common clock.
 class WalkCurves {
  public:
   static constexpr std::size_t kBins = 40;
-  static constexpr double kSettle_s = 1.5;  ///< of each step, until the speed is there
+  static constexpr double kSettle_s = 1.5;  ///< omitted from each step until the speed has settled
 
   WalkCurves() = default;
   WalkCurves(std::size_t steps, std::size_t joints);
   void add(std::size_t step, double phase, const JointVector& q_rad, const JointVector& q_ref_rad);
-  void add(const WalkCurves& other);  ///< pools runs
+  void add(const WalkCurves& other);  ///< adds the other's samples
 
-  double imitation_rad() const;  ///< RMS of q - q_ref over joints and ticks, NaN without any
+  double imitation_rad() const;  ///< RMS of q - q_ref over joints and ticks; NaN without samples
   /// RMS of the difference over joints, phases and steps that both have; NaN without any.
   static double difference_rad(const WalkCurves& a, const WalkCurves& b);
-  std::vector<double> curve(std::size_t step, std::size_t joint) const;  ///< by phase; NaN where there is nothing
+  std::vector<double> curve(std::size_t step, std::size_t joint) const;  ///< by phase; NaN without samples
 
  private:
   std::size_t index(std::size_t step, std::size_t bin, std::size_t joint) const {
@@ -65,11 +65,11 @@ struct ConfigurationResult {
   int robot_falls = 0, simulation_falls = 0;
 };
 
-/// One plant, and what calibration made of it.
+/// One plant and its calibration.
 struct CalibratedPlant {
   sim::ActuatorsByJoint truth, motors;
   std::vector<FoundOffset> offsets;
-  double worst_offset_rad = 0.0;  ///< that is left after correction
+  double worst_offset_rad = 0.0;  ///< after correction
 };
 
 struct Table2 {
@@ -79,18 +79,18 @@ struct Table2 {
   int simulation_seeds = 2;
   bool complete = true;
   std::vector<CalibratedPlant> plants;
-  std::vector<std::string> joints;  ///< that are compared
+  std::vector<std::string> joints;  ///< compared joints
   std::array<ConfigurationResult, kConfigurations> results;
-  std::array<std::vector<double>, kConfigurations> shown_robot, shown_simulation;  ///< knee of plant 1
-  double ratio() const;  ///< full over baseline, of the sim-to-real error
+  std::array<std::vector<double>, kConfigurations> shown_robot, shown_simulation;  ///< left knee of plant 1
+  double ratio() const;  ///< sim-to-real error: full calibration over baseline
   bool all_reached() const;
 };
-inline constexpr double kAskedRatio = 0.53;  ///< the paper's 0.0414 of 0.0781
+inline constexpr double kAskedRatio = 0.53;  ///< the paper's 0.0414 / 0.0781
 
-/// The paper's figures [rad]: imitation, sim-to-real.
+/// The paper's figures [rad]: imitation error, sim-to-real error.
 std::array<double, 2> published(Configuration configuration);
 
-/// Calibrates the plants below folder/plants, then walks everywhere. Same input: same result, however many jobs.
+/// Calibrates the plants below folder/plants, then runs all walks. The result doesn't depend on the number of jobs.
 void run_table2(Table2& table, const std::filesystem::path& folder, const Supervision& supervision);
 
 nlohmann::ordered_json to_json(const Table2& table);

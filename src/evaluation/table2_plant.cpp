@@ -26,7 +26,7 @@ constexpr double kRate_Hz = 100.0;
 constexpr int kBenchSamples = 500;  // a recording of five seconds
 constexpr int kBenchRuns = 4;
 constexpr double kAmplitude_rad = 0.3;
-constexpr double kWeight_kg = 4.0, kArm_m = 0.3;  // hung on the joint in half of the runs
+constexpr double kWeight_kg = 4.0, kArm_m = 0.3;  // on the joint, in half of the runs
 
 sim::Range range(model::ConfigReader& reader, const std::string& key) {
   const std::vector<double> ends = reader.numbers(key, 2, model::non_negative());
@@ -34,12 +34,12 @@ sim::Range range(model::ConfigReader& reader, const std::string& key) {
   return {ends[0], ends[1]};
 }
 
-/// std::uniform_real_distribution may differ from one standard library to the next; the engine may not.
+/// Uniform. std::uniform_real_distribution may differ between standard libraries; the engine may not.
 double draw(const sim::Range& range, std::mt19937_64& random) {
   return range.lower + (range.upper - range.lower) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-/// Steps and smooth segments about 0 (paper III-C.1), another for each number, with pauses in which a joint comes to
+/// Steps and smooth segments about 0 (paper III-C.1), different for each number, with pauses in which a joint comes to
 /// rest.
 bench::Recording excitation(int number) {
   bench::Recording recording;
@@ -60,17 +60,17 @@ std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::Act
   sim::NormalSource noise(seed);
   calib::JointModel plant;
   plant.actuator = truth;
-  // A position drive's zero doesn't show on its own encoder: the bench hangs the limb, which says where down is, but
-  // the paper fits response alone.
+  // A position drive's zero does not show on its own encoder. The hanging limb would show it, but the paper fits only
+  // the response.
   plant.actuator.sensor.zero_offset_rad = 0.0;
   std::vector<calib::SingleJoint> runs;
   for (int number = 0; number < kBenchRuns; ++number) {
     bench::BenchRun run;
     run.file = fmt::format("run{}.csv", number);
     run.kp = kp * (number % 2 == 0 ? 1.0 : 0.5);
-    run.kd = kd * (number < 2 ? 1.0 : 0.5);  // of one kd alone nothing tells it from viscous friction
-    // A known weight in two of the runs: of a limb lighter than its rotor alone, gain, rotor and friction could all be
-    // larger by one factor.
+    run.kd = kd * (number < 2 ? 1.0 : 0.5);  // with a single kd it can't be told from viscous friction
+    // A known weight in two of the runs. If a limb is lighter than its rotor, gain, rotor and friction could otherwise
+    // all be larger by one factor.
     const bool weighted = number == 1 || number == 2;
     run.load.inertia_kg_m2 = load.inertia_kg_m2 + (weighted ? kWeight_kg * kArm_m * kArm_m : 0.0);
     run.load.gravity_Nm = load.gravity_Nm + (weighted ? 9.81 * kWeight_kg * kArm_m : 0.0);
@@ -83,7 +83,7 @@ std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::Act
   return runs;
 }
 
-/// Plays the stances; false when it was stopped.
+/// Plays the stances; false if interrupted.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
                   const std::function<bool()>& stop) {
   control::LoadedControl loaded =
@@ -126,7 +126,7 @@ PlantRanges load_plant_ranges(const std::filesystem::path& file) {
   return ranges;
 }
 
-// The order of the draws is part of what a seed means.
+// A seed's meaning includes the order of the draws.
 sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotModel& robot, int number) {
   std::mt19937_64 random(static_cast<std::uint64_t>(ranges.seed) + 1000 * static_cast<std::uint64_t>(number));
   const double delay_s = draw(ranges.delay_s, random);
@@ -140,7 +140,7 @@ sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotMo
     p.transmission.armature_kg_m2 = joint.armature_kg_m2 * draw(ranges.armature_factor, random);
     p.transmission.backlash_rad = draw(ranges.backlash_rad, random);
     p.transmission.stiffness_Nm_per_rad = draw(ranges.stiffness_Nm_per_rad, random);
-    // A shaft that rings with a tenth of its critical damping, as steel with bearings and grease about does.
+    // A tenth of the critical damping of rotor and shaft, an assumption for steel with bearings and grease.
     p.transmission.damping_Nm_s_per_rad =
         0.2 * std::sqrt(p.transmission.stiffness_Nm_per_rad * p.transmission.armature_kg_m2);
     p.friction.coulomb_Nm = draw(ranges.coulomb_Nm, random);

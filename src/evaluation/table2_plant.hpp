@@ -1,4 +1,4 @@
-// Robots that stand in for hardware, and what calibration finds of them by the project's own tools.
+// Robots that replace hardware, and their calibration by the project's own tools.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace pmg::evaluation {
 
-/// config/evaluation/table2.yaml: a draw for every leg joint.
+/// config/evaluation/table2.yaml: distributions for every leg joint.
 struct PlantRanges {
   int plants = 0;
   int seed = 0;
@@ -24,23 +24,23 @@ struct PlantRanges {
 /// Throws model::ConfigError.
 PlantRanges load_plant_ranges(const std::filesystem::path& file);
 
-/// Actuators of the policy's joints. Same ranges, robot and number: same plant, on every machine.
+/// Actuators of the policy's joints. The same ranges, robot and number give the same plant on every machine.
 sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotModel& robot, int number);
 
-/// The drives' gains as the policy asks for them, or robot.yaml's.
+/// The drives' gains from the policy, or else robot.yaml's.
 struct Gains {
   JointVector kp_Nm_per_rad, kd_Nm_s_per_rad;
 };
 
-/// Motor calibration (paper III-C.1): every joint of the plant plays an excitation with the limb that hangs on it as
-/// its load, at two gains, with encoder noise; gain, damping, rotor, friction and delay are fitted. The recording is
-/// the single-joint simulation that MuJoCo's joint is tested against, not a robot on a bench.
+/// Motor calibration (paper III-C.1, eq. 20). Every joint of the plant plays an excitation, at two gains and with
+/// encoder noise; the limb beyond it is its load. Gain, damping, rotor, friction and delay are fitted. The recording
+/// comes from the single-joint simulation that agrees with MuJoCo's joint in tests, not from a robot on a bench.
 sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                         const Gains& gains, unsigned seed);
 
-/// Zero calibration (paper III-C.2): the plant takes the stances of pmg_calibrate_zero --make-stances, steadied by the
-/// gantry, and its log is read. Returns offsets (reading less truth) by joint, observable ones only. Everything is
-/// written below folder. stop() ends it early with nothing found.
+/// Zero calibration (paper III-C.2, eq. 21 to 25). The plant takes the stances of pmg_calibrate_zero --make-stances,
+/// steadied by the gantry; its log is evaluated. Returns the observable offsets (reading minus true angle) by joint.
+/// All files are below folder. If stop() returns true, it ends early and returns nothing.
 struct FoundOffset {
   std::string joint;
   double zero_offset_rad = 0.0;

@@ -22,7 +22,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, stopwatch);
   sil::SilHal bus(simulated);
   sil::WorldPlant plant(simulated);
-  // Nobody carries a robot that is evaluated, whether or not a policy balances it.
+  // The gantry never carries the robot, whether or not a policy balances it.
   sil::Lockstep lockstep(robot, bus, plant, *tick, scenario, nullptr,
                          {.balanced_by_policy = true, .always_hoisted = options.gantry});
   StepMeasure measure(robot, scenario);

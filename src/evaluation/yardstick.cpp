@@ -13,7 +13,7 @@ namespace pmg::evaluation {
 
 namespace {
 
-/// A body that moves exactly as commanded.
+/// A body that moves exactly as commanded: v, omega, pitch, roll and height are the command's.
 class IdealRobot {
  public:
   explicit IdealRobot(double standing_height_m) : standing_height_m_(standing_height_m) {}
@@ -56,7 +56,7 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
     return true;
   };
   Candidate hanging = candidate;
-  hanging.control.policy = "none";  // a policy isn't run in the air
+  hanging.control.policy = "none";  // no policy runs in the air
   const TrialResult hung =
       run_trial(hanging, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
   Yardstick result;

@@ -1,5 +1,5 @@
-// What a scenario's errors are between: a robot that does nothing, and one that follows the rate-limited command
-// perfectly. Both pass through the same averaging as a simulated robot.
+// The ends of an error scale for a scenario: a robot that does nothing, and one that follows the rate-limited command
+// perfectly. Both errors are averaged as a simulated robot's.
 #pragma once
 
 #include "evaluation/trial.hpp"
@@ -7,19 +7,19 @@
 namespace pmg::evaluation {
 
 struct Yardstick {
-  TrialResult nothing;   ///< stands upright at its standing height, whatever is asked
-  TrialResult follower;  ///< does at once what robot.yaml's ranges and rates let through
+  TrialResult nothing;   ///< stands upright at its standing height, whatever the command
+  TrialResult follower;  ///< follows immediately, within robot.yaml's ranges and rates
 };
 
-/// Plays the scenario with the robot hung up, for the controller's modes, gait periods and support phases; what the
-/// robot does there doesn't matter. The follower's command is limited as the generator limits the user's (ranges,
-/// rates, slower in double support, stops within their time); what the clips can't give together isn't taken off, so a
-/// blend that cuts a command is counted against the policy.
+/// Plays the scenario with the robot on the gantry, for the controller's modes, gait periods and support phases; the
+/// robot's motion doesn't matter. The follower's command has the generator's limits (ranges, rates, slower in double
+/// support, stops within their time). The clips' common reach does not limit it, so a blend that cuts a command counts
+/// against the policy.
 Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
                     const std::function<bool()>& interrupted);
 
-/// (error - follower) / (nothing - follower): 0 a perfect follower, 1 a robot that does nothing. NaN where the scenario
-/// asks nothing of a channel.
+/// (error - follower) / (nothing - follower): 0 for a perfect follower, 1 for a robot that does nothing. NaN where the
+/// scenario commands nothing in a channel.
 Errors share_left(const Errors& errors, const Yardstick& between);
 
 }  // namespace pmg::evaluation

@@ -10,7 +10,7 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoMotion = std::numeric_limits<double>::quiet_NaN();
 constexpr double kJump = 4.0;           // times what the commands beside it do
 constexpr double kSmallestJump = 0.04;  // of the command's range
 constexpr std::size_t kSmallestReach = 2;
@@ -29,7 +29,7 @@ Eigen::Vector2d parabola(const bench::Recording& r, std::size_t first, std::size
     products += row * (r.q_rad[k] - r.q_rad[at]);
     ++count;
   }
-  if (count < 4) return {kNaN, kNaN};
+  if (count < 4) return {kNoMotion, kNoMotion};
   const Eigen::Vector3d c = squares.ldlt().solve(products);
   return {c[1] / scale_s, 2.0 * c[2] / (scale_s * scale_s)};
 }
@@ -38,8 +38,8 @@ void differentiate(const bench::Recording& r, double window_s, Motion& motion) {
   const std::size_t count = r.t_s.size();
   const double step_s = (r.t_s.back() - r.t_s.front()) / static_cast<double>(count - 1);
   const std::size_t reach = std::max(kSmallestReach, static_cast<std::size_t>(std::lround(0.5 * window_s / step_s)));
-  motion.dq_rad_s.assign(count, kNaN);
-  motion.ddq_rad_s2.assign(count, kNaN);
+  motion.dq_rad_s.assign(count, kNoMotion);
+  motion.ddq_rad_s2.assign(count, kNoMotion);
   for (std::size_t k = reach; k + reach < count; ++k) {
     const Eigen::Vector2d d = parabola(r, k - reach, k + reach, k);
     motion.dq_rad_s[k] = d[0];
@@ -93,7 +93,7 @@ Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double wind
   drive(bench, run, motion);
   motion.steps = command_steps(r);
   std::size_t next = 0;
-  double last_step_s = kNaN;
+  double last_step_s = kNoMotion;
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     motion.gravity_Nm.push_back(run.load.gravity_Nm * std::sin(r.q_rad[k] - run.load.hangs_at_rad));
     if (next < motion.steps.size() && motion.steps[next] == k) last_step_s = r.t_s[k], ++next;

@@ -17,10 +17,10 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr Interval kUnknown{kNaN, kNaN, kNaN};
-constexpr double kSure_t = 4.0;      // deviations
-constexpr double kWorth_rad = 1e-3;  // of a dead band, or of what friction leaves at the lowest gain
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr Interval kUnknown{kNoNumber, kNoNumber, kNoNumber};
+constexpr double kDirectSure_t = 4.0;  // deviations
+constexpr double kWorth_rad = 1e-3;    // of a dead band, or of what friction leaves at the lowest gain
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -174,11 +174,11 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
                      {torque_Nm, torque_Nm - 2.0 * deviation_Nm, torque_Nm + 2.0 * deviation_Nm},
                      "Nm",
                      ""};
-  if (torque_Nm > kSure_t * deviation_Nm && fit[1] > kWorth_rad) friction.agreement = Agreement::kAgrees;
+  if (torque_Nm > kDirectSure_t * deviation_Nm && fit[1] > kWorth_rad) friction.agreement = Agreement::kAgrees;
   friction.sentence = fmt::format(
       "joints at rest are short of their command by {:.2g} Nm on average (deviation {:.1g})", torque_Nm, deviation_Nm);
   band.value = {fit[0], fit[0] - 2.0 * deviation_rad, fit[0] + 2.0 * deviation_rad};
-  if (fit[0] > std::max(kWorth_rad, kSure_t * deviation_rad)) {
+  if (fit[0] > std::max(kWorth_rad, kDirectSure_t * deviation_rad)) {
     band.agreement = Agreement::kAgrees;
   } else if (band.value.high < kWorth_rad) {
     band.agreement = Agreement::kDisagrees;

@@ -11,10 +11,10 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kSure_t = 4.0;        // deviations
+constexpr double kSwingSure_t = 4.0;   // deviations
 constexpr double kWorth_share = 0.03;  // of the weight that swings
-constexpr double kOwn = 0.1;           // of a term's rms that the others must not imitate
-constexpr int kFewestClusters = 6;
+constexpr double kSwingOwn = 0.1;      // of a term's rms that the others must not imitate
+constexpr int kFewestSwings = 6;
 
 /// weight: torque of gravity; what friction leaves over is no measure of itself.
 Signature check(const std::string& effect, const ClusterRegression& regression, const Column& column,
@@ -24,8 +24,9 @@ Signature check(const std::string& effect, const ClusterRegression& regression, 
   s.value = {e.coefficient, e.coefficient - 2.0 * e.deviation, e.coefficient + 2.0 * e.deviation};
   const double per_unit = column.norm() / std::max(1e-300, weight.norm());
   const double share = std::abs(e.coefficient) * per_unit;
-  if (e.own > kOwn && e.t() > kSure_t && share > kWorth_share) s.agreement = Agreement::kAgrees;
-  if (e.own > kOwn && share + 2.0 * e.deviation * per_unit < 0.4 * kWorth_share) s.agreement = Agreement::kDisagrees;
+  if (e.own > kSwingOwn && e.t() > kSwingSure_t && share > kWorth_share) s.agreement = Agreement::kAgrees;
+  if (e.own > kSwingOwn && share + 2.0 * e.deviation * per_unit < 0.4 * kWorth_share)
+    s.agreement = Agreement::kDisagrees;
   s.sentence = fmt::format("switched off, the swing loses {}: {:.3g} {} (deviation {:.2g}), {:.1f} % of its weight",
                            what, e.coefficient, unit, e.deviation, 100.0 * share);
   return s;
@@ -38,7 +39,7 @@ std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::v
   const TorqueBalance balance(bench, runs, TorqueBalance::While::kOff);
   if (balance.windows() == 0) return {};
   const std::vector<int> clusters = balance.clusters();
-  if (clusters.back() + 1 < kFewestClusters) return {};
+  if (clusters.back() + 1 < kFewestSwings) return {};
   // Nothing drives: what the load's weight and inertia leave is friction's and the rotor's.
   const Column weight = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
   const Column left = -(weight + balance.load_inertia_Nm());

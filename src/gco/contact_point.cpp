@@ -7,8 +7,8 @@ namespace pmg::gco {
 
 namespace {
 
-// Well below the millimetre that the ground residual is judged by, well above what a tick of rounding noise in q moves
-// a corner.
+// Well below the millimetre at which the ground residual is judged; well above the movement of a corner from one tick's
+// rounding noise in q.
 constexpr double kCornerScale_m = 0.3e-3;
 constexpr double kFootScale_m = 0.5e-3;
 

@@ -21,8 +21,8 @@ FootTerms foot_terms(const model::FootKinematics& foot, const ContactPoint& cont
   return terms;
 }
 
-/// 0 while the feet carry at least half a contact weight, 1 without any: the prior takes over within half an edge of
-/// the contact weights, instead of within the instant in which they pass its 1e-6.
+/// max(0, 1 - 2 total_weight)^2: 0 while the feet have at least half a contact weight together, 1 with none. So the
+/// prior takes over within half an edge of the contact weights, not only when they are as small as the prior's 1e-6.
 double flight(double total_weight) noexcept {
   const double missing = std::max(0.0, 1.0 - 2.0 * total_weight);
   return missing * missing;
@@ -40,7 +40,7 @@ void ContactProblem<kUnknowns>::fill_jacobian(const double* x, double* jacobian)
     for (Eigen::Vector3d& arm : lever) arm = turn * arm;
     const double cy = terms.torso_heading_H.x(), sy = terms.torso_heading_H.y();
     const double cp = std::cos(x[kXPitch]), sp = std::sin(x[kXPitch]);
-    // Axes in H of a change of pitch and of roll (roll comes first, about an axis that pitch then tilts).
+    // Axes in H of a change of pitch and of roll. Roll comes first; pitch then tilts its axis.
     const std::array<Eigen::Vector3d, 2> axis = {Eigen::Vector3d(-sy, cy, 0.0), Eigen::Vector3d(cp * cy, cp * sy, -sp)};
     const Eigen::Vector3d omega(terms.omega_HB_H.x(), terms.omega_HB_H.y(), x[kXOmega]);
     for (int i = 0; i < 2; ++i) {

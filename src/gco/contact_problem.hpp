@@ -1,5 +1,5 @@
-// The least-squares problem of the ground-aware command optimisation (paper III-A.3), as TinySolver and ceres::Solver
-// take it.
+// The least-squares problem of the ground-aware command optimisation (paper III-A.3, eq. 13 to 19) for TinySolver and
+// ceres::Solver.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +14,11 @@
 namespace pmg::gco {
 
 /// The unknowns: v' [m/s] in H, omega_z' [rad/s] (z component of the base's angular velocity), h' [m] (deviation from
-/// stand); with roll and pitch optimised also pitch' and roll' of the torso [rad]. The paper's deltas are these minus
-/// the command.
+/// stand); with roll and pitch optimised also pitch' and roll' of the torso [rad]. The paper's deltas (eq. 16 to 18)
+/// are these minus the command.
 enum Unknown { kXVx = 0, kXVy, kXVz, kXOmega, kXHeight, kXPitch, kXRoll, kMaxUnknowns };
 
-/// One foot with the base standing still, at the commanded pitch and roll.
+/// One foot relative to a base that stands still at the commanded pitch and roll.
 struct FootTerms {
   Eigen::Vector3d lever_H = Eigen::Vector3d::Zero();     ///< base origin to contact point, R_HB p_f [m]
   Eigen::Vector3d velocity_H = Eigen::Vector3d::Zero();  ///< of the sole at the contact point, R_HB (J_f dq) [m/s]
@@ -28,22 +28,22 @@ struct FootTerms {
   double sqrt_weight = 0.0;
 };
 
-/// Everything that the residuals need of one tick.
+/// The data of the residuals in one tick.
 struct ContactTerms {
   PerFoot<FootTerms> foot;
   Eigen::Vector3d omega_HB_H =
       Eigen::Vector3d::Zero();     ///< of the base from the commanded pitch and roll rates, z = 0 [rad/s]
   PerFoot<double> height_share{};  ///< see height_shares()
   double sqrt_height_weight = 0.0;
-  double sqrt_level_weight = 0.0;          ///< both feet on the ground; only roll and pitch can do something about it
+  double sqrt_level_weight = 0.0;          ///< of the feet's height difference; only roll and pitch can change it
   double standing_height_m = 0.0;          ///< h of u = 0: base origin above the soles
   double pitch_rad = 0.0, roll_rad = 0.0;  ///< commanded
   Eigen::Vector2d torso_heading_H = Eigen::Vector2d::UnitX();  ///< (cos, sin) of the torso's yaw in H
-  std::array<double, kMaxUnknowns> prior{};                    ///< where the prior pulls each unknown
+  std::array<double, kMaxUnknowns> prior{};                    ///< value to which the prior pulls each unknown
   std::array<double, kMaxUnknowns> prior_weight{};  ///< on the residual, relative to the contact residuals' 1
 };
 
-/// How a foot moves for a value of the unknowns.
+/// Motion of a foot for given unknowns (paper eq. 13 and 14).
 template <typename T>
 struct FootMotion {
   Eigen::Matrix<T, 3, 1> lever_H;     ///< base origin to contact point [m]
@@ -51,11 +51,14 @@ struct FootMotion {
   T yaw_rate;                         ///< [rad/s]
 };
 
-/// kUnknowns is 5 or 7. Residuals: for each foot sqrt(w_f) (v_f [m/s], yaw rate [rad/s]); height of the lowest sole
-/// point [m]; prior_weight (x - prior); with 7 unknowns also the height difference of the two feet [m].
+/// kUnknowns is 5 or 7. Residuals (paper eq. 15):
+///   sqrt(w_f) (v_f [m/s], yaw rate [rad/s]) for each foot f,
+///   sqrt(min(1, w_left + w_right)) (height of the lowest sole point above the ground [m]),
+///   prior_weight (x - prior),
+///   with 7 unknowns also sqrt(w_left w_right) (height difference of the feet [m]).
 ///
-/// With 7 unknowns the contact points, height shares and the heading frame stay those of the commanded attitude, and
-/// pitch' and roll' are taken as constant over the tick beyond the commanded rates.
+/// With 7 unknowns the contact points, the height shares and the heading frame stay those of the commanded attitude.
+/// Apart from the commanded rates, pitch' and roll' count as constant over the tick.
 template <int kUnknowns>
 struct ContactProblem {
   static_assert(kUnknowns == 5 || kUnknowns == 7);
@@ -90,7 +93,7 @@ struct ContactProblem {
     return motion;
   }
 
-  /// x: kUnknowns values, r: NUM_RESIDUALS values. A template so that automatic derivatives can check the analytic
+  /// x: kUnknowns values, r: NUM_RESIDUALS values. A template, so that automatic derivatives can check the analytic
   /// ones.
   template <typename T>
   void residuals(const T* x, T* r) const {
@@ -111,7 +114,7 @@ struct ContactProblem {
     if constexpr (kUnknowns == 7) r[kLevelRow] = terms.sqrt_level_weight * (left_m - right_m);
   }
 
-  /// As ceres::TinySolver wants it: jacobian is NUM_RESIDUALS x kUnknowns, column-major, or null.
+  /// The interface of ceres::TinySolver. jacobian: NUM_RESIDUALS x kUnknowns, column-major, or null.
   bool operator()(const double* x, double* r, double* jacobian) const {
     residuals(x, r);
     if (jacobian != nullptr) fill_jacobian(x, jacobian);
@@ -119,7 +122,7 @@ struct ContactProblem {
   }
 
  private:
-  /// Rotation of everything that hangs on the base as torso pitch and roll leave the commanded ones, in H.
+  /// Rotation in H of everything attached to the base, when torso pitch and roll differ from the commanded ones.
   template <typename T>
   Eigen::Matrix<T, 3, 3> attitude_change(const T* x) const {
     using std::cos;
@@ -141,8 +144,8 @@ struct ContactProblem {
   void fill_jacobian(const double* x, double* jacobian) const;
 };
 
-/// The terms of a tick; prior_weight as in Options. held_height_m: what the height falls back to while no foot is in
-/// contact. feet and attitude are those of the reference's q, dq and command.
+/// (reference, feet, attitude) => (terms of one tick). prior_weight as in Options. held_height_m: target of the height
+/// while no foot is in contact. feet and attitude must be those of the reference's q, dq and command.
 ContactTerms contact_terms(const Reference& reference, const PerFoot<model::FootKinematics>& feet,
                            const model::BaseAttitude::Result& attitude, double standing_height_m, double prior_weight,
                            double held_height_m) noexcept;

@@ -18,13 +18,13 @@ using Solver = ceres::TinySolver<ContactProblem<kUnknowns>>;
 template <int kUnknowns>
 typename Solver<kUnknowns>::Options solver_options() {
   typename Solver<kUnknowns>::Options options;
-  // With 5 unknowns the problem is linear: an undamped first step is the solution, the second evaluation confirms it.
-  // With 7 the trust region has work to do.
+  // With 5 unknowns the problem is linear: the undamped first step is the solution, and the second evaluation confirms
+  // it. With 7 the trust region is needed.
   options.initial_trust_region_radius = kUnknowns == 5 ? 1e14 : 1e4;
   options.max_num_iterations = kUnknowns == 5 ? 8 : 50;
-  options.gradient_tolerance = 1e-10;  // 1e-4 m/s where only the prior of 1e-3^2 acts, 1e-10 m/s where a foot does
-  // Absolute in TinySolver: (1e-9 m/s)^2, and with 7 unknowns (3e-8 m/s)^2, above the rounding of a cost that stays
-  // finite there.
+  options.gradient_tolerance = 1e-10;  // 1e-4 m/s where only the prior of 1e-3^2 acts, 1e-10 m/s where a foot acts
+  // Absolute in TinySolver: (1e-9 m/s)^2; with 7 unknowns (3e-8 m/s)^2, above the rounding of a cost that doesn't
+  // vanish there.
   options.function_tolerance = kUnknowns == 5 ? 1e-18 : 1e-15;
   return options;
 }
@@ -36,7 +36,7 @@ bool finite(const std::array<double, kMaxUnknowns>& x) noexcept {
   return true;
 }
 
-/// Slip with the unknowns x: the sole's horizontal speed at the contact point.
+/// Slip for the unknowns x: horizontal speed of the sole at the contact point [m/s].
 template <int kUnknowns>
 double slip_m_s(const ContactProblem<kUnknowns>& problem, Foot foot, const double* x) noexcept {
   return problem.foot_motion(foot, x).velocity_H.template head<2>().norm();
@@ -81,7 +81,7 @@ struct GroundAwareCommand::Impl {
     solver7.options = solver_options<7>();
   }
 
-  /// (cos, sin) of the torso's yaw in H: the axis about which the torso pitches, turned back by a right angle.
+  /// (cos, sin) of the torso's yaw in H: the torso's pitch axis, turned back by 90 degrees.
   Eigen::Vector2d torso_heading(const Reference& reference) noexcept {
     const JointVector still = JointVector::Zero(reference.q.size());
     const Eigen::Vector3d pitch_axis_H =

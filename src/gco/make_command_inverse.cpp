@@ -13,10 +13,10 @@ namespace pmg::gco {
 namespace {
 
 constexpr std::size_t kAxes = CommandInverse::kAxes.size();
-constexpr double kStep_s = 0.02;    ///< 50 to 60 samples a cycle: u' is smooth in the phase
+constexpr double kStep_s = 0.02;    ///< 50 to 60 samples per cycle: u' is smooth in the phase
 constexpr double kSettle_s = 0.4;   ///< past the stance ramp and the first step of full rates
-constexpr double kEnough_s = 10.0;  ///< no gait's period
-constexpr int kRounds = 6;          ///< of the fixed point; it has settled after three or four
+constexpr double kEnough_s = 10.0;  ///< longer than any gait's period
+constexpr int kRounds = 6;          ///< of the fixed point; it converges in three or four
 constexpr double kLargestShare = 0.4;
 
 GeneratorOptions immediate(const model::RobotModel& robot) {
@@ -31,12 +31,13 @@ ClipLibrary without_inverse(ClipLibrary library) {
   return library;
 }
 
-/// The generator and the optimisation, made once for many commands.
+/// Generator and optimisation, built once for many commands.
 class Measurement {
  public:
   Measurement(const model::RobotModel& robot, const ClipLibrary& library)
       : generator_(without_inverse(library), immediate(robot)), gco_(robot) {}
 
+  /// u' averaged over one cycle, weighted by phase; at rest the first u'.
   Command mean(const Command& command) {
     generator_.reset();
     gco_.reset();
@@ -47,7 +48,7 @@ class Measurement {
       const Reference& reference = generator_.step(command, kStep_s);
       const Command& optimised = gco_.solve(reference).command;
       if (reference.gain == 0.0) return optimised;
-      // The last step counts as far as the cycle goes.
+      // The last step counts only up to the end of the cycle.
       const double share = std::min(reference.phase_rate_per_s * kStep_s, 1.0 - cycles);
       for (std::size_t c = 0; c < kChannels; ++c) sum.u[c] += share * optimised.u[c];
       cycles += share;
@@ -60,8 +61,8 @@ class Measurement {
   GroundAwareCommand gco_;
 };
 
-/// The command itself, or what is well within reach in its direction: velocities that together ask for more than the
-/// generator gives share it, and a correction there would only be shared out again.
+/// The command, scaled down to 90 % of the velocities' common reach. The generator scales larger ones down itself, and
+/// with them any correction.
 Command within_reach(const model::RobotModel& robot, Blend blend, const Command& command) {
   const double reach = 0.9 * (blend == Blend::kCorners ? kCornerReach : 1.0);
   double asked = 0.0;
@@ -79,7 +80,7 @@ std::array<std::vector<double>, kAxes> grid(const model::RobotModel& robot) {
   for (std::size_t a = 0; a < kAxes; ++a) {
     const Channel channel = CommandInverse::kAxes[a];
     const double lower = robot.command_limits.lower[channel], upper = robot.command_limits.upper[channel];
-    // Closer where rest is near: a little of a clip already brings most of what it does to the others.
+    // Finer near rest: a small gain of one clip already has most of its effect on the others.
     for (const double share : {1.0, 0.6, 0.25}) {
       if (lower < 0.0) axis[a].push_back(share * lower);
     }
@@ -91,7 +92,7 @@ std::array<std::vector<double>, kAxes> grid(const model::RobotModel& robot) {
   return axis;
 }
 
-/// Fixed point of correction += target - mean(target + correction); the best of the rounds.
+/// Fixed point of correction += target - mean(target + correction); returns the correction with the smallest error.
 CommandInverse::Node correction_at(const model::RobotModel& robot, const Command& target, Measurement& measurement) {
   const CommandLimits& limits = robot.command_limits;
   CommandInverse::Node correction{}, best{};

@@ -4,7 +4,7 @@ namespace pmg::gco {
 
 namespace {
 
-/// Every other direction and every posture is missing.
+/// Removes every other direction and every corner.
 ClipLibrary forward_clip_only(ClipLibrary library) {
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
     if (channel != kVx) library.positive[channel].reset();
@@ -14,7 +14,7 @@ ClipLibrary forward_clip_only(ClipLibrary library) {
   return library;
 }
 
-/// Baselines know no u': nothing tells them what to ask their clips for but the command itself.
+/// Baselines don't know u', so their clips get the command without the inverse.
 ClipLibrary known_to(Variant variant, ClipLibrary library) {
   if (variant != Variant::kPmg) library.inverse = {};
   return library;
@@ -54,7 +54,7 @@ const Reference& MotionComposition::advance(const Command& user, double dt_s) no
   return reference_;
 }
 
-/// The command stays the user's, admissible and rate-limited; gait, joints and contacts are the forward clip's.
+/// Gait, joints and contacts of the forward clip; the command stays the user's, admissible and rate-limited.
 void MotionComposition::play_forward_clip(double dt_s) noexcept {
   Command forward;
   forward[kVx] = reference_.gain * forward_scale_m_s_;

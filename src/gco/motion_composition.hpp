@@ -1,5 +1,5 @@
-// From the user's command to what a policy imitates and which command it observes: the one composition of generator and
-// ground-aware optimisation, for the controller's tick and for training, so that the two can't differ.
+// (user command) => (reference to imitate, observed command). The controller's tick and training step this same
+// composition of generator and ground-aware optimisation, so they can't differ.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ namespace pmg::gco {
 /// Command limits and scales of robot.yaml; defaults for the rest.
 GeneratorOptions generator_options(const model::RobotModel& robot);
 
-/// Once a tick: advance(), then ground(). Neither uses the heap or throws.
+/// Once per tick: advance(), then ground(). Neither uses the heap or throws.
 class MotionComposition {
  public:
   /// Throws std::invalid_argument as Generator and GroundAwareCommand do.
@@ -26,12 +26,11 @@ class MotionComposition {
   /// At rest in the standing posture, nothing remembered.
   void reset() noexcept;
 
-  /// The reference of the next tick. PMG's generator has the library's inverse, so that u' averages to the user's
-  /// command; the baselines, which know no u', ask their clips for the user's command as it is.
+  /// (user, dt) => (reference). PMG's generator applies the library's inverse, so u' averages to the user's command.
+  /// The baselines, which don't know u', ask their clips for the user's command itself.
   const Reference& advance(const Command& user, double dt_s) noexcept;
 
-  /// Which command the policy observes with that reference, and what the ground makes of it. Baselines observe u: their
-  /// status is kNotAsked, slip and v'z are zero.
+  /// (reference) => (observed command, slip). Baselines observe u: their status is kNotAsked, slip and v'z are zero.
   const Result& ground() noexcept;
 
   Variant variant() const noexcept { return variant_; }
@@ -41,9 +40,9 @@ class MotionComposition {
   void play_forward_clip(double dt_s) noexcept;
 
   Variant variant_;
-  double forward_scale_m_s_;  ///< vx at which the forward clip plays with full amplitude
+  double forward_scale_m_s_;  ///< vx of the forward clip at full amplitude
   Generator generator_;
-  std::optional<Generator> forward_only_;  ///< single gait alone
+  std::optional<Generator> forward_only_;  ///< only for the single gait
   GroundAwareCommand gco_;
   Reference reference_;
   Result unasked_;

@@ -8,7 +8,7 @@ namespace pmg::gco {
 namespace {
 
 constexpr double kBin_m_s = 1e-4;
-constexpr std::size_t kBins = 20001;  // to 2 m/s: no walk slips faster; what does counts as the largest slip seen
+constexpr std::size_t kBins = 20001;  // to 2 m/s, more than in any walk; faster slip counts as the largest seen
 
 std::size_t bin_of(double slip_m_s) noexcept {
   return static_cast<std::size_t>(std::min(slip_m_s / kBin_m_s, static_cast<double>(kBins - 1)));

@@ -14,10 +14,10 @@ namespace pmg::gco {
 namespace {
 
 constexpr double kTick_s = 0.01;
-constexpr double kSettleWalk_s = 4.0;  // commands at their rate limits, height of the ground-aware optimisation
-constexpr int kCycles = 4;             // ticks fall on other phases in each
+constexpr double kSettleWalk_s = 4.0;  // rate limits of commands and the held height have settled
+constexpr int kCycles = 4;             // in each, the ticks fall on other phases
 
-/// Sole points above the ground that the optimised height means.
+/// Heights of sole points above the ground, from the optimised height.
 class Soles {
  public:
   explicit Soles(const model::RobotModel& robot)
@@ -73,7 +73,7 @@ SteadyWalk walk_steadily(const model::RobotModel& robot, const ClipLibrary& libr
     const Result& result = ground.solve(reference);
     statistics.add(reference, result);
     soles.measure(reference, result, walk);
-    // The last tick counts as far as the cycles last.
+    // The last tick counts only up to the end of the cycles.
     const double dt_s = std::min(kTick_s, whole_cycles_s - duration_s);
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       walk.mean.u[channel] += result.command.u[channel] * dt_s / whole_cycles_s;

@@ -3,7 +3,8 @@
 namespace pmg::generator {
 namespace {
 
-/// Adds mass * position of this segment and all beyond it; frame: of the parent segment, in the base frame.
+/// Adds mass * position and mass of this segment and of all segments beyond it. parent: pose of the parent segment in
+/// the base frame.
 void add(const model::RobotModel& robot, const JointVector& q, const KDL::SegmentMap::const_iterator& element,
          const KDL::Frame& parent, KDL::Vector& moment, double& mass) {
   const KDL::Segment& segment = element->second.segment;

@@ -1,4 +1,4 @@
-// Where the robot's mass is, for postures that must not topple.
+// The robot's centre of mass, for postures that must not topple.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace pmg::generator {
 
-/// Centre of mass [m] in the base frame; q: all joints [rad].
+/// Centre of mass [m] in the base frame: sum m_i p_i / sum m_i over all links. q: all joints [rad].
 Eigen::Vector3d center_of_mass(const model::RobotModel& robot, const JointVector& q);
 
 }  // namespace pmg::generator

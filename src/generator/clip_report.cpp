@@ -12,8 +12,8 @@
 namespace pmg::generator {
 namespace {
 
-/// Two stance feet may differ by a centimetre. When the lower one lifts off the base sinks onto the other, and the foot
-/// that has just left is that much below the ground: at small gains, for the first ticks of its swing.
+/// Two stance feet may differ in height by a centimetre. When the lower one lifts off, the base sinks onto the other.
+/// At small gains the foot that has just lifted off is then below the ground for the first ticks of its swing.
 constexpr double kSwingBelowGround_m = 0.006;
 
 LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain,
@@ -36,7 +36,7 @@ LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, d
   return legs;
 }
 
-/// The base's pitch when the torso stands upright over it.
+/// The base's mean pitch [rad] under an upright torso.
 double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
   if (!roles.waist_pitch) {
     return 0.0;
@@ -48,7 +48,7 @@ double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain
   return -gain * (mean - q_stand[*roles.waist_pitch]);
 }
 
-/// The base under an upright torso.
+/// The base's attitude and rate under an upright torso, one per sample.
 std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain) {
   model::BaseAttitude attitude(robot);
   const JointVector q_stand = robot.q_stand();
@@ -62,7 +62,7 @@ std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicCli
   return base;
 }
 
-constexpr double kClearance_m = 0.025;  // of the robot's feet on a floor that isn't quite flat
+constexpr double kClearance_m = 0.025;  // for a floor that isn't quite flat
 
 std::string judge(const ClipReport& clip) {
   for (const GainReport& at : clip.gains) {
@@ -129,7 +129,7 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-/// One column of a norms file, without its last row (100 % is 0 % again).
+/// One column of a norms file without its last row, because 100 % is 0 % again.
 std::vector<double> read_column(const std::filesystem::path& file, const std::string& name) {
   std::ifstream in(file);
   std::vector<double> values;

@@ -1,4 +1,4 @@
-// What a bench engineer reads about a clip library before it goes to a robot.
+// The figures of a clip library that an engineer checks before it goes to a robot.
 #pragma once
 
 #include <filesystem>
@@ -24,13 +24,13 @@ struct ClipReport {
   std::vector<GainReport> gains;
   double joint_speed_share = 0.0;  ///< of the joints' limits, largest
   double limit_margin_rad = 0.0;   ///< smallest distance from a joint limit
-  std::string failure;             ///< empty when the clip can be walked by
+  std::string failure;             ///< empty if the clip passes
 };
 
-/// Every dynamic clip at gains 0.1 .. 1. Failures: double-support slip over 3 cm/s on average or 10 cm/s at the 95th
-/// percentile, stance feet more than 1 cm apart in height, mean velocity off by more than 0.05 (m/s, rad/s), a swinging
-/// sole more than 6 mm below the ground, or less than 2.5 cm above it in mid swing at full gain, soles closer than 2
-/// cm, joints faster than 60 % of their limits.
+/// Every dynamic clip at gains 0.1 to 1. A clip fails if one of these holds: double-support slip over 3 cm/s on average
+/// or 10 cm/s at the 95th percentile; stance feet more than 1 cm apart in height; mean velocity off by more than 0.05
+/// (m/s, rad/s); a swinging sole more than 6 mm below the ground, or at full gain less than 2.5 cm above it in mid
+/// swing; soles closer than 2 cm; a joint faster than 60 % of its limit.
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
 
 /// Agreement of the forward clip with a published mean.

@@ -12,7 +12,7 @@
 namespace pmg::generator {
 namespace {
 
-/// The gait to the other side.
+/// The same gait to the other side.
 MadeGait mirrored_gait(const Making& making, const MadeGait& gait) {
   MadeGait out = gait;
   out.task.velocity.tail<2>() *= -1.0;
@@ -28,7 +28,7 @@ MadeGait mirrored_gait(const Making& making, const MadeGait& gait) {
   return out;
 }
 
-/// a and b added up, sample by sample.
+/// The sum of a and b, sample by sample.
 Addition together(Addition a, const Addition& b) {
   for (std::size_t k = 0; k < a.q.size(); ++k) {
     for (const Foot foot : {kLeft, kRight}) {
@@ -51,7 +51,7 @@ struct Pair {
   const MadeGait& second;
 };
 
-/// The corner's clip at amplitudes n1, n2 of the two gaits.
+/// The corner's clip as a scenario at amplitudes n1, n2 of the two gaits.
 Scenario at(const Making& making, const Pair& pair, double period_s, double n1, double n2, double weight) {
   Scenario scenario;
   scenario.gain = n1 * n2;
@@ -60,7 +60,7 @@ Scenario at(const Making& making, const Pair& pair, double period_s, double n1, 
   scenario.promised = true;
   const auto part = [&](const MadeGait& gait, double gain) {
     Addition addition = clip_addition(making, gait.legs, gait.task, gain, period_s);
-    addition.velocity = gain * gait.task.velocity;  // what is asked of the mixture, whatever its cadence
+    addition.velocity = gain * gait.task.velocity;  // asked of the mixture, independent of its cadence
     return addition;
   };
   scenario.addition = together(part(pair.first, n1 * (1.0 - n2)), part(pair.second, (1.0 - n1) * n2));
@@ -89,7 +89,7 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.weights.height = 40.0;
   task.weights.above_ground = 1000.0;
   task.weights.limit = 300.0;
-  // The generator lets the amplitudes add up to 1.8 (kCornerReach).
+  // The generator's limit of n1 + n2 is 1.8 (kCornerReach).
   constexpr std::array<std::array<double, 3>, 9> kMixtures = {{{0.9, 0.9, 1.5},
                                                                {0.8, 0.8, 1.0},
                                                                {0.6, 0.6, 1.0},
@@ -109,7 +109,7 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   return task;
 }
 
-/// The legs of a whole body's clip, as they are under a pelvis without tilt.
+/// The legs of a whole-body clip, with the hips turned back by the pelvis' tilt.
 std::vector<LegPose> legs_of(const Making& making, const DynamicClip& clip, double pelvis_tilt_rad) {
   std::vector<LegPose> legs(kClipSamples);
   for (std::size_t k = 0; k < kClipSamples; ++k) {
@@ -136,7 +136,7 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
   }
   const Superposition superposition(clips, library.q_stand);
   const MadeGait turn_right = mirrored_gait(making, gaits.turn);
-  // Of the shared lift M: half a clip each way of every channel, a third of the channels each.
+  // Tilt of the shared lift M (corner_clips.hpp): each channel has a share of a third, each direction half of it.
   const double lift_tilt_rad = (0.5 * (gaits.forward.body.pelvis_tilt_rad + gaits.backward.body.pelvis_tilt_rad) +
                                 gaits.lateral.body.pelvis_tilt_rad + gaits.turn.body.pelvis_tilt_rad) /
                                3.0;
@@ -145,7 +145,8 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
     Pair pair;
     double period_s;
   };
-  // Means of the pair's periods; forward and lateral a little quicker, so that a library stays below ten seconds.
+  // The means of the pair's periods. Forward with lateral is a little faster, so that a library stays below ten
+  // seconds.
   const std::array<Wanted, 5> wanted = {{{{{1, 1, 0}}, {gaits.forward, gaits.lateral}, 1.00},
                                          {{{1, 0, 1}}, {gaits.forward, gaits.turn}, 1.14},
                                          {{{-1, 0, 1}}, {gaits.backward, gaits.turn}, 1.17},

@@ -1,4 +1,4 @@
-// Clips of two velocities at once: the corners of the command box between which the generator interpolates.
+// Clips of two velocities at once: the generator interpolates between these corners of the command box.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ struct SingleGaits {
   MadeGait forward, backward, lateral, turn;
 };
 
-/// Forward with sidestepping, forward and backward with turning, and sidestepping with turning either way: a walked
-/// circle, say.
-/// The other corners are their mirror images, or what superposition gives (pmg/corner_clips.hpp). library holds the
-/// single clips. The generator mixes q = q_stand + n1 (1 - n2) d1 + (1 - n1) n2 d2 + n1 n2 d12; unknown is d12, asked
-/// to keep the ground at amplitudes n1, n2 over the whole box.
+/// Makes forward with sidestepping, forward and backward with turning (a walked circle), and sidestepping with turning
+/// to either side. The other corners are their mirror images or superpositions (pmg/corner_clips.hpp). library contains
+/// the single clips. With d = q - q_stand the generator mixes
+///   q = q_stand + n1 (1 - n2) d1 + (1 - n1) n2 d2 + n1 n2 d12.
+/// The unknown is d12. It shall keep the feet on the ground at amplitudes n1, n2 over the whole box.
 std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& library, const SingleGaits& gaits,
                                      const std::function<void(const std::string&)>& progress);
 

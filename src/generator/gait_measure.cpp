@@ -7,7 +7,7 @@
 namespace pmg::generator {
 namespace {
 
-constexpr double kSoftness_m = 0.0003;  // of the contact point, as the ground-aware optimisation has it
+constexpr double kSoftness_m = 0.0003;  // of the contact point, as in gco/contact_point.cpp
 
 double wrapped(double phase) { return phase - std::floor(phase + 0.5); }
 
@@ -55,7 +55,7 @@ SampleState evaluate(const RobotLegs& legs, const LegTrajectory& trajectory, con
     state.stance_phase[f] = wrapped(phase - timing.contact_center[f]);
     state.weight[f] = contact_weight(state.stance_phase[f], timing.duty_factor[f]);
   }
-  // The weighted least squares of the two feet: 3 velocity components each, 3 unknowns.
+  // Weighted least squares over both feet: three velocities each, three unknowns.
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const Foot f : {kLeft, kRight}) {

@@ -1,4 +1,4 @@
-// What a leg trajectory does on the ground: the figures that clips are accepted by.
+// Measures of a leg trajectory on the ground: the figures by which clips are accepted.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ struct GaitTiming {
   PerFoot<double> duty_factor{0.6, 0.6};
 };
 
-/// A clip's own timing: left initial contact at phase 0, right half a cycle later.
+/// Timing of a clip: left initial contact at phase 0, right half a cycle later.
 GaitTiming timing(double period_s, double duty_factor);
 
 /// q = q_stand + gain (q_clip - q_stand) + addition, at every sample.
@@ -28,28 +28,29 @@ struct BaseMotion {
   Eigen::Vector3d omega_HB = Eigen::Vector3d::Zero();
 };
 
-/// The base of a task's clip at this gain, one entry a sample.
+/// The base of a task's clip at this gain, one entry per sample.
 std::vector<BaseMotion> hiking_base(const GaitTask& task, double gain);
 
-/// The base in a scenario: with the addition's roll.
+/// The base in a scenario, including the addition's roll.
 std::vector<BaseMotion> hiking_base(const GaitTask& task, const Scenario& scenario);
 
 struct GroundMeasure {
-  Eigen::Vector3d mean_velocity =
-      Eigen::Vector3d::Zero();  ///< of the base, by the stance feet: vx, vy [m/s], omega [rad/s]
+  /// Velocity of the base from the stance feet: vx, vy [m/s], omega [rad/s].
+  Eigen::Vector3d mean_velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_range = Eigen::Vector3d::Zero();  ///< largest deviation from the mean
-  double slip_mean_m_s = 0.0, slip_p95_m_s = 0.0;            ///< each foot in double support after the best base motion
-  double yaw_slip_max_rad_s = 0.0;                           ///< the same for its turning
-  double other_foot_height_m = 0.0;  ///< largest height of the higher stance foot in double support
-  double clearance_m = 0.0;          ///< lowest sole point in the middle of the swing (0.3 .. 0.7 of it), smaller foot
-  double lowest_swing_m = 0.0;       ///< lowest sole point anywhere in swing, negative below ground
-  double foot_gap_m = 0.0;           ///< smallest width between the soles, along the base's y axis
+  double slip_mean_m_s = 0.0, slip_p95_m_s = 0.0;  ///< each foot in double support, under the best base motion
+  double yaw_slip_max_rad_s = 0.0;                 ///< the same for the yaw rate of a foot
+  double other_foot_height_m = 0.0;                ///< largest height of the higher stance foot in double support
+  double clearance_m = 0.0;     ///< lowest sole point in mid swing (0.3 to 0.7 of the swing), of the lower foot
+  double lowest_swing_m = 0.0;  ///< lowest sole point anywhere in the swing; negative: below the ground
+  double foot_gap_m = 0.0;      ///< smallest gap between the soles along the base's y axis
   double height_mean_m = 0.0, height_min_m = 0.0, height_max_m = 0.0;  ///< base, deviation from stand
 };
 
-/// base: one entry a sample, or none for a level base. Contact edges as in the generator (0.04 of a cycle). In swing
-/// the ground is where the ground-aware optimisation has it: while a foot's contact weight fades, it still holds its
-/// share of the height.
+/// (trajectory, timing, base) => (measures). base: one entry per sample, or empty for a level base. Contact edges are
+/// 0.04 of a cycle wide, as the generator's, but centred on the stance's boundaries. In swing the ground is where the
+/// ground-aware optimisation sees it: while a foot's contact weight fades, the foot still holds its share of the
+/// height.
 GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, const GaitTiming& timing,
                       const std::vector<BaseMotion>& base = {});
 

@@ -15,23 +15,23 @@
 namespace pmg::generator {
 namespace {
 
-constexpr std::size_t kKnots = 24;        // even, so that half a cycle is a whole number of knots
-constexpr double kEdgeBeyond = 0.005;     // cycles: clips in a mixture differ by as much in their duty factors
-constexpr double kClearanceGrowth = 1.6;  // power of the gain: at half of it a third of the clearance
-constexpr int kRounds = 4;                // solves; between them the velocity targets move by what the means missed
+constexpr std::size_t kKnots = 24;        // even: half a cycle is a whole number of knots
+constexpr double kEdgeBeyond = 0.005;     // [cycles]; duty factors of the clips in a mixture differ by as much
+constexpr double kClearanceGrowth = 1.6;  // exponent of the gain: half the gain needs 0.5^1.6, a third of the clearance
+constexpr int kRounds = 4;                // solves; after each, the velocity targets move by the error of the means
 
-/// Which knots a leg uses and how: the right leg of a symmetric gait borrows the left one's.
+/// The knots of both legs. The right leg of a symmetric gait uses the left leg's.
 struct KnotTable {
   std::vector<std::array<double, kLegJoints>> left, right;
-  PerFoot<std::array<double, kLegJoints>> bias{};  // of the mean posture against the reference's
+  PerFoot<std::array<double, kLegJoints>> bias{};  // mean posture minus the reference's
   bool symmetric;
 
   explicit KnotTable(bool is_symmetric) : left(kKnots), right(is_symmetric ? 0 : kKnots), symmetric(is_symmetric) {}
   double* knot(Foot foot, std::size_t i) { return (foot == kRight && !symmetric) ? right[i].data() : left[i].data(); }
 };
 
-/// The other residuals pull the mean velocity away from its target; this moves the target until the mean is right, by
-/// the secant of the last two solves.
+/// The other residuals pull the mean velocity away from its target. The correction moves the target until the mean is
+/// right, by the secant through the last two solves.
 struct VelocityTarget {
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
 
@@ -68,14 +68,14 @@ void start_from_reference(const RobotLegs& legs, const GaitTask& task, KnotTable
   }
 }
 
-/// 0 while there is room, 1:1 when far beyond, smooth over this width; with its slope.
+/// Softplus: width log(1 + exp(excess / width)) and its slope. 0 within the allowance, slope 1 far beyond it.
 std::pair<double, double> beyond(double excess, double width) {
   const double z = excess / width;
   return {width * (z > 30.0 ? z : std::log1p(std::exp(z))), 1.0 / (1.0 + std::exp(-z))};
 }
 
-/// Correlation of one joint's curve with the reference, RMS distance from it, and its share of the reference's
-/// amplitude: three residuals of all the left leg's knots.
+/// Three residuals of one joint's curve over all knots of the left leg: correlation with the reference, RMS distance
+/// from it, and amplitude as a share of the reference's.
 class ShapeCost : public ceres::CostFunction {
  public:
   ShapeCost(const RobotLegs& legs, const GaitTask& task, const ShapeGoal& goal)
@@ -194,7 +194,7 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
   }
 }
 
-/// 0 at both ends of the swing, 1 from 0.3 to 0.7 of it.
+/// 0 at both ends of the swing, 1 from 0.3 to 0.7 of it: min((sin(pi s) / sin(0.3 pi))^2, 1).
 double raised(double swing) {
   const double rise = std::sin(std::numbers::pi * swing) / std::sin(0.3 * std::numbers::pi);
   return std::min(rise * rise, 1.0);
@@ -223,7 +223,7 @@ LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& tabl
   return out;
 }
 
-/// Ends the solver when progress throws; Ceres itself is left without an exception in flight.
+/// Ends the solver when progress throws; no exception passes through Ceres.
 class StopOnThrow : public ceres::IterationCallback {
  public:
   explicit StopOnThrow(const std::function<void()>& progress) : progress_(progress) {}
@@ -308,7 +308,7 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
   scale_ = std::sqrt(scenario.weight / static_cast<double>(kClipSamples));
   height_m_ = legs.standing_height_m + scenario.gain * task.height_m + scenario.addition.height_m;
   velocity_ = scenario.gain * task.velocity + scenario.addition.velocity + velocity_correction;
-  // The base sways towards the left foot in the middle of its stance, and to the right half a cycle later.
+  // The base sways towards the left foot in the middle of its stance, and towards the right half a cycle later.
   const double angle = 2.0 * std::numbers::pi * (phase - 0.5 * r);
   velocity_.y() -= (scenario.gain * task.sway_m + scenario.addition.sway_m) * 2.0 * std::numbers::pi / task.period_s *
                    std::sin(angle);
@@ -337,7 +337,7 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const st
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
     options.max_num_iterations = round == 0 ? 160 : 40;
     options.function_tolerance = 1e-5;
-    options.num_threads = 1;  // the same bytes every time
+    options.num_threads = 1;  // for identical bytes every time
     options.logging_type = ceres::SILENT;
     options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
@@ -348,7 +348,7 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const st
     solution.legs = sample_legs(legs, task.symmetric, table);
     for (std::size_t s = 0; s < task.scenarios.size(); ++s) {
       const Scenario& scenario = task.scenarios[s];
-      // Under a posture the mean is wished for, not promised.
+      // With an added posture the mean velocity is a wish, not a promise.
       if (scenario.addition.q.empty() || scenario.promised) {
         const Eigen::Vector3d mean = measure(legs, blend(legs, solution.legs, scenario),
                                              timing(task.period_s, task.duty_factor), hiking_base(task, scenario))

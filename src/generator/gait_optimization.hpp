@@ -1,5 +1,5 @@
-// Makes the legs' part of a dynamic clip by nonlinear least squares, so that it stays consistent with the ground at
-// every gain at which the generator blends it with standing.
+// Makes the legs' part of a dynamic clip by nonlinear least squares: the feet shall stay consistent with the ground at
+// every gain at which the generator blends the clip with standing.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct RobotLegs {
   double standing_height_m = 0.0;  ///< base above the soles
 };
 
-/// Throws model::ConfigError when the legs aren't mirror images.
+/// Throws model::ConfigError if the legs aren't mirror images.
 RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles);
 
 struct GaitSolution {
@@ -26,9 +26,10 @@ struct GaitSolution {
   int iterations = 0;
 };
 
-/// The generator blends in joint space: q = q_stand + g (q_clip - q_stand) + addition. Unknown are the knots of a
-/// periodic cubic spline of each leg joint's deviation from stand; see gait_residuals.hpp for what is asked of it.
-/// Deterministic. progress is called after every iteration, many times a second, and may throw to stop.
+/// (legs, task) => (leg trajectory). The generator blends in joint space: q = q_stand + g (q_clip - q_stand) +
+/// addition. Unknowns are the knots of a periodic cubic spline of each leg joint's deviation from stand;
+/// gait_residuals.hpp has the residuals. Deterministic. progress is called after every iteration, many times a second,
+/// and may throw to stop.
 GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const std::function<void()>& progress = {});
 
 }  // namespace pmg::generator

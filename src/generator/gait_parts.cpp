@@ -10,8 +10,7 @@ Addition posture_addition(const Making& making, Channel channel, double command)
   const StaticClip& clip = making.posture[channel - kPitch];
   addition.q = {leg_offset(clip, making.roles, making.legs, command)};
   if (channel == kPitch) {
-    // The optimisation sees a level base; the pelvis' part of the pitch is undone by the hips, the chain's first
-    // joints.
+    // The optimisation's base doesn't pitch. So the hips, the chain's first joints, undo the pelvis' part of the pitch.
     const double pelvis_pitch = kPelvisShareOfPitch * command;
     for (const Foot foot : {kLeft, kRight}) {
       addition.q[0][foot][kHipPitch] += pelvis_pitch;
@@ -66,7 +65,7 @@ DynamicClip assemble(const Making& making, const GaitTask& task, const LegTrajec
     JointVector q = q_stand;
     JointVector dq = JointVector::Zero(q_stand.size());
     move_upper_body(making.roles, body, phase, q);
-    constexpr double kStep = 1e-5;  // cycles; the upper body's curves are smooth
+    constexpr double kStep = 1e-5;  // [cycles]: the upper body's curves are smooth
     JointVector before = q_stand;
     JointVector after = q_stand;
     move_upper_body(making.roles, body, phase - kStep, before);

@@ -1,4 +1,4 @@
-// What the making of all dynamic clips shares: mixtures to be good in, and the way from legs to a whole body.
+// Shared by all dynamic clips: the mixtures in which a clip must work, and the step from legs to a whole body.
 #pragma once
 
 #include <array>
@@ -20,24 +20,24 @@ struct Making {
   std::array<StaticClip, 3> posture;  ///< pitch, roll, height
 };
 
-/// A finished gait: what was asked, what came of it.
+/// A finished gait: its task and its result.
 struct MadeGait {
   GaitTask task;
   LegTrajectory legs;
   UpperBody body;
 };
 
-/// A posture command as a part of a mixture.
+/// A posture command as part of a mixture.
 Addition posture_addition(const Making& making, Channel channel, double command);
 
-/// A finished clip as a part of a mixture whose cycle takes period_s.
+/// A finished clip as part of a mixture whose cycle lasts period_s.
 Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain,
                        double period_s);
 
-/// Gains from 0.12 to 1, and some with postures; posture_weight: of walking in a posture against plain walking.
+/// Gains from 0.12 to 1, and some with postures. posture_weight: weight of walking in a posture; plain walking has 1.
 std::vector<Scenario> scenarios(const Making& making, double posture_weight);
 
-/// The clip of legs and the rest of the body together.
+/// (task, legs, upper body) => (clip).
 DynamicClip assemble(const Making& making, const GaitTask& task, const LegTrajectory& legs, UpperBody body);
 
 }  // namespace pmg::generator

@@ -16,7 +16,7 @@ struct PlanarPose {
   double x = 0.0, y = 0.0, yaw = 0.0;
 };
 
-/// The foot in the base frame, seconds after the middle of its stance, when the ground goes by steadily.
+/// Pose of a stance foot in the base frame, `seconds` after the middle of its stance: the ground moves with -velocity.
 PlanarPose carried(const PlanarPose& middle, const Eigen::Vector3d& velocity, double seconds) {
   const double turned = -velocity.z() * seconds;
   const double c = std::cos(turned);
@@ -69,7 +69,7 @@ std::vector<LegPose> stepping_reference(const RobotLegs& legs, const GaitTask& t
     const FootMotion<double> standing =
         foot_motion<double>(legs.geometry[foot], legs.stand[foot], LegVector<double>::Zero());
     const PlanarPose middle = {standing.p_BF.x(), side * stepping.half_width_m, side * stepping.toe_out_rad};
-    // A quarter of a cycle after its contact each foot passes its mean place, so the feet spread and close alike.
+    // Each foot passes its mean place a quarter of a cycle after its contact, so the feet spread and close equally.
     const auto place = [&](double since_contact) { return carried(middle, task.velocity, T * (since_contact - 0.25)); };
     LegVector<double> q = legs.stand[foot];
     for (std::size_t k = 0; k < kClipSamples; ++k) {

@@ -1,4 +1,4 @@
-// Residuals of one phase sample: how far a blended posture is from walking on the ground.
+// Residuals of the clip optimisation: contact with the ground, posture, smoothness.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,9 @@ namespace pmg::generator {
 
 inline constexpr int kGroundResiduals = 22;
 
-/// One phase sample of one scenario. Parameters: four knots of the left leg, then four of the right, each kLegJoints
-/// deviations from stand. The base is level; its velocity is what the stance feet say, weighted by their contact.
+/// Ground residuals of one phase sample of one scenario. Parameters: four knots of the left leg, then four of the
+/// right, each kLegJoints deviations from stand. The base has the attitude of hiking_base(). Its velocity v, omega is
+/// the mean, by contact weight, of the velocities under which each stance foot stands still.
 class GroundResiduals {
  public:
   GroundResiduals(const RobotLegs& legs, const GaitTask& task, const Scenario& scenario, double phase,
@@ -49,7 +50,7 @@ class GroundResiduals {
   }
 
  private:
-  /// A foot in the heading frame, whose origin is the base's.
+  /// (foot in the base frame) => (foot in the heading frame with the same origin).
   template <typename T>
   FootMotion<T> seen_from_heading(const FootMotion<T>& foot) const {
     const Matrix3<T> R = R_HB_.cast<T>();
@@ -58,8 +59,8 @@ class GroundResiduals {
     return {R * foot.R_BF, p, R * foot.v_BF + omega.cross(p), R * foot.omega_BF + omega};
   }
 
-  static constexpr double kSoftness_m = 0.001;     ///< a fifth of a degree over the length of a foot
-  static constexpr double kAboveGround_m = 0.001;  ///< asked of a foot all through its swing
+  static constexpr double kSoftness_m = 0.001;     ///< 0.2 degrees over the length of a foot
+  static constexpr double kAboveGround_m = 0.001;  ///< height that a swinging foot shall keep
 
   template <typename T>
   void ground(const PerFoot<FootMotion<T>>& foot, const PerFoot<SoleContact<T>>& contact, T* residual) const {
@@ -68,7 +69,7 @@ class GroundResiduals {
     const double both = std::sqrt(contact_[kLeft] * contact_[kRight]);
     const PerFoot<double> share = {contact_[kLeft] / total, contact_[kRight] / total};
 
-    // The base velocity under which each stance foot would stand still.
+    // The base velocity with which each stance foot stands still.
     const T omega = -(share[kLeft] * foot[kLeft].omega_BF.z() + share[kRight] * foot[kRight].omega_BF.z());
     PerFoot<Vector3<T>> base;
     for (const Foot f : {kLeft, kRight}) {
@@ -91,7 +92,7 @@ class GroundResiduals {
     residual[i++] = scale_ * w.velocity_yaw * (omega - velocity_.z());
     residual[i++] = scale_ * w.height * (-ground_z - height_m_);
     for (const Foot f : {kLeft, kRight}) {
-      // In swing the other foot is the one that says where the ground is.
+      // In swing the other foot determines the ground.
       const T above = contact[f].p.z() - contact[f == kLeft ? kRight : kLeft].p.z();
       residual[i++] = scale_ * w.clearance * short_of(above, clearance_m_[f]);
       residual[i++] = scale_ * w.above_ground * lifted_[f] * short_of(above, kAboveGround_m);
@@ -103,7 +104,7 @@ class GroundResiduals {
     residual[i++] = scale_ * w.slip * 0.1 * both * (base[kLeft].z() - base[kRight].z());
   }
 
-  /// The part of a length that exceeds what is free, either way.
+  /// The part of a length beyond +-free_m.
   template <typename T>
   static T beyond(const T& length, double free_m) {
     if (length > free_m) {
@@ -112,7 +113,7 @@ class GroundResiduals {
     return length < -free_m ? T(length + free_m) : T(0.0);
   }
 
-  /// need - have where have falls short, rounded over a millimetre so that its slope is continuous.
+  /// max(need - have, 0), rounded over a millimetre so that its slope is continuous.
   template <typename T>
   static T short_of(const T& have, double need_m) {
     if (need_m <= 0.0) {
@@ -129,7 +130,7 @@ class GroundResiduals {
     return lack - kRound_m / 2.0;
   }
 
-  /// Free width between the soles along the base's y axis: enough for them not to touch, whatever their headings.
+  /// Gap between the soles along the base's y axis. If it is positive they don't touch, whatever their headings.
   template <typename T>
   T gap(const PerFoot<FootMotion<T>>& foot) const {
     T left = T(1e9);
@@ -149,7 +150,7 @@ class GroundResiduals {
   PerFoot<SplineBasis> basis_;
   PerFoot<LegVector<double>> sign_, base_q_, base_dq_dphi_;
   PerFoot<double> contact_{}, clearance_m_{}, flat_{};
-  PerFoot<double> lifted_{};  ///< 0 in stance and 1 in swing, where the foot has stopped to carry the height
+  PerFoot<double> lifted_{};  ///< 0 in stance, 1 in swing as soon as the foot no longer carries the height
   Eigen::Matrix3d R_HB_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d omega_HB_ = Eigen::Vector3d::Zero();
   double near_both_ = 0.0;
@@ -158,8 +159,8 @@ class GroundResiduals {
   Eigen::Vector3d velocity_;
 };
 
-/// Keep the reference's shape and stay inside the joint limits: one sample of one leg, linear in four knots and the
-/// bias of the leg's mean posture.
+/// weight_i (q - reference - bias), and the joint limits less their margin: one sample of one leg, linear in four knots
+/// and in the bias of the leg's mean posture.
 class PostureResiduals {
  public:
   PostureResiduals(const RobotLegs& legs, const GaitTask& task, Foot foot, std::size_t sample, std::size_t knots);
@@ -185,13 +186,13 @@ class PostureResiduals {
   }
 
  private:
-  static constexpr double kLimitMargin_rad = 0.07;  ///< 4 degrees: the generator keeps 2 with a posture added
+  static constexpr double kLimitMargin_rad = 0.07;  ///< 4 degrees: the generator keeps 2 degrees after adding a posture
   SplineBasis basis_;
   LegVector<double> stand_, reference_, reference_weight_, lower_, upper_;
   double limit_weight_;
 };
 
-/// Keeps the mean posture near the reference's.
+/// weight bias: keeps the mean posture near the reference's.
 struct BiasResiduals {
   LegVector<double> weight;
 
@@ -204,7 +205,7 @@ struct BiasResiduals {
   }
 };
 
-/// Second difference of the knots of one leg.
+/// weight (before - 2 here + after): second difference of the knots of one leg.
 struct SmoothResiduals {
   double weight;
 

@@ -12,7 +12,7 @@ double stance_phase(double phase, Foot foot, double duty_factor) {
 }
 
 Roll hike(const GaitTask& task, double phase) {
-  // Highest on the left early in its swing, where a foot that has just left the ground needs the room.
+  // The left side is highest early in its swing, where a foot that has just lifted off needs the room.
   const double left_peak = task.duty_factor + 0.03;
   const double angle = 2.0 * std::numbers::pi * (phase - left_peak);
   return {task.hike_rad * std::cos(angle), -2.0 * std::numbers::pi * task.hike_rad * std::sin(angle)};

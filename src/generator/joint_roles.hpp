@@ -1,5 +1,4 @@
-// Which joint of a robot plays which part of the human body, found by name: "left_knee", "right_hip_roll", "waist_yaw",
-// ...
+// The joints of a robot by their role in the human body, found by name: "left_knee", "right_hip_roll", "waist_yaw".
 #pragma once
 
 #include <array>
@@ -16,14 +15,14 @@ inline constexpr int kLegJoints = 6;
 inline constexpr std::array<const char*, kLegJoints> kLegRoleNames = {"hip_pitch", "hip_roll",    "hip_yaw",
                                                                       "knee",      "ankle_pitch", "ankle_roll"};
 
-/// Indices in the robot's joint order. Legs are required, the rest moves only where the robot has it.
+/// Indices in the robot's joint order. Legs are required; other parts move only if the robot has them.
 struct JointRoles {
   PerFoot<std::array<int, kLegJoints>> leg{};  ///< by LegRole
   std::optional<int> waist_yaw, waist_roll, waist_pitch, head_yaw, head_pitch;
   PerFoot<std::optional<int>> shoulder_pitch, shoulder_roll, elbow;
 };
 
-/// Throws model::ConfigError when a leg lacks one of the six roles or has another moving joint.
+/// Throws model::ConfigError if a leg lacks one of the six roles or has another moving joint.
 JointRoles find_joint_roles(const model::RobotModel& robot);
 
 }  // namespace pmg::generator

@@ -1,5 +1,5 @@
-// A leg's kinematics for any scalar: the optimiser differentiates it automatically (KDL, used elsewhere, is double
-// only).
+// Kinematics of a leg for any scalar type, because the optimiser differentiates automatically. (KDL, used elsewhere,
+// has double only.)
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ using Matrix3 = Eigen::Matrix<T, 3, 3>;
 template <typename T>
 using LegVector = Eigen::Matrix<T, kLegJoints, 1>;
 
-/// One leg as the URDF has it: fixed transforms between revolute joints, from the base down.
+/// One leg of the URDF: fixed transforms between revolute joints, from the base down.
 struct LegGeometry {
   struct Segment {
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< joint frame in the previous joint's frame at angle zero
@@ -29,20 +29,20 @@ struct LegGeometry {
     std::size_t role = 0;                             ///< LegRole of this joint
   };
   std::array<Segment, kLegJoints> segments;
-  std::array<Eigen::Vector3d, 4>
-      sole;  ///< corners [m] in the last joint's frame: front-left, front-right, rear-left, rear-right
+  /// Corners [m] in the last joint's frame: front-left, front-right, rear-left, rear-right.
+  std::array<Eigen::Vector3d, 4> sole;
 };
 
 LegGeometry leg_geometry(const model::RobotModel& robot, const JointRoles& roles, Foot foot);
 
-/// A foot seen from the base B: attitude, origin of the last joint's frame, and their rates.
+/// Foot relative to the base B: attitude, origin of the last joint's frame, and their rates.
 template <typename T>
 struct FootMotion {
   Matrix3<T> R_BF;
   Vector3<T> p_BF, v_BF, omega_BF;
 };
 
-/// q [rad] and dq [rad per unit of time] by LegRole; rates come per the same unit of time.
+/// (q, dq) => (foot). q [rad] and dq [rad per unit of time] by LegRole; rates are per the same unit of time.
 template <typename T>
 FootMotion<T> foot_motion(const LegGeometry& leg, const LegVector<T>& q, const LegVector<T>& dq) {
   using std::cos;
@@ -56,7 +56,7 @@ FootMotion<T> foot_motion(const LegGeometry& leg, const LegVector<T>& q, const L
     foot.R_BF = foot.R_BF * segment.R.cast<T>();
     const Vector3<T> axis_B = foot.R_BF * segment.axis.cast<T>();
     foot.omega_BF += axis_B * dq[role];
-    // Rodrigues' formula about a constant axis
+    // Rodrigues: R = I + sin(q) K + (1 - cos(q)) K^2.
     const Eigen::Matrix3d K{{0.0, -segment.axis.z(), segment.axis.y()},
                             {segment.axis.z(), 0.0, -segment.axis.x()},
                             {-segment.axis.y(), segment.axis.x(), 0.0}};
@@ -74,15 +74,15 @@ FootMotion<T> foot_motion(const LegGeometry& leg, const LegVector<T>& q, const L
   return foot;
 }
 
-/// Where a foot meets the ground: the lowest point of its sole, softened over the corners so that it moves continuously
-/// from an edge to the middle of a flat sole.
+/// Contact of a foot with the ground: the lowest point of its sole, softened over the corners, so that it moves
+/// continuously from an edge to the middle of a flat sole.
 template <typename T>
 struct SoleContact {
   Vector3<T> p;  ///< [m] in the base frame
   Vector3<T> v;  ///< velocity of the sole's material point there
 };
 
-/// softness_m: corners that lie within it of the lowest share the contact.
+/// Contact point p = sum w_c c / sum w_c over the corners c, w_c = exp((lowest z - c_z) / softness_m).
 template <typename T>
 SoleContact<T> sole_contact(const LegGeometry& leg, const FootMotion<T>& foot, double softness_m) {
   using std::exp;

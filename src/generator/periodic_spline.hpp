@@ -14,7 +14,7 @@ struct SplineBasis {
   std::array<double, 4> slope{};
 };
 
-/// phase: any real number, in cycles. Knot i's function has its peak at phase i / knots.
+/// phase: any real number [cycles]. The function of knot i peaks at phase i / knots.
 inline SplineBasis spline_basis(double phase, std::size_t knots) {
   const double n = static_cast<double>(knots);
   const double x = (phase - std::floor(phase)) * n;

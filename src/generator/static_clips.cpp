@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kAngleStep_rad = 0.02;
 constexpr double kHeightStep_m = 0.005;
-constexpr double kStraightKnee_rad = 0.12;  // a squat's highest row bends the knees at least this much
+constexpr double kStraightKnee_rad = 0.12;  // least knee angle of the highest squat row
 
-constexpr double kLeanCompensation = 0.4;      // part of the lean's sideways centre of mass that the pelvis takes back
-constexpr double kSquatArms_rad_per_m = 1.75;  // arms forward as counterweight
+constexpr double kLeanCompensation = 0.4;      // share of the lean's shift of mass that the pelvis undoes
+constexpr double kSquatArms_rad_per_m = 1.75;  // arms forward as a counterweight
 
-/// Both feet stay where they stand while the base moves to `base` (deviation from its standing place, x forward, y
-/// left, z up) with attitude R_WB. Fills the legs of q.
+/// Moves the base while both feet stay in place. base: deviation from its standing place (x forward, y left, z up);
+/// R_WB: its attitude. Sets the legs of q.
 void place_base(const JointRoles& roles, const RobotLegs& legs, const Eigen::Matrix3d& R_WB,
                 const Eigen::Vector3d& base, JointVector& q) {
   for (const Foot foot : {kLeft, kRight}) {
@@ -36,8 +36,8 @@ void place_base(const JointRoles& roles, const RobotLegs& legs, const Eigen::Mat
   }
 }
 
-/// Moves the base along `direction` until the centre of mass is `target_m` along it (from the standing base); secant
-/// method.
+/// Moves the base along `direction` until the centre of mass is `target_m` along it, measured from the standing base
+/// (secant method).
 JointVector balance(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs,
                     const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& base, const Eigen::Vector3d& direction,
                     double target_m, const JointVector& start) {
@@ -62,7 +62,7 @@ JointVector balance(const model::RobotModel& robot, const JointRoles& roles, con
   return q;
 }
 
-/// Rows outward from standing in both directions, so that each starts from its neighbour's posture.
+/// Rows outward from standing in both directions; each one starts from its neighbour's posture.
 StaticClip rows(double lower, double upper, const std::function<double(double)>& step, const JointVector& q_stand,
                 const std::function<JointVector(double, const JointVector&)>& posture) {
   StaticClip clip;
@@ -73,7 +73,7 @@ StaticClip rows(double lower, double upper, const std::function<double(double)>&
     double command = 0.0;
     while (std::abs(command - end) > 1e-9) {
       const double next = command + std::copysign(step(command), end);
-      // grid values, not sums of steps; the last row is the range's end itself
+      // grid values, not sums of steps; the last row is exactly the end of the range
       command = std::abs(end - next) < 1e-9 || std::abs(next) > std::abs(end) ? end : std::round(next * 1e6) / 1e6;
       q = posture(command, q);
       if (end < 0.0) {
@@ -103,8 +103,8 @@ StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, co
         if (roles.waist_pitch) {
           q[*roles.waist_pitch] = q_stand[*roles.waist_pitch] + (1.0 - pelvis_share) * pitch;
         }
-        // About the hips' own axis, so the legs stay as they are: moving the hips back would turn both legs alike,
-        // and in a stride lift one foot off the ground. The centre of mass stays well over the feet.
+        // About the hips' own axis, so the legs keep their posture. Moving the hips back would turn both legs equally,
+        // and in a stride it would lift one foot off the ground. The centre of mass stays well over the feet.
         place_base(roles, legs, pitched(pelvis_share * pitch), Eigen::Vector3d::Zero(), q);
         return q;
       });
@@ -140,7 +140,7 @@ StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, c
     }
     return balance(robot, roles, legs, level, Eigen::Vector3d(0.0, 0.0, height), Eigen::Vector3d::UnitX(), com_x, q);
   };
-  // The highest row: where the knees are nearly straight, or the range's end.
+  // The highest row: the knees nearly straight, or the end of the range.
   constexpr double kFineStep_m = 0.001;
   double highest = 0.0;
   JointVector q = q_stand;
@@ -155,7 +155,7 @@ StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, c
     }
     highest += kFineStep_m;
   }
-  // Knee angle over height is steep near the straight leg: finer rows there.
+  // Near the straight leg the knee angle is steep over the height: finer rows.
   return rows(
       robot.command_limits.lower[kHeight], highest,
       [](double height) { return height > -0.01 ? kFineStep_m : kHeightStep_m; }, q_stand, posture);

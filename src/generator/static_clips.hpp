@@ -1,4 +1,4 @@
-// The posture clips: feet flat and in place on the ground, the centre of mass above them.
+// The posture clips: feet flat and in place, the centre of mass above them.
 #pragma once
 
 #include "generator/gait_optimization.hpp"
@@ -8,14 +8,14 @@
 
 namespace pmg::generator {
 
-/// The part of a bend that the pelvis takes where the waist can take the rest; people share alike.
+/// The pelvis' share of a bend; the waist takes the rest. People's share is similar.
 inline constexpr double kPelvisShareOfPitch = 0.4;
 
-/// Torso pitch (+ forward) over the robot's command range: pelvis about the hips and waist; the legs stand as they are.
+/// Torso pitch (+ forward) over the robot's command range, by the pelvis about the hips and by the waist.
 StaticClip make_bend(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
-/// Torso roll (+ right); base level, moved a little to the other side.
+/// Torso roll (+ right); the base stays level and moves a little to the other side.
 StaticClip make_lean(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
-/// Base height; torso upright. Ends where the legs are nearly straight if the range goes beyond.
+/// Base height with an upright torso. The clip ends where the legs are nearly straight, if the range goes beyond.
 StaticClip make_squat(const model::RobotModel& robot, const JointRoles& roles, const RobotLegs& legs);
 
 /// The legs' part of a posture: deviation from stand at this command, linear between rows as in the generator.

@@ -24,10 +24,10 @@ GaitTask forward_task(const Making& making) {
   task.foot_gap_m = 0.045;
   task.flat_from = 0.2;
   task.flat_to = 0.62;
-  // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid one pivots over its
-  // toe edge; that at half amplitude it shall neither leave the other foot in the air nor scrape the ground limits by
-  // how much. The pelvis lifts the swinging side, and the ankle moves about a mean a few degrees above the published
-  // one: its movement counts, not its offset.
+  // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid foot pivots over its
+  // toe edge. This pivoting is limited, because at half amplitude it lifts the other foot or scrapes the ground.
+  // Instead the pelvis lifts the swinging side, and the ankle moves about a mean a few degrees above the published one:
+  // its movement matters, not its offset.
   task.hike_rad = 0.14;
   task.reference = published_reference(making.legs);
   task.shape = {{kHipPitch, 0.956, 5.5 * kRadPerDegree},
@@ -51,7 +51,7 @@ GaitTask forward_task(const Making& making) {
   task.weights.smooth = 1.2e-3;
   task.scenarios = scenarios(making, 0.36);
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
-  // Walking people stand higher on straighter legs than the robot does; asked for its standing height it walks so.
+  // Walking people stand higher on straighter legs than the robot. This scenario is the gait at the standing height.
   task.scenarios.push_back({1.0, 0.6, posture_addition(making, kHeight, -0.012)});
   return task;
 }
@@ -76,11 +76,11 @@ GaitTask backward_task(const Making& making, const LegTrajectory& forward, const
   return task;
 }
 
-// Timing: the four sidesteps of CMU subject 69 (mocap.cs.cmu.edu): 1.00 .. 1.03 s a cycle, 53 .. 65 % stance.
+// Timing of the four sidesteps of CMU subject 69 (mocap.cs.cmu.edu): 1.00 to 1.03 s per cycle, 53 to 65 % stance.
 GaitTask lateral_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.02;
-  task.duty_factor = 0.61;  // with walking's windows: mixtures of the two then agree about the ground
+  task.duty_factor = 0.61;  // same windows as walking, so mixtures of the two agree on contact
   task.velocity = {0.0, 0.35, 0.0};
   task.symmetric = false;
   task.clearance_m = 0.045;
@@ -93,13 +93,13 @@ GaitTask lateral_task(const Making& making) {
   task.weights.velocity_yaw = 6.0;
   task.scenarios = scenarios(making, 0.6);
   task.scenarios.push_back({0.5, 0.5, posture_addition(making, kRoll, -0.12)});
-  // Feet 0.31 m apart on average: the closing foot then keeps clear of the other.
+  // Feet 0.31 m apart on average, so the closing foot stays clear of the other.
   task.reference = stepping_reference(making.legs, task, {.half_width_m = 0.155, .lift_m = 0.05, .height_m = -0.02});
   return task;
 }
 
-// Timing: steady turning in circle walks of CMU subject 69 (1.17 .. 1.20 s, 58 .. 60 % stance). The same subject's
-// turns in place are quarter turns that stop in between, 84 % stance: such windows can't be blended with walking.
+// Timing of steady turning in circle walks of CMU subject 69 (1.17 to 1.20 s, 58 to 60 % stance). The subject's turns
+// in place are quarter turns with stops, 84 % stance; such windows can't be blended with walking.
 GaitTask turn_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.18;
@@ -143,7 +143,7 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 
-  std::mutex one_at_a_time;  // several clips are made at once
+  std::mutex one_at_a_time;  // several clips are made at the same time
   const std::function<void(const std::string&)> tell = [&](const std::string& name) {
     const std::lock_guard lock(one_at_a_time);
     progress(name);

@@ -1,4 +1,4 @@
-// A whole clip library for a robot, made from published gait figures.
+// Makes a whole clip library for a robot from published gait figures.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace pmg::generator {
 
-/// with_corners: clips of two velocities too (corner_synthesis.hpp). progress is told the name of the clip that is
-/// being made, many times a second and one call at a time, but from several threads; it may throw to stop.
+/// with_corners: also clips of two velocities (corner_synthesis.hpp). progress gets the name of the clip that is being
+/// made, many times a second, one call at a time but from several threads. It may throw to stop.
 ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
                        const std::function<void(const std::string&)>& progress);
 
-/// Where a clip's numbers come from, one line for its YAML.
+/// Source of a clip's numbers, one line for its YAML.
 std::string clip_source(const std::string& name);
 
 }  // namespace pmg::generator

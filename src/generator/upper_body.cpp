@@ -30,8 +30,8 @@ void move_upper_body(const JointRoles& roles, const UpperBody& body, double phas
     q[roles.leg[side][kHipPitch]] -= body.pelvis_tilt_rad;
     swing_arm(roles, body, side, side == kLeft ? phase : phase + 0.5, q);
   }
-  // The torso is upright in the heading frame, turned by its yaw; the waist joints are what the tilted pelvis leaves:
-  // R_BT = Ry(-tilt) Rx(-roll) Rz(yaw) = Rz(a) Rx(b) Ry(c).
+  // The torso is upright in the heading frame, turned by its yaw. With R_HB = Rx(roll) Ry(tilt) the waist joints (a, b,
+  // c) follow from R_BT = Ry(-tilt) Rx(-roll) Rz(yaw) = Rz(a) Rx(b) Ry(c).
   const double yaw = body.torso_yaw_rad * std::cos(2.0 * std::numbers::pi * phase);
   const double roll = body.pelvis_roll_rad ? body.pelvis_roll_rad(phase) : 0.0;
   const Eigen::Matrix3d R_BT =

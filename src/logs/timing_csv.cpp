@@ -8,7 +8,7 @@
 namespace pmg::logs {
 
 namespace {
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 }
 
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
@@ -28,9 +28,9 @@ void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
     if (!whole || (!to.t_s.empty() && row[0] < to.t_s.back())) continue;
     to.t_s.push_back(row[0]);
     to.tick_us.push_back(row[1]);
-    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNone);
-    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNone);
-    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNone);
+    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNotMeasured);
+    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNotMeasured);
+    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNotMeasured);
   }
 }
 

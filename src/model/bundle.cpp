@@ -66,7 +66,7 @@ std::vector<fs::path> regular_files(const fs::path& directory) {
   return files;
 }
 
-/// Only the one key: load_robot has checked the file already.
+/// Reads only this key: load_robot has checked the file already.
 std::string urdf_name(const fs::path& robot_yaml) {
   return ConfigReader::from_file(robot_yaml).required<std::string>("urdf");
 }
@@ -100,7 +100,7 @@ std::string files_sha256(std::vector<fs::path> files) {
   std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
   Sha256 hash;
   for (const fs::path& file : files) {
-    std::error_code unreadable;  // add_file says it
+    std::error_code unreadable;  // add_file reports it
     hash.add(fmt::format("{}\n{}\n", file.filename().string(), fs::file_size(file, unreadable)));
     add_file(file, hash);
   }

@@ -1,4 +1,4 @@
-// What a controller runs on, as one number: the SHA-256 of every file that decides its behaviour besides the program.
+// One SHA-256 over every file that decides a controller's behaviour, the program itself excepted.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,15 @@
 namespace pmg::model {
 
 struct Bundle {
-  /// Name and SHA-256 in hexadecimal, in the order of names. Names say what a file is to the robot, not where it lies:
-  /// "robot.yaml", the URDF's name, "clips/...", "policies/...", "calibration/...".
+  /// Name and SHA-256 in hexadecimal, sorted by name. A name says which role a file has, not its path: "robot.yaml",
+  /// the URDF's name, "clips/...", "policies/...", "calibration/...".
   std::vector<std::pair<std::string, std::string>> files;
-  /// Over the lines "SHA256  NAME\n" of files: what `sha256sum` prints in the robot's folder, hashed once more.
+  /// SHA-256 over the lines "SHA256  NAME\n" of files, which is the output of `sha256sum` in the robot's folder.
   std::string sha256;
 };
 
-/// Hashes robot.yaml, the URDF that it names, the files of this clip library, these policy files, and every file in
-/// calibration/ beside robot.yaml. Throws ConfigError naming a file that can't be read.
+/// Hashes robot.yaml, its URDF, the files of this clip library, these policy files, and every file in calibration/
+/// beside robot.yaml. Throws ConfigError naming a file that can't be read.
 Bundle bundle(const RobotModel& robot, const std::filesystem::path& clips,
               const std::vector<std::filesystem::path>& policies = {});
 
@@ -27,7 +27,7 @@ Bundle bundle(const RobotModel& robot, const std::filesystem::path& clips,
 /// ConfigError naming a file that can't be read.
 std::string files_sha256(std::vector<std::filesystem::path> files);
 
-/// One number for the clips that a policy was trained on: files_sha256 of the library's files.
+/// files_sha256 of the library's files. A policy's metadata identifies its clips by this hash.
 std::string clip_library_sha256(const std::filesystem::path& clips);
 
 }  // namespace pmg::model

@@ -23,7 +23,7 @@ constexpr std::array<const char*, kVelocityChannels> kNegativeNames = {"backward
 constexpr std::array<const char*, 3> kPostureNames = {"bend", "lean", "squat"};
 constexpr std::array<const char*, 2> kFootNames = {"left", "right"};
 constexpr std::size_t kMinSamples = 4, kMaxSamples = 1024;
-constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far above a round-off
+constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far above rounding
 
 fs::path csv(const fs::path& directory, const std::string& name) { return directory / (name + ".csv"); }
 fs::path yaml(const fs::path& directory, const std::string& name) { return directory / (name + ".yaml"); }
@@ -82,7 +82,7 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
   return clip;
 }
 
-/// At command 0 the posture is the standing one, or the robot would jump when its clips are loaded.
+/// At command 0 the posture must be the standing one. Otherwise the robot jumps when its clips are loaded.
 void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
   std::size_t above = 0;
   while (above < table.command.size() && table.command[above] < 0.0) ++above;
@@ -129,8 +129,7 @@ struct NamedClip {
   PerFoot<double> contact_center;
 };
 
-/// Every clip that the generator may blend, with the mirrored ones it makes of positive clips without a negative
-/// partner.
+/// Every clip that the generator may blend, mirrored ones included.
 std::vector<NamedClip> blended_clips(const ClipLibrary& library) {
   std::vector<NamedClip> clips;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -203,7 +202,7 @@ Blend read_blend(const fs::path& directory) {
   return static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
 }
 
-/// A YAML double-quoted string.
+/// text as a YAML double-quoted string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -218,7 +217,7 @@ std::string quoted(const std::string& text) {
 std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q) {
   const auto n = static_cast<Eigen::Index>(q.size());
   const Eigen::Index joints = q.front().size();
-  // A cubic spline with the slopes m_k, sampled every 1/n: m_(k-1) + 4 m_k + m_(k+1) = 3 n (q_(k+1) - q_(k-1)).
+  // System: m_(k-1) + 4 m_k + m_(k+1) = 3 n (q_(k+1) - q_(k-1)).
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n, n), right(n, joints);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::Index before = (k + n - 1) % n, after = (k + 1) % n;

@@ -13,18 +13,18 @@ namespace pmg::model {
 
 struct ClipTable {
   std::filesystem::path file;
-  std::vector<double> command;  ///< of the column `command`, one a row; empty without that column
-  std::vector<JointVector> q;   ///< one a row, in the robot's joint order [rad]
-  std::vector<int> line;        ///< of each row
+  std::vector<double> command;  ///< the column `command`, one per row; empty without that column
+  std::vector<JointVector> q;   ///< one per row, in the robot's joint order [rad]
+  std::vector<int> line;        ///< line number of each row
 
   Place place(std::size_t row) const { return {file.string(), line[row]}; }
 };
 
-/// The columns are every joint by name and, where it is asked for, `command`, in any order. Throws ConfigError on
-/// a missing, unknown or repeated column, a row of another length, and what isn't a finite number.
+/// The columns are every joint by name and, if with_command, `command`, in any order. Throws ConfigError on a missing,
+/// unknown or repeated column, a row of another length, and a cell that isn't a finite number.
 ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& joints, bool with_command);
 
-/// The text that read_clip_table reads back to the same numbers. command: empty, or one a row.
+/// The text from which read_clip_table reads the same numbers. command: empty, or one per row.
 std::string format_clip_table(const JointIndex& joints, const std::vector<double>& command,
                               const std::vector<JointVector>& q);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kAxes = CommandInverse::kAxes.size();
 
-/// The commands, then the corrections.
+/// Names of the columns: the commands, then the corrections.
 std::vector<std::string> inverse_columns() {
   std::vector<std::string> names;
   for (const char* prefix : {"", "correction_"}) {
@@ -26,7 +26,7 @@ std::vector<std::string> inverse_columns() {
   return names;
 }
 
-/// For each of inverse_columns(), where it stands in the file.
+/// For each of inverse_columns(), its position in the file.
 std::array<std::size_t, 2 * kAxes> places(const NumberTable& table) {
   std::array<std::size_t, 2 * kAxes> place{};
   const std::vector<std::string> names = inverse_columns();

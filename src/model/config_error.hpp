@@ -1,4 +1,4 @@
-// The one error that bad input raises: robot.yaml, URDF, clips, scenarios. Apps print what() and exit with 2.
+// The error of every bad input: robot.yaml, URDF, clips, scenarios. Apps print what() and exit with 2.
 #pragma once
 
 #include <stdexcept>
@@ -6,21 +6,21 @@
 
 namespace pmg::model {
 
-/// what() is one line: "FILE:LINE:COLUMN: KEY: what is wrong; expected what". Line and column are left out where the
+/// what() is one line: "FILE:LINE:COLUMN: KEY: what is wrong; expected what". Line and column are missing where the
 /// input has none.
 class ConfigError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Where in an input something stands. Line and column count from 1; 0 means the input has none.
+/// A position in an input. Line and column count from 1; 0 means that the input has none.
 struct Place {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
-/// Throws the ConfigError that says so. The key may be empty.
+/// Throws the ConfigError with this text. The key may be empty.
 [[noreturn]] inline void raise(const Place& place, const std::string& key, const std::string& wrong,
                                const std::string& expected) {
   std::string text = place.file;

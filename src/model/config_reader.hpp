@@ -1,4 +1,4 @@
-// Strict reading of YAML: every key is asked for, every value is checked, and whatever is wrong says where it stands.
+// Strict reading of YAML: every key must be asked for, every value is checked, every error names its place.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -14,7 +14,7 @@
 
 namespace pmg::model {
 
-/// What a number must be besides finite; `expected` completes "expected ..." in the error.
+/// A condition on a number, besides being finite. `expected` completes "expected ..." in the error.
 struct NumberCheck {
   std::string expected;
   std::function<bool(double)> holds;
@@ -24,7 +24,7 @@ NumberCheck positive();
 NumberCheck non_negative();
 NumberCheck in_range(double lower, double upper);  ///< both ends included
 
-/// One YAML mapping of a file. Ask for its keys, then call finish(): keys that nobody asked for are errors, as are
+/// One YAML mapping of a file. Ask for its keys, then call finish(): keys that nobody asked for are errors, and so are
 /// repeated ones. Every error is a ConfigError that names file, line, column and the key's path
 /// ("joints.left_knee.kp_Nm_per_rad").
 class ConfigReader {
@@ -55,7 +55,7 @@ class ConfigReader {
   const std::vector<std::string>& keys() const { return order_; }  ///< in the file's order
   Place place() const { return place_; }                           ///< of the mapping itself
   Place place(const std::string& key) const;                       ///< of the key's value, or of the mapping
-  std::string path(const std::string& key) const;                  ///< the key with what it lies in
+  std::string path(const std::string& key) const;                  ///< the key's full path
 
   /// Throws at the key's place.
   [[noreturn]] void fail(const std::string& key, const std::string& wrong, const std::string& expected) const;
@@ -81,10 +81,10 @@ class ConfigReader {
   Place place_;
   std::map<std::string, Entry> entries_;
   std::vector<std::string> order_;
-  std::vector<std::string> known_;  ///< every key that was asked for, there or not
+  std::vector<std::string> known_;  ///< every key that was asked for, whether it exists or not
 };
 
-// The types that exist; everything else doesn't link.
+// The supported types; any other type doesn't link.
 #define PMG_CONFIG_TYPE(...)                         \
   template <>                                        \
   std::string ConfigReader::describe<__VA_ARGS__>(); \

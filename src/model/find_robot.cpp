@@ -10,7 +10,7 @@ namespace pmg::model {
 namespace fs = std::filesystem;
 namespace {
 
-/// Folders that hold robots: beside the running binary (bin/../share/pmg) and in the source tree.
+/// Folders that contain robots: beside the running binary (bin/../share/pmg) and in the source tree.
 std::vector<fs::path> robot_folders() {
   std::error_code error;
   const fs::path binary = fs::read_symlink("/proc/self/exe", error);

@@ -1,4 +1,4 @@
-// What only a simulation knows of its robot.
+// The true state of a robot, which only a simulation knows.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace pmg::model {
 
-/// For metrics, logs and pictures, never for control. Frames: world W, base B, torso T.
+/// For metrics, logs and pictures, never for control. Frames: world W, base B, torso T. [m], [m/s], [rad/s].
 struct GroundTruth {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();

@@ -1,4 +1,4 @@
-// The one place where joints have an order.
+// The one place that defines the order of joints.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace pmg::model {
 
-/// Joint names in the robot's order (that of robot.yaml), and back.
+/// Joint names in the robot's order (that of robot.yaml), and the way back.
 class JointIndex {
  public:
   JointIndex() = default;

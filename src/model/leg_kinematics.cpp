@@ -46,7 +46,7 @@ BaseAttitude::Result BaseAttitude::compute(const JointVector& q, const JointVect
   const Eigen::Matrix3d R_pitch = Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::Matrix3d R_roll = Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
 
-  // With the torso's yaw at zero the base would have this attitude; turning both by -its yaw gives H.
+  // The base's attitude while the torso's yaw is zero. Turning it by minus its own yaw gives R_HB.
   const Eigen::Matrix3d R_turned = R_pitch * R_roll * torso_.R().transpose();
   const double norm = std::hypot(R_turned(0, 0), R_turned(1, 0));
   const double cosine = norm > 0.0 ? R_turned(0, 0) / norm : 1.0;
@@ -58,7 +58,7 @@ BaseAttitude::Result BaseAttitude::compute(const JointVector& q, const JointVect
   result.R_HB = R_yaw * R_turned;
 
   // omega_HT = yaw rate * z + Rz(yaw) (pitch rate * y + Ry(pitch) roll rate * x), and omega_HB = omega_HT - omega_BT.
-  // The free yaw rate is what makes the z component of omega_HB zero; it doesn't touch the other two.
+  // The free yaw rate sets the z component of omega_HB to zero; the other two don't depend on it.
   const Eigen::Vector3d omega_HT =
       R_yaw * (pitch_rate_rad_s * Eigen::Vector3d::UnitY() + roll_rate_rad_s * R_pitch.col(0));
   Eigen::Vector3d omega_BT_B = Eigen::Vector3d::Zero();

@@ -8,7 +8,7 @@
 
 namespace pmg::model {
 
-/// Throws std::invalid_argument when no chain of the robot's joints leads from one link to the other.
+/// Throws std::invalid_argument if no chain of the robot's joints leads from one link to the other.
 ChainKinematics chain_between(const RobotModel& robot, const std::string& from, const std::string& to);
 
 }  // namespace pmg::model

@@ -7,9 +7,9 @@
 namespace pmg::model {
 namespace {
 
-constexpr double kParallel = 1e-3;       // 1 - |cos| of the axes: under 3 degrees
+constexpr double kParallel = 1e-3;       // 1 - |cos| of the axes: 2.6 degrees
 constexpr double kSamePlace_m = 1e-3;    // exports from CAD differ by less
-constexpr double kSameAngle_rad = 1e-6;  // limits and postures are typed in, both sides alike
+constexpr double kSameAngle_rad = 1e-6;  // limits and postures are typed in, the same for both sides
 
 std::string partner_name(const std::string& name) {
   if (name.starts_with("left_")) return "right_" + name.substr(5);
@@ -40,7 +40,7 @@ MirrorMap find_mirror(const RobotModel& robot, const UrdfTree& tree) {
     if (!found) raise(place, key, "has no mirror image", "a joint " + other_name);
     const Joint& other = robot.joints[static_cast<std::size_t>(*found)];
 
-    // A rotation vector (x, y, z) is seen as (-x, y, -z) in a mirror whose normal is y.
+    // Reflection in the plane with normal y turns a rotation vector (x, y, z) into (-x, y, -z).
     const Axis mine = axis_of(robot, tree, i), theirs = axis_of(robot, tree, *found);
     const KDL::Vector seen(-mine.direction.x(), mine.direction.y(), -mine.direction.z());
     const double cosine = KDL::dot(seen, theirs.direction);

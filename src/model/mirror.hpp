@@ -1,4 +1,4 @@
-// Which joint is which one's mirror image.
+// The mirror image of each joint.
 #pragma once
 
 #include "model/robot_model.hpp"
@@ -6,10 +6,9 @@
 
 namespace pmg::model {
 
-/// Joint i's counterpart under reflection in the sagittal plane, found from the names (left_/right_; all others are
-/// their own) and the axes in the zero posture. Throws ConfigError when a partner is missing, its axis isn't parallel
-/// to the mirrored one, its origin isn't the mirrored one (1 mm), or its limits or standing angle aren't the mirrored
-/// ones.
+/// Each joint's counterpart under reflection in the sagittal plane, found from the names (left_/right_; a joint without
+/// such a name is its own counterpart) and from the axes in the zero posture. Throws ConfigError if a partner is
+/// missing, or if its axis (2.6 degrees), origin (1 mm), limits or standing angle are not the mirrored ones.
 MirrorMap find_mirror(const RobotModel& robot, const UrdfTree& tree);
 
 }  // namespace pmg::model

@@ -19,7 +19,7 @@ bool same(char a, char b) { return lower(a) == lower(b); }
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Row i holds the distances between the first i letters of a and every beginning of b.
+  // Row i: the distances between the first i letters of a and every beginning of b.
   std::vector<std::size_t> before_last, last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -61,7 +61,7 @@ std::filesystem::path nearest_file(const std::filesystem::path& file) {
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->path().extension() == file.extension()) names.push_back(entry->path().stem().string());
   }
-  std::ranges::sort(names);  // a folder has no order
+  std::ranges::sort(names);  // directory iterators have no order
   const std::string nearest = nearest_name(file.stem().string(), names);
   return nearest.empty() ? "" : file.parent_path() / (nearest + file.extension().string());
 }

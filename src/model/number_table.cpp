@@ -16,7 +16,7 @@ namespace {
 
 struct Cell {
   std::string_view text;
-  int column = 1;  ///< of its first character, from 1
+  int column = 1;  ///< position of its first character in the line, from 1
 };
 
 std::vector<Cell> split(std::string_view line) {

@@ -1,5 +1,4 @@
-// What crosses the bus: the state that the robot reports and the command it is given. Fixed capacity, trivially
-// exchangeable.
+// Data on the bus: the robot's state and its command. Fixed capacity, trivially exchangeable.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +9,7 @@
 
 namespace pmg::model {
 
-/// What a robot has: no true base velocity, height or contact force.
+/// The measurements of a robot. It has no true base velocity, height or contact force.
 struct RobotState {
   std::int64_t stamp_ns = 0;     ///< by the Clock of the run
   std::uint64_t bus_sample = 0;  ///< counts bus cycles
@@ -21,9 +20,9 @@ struct RobotState {
   Eigen::Quaterniond orientation_WI = Eigen::Quaterniond::Identity();  ///< the IMU's own estimate
 };
 
-/// What the drives are given: tau = kp (q - q_meas) + kd (dq - dq_meas) + tau_ff, held until the next.
+/// The drives' command: tau = kp (q - q_meas) + kd (dq - dq_meas) + tau_ff, held until the next command.
 struct JointCommand {
-  std::uint64_t bus_sample = 0;       ///< of the state that it was computed from
+  std::uint64_t bus_sample = 0;       ///< of the state that the command was computed from
   JointVector q, dq, kp, kd, tau_ff;  ///< [rad], [rad/s], [Nm/rad], [Nm s/rad], [Nm]
 };
 

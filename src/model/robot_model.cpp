@@ -127,7 +127,7 @@ void read_policy_joints(RobotModel& robot, ConfigReader& reader) {
   }
 }
 
-/// The chain from the base to a link, and which joint each of its moving segments is.
+/// (link) => (chain from the base, joint order index of each of its moving joints).
 std::vector<int> find_chain(const RobotModel& robot, const std::string& link, KDL::Chain& chain) {
   robot.tree.getChain(robot.base_link, link, chain);
   std::vector<int> joints;
@@ -198,8 +198,8 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   robot.directory = directory;
   robot.name = reader.required<std::string>("name");
   const UrdfTree tree = read_urdf(directory / reader.required<std::string>("urdf"));
-  if (reader.has("policy")) reader.required<std::string>("policy");  // what runs by default: runtime/control_setup.hpp
-  if (reader.has("motor")) reader.required<std::string>("motor");    // what simulations read: sim/motors_in_force.hpp
+  if (reader.has("policy")) reader.required<std::string>("policy");  // read by src/control
+  if (reader.has("motor")) reader.required<std::string>("motor");    // read by sim/motors_in_force.hpp
   robot.urdf = tree.urdf;
   robot.tree = tree.tree;
   robot.base_inertia = tree.root_inertia;

@@ -1,4 +1,4 @@
-// The robot: robot.yaml and its URDF, read once, validated whole. Nothing in C++ knows a particular robot.
+// The robot: robot.yaml and its URDF, read once, validated whole. No C++ code knows a particular robot.
 #pragma once
 
 #include <urdf_model/model.h>
@@ -20,7 +20,7 @@
 
 namespace pmg::model {
 
-/// Where a drive sits on the bus: EtherCAT slave and the CAN node behind it.
+/// Address of a drive: a bus and a node on it.
 struct BusAddress {
   std::string bus;  ///< "can0", "ethercat", ...
   int node = 0;
@@ -36,11 +36,11 @@ struct Joint {
   double armature_kg_m2 = 0.0;  ///< rotor inertia seen at the joint
   double damping_Nm_s_per_rad = 0.0, friction_Nm = 0.0;
   double stand_rad = 0.0;
-  bool policy = false;  ///< driven by the policy (the legs); the others follow q_ref
+  bool policy = false;  ///< the policy drives it (the legs); other joints follow q_ref
   BusAddress bus;
 };
 
-/// One foot: the box that touches the ground. Its bottom face is the sole.
+/// One foot: the box that touches the ground; its bottom face is the sole.
 struct FootModel {
   std::string link;
   Eigen::Vector3d box_center_F = Eigen::Vector3d::Zero();     ///< [m] in the foot link's frame
@@ -55,7 +55,7 @@ struct ImuModel {
 
 struct RobotModel {
   std::string name;
-  std::filesystem::path directory;  ///< where robot.yaml lies; clips/ and policies/ are beside it
+  std::filesystem::path directory;  ///< folder of robot.yaml, clips/ and policies/
   JointIndex joint_index;
   std::vector<Joint> joints;  ///< in joint_index order
   std::string base_link, torso_link;
@@ -67,10 +67,10 @@ struct RobotModel {
   KDL::Tree tree;  ///< rooted at base_link, inertias included (the root's own: base_inertia)
   KDL::RigidBodyInertia base_inertia;
   PerFoot<KDL::Chain> leg_chain;         ///< base_link -> foot link
-  PerFoot<std::vector<int>> leg_joints;  ///< joint order index of each joint of leg_chain, from the base down
+  PerFoot<std::vector<int>> leg_joints;  ///< joint order index of each moving joint of leg_chain, from the base down
   std::vector<int> torso_joints;         ///< joints between base_link and torso_link, from the base up
   KDL::Chain torso_chain;                ///< base_link -> torso_link
-  MirrorMap mirror;                      ///< found from names (left_/right_) and axes
+  MirrorMap mirror;                      ///< found from names (left_/right_) and axes (mirror.hpp)
   double total_mass_kg = 0.0;
   double standing_height_m = 0.0;  ///< base_link origin above the soles in the standing posture
 
@@ -82,7 +82,8 @@ struct RobotModel {
 /// Reads DIRECTORY/robot.yaml and the URDF it names. Throws ConfigError on anything missing, unknown or implausible.
 RobotModel load_robot(const std::filesystem::path& directory);
 
-/// config/robots/NAME below the source tree or beside the installed binary, or NAME itself when it is a directory.
+/// config/robots/NAME beside the installed binary or in the source tree, or NAME itself if it is a directory. Throws
+/// ConfigError if there is none.
 std::filesystem::path find_robot(const std::string& name);
 
 }  // namespace pmg::model

@@ -11,10 +11,10 @@ namespace pmg::model {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
-/// Of the Jacobian's largest singular value: what is smaller moves no foot.
+/// Singular values below this share of the Jacobian's largest count as zero: such motions move no foot.
 constexpr double kRank = 1e-3;
-/// How much of a unit of virtual lift may be missing, or the torques don't tell the vertical force. A leg of five
-/// joints that is spread loses a little, because its foot turns.
+/// If more than this share of a unit of virtual lift is missing, the torques don't determine the vertical force. A
+/// spread leg of five joints loses a little, because its foot turns.
 constexpr double kLiftMiss = 0.2;
 
 }  // namespace
@@ -47,7 +47,7 @@ void SoleLoads::set_posture(const JointVector& q, const Eigen::Vector3d& gravity
 
 void SoleLoads::compute(Leg& leg, const JointVector& q, const Eigen::Vector3d& gravity_B) noexcept {
   const std::size_t n = leg.joints.size();
-  // Of each moving joint: its axis, a point on it, mass and first moment of the links between it and the next.
+  // For each moving joint: its axis, a point on it, and mass and first moment of the links up to the next joint.
   std::array<Eigen::Vector3d, kMaxLegJoints> axis, origin, moment_kg_m;
   std::array<double, kMaxLegJoints> mass_kg{};
   moment_kg_m.fill(Eigen::Vector3d::Zero());

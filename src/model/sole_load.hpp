@@ -1,5 +1,5 @@
-// How a robot's soles are loaded, from its legs' joint torques: nobody has force sensors. No heap after construction;
-// nothing keeps a reference to the robot.
+// Load of a robot's soles from the joint torques of its legs, because robots have no force sensors. No heap after
+// construction; nothing keeps a reference to the robot.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,27 +12,30 @@ namespace pmg::model {
 
 struct SoleLoad {
   double force_N = 0.0;                                 ///< along the sole's normal, positive when the ground pushes
-  double vertical_N = 0.0;                              ///< against gravity, likewise
+  double vertical_N = 0.0;                              ///< against gravity; positive when the ground pushes
   Eigen::Vector2d moment_Nm = Eigen::Vector2d::Zero();  ///< of the ground on the sole about its centre, its x and y
-  /// From the centre of pressure to the nearest edge of the sole [m]: a sole that stands on an edge has it there, one
-  /// that lies flat inside.
+  /// Distance from the centre of pressure to the nearest edge of the sole [m]:
+  ///   min(half_x - |M_y / F|, half_y - |M_x / F|).
+  /// About 0 for a sole that stands on an edge, larger for one that lies flat.
   double inside_m = 0.0;
 };
 
-/// Statics of each leg in one posture: J^T f = gravity torque of the leg - joint torques. Left out: the leg's inertia,
-/// and joint friction, whose error friction_N() tells. A leg with fewer than six joints gives the smallest f that
-/// explains its torques.
+/// Statics of each leg in one posture: J^T f = gravity torque of the leg - joint torques, so f = (J^T)^+ (...).
+/// Neglected: the leg's inertia, and joint friction, whose effect friction_N() estimates. For a leg with fewer than six
+/// joints f is the smallest wrench that explains its torques.
 class SoleLoads {
  public:
   explicit SoleLoads(const RobotModel& robot);
 
-  /// q [rad]: all joints. gravity_B: unit vector in the base frame.
+  /// Computes gravity torques and Jacobians. q [rad]: all joints. gravity_B: unit vector in the base frame.
   void set_posture(const JointVector& q, const Eigen::Vector3d& gravity_B) noexcept;
-  /// torque_Nm: of all joints, in this posture.
+  /// (torques of all joints in this posture [Nm]) => (loads).
   PerFoot<SoleLoad> of(const JointVector& torque_Nm) const noexcept;
 
-  /// How far friction may falsify vertical_N in this posture [N]: robot.yaml's in every joint of the leg, over its
-  /// lever, root of the sum of squares. Infinite where the torques don't tell the load, as of a straight leg.
+  /// Error of vertical_N that friction may cause in this posture [N]:
+  ///   sqrt(sum of (lift_i friction_i)^2) over the leg's joints,
+  /// with robot.yaml's friction [Nm] and lift_i, joint i's rate that raises the foot by 1 m/s [rad/m]. Infinite where
+  /// the torques don't determine the load, for example in a straight leg.
   double friction_N(Foot foot) const noexcept { return legs_[foot].friction_N; }
 
  private:
@@ -41,13 +44,13 @@ class SoleLoads {
 
   struct Leg {
     KDL::Chain chain;         // base -> foot link
-    std::vector<int> joints;  // index in the robot's joint order of each of its joints, from the base on
+    std::vector<int> joints;  // index of each of its joints in the robot's joint order, from the base on
     LegVector dry_friction_Nm;
     Eigen::Vector3d sole_center_F;
     Eigen::Vector2d half_sole_m;
     Eigen::Matrix3d R_BF = Eigen::Matrix3d::Identity();
-    LegVector gravity_Nm;                                                                   // holds the leg
-    Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxLegJoints, 6> J_inverse;  // pseudo-inverse
+    LegVector gravity_Nm;  // holds the leg against gravity
+    Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxLegJoints, 6> J_inverse;  // of the Jacobian
     double friction_N = 0.0;
   };
 

@@ -16,7 +16,7 @@
 namespace pmg::model {
 namespace {
 
-/// urdfdom says what is wrong on stderr only; this keeps it for the exception.
+/// Keeps urdfdom's error message, which otherwise goes to stderr only, for the exception.
 class Listener final : public console_bridge::OutputHandler {
  public:
   Listener() { console_bridge::useOutputHandler(this); }
@@ -34,8 +34,7 @@ Place place_in(const UrdfTree& tree, std::size_t at) {
           static_cast<int>(newline == std::string::npos ? at : at - newline - 1) + 1};
 }
 
-/// urdfdom takes `nan`, and says of other slips only that some element couldn't be parsed: look at the numbers
-/// ourselves.
+/// Checks the numbers in the text: urdfdom accepts `nan`, and reports other slips without their place.
 void check_numbers(const UrdfTree& tree) {
   for (const std::string name : {"value", "xyz", "rpy", "lower", "upper", "effort", "velocity", "ixx", "ixy", "ixz",
                                  "iyy", "iyz", "izz", "radius", "length", "size", "rgba"}) {
@@ -68,7 +67,7 @@ KDL::RigidBodyInertia to_kdl(const urdf::Inertial& inertial) {
   const KDL::Frame origin = to_kdl(inertial.origin);
   const KDL::RotationalInertia at_com(inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz,
                                       inertial.iyz);
-  // KDL turns a RigidBodyInertia into other axes, but not a RotationalInertia: turn one without mass.
+  // KDL rotates a RigidBodyInertia but not a RotationalInertia, so a body without mass is rotated.
   const KDL::RigidBodyInertia turned = origin.M * KDL::RigidBodyInertia(0.0, KDL::Vector::Zero(), at_com);
   return KDL::RigidBodyInertia(inertial.mass, origin.p, turned.getRotationalInertia());
 }
@@ -78,8 +77,8 @@ KDL::Joint to_kdl(const urdf::Joint& joint, const KDL::Frame& origin) {
   return {joint.name, origin.p, origin.M * to_kdl(joint.axis), KDL::Joint::RotAxis};
 }
 
-/// Positive mass, and principal moments that obey the triangle inequality: what no mass distribution has is a typing
-/// error.
+/// Positive mass, and principal moments that obey the triangle inequality. Others belong to no mass distribution, so
+/// they are typing errors.
 void check_inertia(const UrdfTree& tree, const urdf::Link& link) {
   const Place place = tree.place("link", link.name);
   const std::string key = "link " + link.name + " inertial";

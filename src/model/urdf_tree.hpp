@@ -1,4 +1,4 @@
-// A URDF file as a validated KDL tree. The conversion is ours because ROS' kdl_parser drags ROS in.
+// A URDF file as a validated KDL tree. The conversion is our own because ROS' kdl_parser depends on ROS.
 #pragma once
 
 #include <urdf_model/model.h>
@@ -15,18 +15,18 @@ namespace pmg::model {
 
 struct UrdfTree {
   std::filesystem::path file;
-  std::string text;  ///< of the file, to say where something stands
+  std::string text;  ///< of the file, to find an element's line
   urdf::ModelInterfaceSharedPtr urdf;
   KDL::Tree tree;  ///< rooted at the URDF's root link
   KDL::RigidBodyInertia root_inertia;
   std::map<std::string, KDL::Frame> link_pose;  ///< each link in the root link's frame, all joints at zero
 
-  /// Where the element (<joint name="..."> or <link name="...">) begins.
+  /// The place where the element (<joint name="..."> or <link name="...">) begins.
   Place place(const std::string& element, const std::string& name) const;
 };
 
-/// Reads and checks: every link has a positive mass and an inertia that some body could have; every joint is fixed or a
-/// revolute one with a unit axis and lower < upper limits. Throws ConfigError.
+/// Reads and checks: every link has a positive mass and a physically possible inertia; every joint is fixed, or
+/// revolute with a unit axis and lower < upper limits. Throws ConfigError.
 UrdfTree read_urdf(const std::filesystem::path& file);
 
 }  // namespace pmg::model

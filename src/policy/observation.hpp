@@ -1,4 +1,4 @@
-// The observation vector of one tick, assembled by the names of the layout.
+// The observation vector of one tick, assembled in the layout's order.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,17 +12,17 @@
 
 namespace pmg::policy {
 
-/// Fills the vector and keeps the frames that its older terms need. Preallocated; assemble() has no heap and no
-/// exception. Before enough ticks have passed the first frame stands for the older ones.
+/// Fills the vector and keeps the frames of its older terms. Preallocated; assemble() uses no heap and throws nothing.
+/// Until enough ticks have passed, the first frame replaces older ones.
 class Observation {
  public:
   explicit Observation(const model::RobotModel& robot);
 
-  /// Forgets the history: the next frame is the first.
+  /// Forgets the history; the next frame counts as the first.
   void reset() noexcept { frames_ = 0; }
 
-  /// state: what the robot reports; observed: u', or u for a baseline; last_action: the network's previous output, one
-  /// a policy joint.
+  /// (state, reference, observed command, last action) => (observation). observed: u', or u for a baseline.
+  /// last_action: the network's previous output, one per policy joint.
   const Eigen::VectorXf& assemble(const model::RobotState& state, const Reference& reference, const Command& observed,
                                   const Eigen::VectorXf& last_action) noexcept;
 

@@ -9,7 +9,7 @@ namespace pmg::policy {
 
 namespace {
 
-constexpr double kVelocityScale = 0.1;  // joint velocities reach 10 rad/s, everything else about 1
+constexpr double kVelocityScale = 0.1;  // joint velocities reach 10 rad/s, all other values about 1
 
 const char* name_of(Quantity quantity) {
   switch (quantity) {

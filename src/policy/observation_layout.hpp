@@ -1,5 +1,5 @@
-// What the actor sees: names, sizes, offsets and scales of the observation vector. The one definition; the controller's
-// assembler (observation.hpp) reads it, and training takes it from here as JSON.
+// The actor's observation: names, sizes, offsets and scales of the vector. This is the only definition: the
+// controller's observation.hpp reads it, and training gets it from here as JSON.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,12 @@
 
 namespace pmg::policy {
 
-/// A quantity that an observation term shows. Each element is scale * (value - origin).
+/// The quantity of an observation term. Each element is scale * (value - origin).
 enum class Quantity {
   kGyro,               ///< angular velocity in the IMU frame [rad/s]
   kGravityDirection,   ///< unit vector down, in the IMU frame
-  kCommand,            ///< what the policy observes (gco::MotionComposition), in the order of pmg::Channel
-  kUserCommand,        ///< the user's, admissible and rate-limited: Reference::command
+  kCommand,            ///< the policy's command (gco::MotionComposition), in the order of pmg::Channel
+  kUserCommand,        ///< the user's command, admissible and rate-limited: Reference::command
   kPhase,              ///< gain * sin(2 pi phi), gain * cos(2 pi phi), gain
   kReferencePosition,  ///< q_ref - q_stand [rad]
   kReferenceVelocity,  ///< dq_ref [rad/s]
@@ -30,14 +30,14 @@ struct ObservationTerm {
   int offset = 0;  ///< first element in the vector
   int size = 0;
   double scale = 1.0;
-  int age_ticks = 0;                 ///< 0: this tick; otherwise the value that was seen so many ticks ago
-  std::vector<std::string> element;  ///< one name an element: joint, channel or axis
-  std::vector<int> joint;            ///< index in the robot's joint order of each element; empty for non-joint terms
+  int age_ticks = 0;                 ///< 0: this tick; otherwise the value of that many ticks ago
+  std::vector<std::string> element;  ///< one name per element: joint, channel or axis
+  std::vector<int> joint;            ///< each element's index in the robot's joint order; empty for other terms
 };
 
 class ObservationLayout {
  public:
-  /// Older frames of what changes fastest: lets the actor infer velocities, delays and contacts.
+  /// Older frames of the fastest quantities; from them the actor infers velocities, delays and contacts.
   static constexpr int kHistoryAges_ticks[] = {2, 4, 6};
   static constexpr int kOldest_ticks = 6;
 

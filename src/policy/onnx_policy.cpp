@@ -21,9 +21,9 @@ constexpr const char* kMetadataKey = "pmg_policy";
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
-/// One thread: ONNX Runtime's pool would keep a core spinning beside the real-time threads. Without its memory arena
-/// and memory patterns an inference takes no lock and costs the same; what remains are 35 small heap allocations, the
-/// same ones in every inference.
+/// One thread, because ONNX Runtime's pool keeps a core spinning beside the real-time threads. Without memory arena and
+/// memory patterns an inference takes no lock and costs the same time. 35 small heap allocations remain, the same in
+/// every inference.
 Ort::SessionOptions session_options() {
   Ort::SessionOptions options;
   options.SetIntraOpNumThreads(1);
@@ -97,7 +97,7 @@ struct OnnxPolicy::Impl {
   void replay_golden_pairs() {
     for (std::size_t k = 0; k < metadata.golden.size(); ++k) {
       const GoldenPair& pair = metadata.golden[k];
-      input = pair.observation;  // same size: the bound buffer stays in place
+      input = pair.observation;  // same size: the bound buffer keeps its address
       session.Run(run_options, binding);
       for (std::size_t i = 0; i < pair.action.size(); ++i) {
         const float computed = action[static_cast<Eigen::Index>(i)];
@@ -115,7 +115,7 @@ struct OnnxPolicy::Impl {
   PolicyMetadata metadata;
   Observation observation;
   std::vector<float> input;
-  Eigen::VectorXf action;  // the network's output, and what it sees of it in the next tick
+  Eigen::VectorXf action;  // the network's output; also an input of the next tick
   std::vector<int> action_joints;
   Ort::Value input_tensor{nullptr}, output_tensor{nullptr};
   Ort::IoBinding binding;
@@ -140,7 +140,7 @@ Variant OnnxPolicy::variant() const { return impl_->metadata.variant; }
 std::optional<DriveGains> OnnxPolicy::gains() const { return impl_->metadata.gains; }
 
 std::optional<double> OnnxPolicy::action_bound_rad() const {
-  constexpr double kSaturated = 0.95;  // a network that stays at its clamp has lost the motion that it was trained on
+  constexpr double kSaturated = 0.95;  // a network at its clamp has left the motion that it was trained on
   return kSaturated * impl_->metadata.action_limit * impl_->metadata.action_scale;
 }
 

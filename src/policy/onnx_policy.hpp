@@ -12,7 +12,7 @@ namespace pmg::policy {
 
 class OnnxPolicy final : public Policy {
  public:
-  /// Loads, checks the metadata against the robot (policy_metadata.hpp) and the network's shape, and replays the golden
+  /// Loads the network, checks its metadata (policy_metadata.hpp) and shapes against the robot, and replays the golden
   /// pairs. Throws std::invalid_argument "FILE: what differs; expected what".
   OnnxPolicy(const std::filesystem::path& file, const model::RobotModel& robot, const std::string& clip_library_sha256,
              double control_rate_Hz = 100.0);
@@ -24,8 +24,8 @@ class OnnxPolicy final : public Policy {
   std::optional<double> action_bound_rad() const override;
   void reset() noexcept override;
 
-  /// One thread, no lock, inputs and outputs bound beforehand; ONNX Runtime's heap allocations are as many in each
-  /// call.
+  /// One thread, no lock, inputs and outputs bound at construction. ONNX Runtime makes the same number of heap
+  /// allocations in each call.
   Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
              JointVector& q_des) noexcept override;
 

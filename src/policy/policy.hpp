@@ -1,4 +1,4 @@
-// The policy's interface. q_des = q_ref + action_scale * action for the policy joints (design: residual actions).
+// The policy's interface: q_des = q_ref + action_scale * action for the policy joints (residual actions).
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@ namespace pmg::policy {
 
 enum class Status {
   kOk,
-  kNotFinite,  ///< a value that isn't finite, or no result at all: a fault
+  kNotFinite,  ///< a value that isn't finite, or no result at all; this is a fault
   kLate,       ///< no result for this tick: the last target is held, for a few ticks
 };
 
-/// What the drives' position loops are set to, one value a joint in the robot's joint order.
+/// Gains of the drives' position loops, one value per joint in the robot's joint order.
 struct DriveGains {
   JointVector kp_Nm_per_rad, kd_Nm_s_per_rad;
 };
@@ -24,29 +24,29 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// What it imitates and observes: decides how a tick is composed. Asked once, before the first act().
+  /// The variant that the policy was trained as; it decides how a tick is composed. Asked once, before the first act().
   virtual Variant variant() const { return Variant::kPmg; }
 
-  /// The gains that the policy was trained with; nothing: robot.yaml's. Asked once, before the first act().
+  /// The gains of the policy's training; nullopt: robot.yaml's. Asked once, before the first act().
   virtual std::optional<DriveGains> gains() const { return std::nullopt; }
 
-  /// Largest |q_des - q_ref| that the policy gives while it is in its element [rad]; nothing: the monitor's own bound.
+  /// Largest |q_des - q_ref| of the policy in normal operation [rad]; nullopt: the monitor's own bound.
   virtual std::optional<double> action_bound_rad() const { return std::nullopt; }
 
-  /// Whether it runs only while the feet carry the robot, as whatever balances must. Asked once, before the first
-  /// act().
+  /// True if the policy runs only while the feet carry the robot, as any balancing policy must. Asked once, before the
+  /// first act().
   virtual bool needs_ground() const { return true; }
 
-  /// Forgets its history. Before the first act() after an entry into Stand, and after the robot has hung.
+  /// Forgets the history. Called before the first act() after an entry into Stand, and after the robot has hung.
   virtual void reset() noexcept {}
 
-  /// q_des for every joint, rad, from what a robot can sense. observed: u' for PMG, u for the baselines. No exception.
-  /// q_des counts only with kOk.
+  /// (state, reference, observed command) => (q_des of every joint [rad]). observed: u' for PMG, u for the baselines.
+  /// No exception. q_des is valid only with kOk.
   virtual Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept = 0;
 };
 
-/// `--policy none`: q_des = q_ref, in the air too, as a first start needs it.
+/// `--policy none`: q_des = q_ref, also in the air, as a first start needs.
 class ReferencePolicy final : public Policy {
  public:
   bool needs_ground() const override { return false; }

@@ -16,8 +16,8 @@ namespace pmg::policy {
 namespace {
 
 constexpr int kFormat = 1;
-constexpr double kLargestGoldenTolerance = 0.01;  // of actions of order one: beyond, the pairs would prove nothing
-constexpr double kPostureTolerance_rad = 1e-6;    // the same number, written and read as text
+constexpr double kLargestGoldenTolerance = 0.01;  // for actions of order one; with more the pairs would prove nothing
+constexpr double kPostureTolerance_rad = 1e-6;    // the same number after writing and reading as text
 
 [[noreturn]] void refuse_metadata(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -26,7 +26,7 @@ void expect_equal(const char* name, const T& found, const T& expected) {
   if (found != expected) refuse_metadata(fmt::format("{} is {}; this controller has {}", name, found, expected));
 }
 
-/// Names in their order: the first difference is told, not both lists.
+/// Names in their order; the error gives only the first difference, not both lists.
 void expect_names(const char* name, const std::vector<std::string>& found, const std::vector<std::string>& expected) {
   for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i) {
     if (found[i] != expected[i]) {

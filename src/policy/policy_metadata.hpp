@@ -1,4 +1,4 @@
-// What an ONNX policy says of itself (metadata key "pmg_policy", JSON), checked against the robot it is to drive.
+// An ONNX policy's metadata (key "pmg_policy", JSON), checked against the robot that it shall drive.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace pmg::policy {
 
-/// An observation and the action that training computed for it: replayed when a policy is loaded.
+/// An observation and the action that training computed for it; replayed when a policy is loaded.
 struct GoldenPair {
   std::vector<float> observation, action;
 };
@@ -24,9 +24,9 @@ struct PolicyMetadata {
   std::vector<GoldenPair> golden;  ///< at least one
 };
 
-/// Parses and checks. clip_library_sha256: of the library that the generator plays. Throws std::invalid_argument that
-/// says what differs and what was expected: format, robot, variant, joints in and out, observation layout (term by
-/// term), standing posture, gains, rate, clip library, golden pairs.
+/// Parses and checks. clip_library_sha256: of the library that the generator plays. Throws std::invalid_argument with
+/// the difference and the expected value: format, robot, variant, joints in and out, observation layout (term by term),
+/// standing posture, gains, rate, clip library, golden pairs.
 PolicyMetadata parse_policy_metadata(const std::string& json, const model::RobotModel& robot,
                                      const std::string& clip_library_sha256, double control_rate_Hz);
 

@@ -1,4 +1,4 @@
-// How an actuator model moves a joint of a MuJoCo model: the one way, for whole robots and for single joints.
+// An actuator model drives a joint of a MuJoCo model; whole robots and single joints use the same two functions.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -7,10 +7,13 @@
 
 namespace pmg::sim {
 
-/// The joint's armature, damping, friction and torque limit become the actuator model's. Call mj_setConst afterwards.
+/// Gives the joint the actuator model's armature, and switches off MuJoCo's own damping, friction and torque limit.
+/// Call mj_setConst afterwards.
 void hand_over(mjModel* model, int actuator, const ActuatorModel& by);
 
-/// Sets the torque of the step to come; the integrator (`implicit`) takes the slope implicitly. dq: of data's state.
+/// Sets the torque of the next step: ctrl = torque - slope dq, and MuJoCo's force is ctrl + slope dq' with the speed
+/// dq' at the step's end, because the integrator (`implicit`) takes the slope implicitly. dq_rad_s: the joint's speed
+/// in data.
 void apply(mjModel* model, mjData* data, int actuator, const ActuatorTorque& torque, double dq_rad_s) noexcept;
 
 }  // namespace pmg::sim

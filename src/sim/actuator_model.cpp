@@ -102,7 +102,7 @@ double ActuatorModel::reading_rad(double q_rad) const {
   return quantum > 0.0 ? quantum * std::round(reading / quantum) : reading;
 }
 
-/// q + e sin(q + phase) = reading - offset by Newton's method; its slope is above 0.
+/// Solves q + e sin(q + phase) = reading - offset by Newton's method; |e| < 1, so the slope is above 0.
 double ActuatorModel::joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad) {
   const double shown_rad = reading_rad - sensor.zero_offset_rad;
   if (sensor.eccentricity_rad == 0.0) return shown_rad;
@@ -115,7 +115,8 @@ double ActuatorModel::joint_rad(const ActuatorParameters::Sensor& sensor, double
   return q_rad;
 }
 
-/// Between two stored commands by a straight line: the mean of a held command over the step, smooth in the delay.
+/// Interpolates linearly between two stored commands. The result is the mean of a held command over the step, and
+/// smooth in the delay.
 ActuatorModel::Told ActuatorModel::delayed(const Told& now) noexcept {
   constexpr int kSize = kDelaySteps + 2;
   if (!told_before_) {
@@ -138,11 +139,13 @@ ActuatorModel::Told ActuatorModel::delayed(const Told& now) noexcept {
           between(a.feed_forward, b.feed_forward)};
 }
 
+/// command + clamp(q_command - command, -rate_limit h, rate_limit h).
 double ActuatorModel::limited(double q_command_rad) noexcept {
   const double most = parameters_.command.rate_limit_rad_s * step_s_;
   return command_rad_ + std::clamp(q_command_rad - command_rad_, -most, most);
 }
 
+/// First-order lag, implicit Euler: lagged += h / (lag + h) (reading - lagged).
 double ActuatorModel::sensed(double q_rad) noexcept {
   sensor_rad_ = followed(q_rad);
   const double reading = reading_rad(q_rad);
@@ -170,11 +173,12 @@ ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_ra
   return {-brake * dq_rad_s, -brake};
 }
 
-/// A bridge takes duty times the motor's current from the bus. With T the torque and F = unit supply that of full duty,
-/// T = unit (supply (1 - sag duty T) duty - back_emf dq): a source resistance that the motor sees as duty^2 of itself.
-/// What brakes feeds the bus.
+/// The term x = sag duty^2 F of a supply with a source resistance. A bridge takes duty times the motor's current from
+/// the bus. With the torque T and F = unit supply, the torque at full duty:
+///   T = unit (supply (1 - sag duty T) duty - back_emf dq) = unit (supply duty - back_emf dq) / (1 + x).
+/// So the motor sees duty^2 of the source's resistance. A braking motor feeds the bus.
 double ActuatorModel::sag(double full_Nm) const noexcept {
-  const double duty = held_output_ / parameters_.drive.limit;  // 0 of a drive without a limit: it regulates its current
+  const double duty = held_output_ / parameters_.drive.limit;  // 0 without a limit: such a drive regulates its current
   return parameters_.drive.supply_sag_per_Nm * full_Nm * duty * duty;
 }
 
@@ -208,6 +212,9 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
   return {along * available_Nm, on_slope ? -p.stall_torque_Nm / p.no_load_rad_s : 0.0};
 }
 
+/// Largest dry friction at the speed dq, for a motion in this direction (1 or -1):
+///   (coulomb + stribeck exp(-(dq / stribeck_rad_s)^2) + load factor |torque through the gear|)
+///   * thermal factor * (1 + asymmetry direction).
 double ActuatorModel::most_dry_friction_Nm(double dq_rad_s, double direction) const noexcept {
   const ActuatorParameters::Friction& p = parameters_.friction;
   double most_Nm = p.coulomb_Nm;
@@ -221,6 +228,7 @@ double ActuatorModel::most_dry_friction_Nm(double dq_rad_s, double direction) co
   return most_Nm * friction_factor_ * (1.0 + p.asymmetry * direction);
 }
 
+/// -most_dry_friction * clamp(bend / presliding, -1, 1) with the bristle's bend at the end of the step.
 ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) const noexcept {
   const double presliding_rad = parameters_.friction.presliding_rad;
   const double bend_rad = bristle_rad_ + step_s_ * dq_rad_s;
@@ -231,16 +239,21 @@ ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) const noexcept 
   return {-stiffness * bend_rad, -stiffness * step_s_};
 }
 
+/// offset + amplitude sin(order q + phase).
 double ActuatorModel::ripple_Nm(double motor_rad) const noexcept {
   const ActuatorParameters::Ripple& p = parameters_.ripple;
   if (p.amplitude_Nm == 0.0) return p.offset_Nm;
   return p.offset_Nm + p.amplitude_Nm * std::sin(p.order * motor_rad + p.phase_rad);
 }
 
+/// With the heat H and the temperature T:
+///   H += h (torque^2 - H / cooling),
+///   friction factor = exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s H),
+///   torque factor = 1 + torque_per_K (T - 25 degC), at least 0.
 void ActuatorModel::warm(double temperature_C) noexcept {
   const ActuatorParameters::Thermal& p = parameters_.thermal;
   const bool heats = p.friction_per_Nm2_s != 0.0;
-  if (!heats && temperature_C == temperature_C_) return;  // an exponential function a reading, not a step
+  if (!heats && temperature_C == temperature_C_) return;  // exp() only when the reading changes, not in every step
   if (heats) heat_Nm2_s_ += step_s_ * (drive_Nm_ * drive_Nm_ - heat_Nm2_s_ / p.cooling_s);
   temperature_C_ = temperature_C;
   const double above_K = temperature_C - kReferenceTemperature_C;
@@ -271,8 +284,10 @@ ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, dou
   return given_;
 }
 
-/// The rotor moves first, against a shaft whose other end goes on as it does; then the shaft's torque meets the joint.
-/// Both are implicit in their own speed, so a stiff shaft stays stable.
+/// First the rotor moves, against a shaft whose joint end keeps its speed:
+///   w' = w + (motor - shaft) / (J / h - motor slope + shaft slope).
+/// Then the shaft's torque at w' acts on the joint. Both are implicit in their own speed, so a stiff shaft stays
+/// stable.
 ActuatorTorque ActuatorModel::elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept {
   const ActuatorParameters::Transmission& p = parameters_.transmission;
   const double half_play_rad = 0.5 * p.backlash_rad;
@@ -280,7 +295,7 @@ ActuatorTorque ActuatorModel::elastic(const Line& motor, double q_rad, double dq
     return twist_rad - std::clamp(twist_rad, -half_play_rad, half_play_rad);
   };
   const auto shaft = [&](double rotor_rad,
-                         double rotor_rad_s) -> Line {  // torque on the joint, slope in relative speed
+                         double rotor_rad_s) -> Line {  // on the joint; the slope is in the relative speed
     const double relative_rad_s = rotor_rad_s - dq_rad_s;
     const double wound = wound_rad(rotor_rad - q_rad + step_s_ * relative_rad_s);
     if (wound == 0.0) return {0.0, 0.0};

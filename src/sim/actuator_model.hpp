@@ -1,4 +1,4 @@
-// One joint's drive and transmission: from command and joint state to torque.
+// One joint's drive and transmission: (command, joint state) => (torque).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace pmg::sim {
 
-/// What the drive is told, and what it is fed with. Units as in ActuatorParameters.
+/// The drive's command and supply. Units as in ActuatorParameters.
 struct ActuatorInput {
   double q_rad = 0.0, dq_rad_s = 0.0;
   double kp = 0.0, kd = 0.0;  ///< [unit of output per rad, per rad/s]
@@ -17,51 +17,55 @@ struct ActuatorInput {
   double temperature_C = kReferenceTemperature_C;  ///< of gear and winding
 };
 
-/// Torque at the joint as a line in the joint's speed: whoever integrates takes the slope implicitly,
-/// dq' = dq + h torque / (I - h slope), as MuJoCo's `implicit` does with an actuator's velocity bias.
+/// Torque at the joint as a line in the joint's speed. The integrator takes the slope implicitly, as MuJoCo's
+/// `implicit` does with an actuator's velocity bias:
+///   dq' = dq + h torque / (I - h slope).
 struct ActuatorTorque {
-  double torque_Nm = 0.0;           ///< at the speed given
+  double torque_Nm = 0.0;           ///< at the given speed
   double slope_Nm_s_per_rad = 0.0;  ///< d torque / d dq, never positive
 };
 
-/// No heap, no I/O; one object a joint. The joint's integrator is semi-implicit Euler with the same step.
+/// No heap, no I/O; one object per joint. The joint's integrator is semi-implicit Euler with the same step.
 class ActuatorModel {
  public:
   static constexpr int kDelaySteps = 128;  ///< the longest delay, in steps
 
-  /// Throws std::invalid_argument when the delay doesn't fit or a value makes no sense.
+  /// Throws std::invalid_argument if the delay is longer than kDelaySteps or a value makes no sense.
   ActuatorModel(const ActuatorParameters& parameters, double step_s);
 
-  /// At rest there. What was told before the first step is taken to be as its input, but commanded where the joint is.
+  /// At rest at q_rad. Commands before the first step count as equal to its input, but with the joint's reading as
+  /// position.
   void reset(double q_rad) noexcept;
 
-  /// At rest there while it holds load_Nm (of gravity: positive pulls q down): dry friction carries what the drive
-  /// leaves of the load, as far as it can, and a shaft is wound by the load. Where friction can carry it, the input is
-  /// taken to have been told for long; otherwise the input is taken for a step that comes now, as reset has it.
+  /// At rest at q_rad under load_Nm (gravity; positive pulls q down). Dry friction carries the difference between load
+  /// and drive torque, up to its limit; the load winds an elastic shaft. If friction can carry the difference, the
+  /// input counts as in force for a long time; otherwise it counts as a step that comes now, as after reset().
   void reset_at_rest(const ActuatorInput& input, double q_rad, double load_Nm) noexcept;
 
-  /// The torque during the step that begins with the joint at (q, dq).
+  /// (input, q, dq) => (torque during the step that begins at (q, dq)).
   ActuatorTorque step(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept;
 
-  /// What the joint's own inertia grows by; a rotor behind a spring turns on its own.
+  /// Rotor inertia that adds to the joint's own; 0 with an elastic transmission, whose rotor has its own speed.
   double joint_armature_kg_m2() const;
 
-  /// What the drive reports for a joint that has come to q since the last step.
+  /// The drive's reading [rad] of a joint that has moved to q since the last step, with s = q behind the hysteresis:
+  ///   quantised(s + zero_offset + eccentricity sin(s + phase)).
   double reading_rad(double q_rad) const;
 
-  /// Where a joint is that rests in the middle of its sensor's hysteresis and is read so.
+  /// Inverse of reading_rad without quantum, for a joint in the middle of the sensor's hysteresis [rad].
   static double joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad);
 
-  /// What the drive itself gave at the beginning of the step, before friction and gear: what a drive's current tells.
+  /// Torque of the drive itself at the beginning of the step, before friction and gear: a drive derives it from its
+  /// current.
   double drive_torque_Nm() const { return drive_Nm_; }
 
   const ActuatorParameters& parameters() const { return parameters_; }
 
  private:
-  struct Line {  // torque in the motor's speed, as ActuatorTorque
+  struct Line {  // torque as a line in the motor's speed, see ActuatorTorque
     double torque_Nm, slope;
   };
-  /// What the drive has been told, as it takes effect.
+  /// The drive's command after its delay.
   struct Told {
     double q_rad, dq_rad_s, kp, kd, feed_forward;
   };
@@ -90,14 +94,14 @@ class ActuatorModel {
   double command_rad_ = 0.0;  // after delay and rate limit
   double held_for_s_ = 0.0, held_output_ = 0.0;
   double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0, lagged_rad_s_ = 0.0;
-  double sensor_rad_ = 0.0;  // where the sensor's end of its play is
+  double sensor_rad_ = 0.0;  // angle of the sensor's side of its play
   double heat_Nm2_s_ = 0.0, drive_Nm_ = 0.0;
   double temperature_C_ = kReferenceTemperature_C;
   double friction_factor_ = 1.0, torque_factor_ = 1.0;
   double bristle_rad_ = 0.0;
-  double load_Nm_ = 0.0;  // through the gear, as of the step before
+  double load_Nm_ = 0.0;  // through the gear, in the step before
   double rotor_rad_ = 0.0, rotor_rad_s_ = 0.0;
-  // of the step before, to learn from the speed that came of it what the gear carried
+  // of the step before: with the speed that resulted, they give the torque through the gear
   ActuatorTorque given_;
   double given_at_rad_s_ = 0.0;
 };

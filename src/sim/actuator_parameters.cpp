@@ -16,7 +16,7 @@ namespace {
 #group "." #key, unit, lower, upper, negative, [](ActuatorParameters & p) -> double& { return p.group.key; } \
   }
 
-// The ranges are those of joints from a hobby servo's to a humanoid's knee; a linear rig scales them.
+// The ranges cover joints from a hobby servo's to a humanoid's knee; a linear rig scales them.
 constexpr std::array kParameters = {
     PMG_ACTUATOR_PARAMETER(command, delay_s, "s", 0.0, 0.06, false),
     PMG_ACTUATOR_PARAMETER(command, rate_limit_rad_s, "rad/s", 1.0, 30.0, false),

@@ -1,4 +1,4 @@
-// What one joint's drive and transmission do, as numbers: each group is one kind of effect and neutral by default.
+// Parameters of one joint's drive and transmission. Each group is one kind of effect and neutral by default.
 #pragma once
 
 #include <limits>
@@ -7,12 +7,12 @@
 
 namespace pmg::sim {
 
-constexpr double kReferenceTemperature_C = 25.0;  ///< at which friction and torque are as their parameters say
+constexpr double kReferenceTemperature_C = 25.0;  ///< reference of friction and torque parameters
 
 /// Names are those of a turning joint; on a linear axis read m for rad, N for Nm, kg for kg m^2. The drive's output has
-/// the drive's own unit: torque [Nm] of a position PD, duty [-1, 1] of a voltage servo, volts of a cascade.
+/// its own unit: torque [Nm] for a position PD, duty [-1, 1] for a voltage servo, volts for a cascade.
 struct ActuatorParameters {
-  /// What happens to a command before the drive compares it with its sensor.
+  /// Effects on a command before the drive compares it with its sensor.
   struct Command {
     double delay_s = 0.0;  ///< of positions, speeds, gains and feed-forward; switching off is immediate
     double rate_limit_rad_s = std::numeric_limits<double>::infinity();  ///< of the position command
@@ -22,33 +22,33 @@ struct ActuatorParameters {
 
   /// output = clip(kp e + kd de + feed-forward, +-limit); torque = torque_per_unit (output supply - back_emf dq).
   struct Drive {
-    double kp_scale = 1.0, kd_scale = 1.0;  ///< what a gain really is over what it is called
+    double kp_scale = 1.0, kd_scale = 1.0;  ///< real gain over nominal gain
     double limit = std::numeric_limits<double>::infinity();
     double dead_band_rad = 0.0;       ///< position errors below it give no output
     double torque_per_unit_Nm = 1.0;  ///< per unit of output times supply
     double back_emf_s_per_rad = 0.0;  ///< [output times supply per rad/s]
-    /// Of a voltage servo: share of the supply lost to its source per Nm at full duty (output at its limit). A bridge
+    /// Voltage servo: share of the supply that its source loses per Nm at full duty (output at its limit). A bridge
     /// takes duty times the motor's current from the bus.
     double supply_sag_per_Nm = 0.0;
     double brake_when_disabled = 0.0;  ///< share of the back-EMF torque that stays when the drive is switched off
-    double stall_torque_Nm = std::numeric_limits<double>::infinity();  ///< torque-speed line: at rest
-    double no_load_rad_s = std::numeric_limits<double>::infinity();    ///< and where none is left
+    double stall_torque_Nm = std::numeric_limits<double>::infinity();  ///< torque-speed line: torque at rest
+    double no_load_rad_s = std::numeric_limits<double>::infinity();    ///< torque-speed line: speed without torque
     bool operator==(const Drive&) const = default;
   } drive;
 
-  /// What the drive believes of its joint.
+  /// Errors of the drive's measurement of its joint.
   struct Sensor {
-    double zero_offset_rad = 0.0;   ///< reading minus truth
-    double hysteresis_rad = 0.0;    ///< play between joint and sensor, from end to end: the reading waits at a reversal
-    double eccentricity_rad = 0.0;  ///< of the sensor's disc or magnet: reads eccentricity sin(q + phase) too much
+    double zero_offset_rad = 0.0;   ///< reading minus true angle
+    double hysteresis_rad = 0.0;    ///< play between joint and sensor, end to end: the reading waits at a reversal
+    double eccentricity_rad = 0.0;  ///< of the sensor's disc or magnet: adds eccentricity sin(q + phase) to the reading
     double eccentricity_phase_rad = 0.0;
     double quantum_rad = 0.0;
     double lag_s = 0.0;           ///< of the position, first order
-    double velocity_lag_s = 0.0;  ///< of the velocity beyond that of the position, first order
+    double velocity_lag_s = 0.0;  ///< of the velocity, in addition to the position's; first order
     bool operator==(const Sensor&) const = default;
   } sensor;
 
-  /// Between motor and joint. Without stiffness the transmission is rigid.
+  /// Between motor and joint. With infinite stiffness the transmission is rigid.
   struct Transmission {
     double armature_kg_m2 = 0.0;  ///< rotor inertia seen at the joint
     double stiffness_Nm_per_rad = std::numeric_limits<double>::infinity();
@@ -57,10 +57,10 @@ struct ActuatorParameters {
     bool operator==(const Transmission&) const = default;
   } transmission;
 
-  /// Torque against motion: viscous_Nm_s_per_rad |dq| plus a dry part, which is a bristle that bends by presliding_rad
-  /// and then slides (Dahl's model with a corner), so that a joint at rest stays at rest:
-  /// coulomb + stribeck exp(-(dq/stribeck_rad_s)^2) + (load_driving or load_backdriving) |torque through the gear|.
-  /// stribeck_Nm is negative where friction grows with speed and levels off, as in greased gears.
+  /// Torque against the motion: viscous_Nm_s_per_rad |dq| plus a dry part,
+  ///   coulomb + stribeck exp(-(dq/stribeck_rad_s)^2) + (load_driving or load_backdriving) |torque through the gear|.
+  /// The dry part is a bristle that bends by presliding_rad and then slides (Dahl's model with a corner), so a joint at
+  /// rest stays at rest. stribeck_Nm is negative if friction grows with speed and levels off, as in greased gears.
   struct Friction {
     double viscous_Nm_s_per_rad = 0.0;
     double coulomb_Nm = 0.0;
@@ -68,24 +68,25 @@ struct ActuatorParameters {
     double stribeck_rad_s = 0.1;
     double load_driving = 0.0;      ///< the motor moves the load
     double load_backdriving = 0.0;  ///< the load moves the motor
-    double asymmetry = 0.0;         ///< dry friction is (1 + asymmetry) forwards, (1 - asymmetry) backwards
+    double asymmetry = 0.0;         ///< dry friction times (1 + asymmetry) forwards, (1 - asymmetry) backwards
     double presliding_rad = 1e-3;
     bool operator==(const Friction&) const = default;
   } friction;
 
-  /// What warming up does. Friction, as at 25 degC, times exp(share of it): it follows the temperature (lubricants thin
-  /// exponentially) and, where none is known, the heat that the drive has put into its winding since the start, the
-  /// integral of torque^2 less what has cooled away. Torque per unit of output times 1 + torque_per_K (T - 25 degC), as
-  /// data sheets give it for magnets and copper.
+  /// Effects of temperature T and of heat H. Friction is multiplied by
+  ///   exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s H),
+  /// because lubricants thin exponentially. H is the heat that the drive's torque has put into its winding since the
+  /// start, dH/dt = torque^2 - H / cooling_s; it serves where no temperature is known. Torque per unit of output is
+  /// multiplied by 1 + torque_per_K (T - 25 degC), as data sheets give it for magnets and copper.
   struct Thermal {
-    double friction_per_K = 0.0;  ///< negative: a warm gear turns easily
+    double friction_per_K = 0.0;  ///< negative: a warm gear turns more easily
     double torque_per_K = 0.0;
     double friction_per_Nm2_s = 0.0;
-    double cooling_s = std::numeric_limits<double>::infinity();  ///< time constant of that heat
+    double cooling_s = std::numeric_limits<double>::infinity();  ///< time constant of H
     bool operator==(const Thermal&) const = default;
   } thermal;
 
-  /// Torque that depends on the joint's angle: amplitude sin(order q + phase), and a constant one.
+  /// Torque that depends on the angle, plus a constant: amplitude sin(order q + phase) + offset.
   struct Ripple {
     double amplitude_Nm = 0.0;
     double order = 1.0;
@@ -97,11 +98,11 @@ struct ActuatorParameters {
   bool operator==(const ActuatorParameters&) const = default;
 };
 
-/// One number of ActuatorParameters: its place in motor.yaml, and the range in which a fit may look for it.
+/// One number of ActuatorParameters: its name in motor.yaml, and the range of its search in a fit.
 struct ActuatorParameter {
   std::string_view name;  ///< "friction.coulomb_Nm": group and key
   std::string_view unit;
-  double lower, upper;  ///< of a search; a file may say more
+  double lower, upper;  ///< of a search; a file may exceed them
   bool may_be_negative;
   double& (*in)(ActuatorParameters&);
   std::string_view group() const { return name.substr(0, name.find('.')); }
@@ -109,10 +110,10 @@ struct ActuatorParameter {
   double value(const ActuatorParameters& parameters) const { return in(const_cast<ActuatorParameters&>(parameters)); }
 };
 
-/// Every number there is, in the order of motor.yaml. A further effect is a group above and its rows here.
+/// All parameters, in the order of motor.yaml. A further effect is a group above and its rows here.
 std::span<const ActuatorParameter> actuator_parameters();
 
-/// Throws std::invalid_argument that lists the names when there is no such parameter.
+/// Throws std::invalid_argument that lists the names if there is no such parameter.
 const ActuatorParameter& actuator_parameter(std::string_view name);
 
 }  // namespace pmg::sim

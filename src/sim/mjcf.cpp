@@ -1,5 +1,5 @@
-// The robot model and its world as MJCF text for MuJoCo 2.2.2, which has no <frame>, no position kv, no
-// actuatorfrcrange, and wants `limited` beside every range.
+// The robot model and its world as MJCF text. MuJoCo 2.2.2 has no <frame>, no position kv and no actuatorfrcrange, and
+// needs `limited` beside every range.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace pmg::sim {
 
 namespace {
 
-// Contact classes: soles touch the floor only, bodies touch the floor and each other. Two geoms collide when one's
-// contype meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2), whose sole is its
-// floor contact.
+// Contact classes: soles touch only the floor, bodies touch the floor and each other. Two geoms collide when one's
+// contype meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2); a foot body meets
+// the floor through its sole.
 constexpr const char* kScene = R"(
   <compiler angle="radian" inertiafromgeom="false" balanceinertia="false"/>
   <option timestep="{timestep}" integrator="implicit" gravity="0 0 -9.81"/>
@@ -50,7 +50,7 @@ constexpr const char* kFloor =
     R"(    <geom name="floor" type="plane" size="0 0 0.05" material="floor" contype="1" conaffinity="0" condim="3"/>)"
     "\n";
 
-/// Directional, above and in front, following the robot so that its shadow stays inside the shadow map.
+/// Directional, above and in front. It follows the robot, so the robot's shadow stays inside the shadow map.
 constexpr const char* kLight =
     R"(<light mode="trackcom" directional="true" castshadow="true" pos="1.2 1.0 3.2" dir="-0.34 -0.28 -0.9" )"
     R"(diffuse="0.66 0.64 0.60" specular="0.30 0.30 0.30" ambient="0 0 0"/>)";
@@ -82,7 +82,7 @@ class MjcfText {
     text_ += '\n';
   }
 
-  /// colliding_ancestor: the nearest link above that carries collision shapes, "" for none.
+  /// colliding_ancestor: the nearest link above that has collision shapes; "" if there is none.
   void write_body(const urdf::Link& link, const urdf::Joint* joint, std::string colliding_ancestor, int depth) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     if (joint == nullptr) T.translation().z() = robot_.standing_height_m;
@@ -146,7 +146,8 @@ class MjcfText {
                             xml_escaped(link.name), c.x(), c.y(), c.z(), h.x(), h.y(), h.z()));
   }
 
-  /// So that MuJoCo's depth-first order of coordinates is the robot's joint order wherever the tree allows it.
+  /// Children sorted so that MuJoCo's depth-first order of coordinates is the robot's joint order, if the tree allows
+  /// it.
   std::vector<urdf::LinkSharedPtr> children_in_joint_order(const urdf::Link& link) const {
     std::vector<urdf::LinkSharedPtr> children = link.child_links;
     std::stable_sort(children.begin(), children.end(),
@@ -160,8 +161,8 @@ class MjcfText {
     return first;
   }
 
-  /// Links next to each other overlap at their joint by design; MuJoCo leaves out direct parents only, but the small
-  /// links inside a compound joint carry no shapes.
+  /// Neighbouring links overlap at their joint by design. MuJoCo excludes only direct parents, but the small links
+  /// inside a compound joint have no shapes.
   void write_exclusions() {
     text_ += "  <contact>\n";
     for (const auto& [above, below] : neighbours_)

@@ -55,7 +55,7 @@ std::string pose_attributes(const Eigen::Isometry3d& T) {
   const Eigen::Vector3d p = T.translation();
   const Eigen::Quaterniond q(T.linear());
   std::string attributes = fmt::format(R"(pos="{} {} {}")", p.x(), p.y(), p.z());
-  if (q.vec().isZero(0.0)) return attributes;  // an unrotated pose reads better without four constants
+  if (q.vec().isZero(0.0)) return attributes;  // shorter text for an unrotated pose
   return attributes + fmt::format(R"( quat="{} {} {} {}")", q.w(), q.x(), q.y(), q.z());
 }
 

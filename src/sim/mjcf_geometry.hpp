@@ -12,18 +12,18 @@ namespace pmg::sim {
 
 std::string xml_escaped(const std::string& text);
 
-/// `pos="x y z" quat="w x y z"`, numbers printed so that they read back exactly.
+/// `pos="x y z" quat="w x y z"`; the printed numbers read back exactly.
 std::string pose_attributes(const Eigen::Isometry3d& T);
 Eigen::Isometry3d isometry(const urdf::Pose& pose);
 
-/// The whole <inertial .../> element. A full inertia matrix is given by its principal axes.
+/// The whole <inertial .../> element. A full inertia matrix becomes its principal axes and moments.
 std::string inertial_element(const urdf::Inertial& inertial);
 
 /// `type="..." size="..."`; nothing for a mesh.
 std::optional<std::string> visual_shape(const urdf::Geometry& geometry);
 
-/// The same for collisions, with a cylinder as the capsule inside it: MuJoCo's capsules collide in closed form and have
-/// no edges to catch on.
+/// The same for collisions, with a capsule inside each cylinder: MuJoCo's capsules collide in closed form and have no
+/// edges that catch.
 std::optional<std::string> collision_shape(const urdf::Geometry& geometry);
 
 }  // namespace pmg::sim

@@ -10,9 +10,9 @@ namespace pmg::sim {
 
 namespace {
 
-constexpr double kSilStep_s = 0.002;
+constexpr double kSilStep_s = 0.002;  // WorldOptions' step: read_motor_file checks actuators with it
 
-/// Reads the groups in the table's order; a group's keys stand together there.
+/// Reads the groups in the table's order, in which the keys of a group are neighbours.
 ActuatorParameters read_actuator(model::ConfigReader& joint) {
   ActuatorParameters parameters;
   const auto table = actuator_parameters();

@@ -1,4 +1,4 @@
-// motor.yaml: what calibration found of a robot's (or a bench's) actuators, joint by joint.
+// motor.yaml: the calibrated actuators of a robot or a bench, joint by joint.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,17 @@
 
 namespace pmg::sim {
 
-/// Actuators by joint name. What a file doesn't say is neutral.
+/// Actuators by joint name. Parameters that a file doesn't give are neutral.
 using ActuatorsByJoint = std::map<std::string, ActuatorParameters>;
 
-/// Throws model::ConfigError on unknown groups and keys, and on numbers outside what makes sense, with file, line,
-/// column.
+/// Throws model::ConfigError with file, line and column on unknown groups and keys, and on numbers that make no sense.
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file);
 
-/// The same, and every name must be a joint of the robot.
+/// The same; every name must also be a joint of the robot.
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file, const model::JointIndex& joints);
 
-/// The text that read_motor_file reads back to the same numbers: what differs from neutral. The remarks become comments
-/// at its top.
+/// The text from which read_motor_file reads the same numbers: all parameters that are not neutral. The remarks become
+/// comments at its top.
 std::string motor_yaml(const ActuatorsByJoint& actuators, const std::vector<std::string>& remarks = {});
 
 }  // namespace pmg::sim

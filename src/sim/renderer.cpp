@@ -14,8 +14,8 @@ namespace pmg::sim {
 
 namespace {
 
-/// OSMesa, loaded by the first renderer: MuJoCo takes its OpenGL from the first such library that it finds in the
-/// process, and a window's (viewer.hpp) is another one. It stays loaded: MuJoCo keeps pointers into it.
+/// OSMesa, loaded by the first renderer: MuJoCo uses the first OpenGL library that it finds in the process, and a
+/// window (viewer.hpp) needs another one. OSMesa stays loaded, because MuJoCo keeps pointers into it.
 struct OsMesa {
   decltype(&OSMesaCreateContextExt) create;
   decltype(&OSMesaMakeCurrent) make_current;
@@ -43,7 +43,7 @@ struct OsMesa {
   }
 };
 
-/// MuJoCo draws into a buffer of its own with antialiasing; the context's buffer only has to exist.
+/// MuJoCo draws into its own buffer with antialiasing; the context's buffer only has to exist.
 class GlContext {
  public:
   GlContext() : context_(OsMesa::get().create(OSMESA_RGBA, 24, 8, 0, nullptr)) {
@@ -102,7 +102,7 @@ struct Renderer::Impl {
 
   RendererOptions options;
   const mjModel* model;
-  GlContext gl;  // before everything that lives in it
+  GlContext gl;  // before the members that live in it
   Scene scene;
   mjvCamera camera{};
   mjrContext context{};

@@ -14,24 +14,24 @@
 namespace pmg::sim {
 
 struct RendererOptions {
-  int width = 1280, height = 720;  ///< at most what the model's off-screen buffer has
-  double distance_m = 2.9;         ///< of the camera from what it follows
-  double azimuth_deg = 216.0;      ///< of its line of sight about z: from the robot's front and left at yaw 0
+  int width = 1280, height = 720;  ///< at most the size of the model's off-screen buffer
+  double distance_m = 2.9;         ///< from the camera to its target
+  double azimuth_deg = 216.0;      ///< of the line of sight about z: from the robot's front and left at yaw 0
   double elevation_deg = -9.0;
   double follow_s = 0.4;  ///< time constant with which the camera follows the robot
 };
 
-/// Needs a thread of its own choosing: a renderer belongs to the thread that made it.
+/// A renderer belongs to the thread that made it.
 class Renderer {
  public:
-  /// Throws std::runtime_error when OSMesa gives no context.
+  /// Throws std::runtime_error if OSMesa gives no context.
   explicit Renderer(const mjModel* model, const RendererOptions& options = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// width * height RGB triples, from the top left. The camera follows body 1, the robot's base. text is laid over the
-  /// picture's top left corner.
+  /// width * height RGB triples, from the top left. The camera follows body 1, the robot's base. The text is drawn over
+  /// the picture's top left corner.
   const std::vector<std::uint8_t>& render(mjData* data, const std::string& text = "",
                                           const std::optional<Rope>& rope = std::nullopt);
 

@@ -1,4 +1,4 @@
-// What a picture of a world shows, whoever draws it.
+// The shapes in a picture of a world, for every renderer.
 #pragma once
 
 #include <mujoco/mujoco.h>

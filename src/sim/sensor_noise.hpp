@@ -1,4 +1,4 @@
-// Gaussian sensor noise that is the same on every machine for a seed.
+// Gaussian sensor noise; one seed gives the same noise on every machine.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,8 +10,8 @@
 
 namespace pmg::sim {
 
-/// Standard normal numbers by Marsaglia's polar method (SIAM Review 6:260, 1964): std::normal_distribution may differ
-/// from one standard library to the next, the engine may not.
+/// Standard normal numbers by Marsaglia's polar method (SIAM Review 6:260, 1964). std::normal_distribution may differ
+/// between standard libraries; the engine may not.
 class NormalSource {
  public:
   explicit NormalSource(std::uint64_t seed) : engine_(seed) {}
@@ -23,7 +23,7 @@ class NormalSource {
   bool has_spare_ = false;
 };
 
-/// One draw a bus sample of everything that the sensors add to the truth.
+/// Everything that the sensors add to the truth, drawn once per bus sample.
 class SensorNoise {
  public:
   SensorNoise(const WorldOptions& options, int joints);

@@ -8,9 +8,9 @@ namespace pmg::sim {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
-constexpr double kSway_m = 0.06;  // horizontal give under a force equal to the robot's weight
+constexpr double kSway_m = 0.06;  // horizontal deflection under a force equal to the robot's weight
 constexpr double kDampingRatio = 0.7;
-constexpr double kRotationDamping_s = 0.15;  // damping over stiffness: at rest again within about half a second
+constexpr double kRotationDamping_s = 0.15;  // damping over stiffness: at rest within about half a second
 
 double yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));

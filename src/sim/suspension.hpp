@@ -1,4 +1,4 @@
-// The gantry of a first start: the torso hangs in springs and dampers from an anchor that can be raised and lowered.
+// The gantry of a first start: springs and dampers hold the torso at an anchor that can be raised and lowered.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -9,15 +9,16 @@ namespace pmg::sim {
 
 class Suspension {
  public:
-  /// standing_height_m: of the base; sets how strongly the torso is kept upright.
+  /// standing_height_m: of the base. With the weight W: vertical stiffness W / kSag_m, horizontal W / 0.06 m,
+  /// rotational W standing_height_m per rad.
   Suspension(double total_mass_kg, double standing_height_m);
 
-  /// How far the suspension gives way when it carries the whole robot [m].
+  /// Sag of the suspension under the whole robot [m].
   static constexpr double kSag_m = 0.02;
 
-  /// Where the torso's centre of mass is when the robot stands on the ground, and the heading that it has there.
+  /// Centre of mass and heading of the torso when the robot stands on the ground.
   void set_ground_place(const Eigen::Vector3d& p_WT, double yaw_rad);
-  /// lift of the anchor above the torso's standing height, engaged in [0, 1]; see World::set_hoist.
+  /// lift_m: of the anchor above the torso's standing height; engaged in [0, 1]: see World::set_hoist.
   void set(double lift_m, double engaged) noexcept;
   /// Adds the suspension's force and torque on the torso to mjData.xfrc_applied.
   void apply(const mjModel* model, mjData* data, int torso_body) noexcept;

@@ -15,8 +15,8 @@ namespace pmg::sim {
 
 namespace {
 
-/// Uniform numbers that are the same on every machine: std::uniform_real_distribution may differ from one standard
-/// library to the next.
+/// Uniform numbers that are the same on every machine. std::uniform_real_distribution may differ between standard
+/// libraries.
 class UniformSource {
  public:
   explicit UniformSource(std::uint64_t seed) : engine_(seed) {}
@@ -45,7 +45,7 @@ Range read_range(model::ConfigReader& reader, const std::string& key, const Rang
 
 double deviation(double half_width) { return half_width / std::numbers::sqrt3; }
 
-/// Movable joints between the torso and a link that nothing but fixed joints hang on; 0 when the torso isn't above it.
+/// Number of moving joints from the torso to a link, and the last link that moves; 0 if the torso isn't above the link.
 struct Arm {
   int joints = 0;
   std::string last_moving_link;
@@ -57,7 +57,7 @@ Arm arm_to(const model::RobotModel& robot, const std::string& link) {
   for (const KDL::Segment& segment : chain.segments) {
     const KDL::Joint& joint = segment.getJoint();
     if (joint.getType() == KDL::Joint::Fixed) continue;
-    // getChain climbs first: joints of the torso's own chain lead away from it, not to a hand.
+    // getChain climbs first. Joints of the torso's own chain lead away from it, so they lead to no hand.
     for (const int above : robot.torso_joints) {
       if (joint.getName() == robot.joints[static_cast<std::size_t>(above)].name) return {};
     }
@@ -114,7 +114,7 @@ VariationRanges load_variation_ranges(const std::filesystem::path& file) {
   return ranges;
 }
 
-// The order of the draws is part of what a seed means: new ones go to the end.
+// A seed's meaning includes the order of the draws: new draws go to the end.
 void vary(WorldOptions& options, const VariationRanges& ranges, const model::RobotModel& robot, std::uint64_t seed) {
   UniformSource random(seed);
   options.seed = random.seed();

@@ -46,10 +46,10 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& path, int
           "yuv420p",
           "-movflags",
           "+faststart",
-          std::filesystem::absolute(path).string()};  // absolute: no path is taken for an option or a protocol
+          std::filesystem::absolute(path).string()};  // absolute: a path is never read as an option or a protocol
 }
 
-/// Starts a program with these as its standard input and standard error, in a process group of its own: a Ctrl-C at the
+/// Starts a program with these as its standard input and standard error, in a process group of its own. A Ctrl-C at the
 /// terminal goes to the whole foreground group, and must not end ffmpeg before the last frame is written. Returns 0 or
 /// an errno.
 int spawn_apart(const std::vector<std::string>& arguments, int standard_input, int standard_error, pid_t& pid) {
@@ -63,7 +63,7 @@ int spawn_apart(const std::vector<std::string>& arguments, int standard_input, i
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);  // 0: one of its own
+  posix_spawnattr_setpgroup(&attributes, 0);  // 0: a group of its own
   const int error = posix_spawnp(&pid, argv[0], &actions, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
@@ -112,7 +112,7 @@ void expect_ffmpeg() {
 
 VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int height, int frames_per_s)
     : path_(path), frame_bytes_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-  // A socket rather than a pipe, because sending on it can be told not to raise SIGPIPE.
+  // A socket instead of a pipe, because send() can suppress SIGPIPE.
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     throw std::runtime_error(fmt::format("video: socketpair: {}", std::strerror(errno)));
@@ -131,7 +131,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
 VideoWriter::~VideoWriter() {
   try {
     close();
-  } catch (const std::runtime_error&) {  // a destructor has nobody to tell
+  } catch (const std::runtime_error&) {  // a destructor can't report it
   }
   if (words_ >= 0) ::close(words_);
 }

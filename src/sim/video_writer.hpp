@@ -1,4 +1,4 @@
-// Frames into an H.264 file, by an ffmpeg process.
+// Writes frames into an H.264 file through an ffmpeg process.
 #pragma once
 
 #include <sys/types.h>
@@ -9,21 +9,21 @@
 
 namespace pmg::sim {
 
-/// Throws std::runtime_error when there is no ffmpeg that runs: to be said before hours of work, not after.
+/// Throws std::runtime_error if no ffmpeg runs. Call it before hours of work.
 void expect_ffmpeg();
 
 class VideoWriter {
  public:
-  /// Throws std::runtime_error when there is no ffmpeg. path's ending chooses the container (mp4).
+  /// Throws std::runtime_error if there is no ffmpeg. path's ending selects the container (mp4).
   VideoWriter(const std::filesystem::path& path, int width, int height, int frames_per_s = 50);
-  ~VideoWriter();  ///< closes, errors unheard
+  ~VideoWriter();  ///< closes; errors are not reported
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
   /// width * height RGB triples, from the top left. Throws std::runtime_error, with ffmpeg's last line, when ffmpeg has
-  /// given up; nothing can be written after that.
+  /// ended; nothing can be written after that.
   void write(std::span<const std::uint8_t> rgb);
-  /// Waits for ffmpeg to finish the file. Throws std::runtime_error when it reports failure.
+  /// Waits until ffmpeg has finished the file. Throws std::runtime_error when it reports failure.
   void close();
 
  private:
@@ -31,7 +31,7 @@ class VideoWriter {
   std::size_t frame_bytes_;
   pid_t ffmpeg_ = -1;
   int socket_ = -1;
-  int words_ = -1;  ///< what ffmpeg says, a file in memory
+  int words_ = -1;  ///< ffmpeg's messages, a file in memory
 
   int end();  ///< ffmpeg's exit status
   [[noreturn]] void give_up(const char* what);

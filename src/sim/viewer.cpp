@@ -14,7 +14,7 @@ namespace pmg::sim {
 
 namespace {
 
-/// What the window system last complained of: GLFW tells it to a function, and only there before version 3.4.
+/// The window system's last error. Before version 3.4, GLFW reports errors only to a callback.
 std::string& complaint() {
   static std::string text;
   return text;
@@ -30,8 +30,7 @@ class Window {
  public:
   explicit Window(const ViewerOptions& options) {
     glfwSetErrorCallback(keep_complaint);
-#ifdef GLFW_PLATFORM  // since 3.4, which else looks for Wayland first, whose library writes on stderr when there is
-                      // none
+#ifdef GLFW_PLATFORM  // GLFW 3.4 tries Wayland first, whose library prints errors if there is none
     if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
     if (glfwInit() == GLFW_FALSE) refuse();
@@ -57,7 +56,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
 };
 
-/// As ViewerKey's.
+/// ViewerKey::name.
 std::string key_name(int key, int scancode) {
   switch (key) {
     case GLFW_KEY_UP:
@@ -90,7 +89,7 @@ struct Viewer::Impl {
   Impl(const mjModel* mj_model, const ViewerOptions& options)
       : model(mj_model), on_key(options.on_key), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
     mjr_defaultContext(&context);
-    mjr_makeContext(model, &context, on_key ? mjFONTSCALE_100 : mjFONTSCALE_150);  // a panel says more than a caption
+    mjr_makeContext(model, &context, on_key ? mjFONTSCALE_100 : mjFONTSCALE_150);  // panels have more text
     mjr_setBuffer(mjFB_WINDOW, &context);
     mjv_defaultCamera(&camera);
     camera.distance = 3.2;
@@ -153,7 +152,7 @@ struct Viewer::Impl {
     mjtMouse how;
     double dx, dy;
   };
-  /// For whoever draws.
+  /// Queues the move for the thread that draws.
   void ask_for(const CameraMove& move) {
     const std::lock_guard lock(mutex);
     moves.push_back(move);
@@ -163,7 +162,7 @@ struct Viewer::Impl {
     for (const CameraMove& move : moves) mjv_moveCamera(model, move.how, move.dx, move.dy, &scene.last(), &camera);
     moves.clear();
   }
-  /// The window's, known to its main thread.
+  /// Reads the framebuffer's size, which only the main thread can.
   void measure() {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window.get(), &width, &height);
@@ -175,7 +174,7 @@ struct Viewer::Impl {
     return framebuffer;
   }
 
-  /// Moves with the robot, and leaves what the user shifted as it is.
+  /// Moves with the robot; the user's shift stays.
   void follow() {
     const mjtNum* base = data->xpos + 3 * Scene::kBaseBody;
     for (int i = 0; i < 3; ++i) {
@@ -187,7 +186,7 @@ struct Viewer::Impl {
 
   const mjModel* model;
   std::function<void(const ViewerKey&)> on_key;
-  Window window;  // before everything that lives in its OpenGL context
+  Window window;  // before the members that live in its OpenGL context
   DataPointer data;
   Scene scene;
   mjrContext context{};
@@ -196,7 +195,7 @@ struct Viewer::Impl {
   double followed[3] = {};
   bool first = true;
   mjrRect viewport{};
-  std::mutex mutex;  // of what the main thread tells the one that draws
+  std::mutex mutex;  // guards what the main thread passes to the drawing thread
   std::vector<CameraMove> moves;
   mjrRect framebuffer{};
 };
@@ -248,7 +247,7 @@ std::vector<std::uint8_t> Viewer::pixels() {
   Impl& v = *impl_;
   std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(v.viewport.width) *
                                 static_cast<std::size_t>(v.viewport.height));
-  mjr_render(v.viewport, &v.scene.last(), &v.context);  // what was shown has gone to the screen
+  mjr_render(v.viewport, &v.scene.last(), &v.context);  // the buffer that was shown has gone to the screen
   mjr_readPixels(rgb.data(), nullptr, v.viewport, &v.context);
   return rgb;
 }

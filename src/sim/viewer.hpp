@@ -1,5 +1,5 @@
-// A window on a robot: MuJoCo's renderer on GLFW. Left button turns, right button shifts, wheel zooms; Esc or q closes,
-// unless the keys are somebody else's.
+// A window with a robot: MuJoCo's renderer on GLFW. Left button turns, right button shifts, wheel zooms. Esc and q
+// close it, unless ViewerOptions::on_key takes the keys.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -16,25 +16,25 @@
 
 namespace pmg::sim {
 
-/// What happened to a key, in the order in which it did.
+/// One event of a key; events come in their order.
 struct ViewerKey {
   enum class What {
     kPressed,
-    kRepeats,  ///< it is held, and repeats by itself
+    kRepeats,  ///< held down, and repeated automatically
     kReleased,
-    kUnheard,  ///< the window lost the keyboard: whatever is held, its release won't be told
+    kUnheard,  ///< the window lost the keyboard: the release of held keys won't be reported
   };
   What what = What::kPressed;
-  /// As its keyboard labels it: "w"; or "up", "down", "left", "right", "escape", "enter", "space", "backspace". Empty
-  /// for others, and for kUnheard.
+  /// The key's label on its keyboard: "w"; or "up", "down", "left", "right", "escape", "enter", "space", "backspace".
+  /// Empty for other keys and for kUnheard.
   std::string name;
   bool shift = false;
 };
 
 /// Text beside the picture.
 struct ViewerPanel {
-  std::string labels, values;                ///< two columns, top left; as many lines in both
-  std::string bottom_labels, bottom_values;  ///< likewise, bottom left
+  std::string labels, values;                ///< two columns, top left; the same number of lines in both
+  std::string bottom_labels, bottom_values;  ///< the same, bottom left
 };
 
 struct ViewerOptions {
@@ -43,22 +43,22 @@ struct ViewerOptions {
   std::function<void(const ViewerKey&)> on_key{};  ///< called from show() or poll(); then Esc and q don't close
 };
 
-/// Belongs to the main thread, as the window system wants it. Draws from a copy of the positions, so the simulation may
-/// go on in another thread; model is only read. Not together with a Renderer in one process: MuJoCo keeps one OpenGL.
+/// Belongs to the main thread, as window systems require. It draws from a copy of the positions, so the simulation may
+/// run in another thread; model is only read. One process can't have a Viewer and a Renderer: MuJoCo uses one OpenGL.
 class Viewer {
  public:
-  /// Throws std::runtime_error, in one line, when no window can be opened (no display, no OpenGL).
+  /// Throws std::runtime_error, in one line, if no window can be opened (no display, no OpenGL).
   explicit Viewer(const mjModel* model, const ViewerOptions& options = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// One frame: the robot at qpos (the model's nq values), text over the top left corner. Handles mouse and keys; waits
-  /// for the screen's refresh where the driver does. Does nothing once closed.
+  /// Draws one frame: the robot at qpos (the model's nq values), text over the top left corner. Handles mouse and keys.
+  /// Waits for the screen's refresh if the driver does. Does nothing once closed.
   void show(std::span<const double> qpos, const std::string& text = "", const std::optional<Rope>& rope = std::nullopt);
 
-  /// show() in its two halves, for a window whose keys must not wait for its pictures. After release() one other thread
-  /// draws, always the same, and ends with withdraw(); the main thread polls.
+  /// The two halves of show(), for a window whose keys must not wait for its pictures. After release() exactly one
+  /// other thread draws and finally calls withdraw(); the main thread polls.
   void release();
   void poll();
   void draw(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope,

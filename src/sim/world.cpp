@@ -18,15 +18,14 @@ namespace {
 
 constexpr double kGantryLift_m = 0.2;            // of a world that starts hanging
 constexpr double kClampInertia = 1e12;           // [kg, kg m^2] 100 Nm turn it by 0.05 mrad in 1000 s
-constexpr double kRopeLength_m = 4.0;            // as drawn
+constexpr double kRopeLength_m = 4.0;            // in pictures
 constexpr double kDriveTemperature_degC = 35.0;  // drives have no thermal model
 
-/// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory, and wait for a key. Warnings are counted in
-/// mjData.
+/// MuJoCo's own handlers write MUJOCO_LOG.TXT into the working directory and wait for a key. mjData counts the
+/// warnings.
 void silence_warnings(const char*) {}
 
-/// mju_error doesn't expect its handler to return. A step that ends this way leaves a state that only a reset makes
-/// whole.
+/// mju_error doesn't expect its handler to return. A step that ends this way leaves a state that only a reset repairs.
 [[noreturn]] void throw_error(const char* message) { throw std::runtime_error(std::string("MuJoCo: ") + message); }
 
 /// One robot at a time: MuJoCo's XML reader and its handlers of errors are global.
@@ -90,7 +89,7 @@ struct World::Impl {
     orientation_address = model->sensor_adr[find(model.get(), mjOBJ_SENSOR, "imu_orientation")];
   }
 
-  /// The MJCF's actuators are position servos with MuJoCo's friction. Here every joint's are the actuator model's.
+  /// The MJCF's actuators are position servos with MuJoCo's friction; here they become actuator models.
   void make_motors(const model::RobotModel& robot) {
     expect_joints(options.variation, robot);
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
@@ -100,8 +99,8 @@ struct World::Impl {
     }
   }
 
-  /// A rotor has no weight and adds nothing to what hangs further up: a heavy one holds a joint like a clamp, at any
-  /// step and without a spring that could ring.
+  /// Clamps by a huge rotor inertia: a rotor has no weight and adds no mass to the links above. The clamp works at any
+  /// step and has no spring that could ring.
   void clamp_all_but(const std::string& joint) {
     const int free_dof = model->jnt_dofadr[find(model.get(), mjOBJ_JOINT, joint)];
     for (int dof = 0; dof < model->nv; ++dof) {
@@ -118,7 +117,7 @@ struct World::Impl {
   std::size_t newest_command = 0;
   std::vector<ActuatorModel> motors;  // in joint order
   Eigen::Vector3d push_W_N = Eigen::Vector3d::Zero();
-  std::vector<int> qpos_address, dof_address;  // in joint order, as the actuators are
+  std::vector<int> qpos_address, dof_address;  // in joint order, which is the actuators' order
   int base_body = 0, torso_body = 0;
   std::array<int, 2> foot_body{}, sole_geom{};
   int gyro_address = 0, accelerometer_address = 0, orientation_address = 0;
@@ -158,9 +157,8 @@ void World::reset() {
   w.diverged = false;
 }
 
-// mj_step in two halves, so that positions, velocities and the sensors of both belong to the new state when the step is
-// over; mj_step itself leaves them one step behind. Forces, and with them the accelerometer, are those of the step
-// done.
+// mj_step in two halves. After the step, positions, velocities and their sensors all belong to the new state; mj_step
+// leaves them one step behind. Forces, and therefore the accelerometer, belong to the step just done.
 void World::step(const model::JointCommand& command) noexcept {
   Impl& w = *impl_;
   if (w.diverged) return;
@@ -175,7 +173,7 @@ void World::step(const model::JointCommand& command) noexcept {
     mj_step2(model_, data_);
     measure_feet();
     mj_step1(model_, data_);
-  } catch (const std::runtime_error&) {  // throw_error: the implicit integrator met a matrix that it can't factor
+  } catch (const std::runtime_error&) {  // from throw_error: the implicit integrator can't factor its matrix
     w.diverged = true;
     return;
   }
@@ -199,7 +197,7 @@ void World::set_drives(const model::JointCommand& command) noexcept {
   }
 }
 
-// Between the two halves of a step, while contacts and their forces belong together.
+// Runs between the two halves of a step, where contacts match their forces.
 void World::measure_feet() noexcept {
   Impl& w = *impl_;
   for (std::size_t foot = 0; foot < 2; ++foot) {
@@ -225,7 +223,7 @@ void World::measure_feet() noexcept {
   }
 }
 
-// MuJoCo resets a state that it finds bad and goes on; the counted warning is all that tells.
+// MuJoCo resets a bad state and goes on; only the counted warning shows it.
 void World::check_divergence() noexcept {
   for (const mjWarningStat& warning : data_->warning)
     if (warning.number > 0) impl_->diverged = true;

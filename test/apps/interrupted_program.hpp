@@ -1,5 +1,5 @@
-// A program at a terminal, interrupted in the middle of its work. Ctrl-C reaches it as it does a user's: the terminal
-// sends SIGINT to the whole foreground group, to the program and to whatever it has started.
+// A program at a terminal, interrupted in the middle of its work. Ctrl-C reaches it as a user's does: the terminal
+// sends SIGINT to the whole foreground group, which is the program and everything that it has started.
 #pragma once
 
 #include <poll.h>
@@ -18,17 +18,17 @@
 
 namespace pmg::test {
 
-/// How a program ended.
+/// The end of a program.
 struct Ended {
   int exit_code = 0;         ///< or minus the signal that ended it
-  double cpu_after_s = 0.0;  ///< processor time that it used from the signal on: a host's load doesn't count
+  double cpu_after_s = 0.0;  ///< processor time that it used after the signal; the host's load doesn't count
 };
 
-/// True when the condition came true while the program ran.
+/// True if the condition holds while the program runs.
 inline bool until(PseudoTerminal& program, const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(4);
   while (!condition()) {
-    program.text();  // a full terminal would keep it waiting
+    program.text();  // empties the terminal; a full one would block the program
     siginfo_t ended{};
     waitid(P_PID, static_cast<id_t>(program.id()), &ended, WEXITED | WNOHANG | WNOWAIT);
     if (ended.si_pid != 0 || std::chrono::steady_clock::now() > end) return condition();
@@ -37,12 +37,12 @@ inline bool until(PseudoTerminal& program, const std::function<bool()>& conditio
   return true;
 }
 
-/// The same, of a text that it wrote.
+/// The same for a text in its output.
 inline bool wrote(PseudoTerminal& program, const std::string& text) {
   return until(program, [&] { return program.text().find(text) != std::string::npos; });
 }
 
-/// Of a running process, its ended children included: fields 14 to 17 of /proc/PID/stat.
+/// CPU time of a running process with its ended children: fields 14 to 17 of /proc/PID/stat.
 inline double cpu_s(pid_t process) {
   std::ifstream stat("/proc/" + std::to_string(process) + "/stat");
   const std::string text((std::istreambuf_iterator<char>(stat)), {});
@@ -58,7 +58,7 @@ inline double cpu_s(pid_t process) {
   return sum / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-/// Of this process' children that it has waited for.
+/// CPU time of this process' ended children.
 inline double children_cpu_s() {
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);

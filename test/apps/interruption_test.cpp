@@ -1,4 +1,4 @@
-// Ctrl-C in the middle of long work, as a user types it: what was done is kept and can be read back.
+// Ctrl-C in the middle of long work, typed as by a user: finished work is kept and can be read back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int kInterrupted = 130;
-constexpr double kPromised_s = 1.0;  ///< from Ctrl-C to the end, on a processor of its own
+constexpr double kPromised_s = 1.0;  ///< from Ctrl-C to the end, on an idle processor
 
 class Interruption : public testing::Test {
  protected:
@@ -37,7 +37,7 @@ class Interruption : public testing::Test {
     return at("scenario.yaml");
   }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(test::text_of(folder_ / name)); }
-  /// As a player would decode it; -1 when it isn't playable.
+  /// Number of frames that a player decodes; -1 if it isn't playable.
   int frames(const std::string& film) const {
     const std::string command = "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 '" +
                                 at(film) + "' > '" + at("frames") + "' 2>&1";
@@ -54,7 +54,7 @@ TEST_F(Interruption, AFilmUntilCtrlCIsWholeAndTheRunIsKept) {
   test::PseudoTerminal sil("pmg_sil",
                            {"--policy", "none", "--scenario", scenario(600.0), "--out", at("run"), "--video"});
   const fs::path log = folder_ / "run" / "log.lcm";
-  // A quarter of a megabyte is about a second: more frames than the encoder holds back.
+  // A quarter of a megabyte is about a second, which has more frames than the encoder holds back.
   ASSERT_TRUE(test::until(sil, [&] { return fs::exists(log) && fs::file_size(log) > 250'000; })) << sil.text();
   const test::Ended ended = test::interrupt(sil);
   EXPECT_EQ(ended.exit_code, kInterrupted) << sil.text();
@@ -71,7 +71,7 @@ TEST_F(Interruption, AFilmUntilCtrlCIsWholeAndTheRunIsKept) {
   EXPECT_EQ(ticks, static_cast<int>(std::lround(duration_s * 100.0)));
 }
 
-/// A program in long work, and what its terminal shows then.
+/// A program in long work, and its terminal output at that time.
 struct LongWork {
   const char* name;
   const char* program;
@@ -144,10 +144,10 @@ TEST_F(Interruption, AnEvaluationKeepsWhatIsComplete) {
   EXPECT_EQ(json("push/push.json")["complete"], false);
 }
 
-/// A program of this name, found before the real one.
+/// A replacement of ffmpeg, found before the real one.
 class FilmTrouble : public Interruption {
  protected:
-  /// pmg_sil for two seconds of standing, with this shell script for ffmpeg; empty: none at all.
+  /// pmg_sil for two seconds of standing, with this shell script as ffmpeg; empty: without ffmpeg.
   int film(const std::string& script) {
     const fs::path programs = folder_ / "programs";
     fs::create_directories(programs);

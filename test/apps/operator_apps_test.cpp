@@ -1,4 +1,4 @@
-// pmg_send and pmg_watch as their users see them: alone, without a network, and against a real pmg_controller over UDP.
+// pmg_send and pmg_watch, used as by their users: alone, without a network, and against a pmg_controller over UDP.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -101,12 +101,12 @@ class OperatorApps : public testing::Test {
     const Finished watch = run("pmg_watch --once --json --timeout 10 --robot " + name);
     return watch.exit_code == 0 ? nlohmann::json::parse(watch.out)["mode"].get<std::string>() : watch.err;
   }
-  /// A host that leaves these processes alone for 0.2 s ends a walk, and longer it ends in a fault, as it should.
+  /// A host that pauses these processes for 0.2 s ends a walk; a longer pause ends in a fault, as it should.
   void stand_again(const std::string& name) {
     run("pmg_send reset --robot " + name);
     run("pmg_send stand --robot " + name);
   }
-  /// A driver under whose commands the robot walks.
+  /// A driver whose commands make the robot walk.
   std::unique_ptr<Background> walking_driver(const std::string& name) {
     for (int attempt = 0; attempt < 5; ++attempt) {
       auto driver = std::make_unique<Background>(

@@ -1,4 +1,4 @@
-// pmg_calibrate_motor as its users see it: results, exit codes, messages, and nothing half-written.
+// pmg_calibrate_motor, used as by its users: results, exit codes, messages, and no half-written files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST_F(PmgCalibrateMotor, KeepsWhatItHasWhenInterrupted) {
                                {(folder_ / "servo").string(), "--also", "friction", "delay", "--starts", "1000",
                                 "--out", out_.string(), "--threads", "1"},
                                folder_);
-  // Its handler is in place before it reads; before that SIGINT would end it as any program.
+  // Its handler is installed before it reads; earlier, SIGINT would end it like any program.
   const fs::path signals = fs::path("/proc") / std::to_string(program.id()) / "status";
   ASSERT_TRUE(program.until([&] {
     const std::string status = test::text_of(signals);
@@ -117,8 +117,8 @@ TEST_F(PmgCalibrateMotor, ExplainsItself) {
   for (const std::string& word : calib::effect_words()) EXPECT_THAT(program.out(), HasSubstr(word));
 }
 
-// Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N. The closed loop's rollouts alone are 8 %
-// off in the inertia: they can't tell it from a lag of the drive's velocity.
+// Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N. Rollouts of the closed loop alone are 8 %
+// off in the inertia, because they can't separate it from a lag of the drive's velocity.
 TEST_F(PmgCalibrateMotor, AnswersWithThePublishedParametersWhereTheDriveWasRecorded) {
   const char* named = std::getenv("PMG_BENCHES");
   const fs::path emps =

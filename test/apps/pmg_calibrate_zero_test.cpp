@@ -1,4 +1,4 @@
-// pmg_calibrate_zero as its users see it: stances, a robot with hidden zero points that takes them, and what is found.
+// pmg_calibrate_zero, used as by its users: stances, a robot with hidden zero points in these stances, and the result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -40,7 +40,7 @@ class PmgCalibrateZero : public testing::Test {
   const fs::path stances_ = folder_ / "stances", out_ = folder_ / "out";
 };
 
-/// 0.02 to 0.1 rad on every leg joint, and some that no pose can show.
+/// 0.02 to 0.1 rad on every leg joint, and some offsets that no pose can show.
 constexpr const char* kHidden = R"(joints:
   left_hip_pitch: {sensor: {zero_offset_rad: -0.0655}}
   left_hip_roll: {sensor: {zero_offset_rad: 0.0404}}
@@ -58,12 +58,12 @@ constexpr const char* kHidden = R"(joints:
   left_elbow: {sensor: {zero_offset_rad: -0.09}}
 )";
 
-// A whole calibration: stances, a simulated robot with hidden zero points, noise of encoders and IMU and an IMU that
-// sits askew by 0.8 mrad, and its log.
+// A whole calibration: stances, a simulated robot with hidden zero points, encoder and IMU noise and an IMU that is
+// misaligned by 0.8 mrad, and its log.
 TEST_F(PmgCalibrateZero, FindsHiddenZeroPointsOfASimulatedRobot) {
   make_stances();
   std::ofstream(folder_ / "hidden.yaml") << kHidden;
-  const fs::path plant = folder_ / "plant";  // the robot that is simulated
+  const fs::path plant = folder_ / "plant";  // the simulated robot
   fs::copy(stances_, plant, fs::copy_options::recursive);
   YAML::Node yaml = YAML::LoadFile((stances_ / "robot.yaml").string());
   yaml["imu"]["rpy_rad"] = std::vector<double>{0.0006, -0.0005, 0.0};

@@ -1,5 +1,5 @@
-// pmg_controller --bench by the robot's own threads: an operator lets it stand, it plays, records, damps and ends. How
-// many runs come out whole is the host's matter: one that stops for a moment makes holes, and what has one is left out.
+// pmg_controller --bench in the robot's own threads: an operator makes it stand; it plays, records, damps and ends. The
+// number of complete runs depends on the host: a pause makes a hole, and a run with a hole is not recorded.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using test::RunningProgram;
 using testing::HasSubstr;
 
 constexpr int kRuns = 4;
-constexpr std::size_t kSamples = 60;  // 0.6 s: most are whole on a host that stops once a second
+constexpr std::size_t kSamples = 60;  // 0.6 s: on a host that pauses once a second most are complete
 
 bench::Excitation steps(int runs, std::size_t samples) {
   bench::Excitation excitation;
@@ -51,7 +51,7 @@ class ControllerBench : public testing::Test {
     return code;
   }
 
-  /// The controller, from its first STATUS to its end, with what an operator does once it stands; its exit code.
+  /// Runs the controller; `operate` acts as the operator from the first STATUS on. Returns the exit code.
   template <typename Operator>
   int bench(const std::string& name, const bench::Excitation& excitation, Operator&& operate) {
     if (!fs::exists(at("excitation"))) bench::write_excitation(at("excitation"), excitation, "steps");

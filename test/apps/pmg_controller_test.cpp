@@ -1,4 +1,4 @@
-// pmg_controller as its users see it. Its network is memq://, which needs none.
+// pmg_controller, used as by its users, on memq://, which needs no network.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ TEST_F(PmgController, ThreeSecondsOfThreadsLoseNothing) {
   const Finished run3 = run(arguments({"--duration", "3", "--json", "--log", log(), "--name", "soaked"}));
   ASSERT_EQ(run3.exit_code, 0) << run3.err;
   const auto json = nlohmann::json::parse(run3.out);
-  // What ran and what was skipped add up to the time that passed: counts, because a shared host promises no times.
+  // Cycles run and cycles skipped add up to the elapsed time. Counts, because a shared host guarantees no times.
   for (const auto& [thread, rate_Hz] : {std::pair{"control", 100}, std::pair{"bus", 500}}) {
     const auto& cycles = json[thread];
     const std::int64_t due = cycles["cycles"].get<std::int64_t>() + cycles["missed"].get<std::int64_t>();

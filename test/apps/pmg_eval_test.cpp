@@ -1,4 +1,4 @@
-// pmg_eval as its users see it: exit codes, messages, and files.
+// pmg_eval, used as by its users: exit codes, messages, and files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,5 @@
 // pmg_keyboard in a terminal, and the keys of pmg_controller's window, against a real pmg_controller and its simulated
-// robot. They run by the wall clock on a computer that others use too: what is asked for is that things happen, not how
-// soon.
+// robot. They run by the wall clock on a shared computer, so the tests require events, not times.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +34,7 @@ class PmgKeyboard : public testing::Test {
     more.insert(more.begin(), {"--hal", "sil", "--robot", "z1", "--no-realtime", "--log", (folder_ / "log").string()});
     return RunningProgram("pmg_controller", std::move(more), folder_);
   }
-  /// A whole controller with its window: false when a fault disturbed it.
+  /// A whole controller with its window; false if a fault disturbed it.
   bool window_keys_walk_and_stand() {
     RunningProgram robot = controller({"--viewer"});
     const auto place = [&](const char* words, std::size_t from = 0) { return robot.err().find(words, from); };
@@ -122,8 +121,8 @@ TEST_F(PmgKeyboard, ByKeysALimpRobotStandsUpIsSetDownWalksRestsAndIsDamped) {
     ASSERT_TRUE(robot.until([&] { return robot.err().find("mode: passive") != std::string::npos; }, kDeadline_s));
     PseudoTerminal terminal("pmg_keyboard", {});
     ASSERT_TRUE(terminal.shows("z1 PASSIVE", kDeadline_s)) << terminal.text();
-    // A computer that leaves these processes alone for a second may bring the robot down: as its operator would, up
-    // again.
+    // A computer that pauses these processes for a second may bring the robot down. Then the test makes it stand up
+    // again, as an operator would.
     bool walked = false;
     for (int attempt = 0; attempt < 5 && !walked; ++attempt) {
       if (attempt > 0) {
@@ -158,9 +157,9 @@ TEST_F(PmgKeyboard, InTheWindowAHeldKeyWalksAndWhenItIsLetGoTheRobotStands) {
   if (!test::Display::there()) GTEST_SKIP() << "NOT TESTED: no display, and no Xvfb (package xvfb) to make one";
   if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "NOT TESTED: no xdotool to press keys";
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
-    // Mesa's driver keeps a few bytes and is unloaded with the window: LeakSanitizer can't tell it by its name then.
+    // Mesa's driver keeps a few bytes and is unloaded with the window, so LeakSanitizer can't name it any more.
     setenv("LSAN_OPTIONS", "detect_leaks=0", 1);
-    // A computer that stops these processes for 50 ms brings the robot down, and that is no answer.
+    // A computer that pauses these processes for 50 ms brings the robot down; such an attempt doesn't count.
     bool undisturbed = false;
     for (int attempt = 0; attempt < 5 && !undisturbed; ++attempt) undisturbed = window_keys_walk_and_stand();
     EXPECT_TRUE(undisturbed) << test::text_of(folder_ / "pmg_controller.err");

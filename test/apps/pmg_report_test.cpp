@@ -1,4 +1,4 @@
-// pmg_report as its users see it: exit codes, messages, and the page.
+// pmg_report, used as by its users: exit codes, messages, and the page.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,8 +56,8 @@ TEST_F(PmgReport, GivesMachinesTheFigures) {
   EXPECT_EQ(json["runs"][0]["fell"], false);
 }
 
-// (a run that walks, and one that walks without a policy until it lies) => the report's errors and slip, digit by
-// digit.
+// (a run that walks, and one that walks without a policy until it falls) => errors and slip in the report equal the
+// summary's, digit by digit.
 TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
   std::ofstream(folder_ / "walk.yaml") << "name: walk\nsteps:\n  - {for_s: 1.5, text: stand, mode: stand}\n"
                                        << "  - {for_s: 2.5, text: go, mode: walk, command: {vx_m_s: 0.5}}\n";

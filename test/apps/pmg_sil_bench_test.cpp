@@ -1,5 +1,4 @@
-// From an excitation over a simulated robot's recording to the motor that was in it: the executables as a user runs
-// them.
+// From an excitation over a simulated robot's recording to its motor: the executables as a user runs them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,10 +39,10 @@ class RobotBench : public testing::Test {
   std::string err_;
 };
 
-/// A joint, and what its motor is in the simulation: what a motor.yaml says, or robot.yaml alone.
+/// A joint, and its motor in the simulation: a motor.yaml's, or robot.yaml's alone.
 struct Known {
   const char* joint;
-  sim::ActuatorParameters of_motor_yaml;  // neutral: none is given
+  sim::ActuatorParameters of_motor_yaml;  // neutral: no motor.yaml
   std::vector<std::string> excitation;    // options of --make-excitation
 };
 std::ostream& operator<<(std::ostream& out, const Known& known) { return out << known.joint; }
@@ -58,9 +57,8 @@ sim::ActuatorParameters motor(double kp_scale, double kd_scale, double armature_
 
 class KnownMotor : public RobotBench, public testing::WithParamInterface<Known> {};
 
-// Neighbours and base are clamped, so that a joint in the middle of a leg is told as well as one at the end of the
-// trunk. One percent, because the simulation under the fit is the one that was recorded: only the sensor's noise is
-// between them.
+// Base and other joints are clamped, so a joint in the middle of a leg is as observable as one at the end of the trunk.
+// One percent, because the fit's simulation is also the recorded one: they differ only by sensor noise.
 TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   const Known known = GetParam();
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
@@ -98,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
              (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
     });
 
-// The example of README.md: a knee is recorded and calibrated; one that wear has given play and friction under load is
-// recorded, and diagnosed against it.
+// README.md's example: a knee is recorded and calibrated; a knee with wear (play, and friction under load) is recorded
+// and diagnosed against it.
 TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   const fs::path hidden_file = PMG_SOURCE_DIR "/config/examples/worn_knee.yaml";
   const sim::ActuatorParameters hidden = sim::read_motor_file(hidden_file).at("left_knee");
@@ -139,7 +137,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   const double floor = diagnosis["noise_floor"];
   EXPECT_GT(diagnosis["held_out_error_before"].get<double>(), 8.0 * floor) << "something was wrong";
   EXPECT_LT(diagnosis["held_out_error_after"].get<double>(), 1.5 * floor) << "and little of it is left";
-  // What was found drives the simulation.
+  // The found motor can drive the simulation.
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   EXPECT_NO_THROW(sim::read_motor_file(at("why/motor.yaml"), robot.joint_index));
 }

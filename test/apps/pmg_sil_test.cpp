@@ -1,4 +1,4 @@
-// pmg_sil as its users see it: exit codes, messages, and files.
+// pmg_sil, used as by its users: exit codes, messages, and files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -125,7 +125,7 @@ TEST_F(PmgSil, ThePolicyOfZ1WalksOnTheGround) {
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(summary["fell"], false);
   EXPECT_EQ(summary["hoisted_s"], 0.0);
-  // A robot that stood still all the time would have 0.3 m/s.
+  // A robot that stands still all the time has 0.3 m/s.
   EXPECT_LT(summary["tracking"]["lin_vel_mae_m_s"], 0.1);
 }
 
@@ -203,7 +203,7 @@ TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
       run("--realtime --policy none --gantry --json --scenario " + file.string() + " --out " + out_folder());
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(walk.exit_code, 0) << summary["faults"].dump();
-  // Ticks that ran; a shared host may have taken some.
+  // Executed ticks; a shared host may have cost some.
   EXPECT_GT(summary["duration_s"].get<double>(), 1.5);
   EXPECT_LT(summary["duration_s"].get<double>(), 2.6);
   EXPECT_GT(summary["reference_slip"]["before_mean_m_s"].get<double>(), 0.0) << "it walked";
@@ -227,7 +227,7 @@ TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
 }
 
 TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
-  // Ten minutes of standing: long enough to be caught on any machine; the signal follows the first bytes of the log.
+  // Ten minutes of standing, long enough to be interrupted on any machine; the signal follows the log's first bytes.
   const fs::path file = scenario("name: long\nsteps:\n  - {for_s: 600.0, text: stand, mode: stand}\n");
   const fs::path log = fs::path(out_folder()) / "log.lcm";
   const pid_t child = fork();

@@ -1,4 +1,4 @@
-// pmg_sil --viewer where there is nothing to view on. The window itself: test/sim/viewer_test.cpp.
+// pmg_sil --viewer without a display. test/sim/viewer_test.cpp tests the window itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 void expect_refusal_in_one_line() {
   const fs::path folder =
-      fs::path(testing::TempDir()) / ("pmg_sil viewer " + std::to_string(getpid()));  // tests run side by side
+      fs::path(testing::TempDir()) / ("pmg_sil viewer " + std::to_string(getpid()));  // tests run in parallel
   fs::create_directories(folder);
   unsetenv("WAYLAND_DISPLAY");
   unsetenv("XDG_RUNTIME_DIR");

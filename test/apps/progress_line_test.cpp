@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// stderr goes elsewhere while this lives.
+/// Redirects stderr while it exists.
 class Redirected {
  public:
   explicit Redirected(int to) : before_(dup(STDERR_FILENO)) { dup2(to, STDERR_FILENO); }
@@ -28,7 +28,7 @@ class Redirected {
   int before_;
 };
 
-/// What comes out until it holds the text; what came when nothing more does for 10 s, or far too much.
+/// Reads until the output contains the text; ends after 10 s without output, or with far too much of it.
 std::string read_until(int from, const std::string& text) {
   constexpr int kDeadline_ms = 10'000;
   constexpr std::size_t kTooMuch = 10'000;
@@ -111,7 +111,7 @@ TEST(ProgressLine, ItsThreadTakesNoSignalFromTheWork) {
   const auto before = std::signal(SIGUSR1, [](int /*signal*/) {});
   ProgressLine progress(1ms);
   progress.show("working");
-  read_until(ends[0], "working\n");  // its thread is up
+  read_until(ends[0], "working\n");  // its thread runs
   sigset_t one, pending, mask;
   sigemptyset(&one);
   sigaddset(&one, SIGUSR1);

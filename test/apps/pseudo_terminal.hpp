@@ -1,4 +1,4 @@
-// A program in a terminal of its own, typed into and read as its user would.
+// A program in its own terminal, with typed input and read output as a user's.
 #pragma once
 
 #include <poll.h>
@@ -17,7 +17,7 @@
 
 namespace pmg::test {
 
-/// A child process; killed when the test forgets it.
+/// A child process; killed when the object is destroyed.
 class PseudoTerminal {
  public:
   PseudoTerminal(const std::string& program, std::vector<std::string> arguments) {
@@ -35,7 +35,7 @@ class PseudoTerminal {
       execv(path.c_str(), argv.data());
       _exit(127);
     }
-    slave_ = slave;  // kept open: its settings are asked for after the program has ended
+    slave_ = slave;  // kept open: the test reads its settings after the program has ended
   }
   ~PseudoTerminal() {
     if (child_ > 0) {
@@ -52,8 +52,8 @@ class PseudoTerminal {
     return write(master_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size());
   }
   void send(int signal) const { kill(child_, signal); }
-  pid_t id() const { return child_; }  ///< of its process group too
-  /// What it has written, newest picture last; reads what is there.
+  pid_t id() const { return child_; }  ///< also its process group's
+  /// Its output so far, newest picture last; reads all available bytes.
   const std::string& text() {
     std::array<char, 4096> bytes{};
     pollfd output{.fd = master_, .events = POLLIN, .revents = 0};
@@ -64,13 +64,13 @@ class PseudoTerminal {
     }
     return text_;
   }
-  /// From the last picture's beginning on.
+  /// The output from the beginning of the last picture.
   std::string picture() {
     const std::string& all = text();
     const std::size_t end = all.rfind("\x1b[J"), begin = end == std::string::npos ? end : all.rfind("\x1b[H", end);
     return begin == std::string::npos ? "" : all.substr(begin, end - begin);
   }
-  /// True when the picture came to hold this; meanwhile the errand is done every 50 ms.
+  /// True if the picture shows the words before the deadline; runs `errand` every 50 ms meanwhile.
   bool shows(const std::string& words, double deadline_s, const std::function<void()>& errand = {}) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
     while (std::chrono::steady_clock::now() < end) {
@@ -85,7 +85,7 @@ class PseudoTerminal {
   int wait() {
     int status = 0;
     while (waitpid(child_, &status, WNOHANG) == 0) {
-      text();  // a full terminal would keep it waiting
+      text();  // empties the terminal; a full one would block the program
       pollfd output{.fd = master_, .events = POLLIN, .revents = 0};
       poll(&output, 1, 20);
     }

@@ -1,4 +1,4 @@
-// One of the executables, run as a user would: with arguments, files for what it says, signals and an exit code.
+// One of the executables, run as by a user: with arguments, files for its output, signals and an exit code.
 #pragma once
 
 #include <sched.h>
@@ -21,7 +21,7 @@ inline std::string text_of(const std::filesystem::path& file) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-/// A child process; killed when the test forgets it.
+/// A child process; killed when the object is destroyed.
 class RunningProgram {
  public:
   RunningProgram(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder)
@@ -55,7 +55,7 @@ class RunningProgram {
     child_ = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
-  /// True when the condition came true while the program ran.
+  /// True if the condition holds while the program runs.
   bool until(const std::function<bool()>& condition, double deadline_s = 60.0) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
     while (!condition()) {

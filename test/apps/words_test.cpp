@@ -1,5 +1,5 @@
-// What every program says of itself and of a command line that is wrong: one line with the program, the word, and what
-// was probably meant.
+// Every program's answer to --help, --version and wrong command lines: one line with the program, the wrong word, and a
+// proposal.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ class Words : public testing::Test {
     const int exit_code = running.wait();
     return {exit_code, running.out(), running.err()};
   }
-  /// Refused with exactly this line, and nothing on stdout.
+  /// Expects a refusal with exactly this line, and nothing on stdout.
   void expect_line(const std::string& command, const std::string& line) const {
     const Finished refused = run(command);
     EXPECT_EQ(refused.exit_code, 2) << command;

@@ -15,7 +15,7 @@ namespace {
 
 using Unknowns = Eigen::Matrix<double, 5, 1>;  // v', omega_z', h'
 
-/// One step from the command to the minimum: the problem is linear. The lowest corner stands in for the smoothed
+/// One step from the command to the minimum, because the problem is linear. The lowest corner replaces the smoothed
 /// contact point.
 class GaussNewtonFloor {
  public:
@@ -87,7 +87,7 @@ void solve(benchmark::State& state, const gco::Options& options) {
 void BM_gco_solve(benchmark::State& state) { solve(state, {}); }
 void BM_gco_solve_roll_pitch(benchmark::State& state) { solve(state, {.optimise_roll_pitch = true}); }
 
-/// Kinematics of both legs and of the waist as KDL gives them, and the step.
+/// KDL's kinematics of both legs and of the waist, and the step.
 void BM_gco_floor(benchmark::State& state) {
   const WalkingStates states;
   model::LegKinematics legs(states.robot);
@@ -122,9 +122,8 @@ void BM_gco_floor_without_kinematics(benchmark::State& state) {
   }
 }
 
-/// A floor that computes something else would be no floor. The smoothed contact point may differ by a fraction of a
-/// millimetre, which joint speeds below 1 rad/s turn into less than 1e-3 m/s, except where two corners are as low as
-/// each other.
+/// The floor must compute the same result. The smoothed contact point may differ by a fraction of a millimetre; at
+/// joint speeds below 1 rad/s that is less than 1e-3 m/s, except where two corners are equally low.
 void require_equal_results() {
   const WalkingStates states;
   model::LegKinematics legs(states.robot);

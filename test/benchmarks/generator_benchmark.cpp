@@ -1,6 +1,6 @@
 // Generator::step with 31 joints against its floor: the same number of bare 31-vector multiply-adds (y += a x).
 //
-// What the method needs at least in a tick with three velocity and three posture channels, in multiply-adds of a joint
+// The least work of the method in a tick with three velocity and three posture channels, in multiply-adds of a joint
 // vector:
 //   24  3 clips, cubic Hermite from 4 knot vectors each, for q and for dq/dphi: 3 x 2 x 4
 //    3  dg/dt q_stand and (1 - sum g) q_stand, and the posture offset added into q_ref
@@ -8,8 +8,8 @@
 //    2  posture rate: difference over the tick, added into dq_ref
 //    6  admissible set: the gains' largest excursions up and down, 3 clips
 //   41
-// Not counted, and paid by the generator alone: comparisons (the admissible set, the last clamp), the limiter, gains,
-// timing and contacts.
+// Not counted in the floor, only the generator has them: comparisons (the admissible set, the last clamp), the limiter,
+// gains, timing and contacts.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -23,7 +23,7 @@ namespace {
 constexpr int kJoints = 31;
 constexpr int kMultiplyAdds = 41;
 
-/// All six channels active and all six moving, forth and back.
+/// All six channels active and moving back and forth.
 Command sweep(int tick) {
   const double s = 0.5 + 0.3 * (tick % 200 < 100 ? tick % 100 : 100 - tick % 100) / 100.0;
   return make_command(0.3 * s, 0.1 * s, 0.2 * s, 0.3 * s, 0.1 * s, -0.1 * s);

@@ -1,5 +1,4 @@
-// A six-joint humanoid leg by hand: the floor that KDL's kinematics and the ground-aware optimisation are measured
-// against.
+// A six-joint humanoid leg by hand: the floor for KDL's kinematics and for the ground-aware optimisation.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +13,7 @@
 namespace pmg::test {
 
 /// Hip pitch, roll, yaw, knee, ankle pitch, roll: rotations about coordinate axes with constant offsets, multiplied one
-/// by one.
+/// after another.
 class LegChainFloor {
  public:
   LegChainFloor(const model::RobotModel& robot, Foot foot) : joints_(robot.leg_joints[foot]) {
@@ -46,7 +45,7 @@ class LegChainFloor {
   Eigen::Matrix<double, 6, 6> J;
 
  private:
-  /// Rotation in the plane of columns kA, kB of R, about the third one; then on to the next joint.
+  /// Rotates columns kA, kB of R about the third one, then moves on to the next joint.
   template <int kA, int kB>
   void turn(std::size_t joint, const JointVector& q) {
     axis_[joint] = R.col(3 - kA - kB);

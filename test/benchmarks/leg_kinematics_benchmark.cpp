@@ -38,7 +38,7 @@ void BM_leg_kinematics_floor(benchmark::State& state) {
   }
 }
 
-/// A floor that computes something else would be no floor.
+/// The floor must compute the same result.
 void require_equal_results() {
   const WalkingStates states;
   model::LegKinematics legs(states.robot);

@@ -1,4 +1,4 @@
-// The layers of an exported policy, read from its ONNX file without any library: a floor must compute the same network.
+// The layers of an exported policy, read from its ONNX file without a library: the floor must compute the same network.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 
 namespace pmg::test {
 
-/// Protocol buffers' wire format, as far as ONNX needs it: fields are a key, then a number or so many bytes.
+/// Protocol buffers' wire format, as far as ONNX needs it: each field is a key, then a number or a number of bytes.
 class ProtobufFields {
  public:
   explicit ProtobufFields(std::string_view message) : message_(message) {}

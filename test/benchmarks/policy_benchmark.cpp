@@ -1,4 +1,4 @@
-// A trained policy's whole act(), observation included, against the same network written by hand in Eigen.
+// The whole act() of a trained policy, with its observation, against the same network written by hand in Eigen.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace pmg::test {
 namespace {
 
-/// Each layer a matrix times a vector, nothing allocated.
+/// One matrix-vector product per layer, no allocation.
 class EigenFloor {
  public:
   explicit EigenFloor(const std::filesystem::path& file) : network_(file), x_(network_.mean.size()) {
@@ -42,7 +42,7 @@ class EigenFloor {
   std::vector<Eigen::VectorXf> h_;
 };
 
-/// Sensors that go with the walking states.
+/// Sensor values for the walking states.
 std::vector<model::RobotState> sensed(const WalkingStates& states) {
   std::vector<model::RobotState> sensed(WalkingStates::kCount);
   for (std::size_t k = 0; k < WalkingStates::kCount; ++k) {
@@ -88,7 +88,7 @@ void BM_policy_floor(benchmark::State& state) {
   }
 }
 
-/// A floor that computes something else would be no floor.
+/// The floor must compute the same result.
 void require_equal_results() {
   const WalkingStates states;
   const std::vector<model::RobotState> seen = sensed(states);

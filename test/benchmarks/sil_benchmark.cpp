@@ -1,5 +1,5 @@
-// The whole of pmg_sil, headless and with its log, against bare mj_step calls on the same model: how much of the
-// simulation's speed the controller leaves. CPU time of the thread, because other programs' load is not the matter.
+// All of pmg_sil, headless and with its log, against bare mj_step calls on the same model: the share of the
+// simulation's speed that the controller leaves. CPU time of the thread, so the load of other programs doesn't count.
 #include <benchmark/benchmark.h>
 #include <mujoco/mujoco.h>
 #include <time.h>
@@ -33,7 +33,7 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// On the ground, where contacts cost the most, in Walk mode, with every part of the tick at work.
+/// Walk mode on the ground, where contacts cost the most; every part of the tick works.
 sil::Scenario scenario() {
   sil::ScenarioStep step;
   step.duration_s = kDuration_s;
@@ -81,7 +81,7 @@ void sil(benchmark::State& state, MakePolicy make_policy) {
     state.SetIterationTime(thread_cpu_s() - start_s);
     if (outcome.fell || outcome.diverged) state.SkipWithError("the robot fell");
   }
-  state.counters["allocations_per_call"] = static_cast<double>(most);  // a call is a tick
+  state.counters["allocations_per_call"] = static_cast<double>(most);  // per tick: a call is one tick
   state.counters["allocations_vary_by"] = static_cast<double>(most - least);
   std::filesystem::remove(file);
 }

@@ -1,5 +1,5 @@
-// One evaluation of a fit (a 3 s rollout of one joint with every common effect, and its error) against bare mj_step
-// calls for as many steps of the same joint, which has no effects there but MuJoCo's own PD and friction.
+// One evaluation of a fit (a 3 s rollout of one joint with every common effect, and its error) against as many bare
+// mj_step calls of the same joint, there with MuJoCo's own PD and friction only.
 #include <benchmark/benchmark.h>
 
 #include "calib/mujoco_joint.hpp"

@@ -1,6 +1,6 @@
-// The whole control tick with a trained policy in it, walking through all channels in simulation: p50 and p99 of its
-// stages in CPU time of the thread, and its heap allocations. The physics runs between the ticks, so caches are as cold
-// as they get.
+// The whole control tick with a trained policy, walking through all channels in simulation: p50 and p99 of its stages
+// in CPU time of the thread, and its heap allocations. Physics runs between the ticks, so caches are as cold as
+// possible.
 #include <benchmark/benchmark.h>
 #include <time.h>
 
@@ -18,7 +18,7 @@
 namespace pmg::test {
 namespace {
 
-/// What other programs on the machine use doesn't count.
+/// CPU time of this thread: other programs don't count.
 class ThreadCpuClock final : public io::Clock {
  public:
   std::int64_t now_ns() const noexcept override {
@@ -46,7 +46,7 @@ sil::Scenario walking() {
   return scenario;
 }
 
-/// Counted from tick to tick: the tick, its bus cycles, and the physics, which uses none.
+/// Counted from tick to tick, so for the tick, its bus cycles, and the physics, which makes none.
 class AllocationsPerTick {
  public:
   void tick(bool driving) {
@@ -65,15 +65,15 @@ class AllocationsPerTick {
   bool was_driving_ = false;
 };
 
-/// On the gantry: what a tick costs doesn't depend on how well the policy fits today's clips.
+/// On the gantry: the cost of a tick doesn't depend on how well the policy fits today's clips.
 void BM_tick(benchmark::State& state) {
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
   const sil::Scenario played = walking();
   const ThreadCpuClock stopwatch;
   control::TickOptions options = control::tick_options(robot);
-  options.action_monitor.persist_ticks = 1'000'000;  // feet that find no ground make a policy reach for it
-  options.foot_load.lost_share = -2e9;               // and it is run all the same
+  options.action_monitor.persist_ticks = 1'000'000;  // feet without ground make the policy reach for it
+  options.foot_load.lost_share = -2e9;               // the policy runs anyway
   options.foot_load.found_share = -1e9;
   for (auto _ : state) {
     sim::World world(robot, sil::world_with_noise(1, true));

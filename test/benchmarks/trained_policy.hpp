@@ -1,5 +1,5 @@
-// The committed policy of z1 for benchmarks, which ask what it costs and not whether it fits today's clips: it is
-// loaded for whatever clips it was trained on.
+// z1's committed policy for benchmarks of its cost. It loads with any clips, because its fit to today's clips doesn't
+// matter here.
 #pragma once
 
 #include <onnxruntime_cxx_api.h>

@@ -1,4 +1,4 @@
-// Postures and velocities of the robot z1 that the benchmarks of kinematics and optimisation cycle through.
+// Postures and velocities of z1 for the benchmarks of kinematics and optimisation, which cycle through them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace pmg::test {
 
-/// Both feet in contact, disagreeing as in a blend of clips: what costs the optimisation most.
+/// Both feet in contact, with a disagreement as in a blend of clips: the most expensive case for the optimisation.
 struct WalkingStates {
   static constexpr std::size_t kCount = 64;
 

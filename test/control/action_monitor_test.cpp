@@ -11,8 +11,8 @@ namespace {
 constexpr ActionMonitorOptions kShort = {
     .bound_rad = 0.5, .persist_ticks = 3, .reversals = 2, .reversal_ticks = 2, .window_ticks = 6};
 
-/// Plays ticks: a joint is beyond the bound above (+) or below (-) its reference, or all are within it (.). In which
-/// one the fault came, counted from 0; -1: in none.
+/// Plays ticks: a joint is above its reference by more than the bound (+), below it (-), or all are within the bound
+/// (.). Returns the tick of the fault, counted from 0; -1: none.
 int fault_tick(ActionMonitor& monitor, const std::string& ticks) {
   const JointVector q_ref = JointVector::LinSpaced(5, -1.0, 1.0), within = q_ref.array() + 0.49;
   for (std::size_t k = 0; k < ticks.size(); ++k) {

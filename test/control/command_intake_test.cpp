@@ -13,7 +13,7 @@ using DriveVerdict = CommandIntake::DriveVerdict;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Messages reach the intake in the moment in which they are received; stamp_ns tells when they were sent.
+/// Messages enter the intake at the time of their reception; stamp_ns is their sending time.
 class Intake : public testing::Test {
  protected:
   DriveVerdict drive(const char* source, std::int64_t session, std::int64_t sequence, std::int64_t now_ns,
@@ -105,7 +105,7 @@ TEST_F(Intake, CommandsThatTravelledTooLongAreLateWhateverTheSendersClock) {
 }
 
 TEST_F(Intake, ClocksThatDriftApartMakeNoMessageLate) {
-  // An hour at 50 ms, the sender's clock slow by 200 parts in a million: 0.7 s apart at the end.
+  // An hour at 50 ms, the sender's clock slow by 200 parts in a million: 0.7 s difference at the end.
   for (std::int64_t k = 1; k <= 72'000; ++k) {
     const std::int64_t now_ns = k * 50'000'000;
     ASSERT_EQ(drive_sent(now_ns - now_ns / 5000, "vr", 1, k, now_ns), DriveVerdict::kAccepted) << k;
@@ -228,7 +228,7 @@ TEST_F(Intake, WhatIsNoModeIsRefused) {
 
 TEST_F(Intake, TheSourceThatWasSilentLongestMakesRoomButNeverTheDrivingOne) {
   drive("driver", 1, 10, 0, 2.0);
-  for (int k = 0; k < 20; ++k) {  // strangers that stop, each for the first time
+  for (int k = 0; k < 20; ++k) {  // strange sources that stop, each for the first time
     request(("stranger" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, 1 + k);
   }
   EXPECT_EQ(drive("driver", 1, 10, 100), DriveVerdict::kOutOfOrder) << "still remembered";

@@ -1,5 +1,5 @@
-// The bus cycle, the control cycle and the tick as the robot runs them, in one thread on a virtual clock, with drives
-// that follow at once. Everything can be stalled, spoilt and silenced.
+// The robot's bus cycle, control cycle and tick in one thread on a virtual clock, with drives that follow at once.
+// Everything can be stalled, corrupted and silenced.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace pmg::test {
 
-/// Drives that follow at once; what they report can be spoilt.
+/// Drives that follow at once; a test can corrupt their report.
 class SpoiltBus final : public hal::Hal {
  public:
   explicit SpoiltBus(const model::RobotModel& robot) : feet_(robot), state_(standing_state(robot)) {}
@@ -30,7 +30,7 @@ class SpoiltBus final : public hal::Hal {
     return status;
   }
 
-  /// What the drives do is to brake: no position, some damping.
+  /// The drives' command is to brake: no stiffness, some damping.
   bool damping() const { return last_command.kp.cwiseAbs().maxCoeff() == 0.0 && last_command.kd.minCoeff() > 0.0; }
   bool finite() const {
     for (const JointVector* values :
@@ -41,7 +41,7 @@ class SpoiltBus final : public hal::Hal {
   }
 
   hal::BusStatus status = hal::BusStatus::kOk;
-  PerFoot<double> carried{0.5, 0.5};  ///< by the feet, of the weight
+  PerFoot<double> carried{0.5, 0.5};  ///< share of the weight, by foot
   std::function<void(model::RobotState&)> spoil;
   model::JointCommand last_command;
   int exchanges = 0;
@@ -53,7 +53,7 @@ class SpoiltBus final : public hal::Hal {
 
 class ControlRig {
  public:
-  /// balances: false for what `--policy none` is.
+  /// balances: false for the robot of `--policy none`.
   explicit ControlRig(const model::RobotModel& robot, bool balances = true)
       : ControlRig(robot, clips(robot), control::tick_options(robot), balances) {}
   ControlRig(const model::RobotModel& robot, ClipLibrary library, const control::TickOptions& options,
@@ -89,7 +89,7 @@ class ControlRig {
   void run(double duration_s) {
     for (int k = 0; k < static_cast<int>(duration_s * 500.0 + 0.5); ++k) cycle();
   }
-  /// On to a given number of cycles after a tick.
+  /// Runs until this number of cycles after a tick.
   void align(int cycles_after_tick) {
     while (cycles % 5 != cycles_after_tick) cycle();
   }
@@ -104,16 +104,15 @@ class ControlRig {
                                    .mode = mode,
                                    .reset_fault = reset_fault});
   }
-  /// Walking on the spot, all ramps over.
+  /// Walks on the spot, with all ramps done.
   void reach_walk() {
     ask(control::Mode::kWalk);
-    for (int k = 0; k < 60 && mode() != control::Mode::kWalk; ++k) run(0.1);  // the ramp takes 5 s at most
+    for (int k = 0; k < 60 && mode() != control::Mode::kWalk; ++k) run(0.1);  // the ramp takes at most 5 s
     ASSERT_EQ(mode(), control::Mode::kWalk);
     run(0.5);
   }
 
-  /// Bus cycles from the first one that carries what inject() does to the first one in which the drives are told to
-  /// damp; -1: none within a second.
+  /// Bus cycles from the first one after inject() to the first damping command of the drives; -1: none within a second.
   int cycles_to_damping(const std::function<void()>& inject) {
     const int first_cycle = cycles + 1;
     inject();
@@ -140,7 +139,7 @@ class ControlRig {
   control::DriveMessage drive;  ///< sent before every tick
   std::function<void()> after_cycle;
   bool bus_frozen = false, control_frozen = false, silent = false;
-  int control_delay_cycles = 0;  ///< how late the control thread wakes
+  int control_delay_cycles = 0;  ///< delay of the control thread's wake-up
   int cycles = 0;                ///< of 2 ms, since the start
 
  private:

@@ -1,4 +1,4 @@
-// A policy's file alone decides what the controller composes for it.
+// The policy's file alone determines the controller's composition.
 #include "control/control_setup.hpp"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ ControlSetup setup_with(const std::filesystem::path& policy) {
   return {.robot = test::z1().directory.string(), .clips = {}, .policy = policy.string()};
 }
 
-/// A controller that turns while it walks, on drives that follow at once.
+/// A robot that turns while it walks, on drives that follow at once.
 class TurningRobot {
  public:
   explicit TurningRobot(const ControlSetup& setup)

@@ -1,5 +1,5 @@
-// Holding, stopping, braking beside the table of faults: frozen threads, stops from strangers, silent operators, late
-// policies, through the whole of bus cycle, guard, control cycle and tick.
+// Holding, stopping and braking besides the table of faults: frozen threads, stops from other sources, silent
+// operators, late policies, through bus cycle, guard, control cycle and tick.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -17,7 +17,7 @@ using test::kNan;
 
 constexpr double kCycle_s = 0.002;
 
-/// Its policy takes 12 ms, until told otherwise or for so many ticks.
+/// Makes the policy take 12 ms for this many ticks.
 void block_policy(ControlRig& rig, int ticks) {
   rig.policy->meanwhile = [&rig, left = ticks]() mutable {
     for (int cycle = 0; cycle < 6 && left > 0; ++cycle) rig.world();
@@ -45,7 +45,7 @@ TEST(Degradation, AHostThatStopsEverythingForAWhileIsNoFault) {
     rig.reach_walk();
     rig.align(moment);
     rig.clock.advance_to(rig.clock.now_ns() + 150'000'000);
-    // The control thread may wake before the bus thread does.
+    // The control thread may wake before the bus thread.
     rig.control_cycle.run(rig.clock.now_ns());
     rig.run(0.5);
     EXPECT_EQ(rig.mode(), Mode::kWalk);
@@ -189,7 +189,7 @@ TEST(Degradation, NoCycleOfEitherThreadUsesTheHeap) {
   run(0.1);
   rig.ask(Mode::kWalk);
   run(1.0);
-  rig.policy->how = BreakablePolicy::Break::kNan;
+  rig.policy->how = BreakablePolicy::Break::kNotANumber;
   run(0.1);
   rig.policy->how = BreakablePolicy::Break::kNone;
   rig.reset();

@@ -1,4 +1,4 @@
-// One joint is excited while the others hold: in order, whole, within what stops and limits allow, and never again.
+// One joint is excited while the others hold: in order, complete, within stops and limits, and never again.
 #include "control/excitation_player.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ ExcitationPlan plan(const model::RobotModel& robot) {
   return excitation;
 }
 
-/// A tick that is to excite, and what its recorder makes of it.
+/// A tick that shall excite, and its recorder.
 struct Bench {
   Bench() : joint(test::z1().joint_index.at("left_elbow")), recorder(joint, {60, 100}) {
     const model::RobotModel& robot = test::z1();
@@ -120,7 +120,7 @@ TEST(Excitation, EndsWithAFault) {
 }
 
 TEST(Excitation, ARunWithAHoleIsNotRecordedAndTheNextOneIs) {
-  for (const double pause_s : {0.1, -kTick_s}) {  // the host stopped; the bus had nothing new
+  for (const double pause_s : {0.1, -kTick_s}) {  // the host paused; the bus had no new sample
     Bench bench;
     bench.until_run(0);
     const auto pause_ns = static_cast<std::int64_t>(pause_s * 1e9);
@@ -145,7 +145,7 @@ TEST(Excitation, NeverWalks) {
 TEST(Excitation, StaysWithinTheLimiter) {
   Bench bench;
   bench.until_run(0);
-  bench.record.state.q[bench.joint] -= 0.8;  // the joint was pushed away: what the spring asks for is cut
+  bench.record.state.q[bench.joint] -= 0.8;  // the joint was pushed away: the spring's torque is cut
   const double pushed_rad = bench.record.state.q[bench.joint];
   const TickResult& result = bench.step();
   EXPECT_GT(result.limited.torque, 0);

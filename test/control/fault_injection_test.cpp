@@ -1,5 +1,5 @@
-// docs/reference/safety.md's table of faults, row by row, through the whole of bus cycle, guard, control cycle and
-// tick: each cause is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
+// docs/reference/safety.md's table of faults, row by row, through bus cycle, guard, control cycle and tick: each cause
+// is injected while the robot walks, and the reaction is counted in bus cycles at the drives.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using test::ControlRig;
 using test::kCyclesPerTick;
 using test::kNan;
 
-/// A library that is in order when it is read and overflows when it is played: one step takes 6e-309 s.
+/// A library that passes its checks and overflows when it is played: one step takes 6e-309 s.
 ClipLibrary overflowing_clips() {
   ClipLibrary library = test::clips(test::biped());
   for (auto* clips : {&library.positive, &library.negative}) {
@@ -34,7 +34,7 @@ ClipLibrary overflowing_clips() {
 
 TickOptions options_of(FaultCode code) {
   TickOptions options = tick_options(test::biped());
-  // From rest to full speed in one tick, so that the overflow comes in the tick of the injection.
+  // From rest to full speed in one tick, so the overflow comes in the tick of the injection.
   if (code == FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
   return options;
 }
@@ -59,7 +59,7 @@ void give_the_guard_a_nan(ControlRig& rig) {
   rig.link.commands.put(output);
 }
 
-/// The control thread wakes two bus cycles late and its policy takes four: one too many together, none alone.
+/// The control thread wakes two bus cycles late and its policy takes four: together one too many, alone none.
 void overrun(ControlRig& rig) {
   rig.control_delay_cycles = 2;
   rig.policy->meanwhile = [&rig] {
@@ -71,7 +71,7 @@ struct InjectedFault {
   const char* name;
   FaultCode code;
   std::function<void(ControlRig&)> inject;
-  /// The reset is refused as long as the cause is there. Otherwise the cause only shows when the robot stands again.
+  /// The reset is refused while the cause lasts. Otherwise the cause shows only when the robot stands again.
   bool reset_waits;
 
   friend void PrintTo(const InjectedFault& row, std::ostream* out) { *out << row.name; }
@@ -110,7 +110,7 @@ std::vector<InjectedFault> rows() {
        }),
        false},
       {"Reference", FaultCode::kReferenceNotFinite, [](ControlRig& rig) { rig.drive.command[kVx] = 9.0; }, false},
-      {"PolicyNan", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNan), false},
+      {"PolicyNan", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNotANumber), false},
       {"PolicyFailed", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kStatus), false},
       {"FarAction", FaultCode::kActionOutOfRange, in_policy(BreakablePolicy::Break::kFarAction), false},
   };
@@ -131,7 +131,7 @@ struct Range {
   friend bool operator==(const Range&, const Range&) = default;
 };
 
-/// Whatever the moment between two ticks in which the cause appears.
+/// Reactions over all moments between two ticks at which the cause may appear.
 Range reaction_of(const InjectedFault& row) {
   Range range;
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
@@ -146,7 +146,7 @@ Range reaction_of(const InjectedFault& row) {
   return range;
 }
 
-/// The cells of a Markdown table's row.
+/// The cells of a row of a Markdown table.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream row(line);
@@ -154,9 +154,9 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// docs/reference/safety.md: code -> bus cycles, "1 to 5" or "0". Its fault table is the one of six columns.
+/// The fault table (six columns) of docs/reference/safety.md: code -> bus cycles, "1 to 5" or "0".
 std::map<std::string, Range> documented_reactions() {
-  constexpr std::size_t kColumns = 6, kCode = 1, kCycles = 5;  // the first cell is what stands before the first bar
+  constexpr std::size_t kColumns = 6, kCode = 1, kCycles = 5;  // the first cell is the text before the first bar
   std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/reference/safety.md");
   std::map<std::string, Range> reactions;
   for (std::string line; std::getline(file, line);) {
@@ -211,7 +211,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   if (row.code == FaultCode::kControlFrozen) {
     rig.run(1.0);
     EXPECT_EQ(undamped, 0) << "the guard goes on damping alone";
-    heal(rig);  // the thread comes back
+    heal(rig);  // the thread returns
   }
   rig.run(0.1);
   EXPECT_EQ(rig.mode(), Mode::kFault);

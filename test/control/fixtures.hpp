@@ -1,4 +1,4 @@
-// What the runtime's tests share: robots, a bus without physics, a policy that can be made to fail.
+// Shared by the tests of control and runtime: robots, a bus without physics, a policy that can be made to fail.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ inline ClipLibrary clips(const model::RobotModel& robot) {
   return model::load_clip_library(robot.directory / "clips", robot);
 }
 
-/// The legs' torques of a robot whose pelvis is upright and whose feet carry it at rest. No heap after construction.
+/// Leg torques of a robot at rest with an upright pelvis, carried by its feet. No heap after construction.
 class LoadedFeet {
  public:
   explicit LoadedFeet(const model::RobotModel& robot)
@@ -39,7 +39,7 @@ class LoadedFeet {
     for (const Foot foot : {kLeft, kRight}) q_[foot].resize(joints(foot)), holding_[foot].resize(joints(foot));
   }
 
-  /// share: what each foot carries of the weight. Leaves a state alone whose q is broken.
+  /// share: each foot's part of the weight. Does not change a state with broken q.
   void apply(const PerFoot<double>& share, model::RobotState& state) {
     const int n = robot_.joint_index.size();
     if (state.q.size() != n || state.tau.size() != n || state.dq.size() != n || !state.q.allFinite()) return;
@@ -63,7 +63,7 @@ class LoadedFeet {
   PerFoot<KDL::JntArray> q_, holding_;
 };
 
-/// Standing still on both feet, everything well.
+/// Standing still on both feet, without any defect.
 inline model::RobotState standing_state(const model::RobotModel& robot) {
   const int n = robot.joint_index.size();
   model::RobotState state;
@@ -71,13 +71,13 @@ inline model::RobotState standing_state(const model::RobotModel& robot) {
   state.dq = state.tau = JointVector::Zero(n);
   state.temperature_degC = JointVector::Constant(n, 35.0);
   state.acceleration_m_s2 = {0.0, 0.0, 9.81};
-  // The IMU's link upright: R_WI = R_LI.
+  // The IMU's link is upright: R_WI = R_LI.
   state.orientation_WI = Eigen::Quaterniond(robot.imu.T_LI.linear());
   LoadedFeet(robot).apply({0.5, 0.5}, state);
   return state;
 }
 
-/// Drives that follow at once, in a world where nothing ever falls.
+/// Drives that follow at once, in a world where nothing falls.
 class IdealBus final : public hal::Hal {
  public:
   explicit IdealBus(const model::RobotModel& robot) : feet_(robot), state_(standing_state(robot)) {}
@@ -116,7 +116,7 @@ class ScriptedPlant final : public sil::Plant {
 /// Follows the reference until told to break.
 class BreakablePolicy final : public policy::Policy {
  public:
-  enum class Break { kNone, kStatus, kNan, kHeap, kLate, kFarAction };
+  enum class Break { kNone, kStatus, kNotANumber, kHeap, kLate, kFarAction };
   explicit BreakablePolicy(bool needs_the_ground = true) : balances(needs_the_ground) {}
   policy::Status act(const model::RobotState&, const Reference& reference, const Command& optimised,
                      JointVector& q_des) noexcept override {
@@ -124,10 +124,10 @@ class BreakablePolicy final : public policy::Policy {
     if (meanwhile) meanwhile();
     seen_command = optimised;
     q_des = reference.q;
-    if (how == Break::kNan) q_des[0] = std::numeric_limits<double>::quiet_NaN();
+    if (how == Break::kNotANumber) q_des[0] = std::numeric_limits<double>::quiet_NaN();
     if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
     if (how == Break::kFarAction) q_des[3] += control::ActionMonitorOptions{}.bound_rad + 0.1;
-    if (how == Break::kLate) q_des.setConstant(9.0);  // what a late policy leaves there must not count
+    if (how == Break::kLate) q_des.setConstant(9.0);  // values left by a late policy must not count
     if (how == Break::kLate) return policy::Status::kLate;
     return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;
   }
@@ -138,7 +138,7 @@ class BreakablePolicy final : public policy::Policy {
   Break how = Break::kNone;
   bool balances;
   int calls = 0;
-  std::function<void()> meanwhile;  ///< what the world does while the policy thinks
+  std::function<void()> meanwhile;  ///< runs while the policy computes
   std::optional<policy::DriveGains> own_gains;
   Command seen_command;
   int resets = 0;
@@ -147,7 +147,7 @@ class BreakablePolicy final : public policy::Policy {
   std::unique_ptr<double> heap_;
 };
 
-/// A tick with its operator: sends a fresh command and a request every time.
+/// A tick with its operator, who sends a fresh command and a request every time.
 struct DrivenTick {
   explicit DrivenTick(const model::RobotModel& robot)
       : DrivenTick(robot, std::make_unique<BreakablePolicy>(), clips(robot)) {}
@@ -162,7 +162,7 @@ struct DrivenTick {
     drive.lease_s = 0.5;
   }
 
-  /// One tick later, with drives that follow at once.
+  /// Runs the next tick, with drives that follow at once.
   const control::TickResult& step(bool speaking = true) {
     now_ns += 10'000'000;
     state.stamp_ns = now_ns;
@@ -187,12 +187,12 @@ struct DrivenTick {
 
   io::SimulationClock clock;
   LoadedFeet feet;
-  PerFoot<double> carried{0.5, 0.5};  ///< by the feet, of the weight
+  PerFoot<double> carried{0.5, 0.5};  ///< share of the weight, by foot
   model::RobotState state;
   BreakablePolicy* policy;
   control::Tick tick;
   hal::BusStatus bus = hal::BusStatus::kOk;
-  bool asking = true;  ///< with a request in every tick
+  bool asking = true;  ///< sends a request in every tick
   std::int64_t now_ns = 0;
   control::DriveMessage drive;
   control::ModeRequest request;

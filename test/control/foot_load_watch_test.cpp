@@ -13,7 +13,8 @@ namespace pmg::control {
 namespace {
 
 using test::kTick_s;
-/// What the filter of 0.02 s adds to a dwell at most, when a load of the whole weight comes or goes at once.
+
+/// Largest delay that the filter of 0.02 s adds to a dwell, when the whole weight comes or goes at once.
 constexpr int kFilterTicks = 5;
 
 class FootLoadWatchTest : public testing::Test {
@@ -25,7 +26,7 @@ class FootLoadWatchTest : public testing::Test {
     command_.kp.setConstant(120.0);
   }
 
-  /// Ticks until it says so, or -1.
+  /// Ticks until the watch reports this footing, or -1.
   int ticks_until(Footing footing, PerFoot<double> carried, int most = 100) {
     for (int tick = 1; tick <= most; ++tick) {
       step(carried);
@@ -38,7 +39,7 @@ class FootLoadWatchTest : public testing::Test {
     watch_.update(state_, command_);
   }
   void stand() { ASSERT_NE(ticks_until(Footing::kStands, {0.5, 0.5}), -1); }
-  /// The drives are asked for the torques that are measured.
+  /// Commands the drives to give the measured torques.
   void ask_for_torques() { command_.q = state_.q + state_.tau.cwiseQuotient(command_.kp); }
 
   const model::RobotModel& robot_ = test::z1();
@@ -128,7 +129,7 @@ TEST_F(FootLoadWatchTest, ABrokenStateAndAStraightKneeChangeNothing) {
 
 TEST_F(FootLoadWatchTest, ATiltedRobotIsWeighedAlongGravity) {
   stand();
-  // The legs' torques are an upright robot's: what they miss of their own weight is below a tenth of the robot's.
+  // The leg torques are those of an upright robot: the error of their own weight is below a tenth of the robot's.
   state_.orientation_WI = Eigen::AngleAxisd(0.9, Eigen::Vector3d::UnitY()) * state_.orientation_WI;
   EXPECT_EQ(ticks_until(Footing::kHangs, {1.0, 0.0}), -1);
   EXPECT_NEAR(watch_.share()[kLeft], std::cos(0.9), 0.15);

@@ -45,7 +45,7 @@ TEST(Limiter, NamesTheJointsThatItLimitedAndWhy) {
   limiter.start_from(state.q);
   JointVector q_des = state.q;
   q_des[3] += 1.0;    // in one tick: too fast
-  state.dq[7] = 1e3;  // braking that no drive can give
+  state.dq[7] = 1e3;  // needs more braking than any drive has
   const LimitReport report = limiter.apply(state, q_des);
   EXPECT_NE(report.by[3] & LimitReport::kSpeed, 0);
   EXPECT_NE(report.by[7] & LimitReport::kTorque, 0);
@@ -138,7 +138,7 @@ TEST(Limiter, BrakingCountsAsTorque) {
   const auto& joint = robot.joints[static_cast<std::size_t>(knee)];
   Limiter limiter = limiter_of(robot, {.target_rate_factor = 1e6});
   model::RobotState state = test::standing_state(robot);
-  state.dq[knee] = 2.0;  // 2 rad/s times kd is torque that the position error must leave room for
+  state.dq[knee] = 2.0;  // 2 rad/s times kd is torque, for which the position error must leave room
   JointVector q_des = state.q;
   q_des[knee] -= 0.999 * joint.effort_limit_Nm / joint.kp_Nm_per_rad;
   limiter.apply(state, q_des);

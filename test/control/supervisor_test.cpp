@@ -159,7 +159,8 @@ TEST_F(SupervisorTest, AFaultCannotBeAskedFor) {
   EXPECT_EQ(update(3), Mode::kStand);
 }
 
-/// One row of the fault table: how a state is spoilt, and after how many ticks it must have latched in a holding mode.
+/// One row of the fault table: the corruption of a state, and the number of ticks until it must latch in a holding
+/// mode.
 struct Row {
   const char* name;
   FaultCode code;
@@ -287,7 +288,7 @@ TEST_F(SupervisorTest, TheTorsoIsJudgedAgainstItsCommandAndOnlyWhereItHasOne) {
   torso_ = RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
   const Eigen::Quaterniond upright = state_.orientation_WI;
   const auto lean = [&](double pitch_rad) {
-    // Whatever the heading.
+    // For any heading.
     state_.orientation_WI = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()) *
                             Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) * upright;
   };

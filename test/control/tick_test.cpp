@@ -47,7 +47,7 @@ TEST(Tick, StandIsEnteredFromTheMeasuredPostureWithoutAJump) {
   for (int k = 0; k < 300; ++k) {
     const TickResult& result = driven.step();
     if (result.mode != Mode::kStand) continue;
-    // 0.5 rad/s on average, half as much again in the middle of the smooth step.
+    // 0.5 rad/s on average, 1.5 times that in the middle of the smooth step.
     ASSERT_LE((result.command.q - previous).cwiseAbs().maxCoeff(), 0.75 * kTick_s + 1e-9) << "tick " << k;
     previous = result.command.q;
   }
@@ -82,7 +82,7 @@ TEST(Tick, ASilentOperatorBringsTheRobotToAStandstillWithinItsTime) {
   ASSERT_GT(driven.tick.result().reference.gain, 0.9);
   driven.run(0.2, false);
   EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
-  // 0.2 s until it is stale, 0.5 s to stop, and two ticks of which one notices and one changes the mode.
+  // 0.2 s until it is stale, 0.5 s to stop, and two ticks: one notices, one changes the mode.
   driven.run(0.52, false);
   EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
   EXPECT_NEAR(driven.tick.result().reference.gain, 0.0, 1e-9);
@@ -111,7 +111,7 @@ TEST(Tick, AStopIsCarriedOutHoweverOldItIs) {
   driven.run(2.0);
   ASSERT_EQ(driven.tick.result().mode, Mode::kWalk);
   driven.request.mode = Mode::kDamping;
-  driven.request.sequence = -1000;  // overtaken by all that was asked before
+  driven.request.sequence = -1000;  // older than all earlier requests
   const TickResult& result = driven.step();
   EXPECT_EQ(result.acks[0].verdict, Verdict::kTaken);
   EXPECT_EQ(result.mode, Mode::kDamping);
@@ -131,7 +131,7 @@ TEST(Tick, ATorsoThatIsFoundBentMayRiseIntoStand) {
 }
 
 TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
-  for (const auto how : {test::BreakablePolicy::Break::kNan, test::BreakablePolicy::Break::kStatus}) {
+  for (const auto how : {test::BreakablePolicy::Break::kNotANumber, test::BreakablePolicy::Break::kStatus}) {
     test::DrivenTick driven(test::z1());
     driven.request.mode = Mode::kWalk;
     driven.run(2.0);
@@ -315,7 +315,7 @@ TEST(Tick, WhatNeedsNoGroundIsRunInTheAir) {
   EXPECT_FALSE(driven.tick.result().hanging);
 }
 
-/// Steps so short that speeds are finite and their squares are not: the optimisation can't converge while feet move.
+/// Steps so short that speeds are finite but their squares are not: the optimisation can't converge while feet move.
 ClipLibrary hopeless_clips(const model::RobotModel& robot) {
   ClipLibrary library = test::clips(robot);
   for (auto* clips : {&library.positive, &library.negative}) {
@@ -341,14 +341,14 @@ TEST(Tick, WithoutConvergenceTheLastSolutionIsHeldAndThenWalkingEnds) {
     ASSERT_EQ(result.optimised.status, gco::Status::kNotConverged);
     ASSERT_EQ(driven.policy->seen_command, feasible) << "what the policy is told";
   }
-  driven.asking = false;  // nobody insists on walking, but somebody still drives: the stop is the controller's own
+  driven.asking = false;  // no one requests walking, but a source still drives: the stop is the controller's own
   const TickResult& result = driven.run(0.6);
   EXPECT_EQ(result.mode, Mode::kStand);
   EXPECT_EQ(result.fault.code, FaultCode::kNone);
   EXPECT_EQ(result.optimised.status, gco::Status::kConverged) << "at rest it converges again";
 }
 
-/// Heap allocations of a stretch with every mode change, a walk with all channels, and a fault.
+/// Heap allocations of a run with every mode change, a walk with all channels, and a fault.
 long allocations_of_a_run(test::BreakablePolicy::Break how) {
   test::DrivenTick driven(test::z1());
   driven.drive.command = Command{{0.4, 0.1, 0.2, 0.1, 0.05, -0.04}};

@@ -24,7 +24,7 @@ TEST(Gait, AContactIsAFootThatComesDownAfterASwing) {
               false);
   };
   lift(20, 40);
-  lift(45, 48);  // bounces
+  lift(45, 48);  // a bounce
   lift(70, 80);
   EXPECT_THAT(initial_contacts(loaded, 0.01), ElementsAre(40U, 80U));
 }

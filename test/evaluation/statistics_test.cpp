@@ -9,7 +9,7 @@
 namespace pmg::evaluation {
 namespace {
 
-// Of 1, 2, 3, 4: mean 2.5, standard deviation 1.290994, standard error 0.645497; Student's 97.5 % quantile for 3
+// For 1, 2, 3, 4: mean 2.5, standard deviation 1.290994, standard error 0.645497. Student's 97.5 % quantile for 3
 // degrees of freedom is 3.182446, so the half width is 2.054260.
 TEST(Statistics, MeanHasStudentsInterval) {
   const Estimate e = mean_interval(std::array{1.0, 2.0, 3.0, 4.0});
@@ -27,7 +27,7 @@ TEST(Statistics, OneSampleHasNoIntervalAndNoneNoMean) {
   EXPECT_TRUE(std::isnan(mean_interval({}).mean));
 }
 
-// Differences -1, -2, -3: mean -2, standard error 0.577350, quantile for 2 degrees of freedom 4.302653: half width
+// Differences -1, -2, -3: mean -2, standard error 0.577350, quantile for 2 degrees of freedom 4.302653, half width
 // 2.484138. The samples themselves scatter far more than their differences.
 TEST(Statistics, PairsAreComparedOneByOne) {
   const Estimate e = paired_difference(std::array{10.0, 20.0, 30.0}, std::array{11.0, 22.0, 33.0});

@@ -1,5 +1,5 @@
-// Table II's parts: plants that stay the same, curves over the gait cycle, gains, and a calibration that finds what is
-// hidden.
+// Table II's parts: reproducible plants, curves over the gait cycle, gains, and a calibration that finds hidden
+// parameters.
 #include "evaluation/table2.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Table2, WalksAreComparedPhaseByPhase) {
     const double q = std::sin(2.0 * std::numbers::pi * phase);
     const JointVector reference = JointVector::Constant(2, q);
     a.add(0, phase, reference, reference);
-    // As long at every phase above as below: what differs from cycle to cycle averages out, an offset doesn't.
+    // Equally long above and below at every phase: differences between cycles average out, an offset does not.
     b.add(0, phase, (reference.array() + 0.03 + 0.01).matrix(), reference);
     b.add(0, phase, (reference.array() + 0.03 - 0.01).matrix(), reference);
   }

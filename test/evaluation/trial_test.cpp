@@ -25,7 +25,7 @@ sil::Scenario standing(double duration_s) {
   return {.name = "standing", .steps = {step(0.0, duration_s, control::Mode::kStand, {})}};
 }
 
-/// Nobody balances: the drives follow the reference, which stands but doesn't walk.
+/// No policy balances: the drives follow the reference, which stands but can't walk.
 Candidate without_policy() { return {"none", {.clips = {}, .policy = "none"}}; }
 
 Plants varied() {
@@ -52,8 +52,8 @@ TEST(Trial, OnTheGantryNothingIsJudged) {
   EXPECT_TRUE(std::isnan(result.step_errors[0][kLinVel]));
 }
 
-// A push that nobody survives; the last step lies wholly behind the fall, and the step before it has the same velocity
-// command, so averages over a gait period hold nothing else.
+// No robot survives this push. The last step lies wholly after the fall, and the step before it has the same velocity
+// command, so averages over a gait period contain nothing else.
 TEST(Trial, AfterAFallVelocityAndHeightAreZeroAndTheRunGoesOnToItsEnd) {
   Command command;
   command[kVx] = 0.3;
@@ -140,7 +140,7 @@ TEST(Campaign, SummaryCountsFallsAndAveragesOverSeeds) {
   }
   runs[1].fell = true;
   runs[2].faults = {"a fault"};
-  runs[3].errors[kLinVel] = 100.0;  // was interrupted
+  runs[3].errors[kLinVel] = 100.0;  // interrupted, so not counted
   const CaseSummary summary = summarise(runs);
   EXPECT_EQ(summary.trials, 3);
   EXPECT_EQ(summary.falls, 1);
@@ -154,7 +154,7 @@ TEST(Push, TheImpulseAskedIsTheImpulseGiven) {
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
   sim::World world(robot, {});
   mjData* data = world.mj_data();
-  data->qpos[2] += 3.0;  // falls freely meanwhile: nothing else pushes sideways
+  data->qpos[2] += 3.0;  // in free fall, so that nothing else pushes sideways
   mj_forward(world.mj_model(), data);
   const JointVector zero = JointVector::Zero(robot.joint_index.size());
   const model::JointCommand limp{.bus_sample = 0, .q = zero, .dq = zero, .kp = zero, .kd = zero, .tau_ff = zero};

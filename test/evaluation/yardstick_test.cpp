@@ -1,4 +1,4 @@
-// What errors are between, and what is counted apart.
+// The ends of the error scale, and errors that are counted separately.
 #include "evaluation/yardstick.hpp"
 
 #include <gtest/gtest.h>
@@ -42,20 +42,21 @@ TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
                                          scenario_step(1.0, 4.0, control::Mode::kWalk, both)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
   ASSERT_TRUE(between.nothing.complete);
-  // Walking begins some ticks into the second step (entry into the mode): the first one has 4 s less that.
+  // Walking begins some ticks into the second step (entry into the mode), so the first one has less than 4 s.
   const double judged_s = between.nothing.judged_s;
   EXPECT_NEAR(judged_s, 5.0, 0.05);
   const double walked_s = judged_s * between.nothing.errors_raw[kLinVel] / 0.4;
   EXPECT_NEAR(walked_s, 4.0, 0.05) << "raw: 0.4 m/s in every tick of walking, nothing in standing";
   EXPECT_NEAR(between.nothing.errors[kPitchError], 0.2 * walked_s / judged_s, 1e-9);
   EXPECT_NEAR(between.nothing.errors[kHeightError], 0.0, 1e-12);
-  // 0.2 rad at 0.4 rad/s: 50 ticks, the first of which is 0.004 rad short of 0.2 already.
+  // 0.2 rad at 0.4 rad/s takes 50 ticks; after the first one 0.004 rad less is missing.
   EXPECT_NEAR(between.follower.errors[kPitchError] * judged_s, 0.2 * 0.5 - 0.004 * kTick_s * (50 * 51 / 2), 1e-6);
-  // 0.4 m/s at 0.8 m/s^2 is 0.1 m short, and up to 1 / 0.15 of that for both feet on the ground.
+  // 0.4 m/s at 0.8 m/s^2 falls 0.1 m short, and up to 1 / 0.15 of that in double support.
   const double short_m = between.follower.errors_raw[kLinVel] * judged_s;
   EXPECT_GT(short_m, 0.099);
   EXPECT_LT(short_m, 0.35);
-  // Averaged over a gait period errors come and go over one period: the sum stays, less what the end cuts off.
+  // The average over a gait period delays the errors by up to one period: the sum stays, less the part cut off at the
+  // end.
   EXPECT_NEAR(between.nothing.errors[kLinVel] * judged_s, 0.4 * (walked_s - 0.5 * 1.1), 0.03);
 }
 
@@ -66,7 +67,7 @@ TEST(Yardstick, AFollowerThatTurnsIsJudgedInItsOwnHeading) {
                                .steps = {scenario_step(0.0, 1.0, control::Mode::kStand, {}),
                                          scenario_step(1.0, 12.0, control::Mode::kWalk, circle)}};
   const Yardstick between = yardstick({"none", {}}, scenario, {});
-  // The heading averaged over a period lags by half a period's turn: 0.28 rad of 0.5 m/s are 0.14 m/s, no more.
+  // The heading's average over a period lags by half a period's turn: 0.28 rad times 0.5 m/s is 0.14 m/s, no more.
   EXPECT_LT(between.follower.errors[kLinVel], 0.17);
   EXPECT_LT(between.follower.errors[kYawVel], 0.06);
 }
@@ -85,7 +86,7 @@ TEST(Yardstick, ShareLeftIsZeroForAFollowerAndOneForDoingNothing) {
   EXPECT_TRUE(std::isnan(share_left({}, between)[kHeightError])) << "nothing was asked of it";
 }
 
-/// A body that goes forward at a speed that changes from tick to tick by +-0.1 m/s, wherever it looks.
+/// A body that moves forward at a speed that alternates by +-0.1 m/s from tick to tick.
 model::GroundTruth going(double speed_m_s, int tick, double height_m) {
   model::GroundTruth truth;
   truth.p_WB.z() = height_m;
@@ -107,7 +108,7 @@ TEST(StepMeasure, RawVelocitiesAndStepsBeyondReachAreKeptApart) {
   TrialResult report;
   measure.report(report);
   EXPECT_NEAR(report.judged_s, 20.0, 1e-9);
-  // Averaged over an even number of ticks the +-0.1 m/s go; the first period is an average over fewer.
+  // Over an even number of ticks the +-0.1 m/s cancel; the first period averages over fewer ticks.
   EXPECT_LT(report.errors[kLinVel], 0.003);
   EXPECT_NEAR(report.errors_raw[kLinVel], 0.1, 1e-9) << "each tick is 0.1 m/s off";
   ASSERT_TRUE(report.errors_beyond_reach.has_value());

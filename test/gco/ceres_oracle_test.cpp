@@ -1,4 +1,4 @@
-// ceres::Solver on the very functor that TinySolver solves in the loop.
+// ceres::Solver on the same functor that TinySolver solves in the loop.
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ class CeresOracleOf : public testing::TestWithParam<const char*> {
 };
 INSTANTIATE_TEST_SUITE_P(Robots, CeresOracleOf, testing::ValuesIn(test::kRobots), test::robot_name);
 
-/// Single support, double support and everything that fades in between, the air included.
+/// Single support, double support, all fades between them, and flight.
 Reference next_state(test::RandomReferences& references, int i) {
   Reference reference = references.next();
   const double part = references.uniform(0.0, 1.0);
@@ -92,8 +92,8 @@ TEST_P(CeresOracleOf, AgreesOnSevenUnknownsInTwoHundredStates) {
     ASSERT_EQ(result.status, Status::kConverged) << i;
     const auto tiny = test::unknowns_of(result);
     const auto oracle = solve_with_ceres<7>(terms_of.with_attitude(reference, options.attitude_prior_weight));
-    // TinySolver stops at cost changes of 1e-15; pitch and roll are held by as little as 0.1^2: sqrt(1e-15 / 0.01) a
-    // step.
+    // TinySolver stops at cost changes of 1e-15. The stiffness of pitch and roll is as small as 0.1^2, so a step may be
+    // sqrt(1e-15 / 0.01).
     for (std::size_t n = 0; n < kMaxUnknowns; ++n) {
       ASSERT_NEAR(tiny[n], oracle[n], 1e-5) << "state " << i << ", unknown " << n;
     }

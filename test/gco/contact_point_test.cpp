@@ -31,7 +31,7 @@ TEST(ContactPoint, OfAFlatSoleIsItsCentre) {
 }
 
 TEST(ContactPoint, OfATiltedSoleIsItsLowEdgeOrCorner) {
-  // 0.1 rad puts the other end 2 cm higher, e^-70 in the softmin.
+  // 0.1 rad raises the other end by 2 cm, which is e^-70 in the softmin.
   const auto toes_down = tilted(0.0, 0.1);
   EXPECT_NEAR((contact_point(toes_down, Eigen::Matrix3d::Identity()).p_BC - 0.5 * (toes_down[0] + toes_down[1])).norm(),
               0.0, 1e-12);
@@ -47,8 +47,8 @@ TEST(ContactPoint, SeesTheTiltOfTheBaseAsThatOfTheSole) {
 }
 
 TEST(ContactPoint, IsContinuousAndNeverFarAboveTheLowestCorner) {
-  // From heel over flat to toe in steps of 1e-5 rad: half the sole (0.115 m) is crossed within a few 0.3 mm / 0.23 m
-  // = 1.3e-3 rad.
+  // From heel over flat to toe in steps of 1e-5 rad. The point crosses half the sole (0.115 m) within a few times 0.3
+  // mm / 0.23 m = 1.3e-3 rad.
   const Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
   Eigen::Vector3d last = contact_point(tilted(-0.006, -0.02), level).p_BC;
   for (int i = -2000; i <= 2000; ++i) {
@@ -81,7 +81,7 @@ TEST(HeightShares, SumToOneAndMoveNoFasterThanTheFeet) {
   std::mt19937 random(20261121);
   const auto unit = [&] { return static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
   constexpr double kStep_m = 1e-6;
-  constexpr double kSteepest_per_m = 0.25 / 0.5e-3;  // of a softmin of scale 0.5 mm
+  constexpr double kSteepest_per_m = 0.25 / 0.5e-3;  // of a softmin with scale 0.5 mm
   for (int i = 0; i < 1000; ++i) {
     const PerFoot<double> height = {-0.7 + 0.002 * unit(), -0.7 + 0.002 * unit()};
     const PerFoot<double> weight = {0.01 + 0.99 * unit(), 1.0};

@@ -34,7 +34,7 @@ void expect_jacobian_matches_automatic(const ContactTerms& terms, const std::arr
   for (int row = 0; row < Problem::NUM_RESIDUALS; ++row) {
     const Jet& expected = automatic[static_cast<std::size_t>(row)];
     EXPECT_NEAR(r[row], expected.a, 1e-12) << row;
-    // Exact derivatives both: rounding only.
+    // Both derivatives are exact: rounding only.
     for (int i = 0; i < kUnknowns; ++i) {
       EXPECT_NEAR(J(row, i), expected.v[i], 1e-9 * (1.0 + std::abs(expected.v[i])))
           << "row " << row << ", unknown " << i;
@@ -59,8 +59,7 @@ TEST_P(ContactProblemOf, JacobianIsTheAutomaticOne) {
 }
 
 TEST_P(ContactProblemOf, FootMotionIsTheDerivativeOfWhereTheSolePointIs) {
-  // A material point of the sole is followed through half a step before and after, the base moving rigidly by (v,
-  // omega').
+  // Follows a material point of the sole half a step back and forth, while the base moves rigidly by (v, omega').
   constexpr unsigned kSeed = 12;
   SCOPED_TRACE(kSeed);
   constexpr double kStep_s = 1e-5;
@@ -92,7 +91,7 @@ TEST_P(ContactProblemOf, FootMotionIsTheDerivativeOfWhereTheSolePointIs) {
       const auto [p_after, R_after] = pose_at(kStep_s);
       const ContactProblem<5> problem{terms};
       const FootMotion<double> motion = problem.foot_motion(foot, x.data());
-      // Central differences: truncation 1e-10 x third derivatives, rounding 1e-16 / 1e-5.
+      // Central differences: truncation 1e-10 times third derivatives, rounding 1e-16 / 1e-5.
       EXPECT_LT(((p_after - p_before) / (2.0 * kStep_s) - motion.velocity_H).norm(), 1e-7);
       const Eigen::Matrix3d spin = (R_after - R_before) / (2.0 * kStep_s) * (R_HB * now.R_BF).transpose();
       EXPECT_NEAR(spin(1, 0), motion.yaw_rate, 1e-7);
@@ -101,8 +100,8 @@ TEST_P(ContactProblemOf, FootMotionIsTheDerivativeOfWhereTheSolePointIs) {
 }
 
 TEST_P(ContactProblemOf, AttitudeChangeIsThatOfTheTorso) {
-  // Levers with pitch' and roll' changed are those that a command of that pitch and roll gives, up to the base's
-  // heading: the heading frame stays that of the command. Heights don't depend on it.
+  // Levers for changed pitch' and roll' equal those of a command with that pitch and roll, except for the base's
+  // heading: the heading frame stays the command's. Heights don't depend on it.
   constexpr unsigned kSeed = 13;
   SCOPED_TRACE(kSeed);
   RandomReferences references(robot, kSeed);

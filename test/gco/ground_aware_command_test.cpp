@@ -23,8 +23,8 @@ class GroundAwareCommandOf : public testing::TestWithParam<const char*> {
  protected:
   model::RobotModel robot = test::load(GetParam());
 
-  /// Adds to the pitch joints of a leg, from the hip down: rotations about +y as the robot stands, whatever the joint's
-  /// own axis.
+  /// Adds to the pitch joints of a leg, from the hip down: rotations about +y of the standing robot, whatever the
+  /// joint's own axis is.
   void add_to_pitch_joints(JointVector& values, Foot foot, const std::array<double, 3>& added) const {
     model::LegKinematics legs(robot);
     const JointVector stand = robot.q_stand();
@@ -52,7 +52,7 @@ TEST_P(GroundAwareCommandOf, SingleSupportStandsStillOnTheGround) {
     const Result& result = gco.solve(reference);
     ASSERT_EQ(result.status, Status::kConverged);
     before_max = std::max(before_max, result.foot[stance].before_m_s);
-    // The prior's pull: weight 1e-6 in the cost against a metre a second; the promise is 1e-3 m/s and 1 mm.
+    // The prior pulls with weight 1e-6 in the cost against 1 m/s. The guarantee is 1e-3 m/s and 1 mm.
     EXPECT_LT(result.foot[stance].after_m_s, 1e-5);
     EXPECT_LT(result.foot[stance].yaw_rate_after_rad_s, 1e-5);
     EXPECT_LT(std::abs(result.foot[stance].height_m), 2e-4);  // softmin of the corners: at most 0.17 mm
@@ -61,7 +61,7 @@ TEST_P(GroundAwareCommandOf, SingleSupportStandsStillOnTheGround) {
     EXPECT_EQ(result.command[kRoll], reference.command[kRoll]);
     EXPECT_DOUBLE_EQ(result.height_deficit_m, reference.command[kHeight] - result.command[kHeight]);
   }
-  EXPECT_GT(before_max, 0.5);  // there was something to repair
+  EXPECT_GT(before_max, 0.5);  // there was slip to repair
 }
 
 TEST_P(GroundAwareCommandOf, PriorBiasGrowsWithTheSquareOfItsWeightAndIsBounded) {
@@ -109,7 +109,7 @@ TEST_P(GroundAwareCommandOf, DoubleSupportIsTheLeastSquaresOptimum) {
     const double lowest = test::cost<5>(terms, best);
     for (int k = 0; k < 20; ++k) {
       auto x = best;
-      // 1e-4 off raises the cost by about 1e-8 / 2 times J'J, far above rounding of costs of order 1.
+      // An offset of 1e-4 raises the cost by about 1e-8 / 2 times J'J, far above the rounding of costs of order 1.
       for (std::size_t n = 0; n < 5; ++n) x[n] += references.uniform(-1e-4, 1e-4);
       EXPECT_GT(test::cost<5>(terms, x), lowest);
     }
@@ -125,9 +125,9 @@ TEST_P(GroundAwareCommandOf, FeetThatDisagreeSymmetricallyShareTheSlip) {
   EXPECT_GT(result.foot[kLeft].after_m_s, 0.05);
   EXPECT_NEAR(result.foot[kLeft].after_m_s, result.foot[kRight].after_m_s, 1e-9);
   EXPECT_NEAR(result.command[kVx], 0.0, 1e-9);
-  // The base turns about its own origin; soles that lie ahead of it by some centimetres need that much of vy.
+  // The base turns about its own origin; soles a few centimetres ahead of it need some vy.
   EXPECT_LT(std::abs(result.command[kVy]), 0.1 * std::abs(result.command[kOmega]));
-  // Together they never slip more than with the user's command: that would have been cheaper.
+  // Together they never slip more than with the user's command, whose cost is higher.
   EXPECT_LT(std::hypot(result.foot[kLeft].after_m_s, result.foot[kRight].after_m_s),
             std::hypot(result.foot[kLeft].before_m_s, result.foot[kRight].before_m_s));
 }
@@ -140,9 +140,9 @@ TEST_P(GroundAwareCommandOf, StandingStillHasNoVelocityAndTheHeightOfItsLegs) {
     for (const Foot foot : {kLeft, kRight}) add_to_pitch_joints(reference.q, foot, {-bend / 2, bend, -bend / 2});
     reference.command[kHeight] = -0.10;
     const Result& result = gco.solve(reference);
-    // Feet stay level (the pitch joints' sum is unchanged), so the sole's height is that of any corner.
+    // Feet stay level (the sum of the pitch joints is unchanged), so any corner gives the sole's height.
     const double expected = -legs.compute(reference.q, reference.dq)[kLeft].sole_B[0].z() - robot.standing_height_m;
-    // Prior 1e-6 towards -0.10 m.
+    // The prior of weight 1e-6 pulls towards -0.10 m.
     EXPECT_NEAR(result.command[kHeight], expected, 1e-6);
     EXPECT_NEAR(result.height_deficit_m, -0.10 - expected, 1e-6);
     EXPECT_EQ(result.command[kVx], 0.0);
@@ -151,7 +151,7 @@ TEST_P(GroundAwareCommandOf, StandingStillHasNoVelocityAndTheHeightOfItsLegs) {
     EXPECT_EQ(result.vz_m_s, 0.0);
     for (const Foot foot : {kLeft, kRight}) EXPECT_EQ(result.foot[foot].after_m_s, 0.0);
     if (bend == 0.0) {
-      EXPECT_NEAR(expected, 0.0, 1e-3);  // that is what the robot's standing height means
+      EXPECT_NEAR(expected, 0.0, 1e-3);  // the definition of the robot's standing height
     }
   }
 }
@@ -199,8 +199,8 @@ double distance(const Result& a, const Result& b) {
 }
 
 TEST_P(GroundAwareCommandOf, CommandIsContinuousAsContactWeightsFade) {
-  // Postures and velocities that disagree strongly are frozen while the weights run along their cosine edges: from both
-  // feet to the right one, into the air, and down on the left.
+  // Postures and velocities with a large disagreement are frozen while the weights run along their cosine edges: from
+  // both feet to the right one, into the air, and down on the left.
   constexpr unsigned kSeed = 25;
   SCOPED_TRACE(kSeed);
   constexpr int kSteps = 2000;
@@ -220,15 +220,14 @@ TEST_P(GroundAwareCommandOf, CommandIsContinuousAsContactWeightsFade) {
         const Result& result = gco.solve(reference);
         ASSERT_NE(result.status, Status::kNotConverged);
         if (k == 0) first = result;
-        // When a foot's contact ends the height goes to the other foot at once: the lower of two loaded feet carries
-        // it.
+        // At the end of a foot's contact the height jumps to the other foot, because the lower of two loaded feet
+        // carries it.
         if (phase == 0 && k == kSteps) break;
         if (k > 0) jump = std::max(jump, distance(result, last));
         range = std::max(range, distance(result, first));
         last = result;
       }
-      // A step of the edge may move u' by no more than a few times the mean slope; a switch would move it by all at
-      // once.
+      // One step along the edge may move u' by a few times the mean slope; a switch would move it by the whole range.
       EXPECT_GT(range, 0.01);
       EXPECT_LT(jump, 30.0 * range / kSteps) << "phase " << phase;
     }
@@ -248,11 +247,11 @@ TEST_P(GroundAwareCommandOf, WithoutContactTheCommandIsKeptAndTheHeightHeld) {
     EXPECT_EQ(result.status, Status::kNoContact);
     EXPECT_EQ(result.command[kVx], 0.3);
     EXPECT_EQ(result.vz_m_s, 0.0);
-    EXPECT_NEAR(result.command[kHeight], grounded, 1e-5);  // the prior's 1e-6 a tick
+    EXPECT_NEAR(result.command[kHeight], grounded, 1e-5);  // the prior's 1e-6 per tick
     EXPECT_EQ(result.foot[kLeft].after_m_s, 0.0);
   }
   gco.reset();
-  EXPECT_NEAR(gco.solve(reference).command[kHeight], 0.0, 1e-12);  // nothing to hold: the command's height
+  EXPECT_NEAR(gco.solve(reference).command[kHeight], 0.0, 1e-12);  // nothing is held: the command's height
 }
 
 TEST_P(GroundAwareCommandOf, NonsenseInKeepsTheLastGoodResult) {
@@ -314,7 +313,7 @@ TEST_P(GroundAwareCommandOf, RollAndPitchTakePartOnlyOnRequest) {
     const ContactTerms terms = terms_of.with_attitude(reference, Options{}.attitude_prior_weight);
     EXPECT_LT(test::cost<7>(terms, unknowns_of(free)), test::cost<7>(terms, unknowns_of(fixed)));
   }
-  // The nonlinear option may give up where the feet disagree most, and says so.
+  // The nonlinear option may fail where the feet disagree most, and reports it.
   EXPECT_GE(converged, 190);
 }
 
@@ -328,7 +327,7 @@ TEST_P(GroundAwareCommandOf, RollLevelsFeetOfDifferentHeight) {
   const double before = apart(five.solve(reference));
   const Result& result = seven.solve(reference);
   EXPECT_GT(before, 3e-3);
-  EXPECT_LT(apart(result), 0.9 * before);  // a step wide w the prior leaves 0.3^2 / (w^2 + 0.3^2), 0.7 for 0.19 m
+  EXPECT_LT(apart(result), 0.9 * before);  // for a stride of w, the prior leaves 0.3^2 / (w^2 + 0.3^2), 0.7 for 0.19 m
   EXPECT_LT(result.command[kRoll], 0.0) << "a roll to the left lowers the bent left leg";
 }
 
@@ -346,12 +345,12 @@ TEST_P(GroundAwareCommandOf, SolveTakesNothingFromTheHeap) {
   const long before = test::allocation_count();
   GroundAwareCommand another(robot);
   if (before >= 0) {
-    EXPECT_GT(test::allocation_count(), before);  // the counter counts
+    EXPECT_GT(test::allocation_count(), before);  // the counter works
   }
 }
 
 TEST_P(GroundAwareCommandOf, SlipBeforeIsThatOfTheCommand) {
-  // A command that already fits has nothing to repair: the optimised one, fed back, slips as little as before.
+  // A command that already fits needs no repair: the optimised command, fed back, slips as little as before.
   constexpr unsigned kSeed = 28;
   SCOPED_TRACE(kSeed);
   RandomReferences references(robot, kSeed);

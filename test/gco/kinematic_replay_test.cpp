@@ -1,4 +1,4 @@
-// u' integrated over time moves the base so that the stance foot stays where it is in the world.
+// Integrating u' over time moves the base so that the stance foot stays in place in the world.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@
 namespace pmg::gco {
 namespace {
 
-/// Every leg and torso joint swings about standing, each at its own rhythm.
+/// Every leg and torso joint swings about standing, each with its own frequency.
 class Swing {
  public:
   explicit Swing(const model::RobotModel& robot)
@@ -57,7 +57,7 @@ TEST_P(KinematicReplayOf, StanceFootStaysPutWhileLegsAndWaistMove) {
   model::ChainKinematics torso(robot.torso_chain, robot.torso_joints);
   GroundAwareCommand gco(robot);
   const auto foot_at = [&](double t) { return legs.compute(swing.q(t), swing.dq(t))[kLeft]; };
-  // The torso attitude that keeps the left foot flat: (pitch, roll) of R_WT = R_FB R_BT with the foot level.
+  // The torso attitude that keeps the left foot flat: (pitch, roll) of R_WT = R_FB R_BT with a level foot.
   const auto torso_attitude = [&](double t) {
     torso.compute(swing.q(t));
     const Eigen::Matrix3d R = foot_at(t).R_BF.transpose() * torso.R();
@@ -81,7 +81,7 @@ TEST_P(KinematicReplayOf, StanceFootStaysPutWhileLegsAndWaistMove) {
 
   constexpr double kStep_s = 1e-3;
   constexpr int kSteps = 2000;
-  // The world is where the foot starts, turned so that its yaw isn't that of the base.
+  // The world's origin is the foot's start; it is turned so that its yaw differs from the base's.
   Eigen::Matrix3d R_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * foot_at(0.0).R_BF.transpose();
   Eigen::Vector3d p_WB = Eigen::Vector3d(1.0, -2.0, robot.standing_height_m + base_motion(0.0).command[kHeight]);
   const Eigen::Vector3d p_WF_start = p_WB + R_WB * foot_at(0.0).p_BF;
@@ -105,7 +105,7 @@ TEST_P(KinematicReplayOf, StanceFootStaysPutWhileLegsAndWaistMove) {
     p_WB += step;
     moved += step.norm();
     const model::FootKinematics foot = foot_at(t + kStep_s);
-    // Midpoint rule: (1 ms)^2 / 24 of accelerations of a few m/s^2 a second, plus the prior's 1e-6 m/s.
+    // Midpoint rule: (1 ms)^2 / 24 times accelerations of a few m/s^2 per second, plus the prior's 1e-6 m/s.
     ASSERT_LT((p_WB + R_WB * foot.p_BF - p_WF_start).norm(), 2e-5) << t;
     ASSERT_LT((R_WB * foot.R_BF - R_WF_start).norm(), 2e-5) << t;
     ASSERT_NEAR(p_WB.z(), robot.standing_height_m + base_motion(t + kStep_s).command[kHeight], 2e-5) << t;

@@ -1,4 +1,4 @@
-// What a robot's command inverse makes of a user's command: u' averages to what was asked.
+// The effect of a robot's command inverse: u' averages to the user's command.
 #include "gco/make_command_inverse.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class CommandInverseOfZ1 : public testing::Test {
     const auto uniform = [&](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
-    // Velocities that the clips can give together, with room for what the correction adds.
+    // Velocities that the clips can give together, with room for the correction.
     std::array<double, kVelocityChannels> share{};
     double sum = 0.0;
     for (double& s : share) sum += s = uniform(0.0, 1.0) < 0.5 ? 0.0 : uniform(0.1, 1.0);
@@ -65,8 +65,8 @@ TEST_F(CommandInverseOfZ1, BringsTheMeanOptimisedCommandToTheUsers) {
       worst[a] = std::max(worst[a], corrected[a]);
     }
   }
-  // What the grid's spacing leaves, about twice what was measured; pitch and roll, which the table doesn't know, are in
-  // it.
+  // Residual errors from the grid's spacing, about twice the measured ones. They include pitch and roll, which the
+  // table doesn't know.
   const CommandInverse::Node left = {0.008, 0.008, 0.014, 0.003}, left_at_most = {0.07, 0.08, 0.09, 0.015};
   for (std::size_t a = 0; a < before.size(); ++a) {
     SCOPED_TRACE(kChannelNames[CommandInverse::kAxes[a]]);

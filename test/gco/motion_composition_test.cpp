@@ -1,4 +1,4 @@
-// What the three policies of Table I imitate and observe, and that they differ in nothing else.
+// The three policies of Table I: what each imitates and observes, and that they differ in nothing else.
 #include "gco/motion_composition.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ const model::RobotModel& z1() {
   return robot;
 }
 
-/// Without whatever inverse it was committed with: tests bring their own.
+/// The committed clips without their inverse: tests bring their own.
 ClipLibrary clips() {
   ClipLibrary library = model::load_clip_library(z1().directory / "clips", z1());
   library.inverse = {};
@@ -24,7 +24,7 @@ MotionComposition composition(Variant variant, const ClipLibrary& library = clip
   return {z1(), library, variant, generator_options(z1())};
 }
 
-/// Long enough for every rate limit, at a command.
+/// Steps at a constant command, long enough for every rate limit.
 void settle(MotionComposition& motion, const Command& user, int ticks = 400) {
   for (int k = 0; k < ticks; ++k) {
     motion.advance(user, 0.01);
@@ -59,7 +59,7 @@ TEST(MotionComposition, ASingleGaitPlaysTheForwardClipWhateverIsAskedAndObserves
   Command straight;
   straight[kVx] = single.reference().gain * z1().velocity_scale_positive[kVx];
   settle(forward, straight);
-  // Both play the forward clip with this amplitude; they may have begun to walk at other times.
+  // Both play the forward clip with this amplitude, but may have begun to walk at different times.
   bool met = false;
   for (int k = 0; k < 200 && !met; ++k) {
     const Reference& alone = forward.advance(straight, 0.01);
@@ -87,7 +87,7 @@ TEST(MotionComposition, OnlyPmgAsksTheClipsForWhatTheInverseSays) {
     for (std::size_t c = 0; c < kChannels; ++c) {
       EXPECT_NEAR(motion.reference().command.u[c], kTurning.u[c], 1e-9) << "the user's, in " << to_string(variant);
     }
-    // They may have begun to walk at other times.
+    // They may have begun to walk at different times.
     EXPECT_NEAR(motion.reference().gain, plain.reference().gain, 1e-9) << to_string(variant);
     EXPECT_NEAR(motion.reference().phase_rate_per_s, plain.reference().phase_rate_per_s, 1e-9) << to_string(variant);
   }

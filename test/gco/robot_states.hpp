@@ -1,4 +1,4 @@
-// Robots and references that the tests of the ground-aware command optimisation share.
+// Robots and references for the tests of the ground-aware command optimisation.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,14 +16,14 @@
 
 namespace pmg::test {
 
-/// Below the source tree: a real-sized humanoid and a made-up biped with another joint order and fewer joints.
+/// Paths below the source tree: a full-size humanoid, and a synthetic biped with another joint order and fewer joints.
 inline constexpr const char* kRobots[] = {"config/robots/z1", "test/data/robots/biped"};
 
 inline model::RobotModel load(const std::string& robot) {
   return model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / robot);
 }
 
-/// What GoogleTest calls the instance.
+/// GoogleTest's name of the instance.
 inline std::string robot_name(const testing::TestParamInfo<const char*>& robot) {
   return std::filesystem::path(robot.param).filename().string();
 }
@@ -43,8 +43,8 @@ inline void set_contact(Reference& reference, double left, double right) {
   reference.contact = {left >= 0.5, right >= 0.5};
 }
 
-/// The same with feet that disagree as they do in a blend of clips: centimetres and centimetres a second. The nonlinear
-/// problem with roll and pitch free needn't converge where feet are decimetres apart.
+/// The same with feet that disagree as in a blend of clips: by centimetres and centimetres per second. The nonlinear
+/// problem with free roll and pitch need not converge when feet are decimetres apart.
 inline Reference mild(Reference reference, const model::RobotModel& robot) {
   reference.q = robot.q_stand() + 0.2 * (reference.q - robot.q_stand());
   reference.dq *= 0.1;
@@ -81,7 +81,7 @@ class RandomReferences {
   std::mt19937 generator_;
 };
 
-/// The problem that a fresh GroundAwareCommand solves for this reference (pitch and roll fixed).
+/// The terms of a new GroundAwareCommand for this reference (pitch and roll fixed).
 class TermsOf {
  public:
   explicit TermsOf(const model::RobotModel& robot) : robot_(robot), legs_(robot), base_attitude_(robot) {}
@@ -95,7 +95,7 @@ class TermsOf {
                               prior_weight, u[kHeight]);
   }
 
-  /// As operator(), with what GroundAwareCommand adds for roll and pitch.
+  /// As operator(), plus GroundAwareCommand's terms for roll and pitch.
   gco::ContactTerms with_attitude(const Reference& reference, double attitude_prior_weight) {
     gco::ContactTerms terms = (*this)(reference);
     const JointVector still = JointVector::Zero(reference.q.size());

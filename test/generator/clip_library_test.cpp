@@ -1,4 +1,4 @@
-// What the clip library of Z1 promises. Tolerances are the library's acceptance limits unless said otherwise.
+// The guarantees of Z1's clip library. Tolerances are the library's acceptance limits unless stated otherwise.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST_F(ClipsOfZ1, WalkAtGainTimesTheirVelocity) {
 TEST_F(ClipsOfZ1, LiftTheFootAndKeepTheFeetApart) {
   for (const ClipReport& clip : *reports_) {
     EXPECT_GE(clip.gains.back().ground.clearance_m, 0.025) << clip.name;
-    EXPECT_GE(clip.gains[4].ground.clearance_m, 0.008) << clip.name;  // at half of it
+    EXPECT_GE(clip.gains[4].ground.clearance_m, 0.008) << clip.name;  // at half gain
     for (const GainReport& at : clip.gains) {
       EXPECT_GE(at.ground.lowest_swing_m, -0.006) << clip.name << " at " << at.gain;
       EXPECT_GE(at.ground.foot_gap_m, 0.02) << clip.name << " at " << at.gain;
@@ -109,14 +109,14 @@ TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
   EXPECT_NEAR(static_cast<double>(low - dorsiflexion_rad.begin()) / kClipSamples, 0.63, 0.04);
 }
 
-/// Sole corners of both feet in the world of a standing robot whose base has this attitude and place.
+/// Expects both feet's sole corners in place, for a standing robot whose base has this attitude.
 void expect_feet_in_place(const model::RobotModel& robot, const JointVector& q, const Eigen::Matrix3d& R_WB,
                           const std::string& what) {
   model::LegKinematics kinematics(robot);
   const JointVector zero = JointVector::Zero(q.size());
   const PerFoot<model::FootKinematics> stand = kinematics.compute(robot.q_stand(), zero);
   const PerFoot<model::FootKinematics>& now = kinematics.compute(q, zero);
-  const Eigen::Vector3d base = stand[kLeft].p_BF - R_WB * now[kLeft].p_BF;  // the left foot as anchor
+  const Eigen::Vector3d base = stand[kLeft].p_BF - R_WB * now[kLeft].p_BF;  // the left foot is the anchor
   for (const Foot foot : {kLeft, kRight}) {
     for (std::size_t c = 0; c < 4; ++c) {
       EXPECT_LT((base + R_WB * now[foot].sole_B[c] - stand[foot].sole_B[c]).norm(), 1e-3) << what;

@@ -1,4 +1,4 @@
-// The optimiser's own leg kinematics against the controller's.
+// The optimiser's leg kinematics agree with the controller's.
 #include "generator/leg_geometry.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(LegGeometry, AgreesWithTheControllersKinematics) {
     for (const Foot foot : {kLeft, kRight}) {
       const LegGeometry leg = leg_geometry(robot, roles, foot);
       const FootMotion<double> ours = foot_motion<double>(leg, leg_part(q, roles, foot), leg_part(dq, roles, foot));
-      // the same arithmetic in another order: rounding only
+      // the same arithmetic in another order: only rounding differs
       EXPECT_LT((ours.R_BF - expected[foot].R_BF).norm(), 1e-12);
       EXPECT_LT((ours.p_BF - expected[foot].p_BF).norm(), 1e-12);
       EXPECT_LT((ours.v_BF - expected[foot].v_BF).norm(), 1e-12);
@@ -60,7 +60,7 @@ TEST(Reach, PutsTheFootWhereItIsAsked) {
   const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const FootMotion<double> reached =
       foot_motion<double>(leg, reach(leg, turned, target, stand), LegVector<double>::Zero());
-  EXPECT_LT((reached.p_BF - target).norm(), 1e-7);  // ten times what reach() stops at
+  EXPECT_LT((reached.p_BF - target).norm(), 1e-7);  // ten times reach()'s stopping threshold
   EXPECT_LT((reached.R_BF - turned).norm(), 1e-7);
 }
 

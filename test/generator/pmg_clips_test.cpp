@@ -1,4 +1,4 @@
-// What pmg_clips promises to whoever calls it from a shell.
+// The promises of pmg_clips to its callers in a shell.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,5 @@
-// The clips of Z1 as the robot walks by them: the generator's references on the ground that the ground-aware
-// optimisation finds, in steady state.
+// Z1 walks by its clips: the generator's references on the ground found by the ground-aware optimisation, in steady
+// state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class WalkingZ1 : public ::testing::Test {
   static void SetUpTestSuite() {
     robot_ = new model::RobotModel(model::load_robot(model::find_robot("z1")));
     ClipLibrary library = model::load_clip_library(robot_->directory / "clips", *robot_);
-    library.inverse = {};  // the clips themselves; make_command_inverse_test.cpp has the inverse
+    library.inverse = {};  // only the clips; make_command_inverse_test.cpp tests the inverse
     library_ = new ClipLibrary(std::move(library));
   }
   static void TearDownTestSuite() {
@@ -68,7 +68,7 @@ struct Mixture {
   Command command;  ///< vx, vy, omega, pitch, roll, height
 };
 
-// Those of config/scenarios/tour.yaml.
+// The mixtures of config/scenarios/tour.yaml.
 const std::vector<Mixture> kTour = {{"circle", {{0.5, 0.0, 0.4, 0.0, 0.0, 0.0}}},
                                     {"diagonal", {{0.4, 0.2, 0.0, 0.0, 0.0, 0.0}}},
                                     {"crouched", {{0.4, 0.0, 0.0, 0.0, 0.0, -0.08}}},
@@ -84,7 +84,7 @@ TEST_F(WalkingZ1, KeepsItsFeetOnTheGroundInTheToursMixtures) {
   }
 }
 
-// Superposition alone, without clips of two velocities: the limits hold on average over the box, not for each command.
+// With superposition alone (no clips of two velocities), the limits hold on average over the box, not for each command.
 TEST_F(WalkingZ1, CombinedCommandsKeepTheirSizeAndTheFeetOnTheGroundOnAverageUnderCorners) {
   ClipLibrary corners = *library_;
   corners.blend = Blend::kCorners;
@@ -101,7 +101,7 @@ TEST_F(WalkingZ1, CombinedCommandsKeepTheirSizeAndTheFeetOnTheGroundOnAverageUnd
     const double share = std::min(1.0, kCornerReach / asked);
     for (const Channel channel : {kVx, kVy, kOmega}) {
       EXPECT_NEAR(walked.admissible[channel], share * command[channel], 1e-9);
-      // Without the command inverse: joints blend linearly, what the feet do doesn't.
+      // Without the command inverse: joints blend linearly, but the feet don't move linearly.
       EXPECT_NEAR(walked.mean[channel], share * command[channel], 0.10) << kChannelNames[channel];
     }
     EXPECT_LE(walked.pure_single_support_m_s, 0.001);

@@ -8,7 +8,7 @@
 namespace pmg::test {
 namespace {
 
-/// A library whose joints have so little room that most commands have to yield.
+/// A library whose joints have so little room that most commands are scaled down.
 ClipLibrary tight_library(int joints, std::uint64_t seed, double room_rad = 0.25) {
   ClipLibrary library = make_library(joints, seed);
   library.q_lower = library.q_stand.array() - room_rad;
@@ -52,10 +52,10 @@ TEST(AdmissibleSet, OneDirectionIsScaledJustAsFarAsItsWorstPhaseNeeds) {
   const double gain = generator.reference().gain;
   ASSERT_LT(gain, 1.0);
   for (int tick = 0; tick < 20000; ++tick) {
-    const Reference& r = generator.step(make_command(0.8, 0, 0), 0.00317);  // sweeps the phase finely
+    const Reference& r = generator.step(make_command(0.8, 0, 0), 0.00317);  // a fine sweep over the phase
     least = std::min(least, margin_left(library, r.q));
   }
-  // The phases met lie within 1e-4 cycles of the worst one: below 1e-6 rad at an extreme.
+  // The sampled phases lie within 1e-4 cycles of the worst one, which is below 1e-6 rad at an extreme.
   EXPECT_NEAR(least, options.limit_margin_rad, 1e-6);
   EXPECT_NEAR(generator.reference().command[kVx], gain * 0.8, 1e-12);
   EXPECT_TRUE(generator.reference().command_limited);
@@ -104,8 +104,8 @@ TEST(AdmissibleSet, CommandWithRoomToSpareIsLeftAlone) {
 }
 
 TEST(AdmissibleSet, AdmissibleCommandIsContinuousInTheCommand) {
-  // Along straight lines through the command space the scaled command may not jump: halving the step halves the largest
-  // change.
+  // Along straight lines through the command space the scaled command must not jump: half the step gives half the
+  // largest change.
   const ClipLibrary library = tight_library(31, 3);
   const Posture posture(library.posture, library.q_stand);
   AdmissibleSet set(library.q_stand, library.q_lower, library.q_upper, 0.035);

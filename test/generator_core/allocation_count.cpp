@@ -15,7 +15,7 @@ std::atomic<long> count{0};
 
 long pmg::test::allocation_count() noexcept { return count; }
 
-// glibc lets a program replace malloc and still reach its own under these names.
+// In glibc, a program that replaces malloc still reaches the original under these names.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);

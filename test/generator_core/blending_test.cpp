@@ -73,7 +73,7 @@ TEST(Blending, GainsNeverSumToMoreThanOne) {
   }
 }
 
-/// One joint that a clip holds at one angle: the blend is arithmetic on four numbers.
+/// One joint, held at one angle by each clip: the blend is arithmetic on four numbers.
 ClipLibrary constant_library() {
   ClipLibrary library;
   library.q_stand.setConstant(1, 0.1);
@@ -100,11 +100,11 @@ TEST(Blending, PaperBlendEqualsNumbersWorkedOutByHand) {
   Generator generator(constant_library(), options);
   // u = (0.4, 0.1, 0): alpha = (0.4 / 0.8, 0.1 / 0.4) = (0.5, 0.25).
   // Interpolated motions: 0.5 * 1.0 + 0.5 * 0.1 = 0.55 and 0.25 * (-0.5) + 0.75 * 0.1 = -0.05.
-  // w = (0.4, 0.1) / 0.500001 = (0.7999984000, 0.1999996000); 1 - sum w = 1.999996e-6 stands.
+  // w = (0.4, 0.1) / 0.500001 = (0.7999984000, 0.1999996000); the rest 1 - sum w = 1.999996e-6 goes to stand.
   // q_d = 0.7999984000 * 0.55 + 0.1999996000 * (-0.05) + 1.999996e-6 * 0.1 = 0.42999934
   const Reference r = run(generator, make_command(0.4, 0.1, 0.0), 4.0);
   EXPECT_NEAR(r.q[0], 0.42999934, 1e-9);
-  // T = 0.8 * 1.0 + 0.2 * 1.2 = 1.04 s, r = 0.8 * 0.60 + 0.2 * 0.64 = 0.608: the share of epsilon taken out.
+  // T = 0.8 * 1.0 + 0.2 * 1.2 = 1.04 s, r = 0.8 * 0.60 + 0.2 * 0.64 = 0.608, with weights w / sum w.
   EXPECT_NEAR(r.phase_rate_per_s, 1.0 / 1.04, 1e-9);
   EXPECT_NEAR(r.duty_factor[kLeft], 0.608, 1e-9);
   // A third channel: u = (0.4, 0.1, 0.5), alpha_omega = 1, motion 0.25; w = (0.4, 0.1, 0.5) / 1.000001.

@@ -18,7 +18,7 @@ class ClipCurveTest : public ::testing::Test {
 TEST_F(ClipCurveTest, CurvePassesThroughItsSamplesWithTheirSlopes) {
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
     curve.sample(static_cast<double>(k) / static_cast<double>(clip.q.size()), q, dq);
-    // 1e-12: k/N is rounded, and with slopes of 10 rad a cycle that moves q by 1e-15 and more.
+    // 1e-12: k/N is rounded; slopes of 10 rad per cycle turn that into 1e-15 rad and more.
     EXPECT_LT((q - clip.q[k]).cwiseAbs().maxCoeff(), 1e-12) << k;
     EXPECT_LT((dq - clip.dq_dphi[k]).cwiseAbs().maxCoeff(), 1e-10) << k;
   }
@@ -30,8 +30,8 @@ TEST_F(ClipCurveTest, ValueAndSlopeAreContinuousAcrossEveryKnotAndTheWrap) {
     const double phase = static_cast<double>(k) / static_cast<double>(clip.q.size());
     curve.sample(wrap_cycle(phase - kBeside), q, dq);
     curve.sample(phase + kBeside, other_q, other_dq);
-    EXPECT_LT((q - other_q).cwiseAbs().maxCoeff(), 1e-7) << k;    // 2e-9 cycles at less than 20 rad a cycle
-    EXPECT_LT((dq - other_dq).cwiseAbs().maxCoeff(), 1e-5) << k;  // at less than 1000 rad a cycle squared
+    EXPECT_LT((q - other_q).cwiseAbs().maxCoeff(), 1e-7) << k;    // 2e-9 cycles at less than 20 rad per cycle
+    EXPECT_LT((dq - other_dq).cwiseAbs().maxCoeff(), 1e-5) << k;  // at less than 1000 rad per cycle^2
   }
 }
 
@@ -43,7 +43,7 @@ TEST_F(ClipCurveTest, SlopeIsTheDerivativeOfTheCurve) {
     JointVector ahead(31), behind(31);
     curve.sample(wrap_cycle(phase + kStep), ahead, other_dq);
     curve.sample(wrap_cycle(phase - kStep), behind, other_dq);
-    // Central difference: rounding 1e-16 / 1e-6, and a jump of the second derivative inside the step at most 1e-4.
+    // Central difference: rounding 1e-16 / 1e-6, and at most 1e-4 from a jump of the second derivative inside the step.
     EXPECT_LT((dq - (ahead - behind) / (2.0 * kStep)).cwiseAbs().maxCoeff(), 1e-4) << phase;
   }
 }
@@ -67,13 +67,13 @@ TEST_F(ClipCurveTest, ExtremesBoundTheCurveAndAreReached) {
   }
   EXPECT_LE((seen_high - highest).maxCoeff(), 1e-12);
   EXPECT_GE((seen_low - lowest).minCoeff(), -1e-12);
-  // The nearest of 20000 phases is 2.5e-5 off at most; at a curvature below 200 rad per cycle squared that is 1e-7 rad.
+  // The nearest of 20000 phases is at most 2.5e-5 away; with a curvature below 200 rad per cycle^2 that is 1e-7 rad.
   EXPECT_LT((highest - seen_high).maxCoeff(), 1e-6);
   EXPECT_LT((seen_low - lowest).maxCoeff(), 1e-6);
 }
 
 TEST(ClipCurve, ExtremesBetweenSamplesAreFound) {
-  DynamicClip clip;  // eight samples of a sine, none at its crest
+  DynamicClip clip;  // eight samples of a sine, none at its peak
   for (int k = 0; k < 8; ++k) {
     const double angle = 2.0 * std::numbers::pi * (k / 8.0 + 1.0 / 16.0);
     clip.q.push_back(JointVector::Constant(1, std::sin(angle)));

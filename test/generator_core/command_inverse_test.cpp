@@ -7,7 +7,7 @@
 namespace pmg {
 namespace {
 
-/// Corrects vx by 0.1 at (vx 1, omega 2) and nothing at the grid's other nodes.
+/// Corrects vx by 0.1 at (vx 1, omega 2); all other nodes have no correction.
 CommandInverse one_node_corrected() {
   std::vector<CommandInverse::Node> correction(2 * 1 * 2 * 1);
   correction[3] = {0.1, 0.0, -0.4, 0.0};

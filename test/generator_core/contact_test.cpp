@@ -44,8 +44,8 @@ TEST(ContactWeight, StaysOneWhereTheFootNeverLeavesTheGround) {
 }
 
 TEST(ContactWeight, IsContinuousInPhaseAndInDutyFactor) {
-  // A cosine edge is at most pi / 2 / width steep in its boundary; the boundary moves with r by at most 1 (0.5,
-  // and 0.5 more where it moves outwards).
+  // The slope of a cosine edge over its boundary is at most pi / 2 / width. The boundary moves with r by at most 1: by
+  // 0.5, and by 0.5 more where it moves outwards.
   constexpr double kSteepest = 0.5 * 3.1416 / kEdge;
   constexpr double kStep = 1e-4;
   for (double r = 0.5; r + kStep <= 1.0; r += 10 * kStep) {
@@ -55,7 +55,7 @@ TEST(ContactWeight, IsContinuousInPhaseAndInDutyFactor) {
       ASSERT_LE(std::abs(contact_weight(phase, 0.3, r + kStep, kEdge) - here), kSteepest * kStep);
     }
   }
-  for (double phase = 0.0; phase < 1.0; phase += kStep) {  // the last step to 1 too
+  for (double phase = 0.0; phase < 1.0; phase += kStep) {  // also the last step to r = 1
     ASSERT_GE(contact_weight(phase, 0.3, 1.0 - kStep, kEdge), 1.0 - kSteepest * kStep);
   }
 }

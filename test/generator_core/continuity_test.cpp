@@ -1,4 +1,4 @@
-// q_ref is continuous and dq_ref is what it does, whatever the user commands.
+// q_ref is continuous and dq_ref is its derivative, whatever the user commands.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -8,8 +8,8 @@
 namespace pmg::test {
 namespace {
 
-/// The fastest that each joint may move in a library [rad/s]: clips' slopes at the fastest phase rate, gains at their
-/// fastest, posture slopes at their rates.
+/// Largest speed of each joint in a library [rad/s]: clips' slopes at the fastest phase rate, gains at their fastest
+/// change, posture slopes at their rates.
 JointVector speed_bound(const ClipLibrary& library, const GeneratorOptions& options) {
   const auto joints = library.q_stand.size();
   JointVector slope = JointVector::Zero(joints), excursion = JointVector::Zero(joints),
@@ -44,7 +44,7 @@ JointVector speed_bound(const ClipLibrary& library, const GeneratorOptions& opti
     }
     posture += options.limits.rate_per_s[kVelocityChannels + i] * steepest;
   }
-  // 1 %: between samples slopes and excursions are a little larger than at them.
+  // 1 %: between samples, slopes and excursions are a little larger than at the samples.
   return 1.01 * (slope / shortest_s + gain_rate * excursion) + posture;
 }
 
@@ -54,9 +54,9 @@ TEST(Generator, ReferenceIsContinuousUnderArbitraryCommands) {
       const ClipLibrary library = make_library(joints, 11);
       GeneratorOptions options = make_options();
       options.blend = blend;
-      // The paper's weights are shares of the summed speeds: near zero they turn over within 1e-6 m/s, but there the
-      // amplitudes are as small; elsewhere w_i alpha_i changes at most three times as fast as alpha_i.
-      // A corner's superposition is at most as fast as its three directions and the two lifts taken off together.
+      // The paper's weights are shares of the summed speeds. Near zero they change completely within 1e-6 m/s, but
+      // there the amplitudes are just as small; elsewhere w_i alpha_i changes at most three times as fast as alpha_i. A
+      // corner's superposition is at most as fast as its three directions and the two subtracted lifts together.
       const JointVector bound = (blend == Blend::kGain    ? 1.0
                                  : blend == Blend::kPaper ? 3.0
                                                           : 5.0) *
@@ -97,21 +97,22 @@ TEST(Generator, JointVelocityIsTheTimeDerivativeOfTheReference) {
       for (double& u : user.u) u = 0.6 * any(random);
     }
     const Reference& r = generator.step(user, kFine_s);
-    // Smooth: all rates the same in both ticks, so that no limiter started or ended a ramp and no contact edge slows
+    // Smooth ticks have the same rates before and after: no limiter starts or ends a ramp, and no contact edge slows
     // one.
     double jump = 0.0, moving = 0.0;
     bool turns = false;
     for (std::size_t c = 0; c < kChannels; ++c) {
       jump = std::max(jump, std::abs(r.command_rate.u[c] - rate_here.u[c]));
       moving = std::max(moving, std::abs(rate_here.u[c]));
-      turns = turns || std::signbit(r.command.u[c]) != std::signbit(command_before.u[c]);  // another clip: a kink
+      turns = turns || std::signbit(r.command.u[c]) != std::signbit(command_before.u[c]);  // kink: another clip
     }
     if (jump < 1e-3 && !turns && tick > 2) {
       ++smooth;
       moving_gains += moving > 0.1 ? 1 : 0;
       const JointVector central = (r.q - q_before) / (2.0 * kFine_s);
-      // Where knots meet, second derivatives of up to 50 rad/s^2 jump: 50 dt / 2 = 2.5e-3 rad/s. All else is smaller:
-      // third derivatives dt^2 / 6, and rates that may differ by 1e-3 between ticks times an excursion of 0.5 rad.
+      // At knots the second derivatives jump by up to 50 rad/s^2: 50 dt / 2 = 2.5e-3 rad/s. Other errors are smaller:
+      // third derivatives times dt^2 / 6, and rates that differ by up to 1e-3 between ticks times an excursion of 0.5
+      // rad.
       ASSERT_LT((central - dq_here).cwiseAbs().maxCoeff(), 5e-3) << tick;
     }
     q_before = q_here;
@@ -122,7 +123,7 @@ TEST(Generator, JointVelocityIsTheTimeDerivativeOfTheReference) {
     rate_here = r.command_rate;
   }
   EXPECT_GT(smooth, 30000);
-  EXPECT_GT(moving_gains, 5000);  // enough ticks in which gains or posture move
+  EXPECT_GT(moving_gains, 5000);  // ticks in which gains or posture move
 }
 
 TEST(Generator, CommandRateIsTheDifferenceOfTheReportedCommands) {

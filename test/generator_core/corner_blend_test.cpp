@@ -1,4 +1,4 @@
-// Blend::kCorners: combined commands keep their size, single ones stay the paper's, and nothing jumps in between.
+// Blend::kCorners: combined commands keep their amplitude, single ones follow the paper's formula, and nothing jumps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ TEST(CornerBlend, EqualsNumbersWorkedOutByHand) {
   EXPECT_NEAR(m.gain_sum, 0.625, 1e-15);
   EXPECT_NEAR(m.weight[corner(1, 0, -1)], 0.2, 1e-15);
   EXPECT_FALSE(m.normalised);
-  // All three at 60 % of their ranges is just within reach; at full size it is what they are scaled to.
+  // All three at 60 % of their ranges are just within reach; full ones are scaled down to that.
   for (const double size : {0.6, 1.0}) {
     const Mixture three = mix(Blend::kCorners, make_command(-0.5 * size, 0.35 * size, 0.8 * size), kScale);
     EXPECT_NEAR(three.gain[corner(-1, 1, 1)], 0.216, 1e-12);
@@ -126,7 +126,7 @@ TEST(CornerBlend, ACornersOwnClipIsPlayedThereAndMirroredOnTheOtherSide) {
   }
 }
 
-/// Two joints: one swings with the direction's sign, the other lifts the foot in every direction alike.
+/// Two joints: one swings with the direction's sign, the other lifts the foot equally in every direction.
 ClipLibrary striding_and_lifting() {
   ClipLibrary library;
   library.q_stand.setZero(2);
@@ -168,7 +168,7 @@ TEST(Superposition, StridesAddUpAndTheLiftIsSharedByTwoAndByThree) {
   EXPECT_NEAR(clips[corner(-1, 1, 0)]->q[0][0], -0.2 + 0.3, 1e-12);
   EXPECT_NEAR(clips[corner(1, 1, 1)]->q[0][0], 0.2 + 0.3 + 0.4, 1e-12);
   EXPECT_NEAR(clips[corner(1, 1, 1)]->q[25][1], lift, 1e-12);
-  // The clips' derivative is that of their samples.
+  // A made clip's slopes are the derivative of its samples.
   for (const std::size_t c : {corner(1, 0, 1), corner(1, 1, 1)}) {
     const DynamicClip& made = *clips[c];
     for (int joint = 0; joint < 2; ++joint) {

@@ -16,7 +16,7 @@ TEST(Generator, ZeroCommandIsExactlyTheStandingPostureBeforeAndAfterMoving) {
   EXPECT_EQ(run(generator, Command{}, 0.1).q, library.q_stand);
   run(generator, make_command(0.5, -0.2, 0.3, 0.3, -0.1, -0.1), 3.0);
   const Reference r = run(generator, Command{}, 3.0);
-  EXPECT_EQ(r.q, library.q_stand);  // every bit
+  EXPECT_EQ(r.q, library.q_stand);  // bit by bit
   EXPECT_EQ(r.dq, JointVector::Zero(31));
   EXPECT_EQ(r.command, Command{});
   EXPECT_FALSE(r.command_limited);
@@ -27,12 +27,12 @@ TEST(Generator, StepNeitherAllocatesNorThrows) {
   static_assert(noexcept(std::declval<Generator&>().step(Command{}, kDt_s)));
   static_assert(noexcept(std::declval<Generator&>().reset()));
   ClipLibrary library = make_library(31);
-  library.q_lower = library.q_stand.array() - 0.2;  // so that the admissible set has work too
+  library.q_lower = library.q_stand.array() - 0.2;  // makes the admissible set scale commands too
   library.q_upper = library.q_stand.array() + 0.2;
   const long at_start = allocation_count();
   Generator generator(library, make_options());
   const long before = allocation_count();
-  EXPECT_GT(before, at_start);  // the count works
+  EXPECT_GT(before, at_start);  // the counter works
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   Command user;
@@ -59,7 +59,7 @@ TEST(Generator, ReportsTheCommandThatTheReferenceRealises) {
 TEST(Generator, SameInputsGiveTheSameBits) {
   Generator a(make_library(31), make_options()), b(make_library(31), make_options());
   run(b, make_command(0.4, 0.1, 0.2, 0.1, 0.1, -0.1), 1.23);
-  b.reset();  // no trace of what was before
+  b.reset();  // leaves no trace of the past
   for (int tick = 0; tick < 500; ++tick) {
     const Command user = make_command(0.004 * tick, -0.1, 0.3, 0.2, -0.1, -0.05);
     const Reference &x = a.step(user, kDt_s), &y = b.step(user, kDt_s);

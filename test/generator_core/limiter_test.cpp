@@ -67,7 +67,7 @@ TEST_F(CommandLimiterTest, StopReachesExactlyZeroWithinHalfASecondEvenWhereTheRa
   ASSERT_NEAR(previous[kVx], 0.8, 1e-12);
   for (int tick = 0; tick < 50; ++tick) {
     const Command command = limiter.step(Command{}, 1.0, kDt_s);
-    // A ramp, no jump: never faster than the speed at its start over the time there is.
+    // A ramp without a jump: never faster than the initial speed divided by the time to stop.
     ASSERT_LE(std::abs(command[kVx] - previous[kVx]), 0.8 / 0.5 * kDt_s + 1e-9) << tick;
     previous = command;
   }

@@ -9,7 +9,7 @@ namespace {
 
 TEST(Mirror, ReflectedClipIsTheOtherSidesMotionHalfACycleLater) {
   const ClipLibrary library = make_library(31);
-  const DynamicClip& clip = *library.positive[kVy];  // 96 samples: phi + 0.5 is a sample too
+  const DynamicClip& clip = *library.positive[kVy];  // 96 samples: phi + 0.5 is also a sample
   const DynamicClip reflected = mirrored(library.mirror, clip);
   for (std::size_t k = 0; k < 96; ++k) {
     for (std::size_t i = 0; i < 31; ++i) {
@@ -47,7 +47,7 @@ TEST(Mirror, MirroringTwiceGivesTheClipBackAndASymmetricClipIsItsOwnImage) {
   }
 }
 
-// A library with clips for one side only, all of 1 s, so that half a cycle is 50 ticks of the control loop.
+// A library with clips of one side only, all of 1 s: half a cycle is 50 ticks of the control loop.
 ClipLibrary one_second_library() {
   ClipLibrary library = LibraryMaker(31, 7).library();
   library.positive[kOmega] = LibraryMaker(31, 8).dynamic_clip(library.q_stand, 100, 1.0, 0.62, false);

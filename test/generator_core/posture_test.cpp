@@ -7,7 +7,7 @@
 namespace pmg::test {
 namespace {
 
-StaticClip two_rows() {  // no row at 0, where the straight line would give 0.2 and the robot stands at 0.1
+StaticClip two_rows() {  // no row at 0: the straight line gives 0.2 there, the robot stands at 0.1
   return {{-0.1, 0.2}, {JointVector::Constant(1, 0.0), JointVector::Constant(1, 0.6)}};
 }
 
@@ -30,7 +30,7 @@ TEST(PostureCurve, IsLinearBetweenRowsClampedOutsideAndZeroAtTheStand) {
 }
 
 TEST(PostureCurve, RowAtZeroIsTheStandItself) {
-  // 0.004 rad of measurement noise at row 0 is not carried into the stand.
+  // 0.004 rad of measurement noise in row 0 does not change the stand.
   const StaticClip clip{
       {-0.1, 0.0, 0.2},
       {JointVector::Constant(1, 0.0), JointVector::Constant(1, 0.104), JointVector::Constant(1, 0.6)}};

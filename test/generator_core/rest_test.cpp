@@ -1,4 +1,4 @@
-// Standing still, starting and stopping: when the phase freezes, and when both feet carry the robot.
+// Standing, starting and stopping: when the phase freezes, and when both feet carry the robot.
 #include <gtest/gtest.h>
 
 #include "generator_core/synthetic_library.hpp"
@@ -16,7 +16,7 @@ void walk_and_stop(Generator& generator, double walk_s = 3.0) {
 
 TEST(Rest, PhaseFreezesAfterHalfASecondWithBothFeetInContact) {
   Generator generator(make_library(7), make_options());
-  walk_and_stop(generator);  // its last tick is the first at rest
+  walk_and_stop(generator);  // its last tick is the first one at rest
   for (int tick = 1; tick < 50; ++tick) {
     EXPECT_GT(generator.step(Command{}, kDt_s).phase_rate_per_s, 0.0) << tick;
   }
@@ -55,7 +55,7 @@ TEST(Rest, ShortStopDoesNotFreezeThePhase) {
 TEST(Rest, PhaseRunsOnUntilBothFeetCarry) {
   GeneratorOptions options = make_options();
   options.rest_before_freeze_s = 0.0;
-  options.stance_ramp_s = 2.0;  // so that rest alone does not load both feet at once
+  options.stance_ramp_s = 2.0;  // then rest alone does not load both feet at once
   for (int walk_ticks = 300; walk_ticks < 400; walk_ticks += 7) {
     Generator generator(make_library(7), options);
     walk_and_stop(generator, walk_ticks * kDt_s);

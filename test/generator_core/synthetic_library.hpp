@@ -1,4 +1,4 @@
-// A made-up clip library of any number of joints: smooth periodic curves with a known left-right symmetry.
+// A synthetic clip library for any number of joints: smooth periodic curves with a known left-right symmetry.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace pmg::test {
 
 inline constexpr double kDt_s = 0.01;  // the control loop's
 
-/// Joints 0 and 1, 2 and 3, ... are left-right pairs, every third pair with sign -1; an odd last joint is its own
-/// mirror image, with sign -1 as a yaw or roll joint of the trunk has.
+/// Joints 0 and 1, 2 and 3, ... are left-right pairs; every third pair has the sign -1. An odd last joint is its own
+/// mirror image with the sign -1, as a yaw or roll joint of the trunk.
 inline MirrorMap mirror_map(int joints) {
   MirrorMap map;
   for (int i = 0; i < joints; ++i) {
@@ -27,7 +27,7 @@ inline MirrorMap mirror_map(int joints) {
   return map;
 }
 
-/// Two harmonics a joint about the standing posture; `amplitude` [rad] bounds each of the two.
+/// Two harmonics per joint about the standing posture; `amplitude` [rad] bounds each of them.
 struct Wave {
   double offset = 0.0;
   std::array<double, 2> sine{}, cosine{};
@@ -77,7 +77,7 @@ class LibraryMaker {
     return w;
   }
 
-  /// symmetric: the right side does half a cycle later what the left side does, as in walking straight ahead.
+  /// symmetric: the right side repeats the left side half a cycle later, as in walking straight ahead.
   DynamicClip dynamic_clip(const JointVector& stand, std::size_t samples, double period_s, double duty_factor,
                            bool symmetric) {
     std::vector<Wave> waves;
@@ -108,13 +108,13 @@ class LibraryMaker {
     return clip;
   }
 
-  /// Bends a little between rows, monotone in the command; rows at multiples of step. symmetric: pitch and height.
+  /// Slightly curved between rows, monotone in the command; rows at multiples of step. symmetric: pitch and height.
   StaticClip static_clip(const JointVector& stand, int first_row, int last_row, double step, bool symmetric) {
     JointVector slope(joints_), bend(joints_);
     for (int i = 0; i < joints_; ++i) {
       const auto joint = static_cast<std::size_t>(i);
       const int partner = map_.partner[joint];
-      // Roll has the opposite sign: leaning the other way is the mirror image.
+      // Roll has the opposite sign: leaning to the other side is the mirror image.
       const double sign = map_.sign[joint] * (symmetric ? 1.0 : -1.0);
       slope[i] = partner < i ? sign * slope[partner] : partner == i && symmetric ? 0.0 : uniform(-0.8, 0.8);
       bend[i] = std::abs(slope[i]) * 0.3;

@@ -1,4 +1,4 @@
-// A library or options that would move the robot wrongly are refused when they are loaded, and the message says why.
+// Libraries and options that would move the robot wrongly are refused at load, with the reason in the message.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
                [](ClipLibrary& l, auto&) { l.positive[kVx]->contact_center[kLeft] += 0.17; }},
         Defect{"ContactCentersOfAMirroredClipApart", "vy_m_s < 0",
                [](ClipLibrary& l, auto&) {
-                 // Each side alone is within 0.15 of the others; its mirror image is not.
+                 // Each side alone is within 0.15 of the others, but its mirror image is not.
                  l.positive[kVy]->contact_center = {0.21, 0.93};
                }},
         Defect{"PostureRangeWithoutZero", "contain 0",

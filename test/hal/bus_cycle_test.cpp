@@ -7,7 +7,7 @@
 namespace pmg::hal {
 namespace {
 
-/// Answers or doesn't.
+/// A bus whose answers the test scripts.
 class ScriptedHal final : public Hal {
  public:
   BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {

@@ -1,5 +1,4 @@
-// LcmLink: one clear line for everything that can be wrong with an address or a network, and nothing lost on a good
-// one.
+// LcmLink: one clear line for every error of an address or a network, and no loss on a good one.
 #include "io/lcm_link.hpp"
 
 #include <gmock/gmock.h>
@@ -98,7 +97,7 @@ TEST(LcmLink, AnEmptyNetworkNamespaceIsExplainedWithTheCommandThatMendsIt) {
   });
 }
 
-/// Listens on a TCP port of its own and greets whoever connects with these bytes.
+/// Listens on its own TCP port and sends these bytes to each client.
 class FakeServer {
  public:
   explicit FakeServer(std::vector<std::uint8_t> greeting) : greeting_(std::move(greeting)) {
@@ -222,7 +221,7 @@ TEST(DecodeMessage, TakesWhatWasEncodedAndNothingElse) {
   std::vector<std::uint8_t> longer = bytes;
   longer.push_back(0);
   EXPECT_FALSE(decode_message<pmg_msgs::command_t>(longer)) << "trailing bytes";
-  // robot's length, after hash and version: lcm-gen's own code hands these to std::string
+  // the robot's length, after hash and version: lcm-gen's own code passes these values to std::string
   for (const std::array<std::uint8_t, 4>& length :
        {std::array<std::uint8_t, 4>{0, 0, 0, 0}, {0xff, 0xff, 0xff, 0xff}, {0x80, 0, 0, 0}, {0x7f, 0xff, 0xff, 0xff}}) {
     std::vector<std::uint8_t> broken = bytes;
@@ -236,7 +235,7 @@ void decode_with_flipped_bytes(const Message& sent) {
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
   sent.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   std::mt19937 random(7);
-  std::uniform_int_distribution<std::size_t> position(8, bytes.size() - 1);  // the type's hash stays
+  std::uniform_int_distribution<std::size_t> position(8, bytes.size() - 1);  // the type's hash stays intact
   std::uniform_int_distribution<std::size_t> pick(0, 5);
   for (int i = 0; i < 50'000; ++i) {
     std::vector<std::uint8_t> broken = bytes;
@@ -262,7 +261,7 @@ TEST(DecodeMessage, CountsThatNoMessageHoldsAllocateNothing) {
   pmg_msgs::robot_info_t info{};
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(info.getEncodedSize()));
   info.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  // joint_count, before the last two numbers; lcm-gen's own code would make room for 2^31 names first
+  // joint_count, before the last two numbers: lcm-gen's own code would first allocate 2^31 names
   const std::size_t joint_count = bytes.size() - 20;
   bytes[joint_count] = 0x7f;
   EXPECT_FALSE(decode_message<pmg_msgs::robot_info_t>(bytes));

@@ -101,7 +101,7 @@ TEST_F(Log, IsWhatLcmItselfReads) {
   EXPECT_EQ(file.readNextEvent(), nullptr);
 }
 
-/// A log of this many events; returns one event's size.
+/// Writes a log of this many events and returns the size of one event.
 std::int64_t write_log(const std::filesystem::path& path, int events) {
   io::LogWriter writer(path);
   for (int k = 0; k < events; ++k) writer.write("MOTOR_COMMAND", 10'000'000LL * k, motor_command(31));
@@ -158,7 +158,7 @@ TEST_F(Log, WhatIsFlushedIsInTheFileAtOnce) {
 }
 
 TEST_F(Log, AFullDiskIsToldAndCutsNoEventInTwo) {
-  // The kernel refuses to let any file of this process grow beyond the limit: EFBIG stands in for ENOSPC.
+  // The kernel refuses to let a file of this process grow beyond the limit: EFBIG replaces ENOSPC.
   const auto path = folder_ / "log.lcm";
   const std::int64_t size = write_log(path, 1);
   rlimit before{};

@@ -1,4 +1,4 @@
-// A network of the test's own: nothing that is sent there reaches another robot, test or host.
+// A private network for a test: messages on it reach no other robot, test or host.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ inline bool route_multicast(int socket) {
 
 }  // namespace detail
 
-/// Runs body in a thread, the processes that it starts included, with a network namespace of its own. False when the
-/// system doesn't permit that (it takes root): skip the test then, loudly.
+/// Runs body in a thread with its own network namespace; processes that body starts are in it too. False if the system
+/// doesn't permit it (it needs root): then skip the test, loudly.
 [[nodiscard]] inline bool in_private_network(Multicast multicast, const std::function<void()>& body) {
   bool permitted = false;
   std::thread([&] {

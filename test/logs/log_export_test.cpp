@@ -1,4 +1,4 @@
-// What other programs get of a log is what is in it.
+// Exports of a log contain its data, as other programs read them.
 #include "logs/log_export.hpp"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ class LogExport : public testing::Test {
   }
   ~LogExport() override { fs::remove_all(folder_); }
 
-  /// What the MCAP project's own reader finds.
+  /// Contents by the MCAP project's own reader.
   nlohmann::json read_mcap(const fs::path& file) const {
     const fs::path out = folder_ / "read.json";
     const std::string command = std::string("PYTHONPATH=") + PMG_SOURCE_DIR + "/third_party/prefix/python python3 " +
@@ -109,7 +109,7 @@ TEST_F(LogExport, McapIsWhatItsOwnReaderReads) {
     EXPECT_EQ(state["first"]["q_rad"][joints[3]].get<double>(), event.as<pmg_msgs::robot_state_t>().q_rad[3]);
     break;
   }
-  // The session is when the run began: 1 ns after 1970.
+  // The session is the start time of the run: 1 ns after 1970.
   EXPECT_EQ(state["first_ns"], 10'000'000 + test::kRecordedSession);
   EXPECT_EQ(state["last_ns"], 2'600'000'000 + test::kRecordedSession);
   EXPECT_EQ(read["start_ns"], test::kRecordedSession);

@@ -1,4 +1,4 @@
-// pmg_log info says who ran what and what happened, from whole, rotated, cut and strange logs.
+// pmg_log info reports who ran and what happened, from complete, rotated, cut and foreign logs.
 #include "logs/log_info.hpp"
 
 #include <gmock/gmock.h>

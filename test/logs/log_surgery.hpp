@@ -1,4 +1,4 @@
-// Logs copied event by event, with some left out, changed or added.
+// Copies logs event by event, with events left out, changed or added.
 #pragma once
 
 #include <cstring>
@@ -17,7 +17,7 @@ struct LogEvent {
   std::int64_t stamp_ns = 0;
   std::vector<std::uint8_t> data;
 
-  // What io::LogWriter wants of a message.
+  // The interface that io::LogWriter needs of a message.
   int getEncodedSize() const { return static_cast<int>(data.size()); }
   int encode(void* to, int offset, int size) const {
     std::memcpy(static_cast<char*>(to) + offset, data.data(), data.size());
@@ -44,7 +44,7 @@ inline std::vector<LogEvent> read_events(const std::filesystem::path& file) {
   return events;
 }
 
-/// keep may change the event; false leaves it out.
+/// keep may change the event; if it returns false, the event is left out.
 inline void copy_log(const std::filesystem::path& from, const std::filesystem::path& to,
                      const std::function<bool(LogEvent&)>& keep) {
   io::LogWriter writer(to);

@@ -1,4 +1,4 @@
-// Every field of every message type in msgs/ is written down, under its own name.
+// Every field of every message type in msgs/ is exported under its own name.
 #include "logs/message_fields.hpp"
 
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_in
                                                         {"HOIST", "hoist_t"},
                                                         {"HOIST_STATE", "hoist_state_t"}};
 
-/// Names of a type's fields, lengths of others left out. Read word by word: GCC 12 sees ghosts in std::regex under
-/// sanitizers.
+/// Names of a type's fields, except lengths of others. Read word by word, because GCC 12 gives false warnings on
+/// std::regex under sanitizers.
 std::vector<std::string> fields_of(const std::string& type) {
   const std::set<std::string> types = {"int8_t", "int16_t", "int32_t", "int64_t",
                                        "double", "float",   "boolean", "string"};
@@ -81,7 +81,7 @@ class MessageFields : public testing::Test {
     test::record_run(file);
     for (const test::LogEvent& event : test::read_events(file)) examples_.emplace(event.channel, event.data);
     fs::remove(file);
-    // What that run has none of.
+    // Messages that the run doesn't contain.
     examples_.emplace("SCENARIO", bytes_of(pmg_msgs::scenario_step_t{}));
     examples_.emplace("LIMITED", bytes_of(pmg_msgs::limited_t{}));
     examples_.emplace("TIMING", bytes_of(pmg_msgs::timing_t{}));
@@ -152,7 +152,7 @@ TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
   EXPECT_FALSE(read_fields("REFERENCE", examples_.at("STATE"), joints_, fields)) << "another type's bytes";
   EXPECT_FALSE(read_fields("STATE", {1, 2, 3}, joints_, fields));
   std::vector<std::uint8_t> damaged = examples_.at("STATE");
-  // joint_count, behind hash, robot's name (length and closing zero included), stamp and sample, becomes negative
+  // joint_count becomes negative; before it are hash, robot's name (with length and closing zero), stamp and sample
   const auto state = test::LogEvent{"STATE", 0, damaged}.as<pmg_msgs::robot_state_t>();
   damaged[8 + 4 + state.robot.size() + 1 + 8 + 8] = 0xff;
   EXPECT_FALSE(read_fields("STATE", damaged, joints_, fields));

@@ -1,5 +1,5 @@
-// A short run with everything in it that a tick can start from, recorded as pmg_sil and pmg_controller do: noisy
-// states, two operators, broken and repeated messages, a stop, a fault and its reset.
+// A short run with every input of a tick, recorded as by pmg_sil and pmg_controller: noisy states, two operators,
+// broken and repeated messages, a stop, a fault and its reset.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace pmg::test {
 
-/// Relative to the source root, where tests run: the committed log names no folder of the computer that made it.
+/// Relative to the source root, where tests run: the committed log contains no folder of its computer.
 inline constexpr const char* kRecordedRobot = "test/data/robots/biped";
 inline constexpr double kRecorded_s = 2.6;
-inline constexpr double kRecordedFault_s = 1.6;  // when a drive gets hot
+inline constexpr double kRecordedFault_s = 1.6;  // time at which a drive gets hot
 inline constexpr std::int64_t kRecordedSession = 1;
 
 inline runtime::RunInfo recorded_run_info() {
@@ -35,7 +35,7 @@ inline runtime::RunInfo recorded_run_info() {
   return run;
 }
 
-/// after_tick is called with the seconds so far and may steer the log into another file.
+/// after_tick gets the elapsed seconds and may redirect the log into another file.
 inline void record_run(io::LogWriter& writer, const std::function<void(runtime::TickLog&, double)>& after_tick = {}) {
   const model::RobotModel robot = model::load_robot(kRecordedRobot);
   ControlRig rig(robot, false);
@@ -59,7 +59,7 @@ inline void record_run(io::LogWriter& writer, const std::function<void(runtime::
     if (at(tick, 1.10)) rig.ask(stranger, control::Mode::kWalk, false);
     if (at(tick, 1.20)) rig.silent = true;
     if (at(tick, 1.30)) rig.silent = false;
-    if (at(tick, 1.40)) rig.drive.sequence -= 20;  // old ones once more
+    if (at(tick, 1.40)) rig.drive.sequence -= 20;  // repeats old ones
     hot = tick >= 160 && tick < 170;
     if (at(tick, 1.80)) rig.reset();
     if (at(tick, 1.90)) rig.ask(control::Mode::kStand);

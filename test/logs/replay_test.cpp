@@ -1,4 +1,4 @@
-// A log is enough to compute every tick again; whatever is missing or different is noticed and named.
+// A log is enough to compute every tick again; missing and different data are found and named.
 #include "logs/replay.hpp"
 
 #include <gmock/gmock.h>
@@ -76,8 +76,8 @@ TEST_F(ReplayTest, TheCommittedLogIsWhatThisControllerDoes) {
       "\nIf the controller is meant to behave differently now, record it anew: test_logs "
       "--gtest_also_run_disabled_tests --gtest_filter='*RecordTheCommittedLog'";
   for (const std::string& note : report.notes) std::cout << "note: " << note << '\n';
-  // Sines and square roots of another compiler or C library may differ in the last bit; the joints' angles stay below
-  // a nanoradian.
+  // Another compiler's or C library's sines and square roots may differ in the last bit. The joints' angles then differ
+  // by less than a nanoradian.
   EXPECT_LE(report.largest_difference(), 1e-9)
       << report.first->channel << " " << report.first->field << " at " << report.first->time_s << " s: logged "
       << report.first->logged << ", replayed " << report.first->replayed << how_to;
@@ -88,7 +88,7 @@ TEST_F(ReplayTest, TheCommittedLogIsWhatThisControllerDoes) {
 TEST_F(ReplayTest, DISABLED_RecordTheCommittedLog) { test::record_run(fs::path(kCommittedLog)); }
 
 TEST_F(ReplayTest, OneBitOfAStateIsNoticedAndNamed) {
-  // While damping the drives are given the measured angles.
+  // While damping, the drives' command contains the measured angles.
   std::int64_t ticks = -1;
   const fs::path spoilt = copy([&ticks](test::LogEvent& event) {
     if (event.channel != "STATE" || ++ticks != 165) return true;
@@ -124,7 +124,7 @@ TEST_F(ReplayTest, AnotherInputWhileWalkingIsNoticedToTheEnd) {
 }
 
 TEST_F(ReplayTest, EveryInputOfATickCounts) {
-  // Each change alone must change an output, or it was not replayed at all.
+  // Each change alone must change an output; otherwise it is not replayed at all.
   const auto differs = [&](const char* what, const std::function<void(pmg_msgs::tick_input_t&)>& change) {
     const fs::path spoilt = copy([&](test::LogEvent& event) {
       if (event.channel != "TICK") return true;

@@ -90,7 +90,7 @@ TEST_F(RunSeriesTest, FiguresMatchTheLog) {
   const RunSeries run = read_run(write({.fault_at = 290}));
   const auto tracking = joint_tracking(run);
   ASSERT_EQ(tracking.size(), 2U);
-  EXPECT_NEAR(tracking[0].error_rms_rad, 0.1, 1e-6);  // positions are kept as float
+  EXPECT_NEAR(tracking[0].error_rms_rad, 0.1, 1e-6);  // positions are stored as float
   EXPECT_NEAR(tracking[1].error_rms_rad, 0.0, 1e-6);
   EXPECT_NEAR(tracking[0].torque_max_Nm, 12.5, 1e-6);
   EXPECT_NEAR(run.reference_slip.before_mean_m_s, 0.08, 1e-12) << "standing does not dilute it";
@@ -185,7 +185,7 @@ TEST_F(RunSeriesTest, TakesTheFilesOfAFolderAsOneRun) {
 TEST_F(RunSeriesTest, OfSeveralRunsTheLastOneIsShown) {
   write({.ticks = 100}, "log-0000.lcm");
   write({.robot = "other", .ticks = 50, .start_ns = 9'000'000'000}, "log-0001.lcm");
-  write({.robot = "other", .ticks = 80, .start_ns = 1'000'000'000}, "log-0002.lcm");  // its clock begins anew
+  write({.robot = "other", .ticks = 80, .start_ns = 1'000'000'000}, "log-0002.lcm");  // its clock starts again
   const RunSeries run = read_run(folder_);
   EXPECT_EQ(run.info.robot, "other");
   EXPECT_EQ(run.state.t_s.size(), 80U);
@@ -264,7 +264,7 @@ TEST(MeasuredCommand, AveragesOverOneGaitPeriod) {
     truth.v_WB_W_m_s[0] = 0.5 + 0.2 * std::sin(2.0 * M_PI * tick / 50.0);  // sways once in 0.5 s
     vx_m_s = measured.add(truth, 0.5, 0.8)[kVx];
     if (tick < 50) continue;
-    EXPECT_NEAR(vx_m_s, 0.5, 0.01) << tick;  // a sample of 50 more or less
+    EXPECT_NEAR(vx_m_s, 0.5, 0.01) << tick;  // one sample of 50 more or less
   }
 }
 

@@ -1,4 +1,4 @@
-// A short log of a made-up robot, written message by message: what a test needs to spoil or to leave out.
+// A short log of a synthetic robot, written message by message, for tests that damage logs or leave things out.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +28,11 @@ struct SmallLog {
   std::string robot = "tiny";
   std::vector<std::string> joints = {"left_joint", "right_joint"};
   int ticks = 300;
-  int fault_at = -1;  ///< tick from which on it is in a fault
+  int fault_at = -1;  ///< first tick with a fault
   std::string fault_text = "tilt: the IMU's link leans 1.20 rad from upright, limit 1.00 rad";
-  bool announced = false;  ///< the fault is told at the log's beginning too, as a flight recorder does
+  bool announced = false;  ///< the fault is also at the log's beginning, as in a flight recorder's
   int falls_at = -1;
-  std::int64_t first_tick = 0;       ///< its number
+  std::int64_t first_tick = 0;       ///< number of the first tick
   std::set<std::string> left_out{};  ///< channels
   double measured_vx_m_s = 0.5;
   std::int64_t start_ns = 5'000'000'000;
@@ -128,7 +128,7 @@ struct SmallLog {
     message.by = {pmg_msgs::limited_t::SPEED};
     return message;
   }
-  /// Nothing is asked of the first second, 0.5 m/s of the others.
+  /// No command in the first second, 0.5 m/s afterwards.
   pmg_msgs::scenario_step_t step(int index, std::int64_t now_ns) const {
     pmg_msgs::scenario_step_t message{};
     message.stamp_ns = now_ns;

@@ -1,4 +1,4 @@
-// Counts heap allocations of the whole test binary, so that a test can say "none".
+// Counts heap allocations of the whole test binary, so that a test can require zero.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The bundle's hash changes with every byte that decides what a controller does, and with nothing else.
+// The bundle's hash changes with every byte that decides the controller's behaviour, and with nothing else.
 #include "model/bundle.hpp"
 
 #include <gtest/gtest.h>
@@ -92,7 +92,7 @@ TEST_F(BundleTest, NeitherPlaceNorOrderNorStrangersChangeIt) {
   make_robot(folder_ / "elsewhere");
   EXPECT_EQ(of(folder_ / "elsewhere").sha256, before.sha256) << "another folder, other times";
 
-  // Directory entries in another order: remove and make again, last first.
+  // Changes the order of directory entries: removes the files and writes them again, last one first.
   for (auto file = before.files.rbegin(); file != before.files.rend(); ++file) {
     const std::string text = read(folder_ / "robot" / file->first);
     fs::remove(folder_ / "robot" / file->first);

@@ -32,7 +32,7 @@ void expect_same(const DynamicClip& a, const DynamicClip& b) {
 TEST(ClipLibrary, IsReadAsWritten) {
   const RobotModel robot = load_robot(kBipedFolder);
   ClipLibrary library = load_clip_library(kBipedFolder + "/clips", robot);
-  std::mt19937 random(5);  // digits that no short decimal has
+  std::mt19937 random(5);  // random digits, which no short decimal has
   std::uniform_real_distribution<double> jitter(-1e-3, 1e-3);
   for (JointVector& q : library.positive[kVx]->q) q = q.unaryExpr([&](double x) { return x + jitter(random); });
   library.positive[kVx]->dq_dphi = periodic_spline_slopes(library.positive[kVx]->q);
@@ -66,7 +66,7 @@ TEST(ClipLibrary, CarriesTheRobotsPostureLimitsAndMirror) {
 TEST(ClipLibrary, TakesColumnsInAnyOrder) {
   const RobotModel robot = load_robot(kBipedFolder);
   const TemporaryCopy copy(kBipedFolder);
-  // Swapping two columns with their names changes nothing.
+  // Two columns exchanged together with their names change nothing.
   std::istringstream in(copy.read("clips/turn.csv"));
   std::string out;
   for (std::string line; std::getline(in, line);) {
@@ -88,7 +88,7 @@ TEST(ClipLibrary, SlopesAreThoseOfAPeriodicSpline) {
   const std::vector<JointVector> slopes = periodic_spline_slopes(q);
   for (int k = 0; k < n; ++k) {
     const double a = 2.0 * std::numbers::pi * k / n, w = 2.0 * std::numbers::pi;
-    // The slope's error of a cubic spline on f is h^4 f^(5) / 180: here 2e-3 for the second harmonic.
+    // Error of a cubic spline's slope: h^4 f^(5) / 180, here 2e-3 for the second harmonic.
     EXPECT_NEAR(slopes[static_cast<std::size_t>(k)][0], w * std::cos(a), 1e-4);
     EXPECT_NEAR(slopes[static_cast<std::size_t>(k)][1], -2.0 * w * std::sin(2.0 * a), 2.5e-3);
   }

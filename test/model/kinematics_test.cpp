@@ -54,8 +54,7 @@ class EveryRobotsKinematics : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Robots, EveryRobotsKinematics, ::testing::Values(kZ1Folder, kBipedFolder),
                          [](const auto& robot) { return std::filesystem::path(robot.param).filename().string(); });
 
-// The knees' frames of this robot are turned about z and its right hip rolls about -x: a mistake in the conversion
-// shows.
+// The knees' frames of this robot are turned about z, and its right hip rolls about -x, so a wrong conversion shows.
 TEST(LegKinematics, AgreesWithTheBipedsLegWrittenByHand) {
   const RobotModel robot = load_robot(kBipedFolder);
   std::mt19937 random(3);

@@ -1,4 +1,4 @@
-// Which name somebody meant.
+// Proposals for unknown names.
 #include "model/nearest_name.hpp"
 
 #include <gtest/gtest.h>

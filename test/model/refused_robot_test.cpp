@@ -30,13 +30,13 @@ class RefusedRobot : public ::testing::Test {
     EXPECT_THAT(text, HasSubstr(what));
     EXPECT_THAT(text, AnyOf(HasSubstr("; expected "), HasSubstr("; did you mean ")));
   }
-  /// The mistake is on the line that is changed.
+  /// Expects the error on the changed line.
   void expect_yaml(const std::string& old_text, const std::string& new_text, const std::string& key,
                    const std::string& what) const {
     const int line = copy_.replace("robot.yaml", old_text, new_text);
     expect("robot.yaml", line, key, what);
   }
-  /// The mistake lies in the element that begins with this text.
+  /// Expects the error at the element that begins with this text.
   void expect_urdf(const std::string& old_text, const std::string& new_text, const std::string& element,
                    const std::string& key, const std::string& what) const {
     copy_.replace("biped.urdf", old_text, new_text);

@@ -62,7 +62,7 @@ TEST(Z1, LegsCarryTheTablesShareOfTheMass) {
       if (name.starts_with("left_" + part)) leg += link->inertial->mass;
     }
   }
-  EXPECT_NEAR(leg / 35.0, 0.1416 + 0.0433 + 0.0137, 1e-6);  // de Leva 1996, table 4; nine digits are printed
+  EXPECT_NEAR(leg / 35.0, 0.1416 + 0.0433 + 0.0137, 1e-6);  // de Leva 1996, table 4; the model prints nine digits
 }
 
 TEST(Z1, StandsWithFeetUnderItsCentreOfMass) {
@@ -76,7 +76,7 @@ TEST(Z1, StandsWithFeetUnderItsCentreOfMass) {
   const KDL::Vector com = moment / robot.total_mass_kg;
   const KDL::Frame foot = link_pose(robot, robot.feet[kLeft].link, robot.q_stand());
   const FootModel& box = robot.feet[kLeft];
-  const double margin_m = 0.03;  // a step of the drives' Coulomb friction moves the pressure by less
+  const double margin_m = 0.03;  // more than the shift of the pressure by one step of the drives' Coulomb friction
   EXPECT_GT(com.x(), foot.p.x() + box.box_center_F.x() - box.box_half_size_m.x() + margin_m);
   EXPECT_LT(com.x(), foot.p.x() + box.box_center_F.x() + box.box_half_size_m.x() - margin_m);
   EXPECT_NEAR(com.y(), 0.0, 1e-9);
@@ -179,7 +179,7 @@ TEST(Biped, IsReadWithItsOwnOrderAndConventions) {
   // base + 2 (yaw, roll, thigh, shank, foot) + torso + plate
   EXPECT_NEAR(robot.total_mass_kg, 3.5 + 2 * (0.3 + 0.3 + 1.2 + 0.8 + 0.4) + 3.0 + 0.05, 1e-12);
   EXPECT_NEAR(robot.standing_height_m, 0.4 * std::cos(0.2) + 0.05, 1e-12);
-  // The plate is turned by 0.3 and the IMU on it turned back.
+  // The plate is turned by 0.3, and the IMU on it is turned back.
   const KDL::Frame plate = link_pose(robot, robot.imu.link, robot.q_stand());
   const Eigen::Vector3d x = robot.imu.T_LI.linear().col(0);
   EXPECT_NEAR((plate.M * KDL::Vector(x.x(), x.y(), x.z())).x(), 1.0, 1e-12);

@@ -20,7 +20,7 @@ class SoleLoadsTest : public testing::Test {
  protected:
   double draw(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
-  /// Somewhere in the joints' ranges, with a knee that is bent.
+  /// A random posture within the joints' ranges, with a bent knee.
   JointVector posture() {
     JointVector q = robot_.q_stand();
     for (const Foot foot : {kLeft, kRight}) {
@@ -33,7 +33,7 @@ class SoleLoadsTest : public testing::Test {
     return q;
   }
 
-  /// What KDL's own dynamics say the drives must give.
+  /// The drives' torques by KDL's own dynamics.
   JointVector torques(const JointVector& q, const Eigen::Vector3d& gravity_B,
                       const PerFoot<Eigen::Matrix<double, 6, 1>>& wrench_B) {
     JointVector torque_Nm = JointVector::Zero(q.size());
@@ -72,7 +72,7 @@ TEST_F(SoleLoadsTest, AreTheForcesThatTheTorquesHold) {
     const auto& feet = legs.compute(q, JointVector::Zero(q.size()));
     for (const Foot foot : {kLeft, kRight}) {
       const double normal_N = feet[foot].R_BF.col(2).dot(wrench_B[foot].head<3>());
-      // The condition of a knee bent by 0.2 rad or more leaves that of the rounding.
+      // Rounding, amplified by the condition of a knee bent by 0.2 rad or more.
       EXPECT_NEAR(loads[foot].force_N, normal_N, 1e-6) << trial;
       EXPECT_NEAR(loads[foot].vertical_N, -gravity_B.dot(wrench_B[foot].head<3>()), 1e-6) << trial;
     }

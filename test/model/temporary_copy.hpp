@@ -1,4 +1,4 @@
-// A copy of a directory that a test may spoil; removed with the object.
+// A copy of a directory that a test may change; it is removed with the object.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class TemporaryCopy {
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
 
-  /// Line (from 1) on which the text first stands; the test fails when it stands nowhere.
+  /// Number of the first line with this text, from 1; without one the test fails.
   int line_of(const std::string& name, const std::string& text) const {
     const std::string all = read(name);
     const std::size_t at = all.find(text);

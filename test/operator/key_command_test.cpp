@@ -1,4 +1,4 @@
-// What pressed keys ask for, and what ends it: let go, lost, left alone.
+// The command of the pressed keys, and its end: keys released, lost, or left alone.
 #include "operator/key_command.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr std::int64_t kMs = 1'000'000;
 const CommandLimits kLimits{.lower = {-0.5, -0.35, -0.8, -0.15, -0.25, -0.2},
                             .upper = {0.8, 0.35, 0.8, 0.5, 0.25, 0.02}};
 
-/// Keys and a clock that moves by itself only.
+/// Keys, and a clock that only the test moves.
 struct Keyboard {
   explicit Keyboard(KeyReport report) : keys(report) { keys.set_limits(kLimits); }
   void press(Key key, bool fast = false) { keys.press(key, fast, now_ns); }
@@ -112,7 +112,7 @@ TEST(KeyCommand, AKeyThatAnotherOneKeepsFromRepeatingIsStillHeldForAWhile) {
   Window window;
   window.press(Key::kForwards);
   window.hold(Key::kForwards, 900);
-  window.press(Key::kTurnLeft);  // from now on keyboards repeat this one alone
+  window.press(Key::kTurnLeft);  // from now on keyboards repeat only this one
   window.hold(Key::kTurnLeft, 30'000);
   EXPECT_DOUBLE_EQ(window[kVx], 0.4) << "in a circle for as long as one likes";
   window.keys.release(Key::kTurnLeft, window.now_ns);

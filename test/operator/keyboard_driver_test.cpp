@@ -1,4 +1,4 @@
-// A robot driven by keys, over the network and back: from limp to walking and to rest, and what never happens.
+// A robot driven by keys over the network: from limp to walking and to rest, and the things that must never happen.
 #include "operator/keyboard_driver.hpp"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ class KeyboardTest : public testing::Test {
   void run(double seconds) {
     for (; seconds > 1e-9; seconds -= kStep_s) step();
   }
-  /// Seconds until it is so; more than at_most_s: it never was.
+  /// Seconds until the condition holds; more than at_most_s: it never held.
   template <typename Condition>
   double until(Condition condition, double at_most_s = 10.0) {
     double elapsed_s = 0.0;
@@ -179,7 +179,7 @@ TEST_F(KeyboardTest, ARobotThatWasFoundBrakingIsLeftSo) {
 
 TEST_F(KeyboardTest, AFaultIsSaidAndResetByItsKeyAlone) {
   walk();
-  robot_.policy->how = test::BreakablePolicy::Break::kNan;
+  robot_.policy->how = test::BreakablePolicy::Break::kNotANumber;
   run(0.1);
   ASSERT_EQ(mode(), Mode::kFault);
   EXPECT_THAT(driver_.text(), HasSubstr("fault: "));
@@ -227,7 +227,7 @@ TEST_F(KeyboardTest, LettingGoBringsItToRestAndFreesItForOthers) {
   driver_.press(Key::kForwards, false);
   EXPECT_LT(until([&] { return driver_.gone(); }), 2.0);
   EXPECT_EQ(mode(), Mode::kStand);
-  run(0.05);  // its last command's lease, and some
+  run(0.05);  // a little more than the last command's lease
   EXPECT_EQ(robot_.result().driving, control::Source{});
 }
 

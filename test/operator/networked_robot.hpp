@@ -1,5 +1,5 @@
-// A whole controller on a network without sockets and a clock without time: bus, control and comms of one or more
-// robots and the operators who talk to them, in one thread.
+// Whole controllers on a network without sockets and with a virtual clock: bus, control and comms of one or more robots
+// and their operators in one thread.
 #pragma once
 
 #include <deque>
@@ -21,7 +21,7 @@ struct NetworkedRobot {
     bus_cycle.run();  // the first sample
   }
 
-  /// One control tick. As in the controller's threads, what was sent is heard first.
+  /// One control tick. As in the controller's threads, messages sent before are received first.
   void control() {
     cycle.run(clock_.now_ns());
     const control::TickRecord& record = cycle.record();
@@ -54,7 +54,7 @@ class Network {
  public:
   NetworkedRobot& add_robot(const std::string& name) { return robots_.emplace_back(name, link, clock); }
 
-  /// 10 ms of every robot; messages are delivered on the way.
+  /// 10 ms of every robot; messages are delivered meanwhile.
   void advance() {
     for (int bus_cycle = 0; bus_cycle < 5; ++bus_cycle) {
       clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
@@ -66,7 +66,7 @@ class Network {
       }
     }
   }
-  /// Until the operator's errand has ended, at most so long.
+  /// Steps until the operator's request has ended, at most for at_most_s.
   template <typename Errand>
   auto finish(Errand& errand, double at_most_s = 30.0) {
     auto progress = errand.step();

@@ -1,4 +1,4 @@
-// What an operator asks of a controller, over the network and back.
+// An operator's requests to a controller, over the network and back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ class OperatorTest : public testing::Test {
     return progress;
   }
   static Command forward(double vx_m_s) { return Command{{vx_m_s}}; }
-  /// Somebody else makes the robot walk and goes on driving it.
+  /// Another source makes the robot walk and goes on driving it.
   std::unique_ptr<Drive> other_drives() {
     auto drive = std::make_unique<Drive>(other_, "biped", forward(0.3), DriveOptions{.duration_s = 100, .climb = true});
     while (!drive->driving()) step(*drive);
@@ -168,7 +168,7 @@ TEST_F(OperatorTest, OthersMayNotTakeOverWhileSomebodyDrives) {
 }
 
 TEST_F(OperatorTest, AfterAnothersCrashAWalkWaitsForTheEndOfItsLeaseAndSaysSo) {
-  other_drives();  // and is gone, without letting go: nobody calls its step() any more
+  other_drives();  // and stops without releasing: no one calls its step() any more
   Drive drive(mine_, "biped", forward(-0.2), {.duration_s = 1.0, .climb = true});
   std::string waited_for;
   Progress progress = Progress::kPending;
@@ -220,7 +220,7 @@ TEST_F(OperatorTest, WhoeverStopsTheRobotDuringThatWaitKeepsItStopped) {
 }
 
 TEST_F(OperatorTest, TheWaitForALeaseIsBounded) {
-  // A source that sends every 0.4 s keeps its lease and looks like one that has crashed.
+  // A source that sends every 0.4 s keeps its lease, but looks like one that has crashed.
   const auto crashed = other_drives();
   ModeWish wish(mine_, "biped", Goal::kStand, 1.0);
   Progress progress = Progress::kPending;
@@ -293,8 +293,8 @@ TEST_F(OperatorTest, AControllerThatFallsSilentEndsTheDrive) {
 
 TEST_F(OperatorTest, AFaultIsSaidInItsOwnWordsUntilItIsReset) {
   EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
-  while (robot_.result().footing_unknown) network_.advance();  // its feet are not judged in one tick
-  robot_.policy->how = test::BreakablePolicy::Break::kNan;
+  while (robot_.result().footing_unknown) network_.advance();  // its feet are not judged within one tick
+  robot_.policy->how = test::BreakablePolicy::Break::kNotANumber;
   for (int k = 0; k < 3; ++k) network_.advance();
   ASSERT_EQ(robot_.result().mode, Mode::kFault);
   EXPECT_EQ(ask(Goal::kStand), Progress::kFailed);
@@ -306,7 +306,7 @@ TEST_F(OperatorTest, AFaultIsSaidInItsOwnWordsUntilItIsReset) {
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
 }
 
-/// A hundred thousand messages a second, as comms hears them: a hundred in every millisecond or two.
+/// A hundred thousand messages a second: comms receives a hundred every millisecond or two.
 class FloodTest : public OperatorTest {
  protected:
   template <typename Errand>

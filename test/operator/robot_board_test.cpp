@@ -1,4 +1,4 @@
-// What pmg_watch shows: the right robot's news, whoever else speaks on the address.
+// pmg_watch's display shows the selected robot's news, whatever other senders use the address.
 #include "operator/robot_board.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What an operator is told of a command that the robot can't follow as asked.
+// The messages to an operator whose command the robot can't follow exactly.
 #include "operator/taken_command.hpp"
 
 #include <fmt/format.h>
@@ -30,10 +30,10 @@ class TakenCommandTest : public testing::Test {
       options["command"]["lower"][kChannelNames[i]] = limits.lower[i];
       options["command"]["upper"][kChannelNames[i]] = limits.upper[i];
     }
-    robot_.run.options = options.dump();  // as control::control_json tells it
+    robot_.run.options = options.dump();  // as control::control_json writes it
     for (int k = 0; k < 3; ++k) network_.advance();
   }
-  /// Walks with this command; every line that is told, and how often.
+  /// Walks with this command; returns every line of output, repetitions included.
   std::vector<std::string> told(const Command& asked, double seconds) {
     Drive drive(source_, "biped", asked, {.duration_s = seconds, .climb = true});
     TakenCommand taken(asked);

@@ -1,4 +1,4 @@
-// Which keys a terminal's bytes are; above all, which of them are Escape.
+// The keys in a terminal's bytes; above all, which bytes are Escape.
 #include "operator/terminal_keys.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(TerminalKeys, SequencesOfOtherKeysAreDroppedWhole) {
   EXPECT_EQ(keys.take("w", 1000 * kMillisecond_ns), Keys{{"w"}}) << "one that never ends is forgotten";
 }
 
-/// Random bytes in random pieces: an Escape by itself, in a pause, is always told.
+/// Random bytes in random pieces: an Escape alone, in a pause, is always recognised.
 TEST(TerminalKeys, NoGarbageSwallowsAnEscape) {
   const unsigned seed = std::random_device{}();
   std::mt19937 random(seed);

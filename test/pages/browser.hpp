@@ -1,4 +1,4 @@
-// Pages as a browser draws them: headless Chromium, where there is one.
+// Pages as a browser draws them, in headless Chromium if there is one.
 #pragma once
 
 #include <cstdio>
@@ -14,7 +14,7 @@
 
 namespace pmg::pages {
 
-/// PMG_BROWSER, or the first Chromium on the path; nothing when there is none.
+/// PMG_BROWSER, or the first Chromium on the path; nullopt if there is none.
 inline std::optional<std::string> find_browser() {
   if (const char* named = std::getenv("PMG_BROWSER")) return named;
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
@@ -23,7 +23,7 @@ inline std::optional<std::string> find_browser() {
   return std::nullopt;
 }
 
-/// The document after the script before (in the head: first of all) and the script after (at the body's end) have run.
+/// The document after the script `before` (first in the head) and the script `after` (at the body's end) have run.
 inline std::string document_in_browser(const std::string& browser, std::string html, const std::string& before,
                                        const std::string& after) {
   namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ inline std::string document_in_browser(const std::string& browser, std::string h
   html.insert(html.find("<style>"), "<script>" + before + "</script>");
   html.insert(html.rfind("</body>"), "<script>" + after + "</script>");
   std::ofstream(fs::path(folder) / "page.html") << html;
-  // Four pixels of the canvas a pixel of the page: what is read is finer than what is asked.
+  // Four pixels of the canvas per pixel of the page, so reading is finer than the tolerances.
   const std::string command = browser + " --headless --no-sandbox --disable-gpu --no-first-run --disable-sync" +
                               " --disable-background-networking --disable-component-update --hide-scrollbars" +
                               " --force-device-scale-factor=4 --window-size=1000,800 --virtual-time-budget=10000" +

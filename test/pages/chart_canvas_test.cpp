@@ -1,5 +1,5 @@
-// Charts and lanes are read back from the canvas of a real browser: the pixels of a line, and the words of the axes
-// where they were written. Nothing is asked of the library that draws them.
+// Charts and lanes are read back from the canvas of a real browser: the pixels of a line, and the words of the axes at
+// their places. The drawing library itself is not asked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@
 namespace pmg::pages {
 namespace {
 
-constexpr double kPixel = 4.0;  // of the canvas, to one of the page
-/// What is drawn is aligned to the canvas' pixels, and so are the ticks by which it is read.
+constexpr double kPixel = 4.0;  // pixels of the canvas per pixel of the page
+/// Drawings are aligned to the canvas' pixels, and so are the ticks by which the test reads them.
 constexpr double kAligned = 2.5;
-constexpr std::size_t kRepeats = 12;  // of each value: a plateau that is wide enough to be read
+constexpr std::size_t kRepeats = 12;  // of each value: makes a plateau wide enough to read
 
-/// Every chart is in view, and every word that is written is noted with its place on the canvas.
+/// Shows every chart, and records every written word with its place on the canvas.
 const std::string kBefore = R"js(
   window.IntersectionObserver = class {
     constructor(tell) { this.tell = tell; }
@@ -37,7 +37,7 @@ const std::string kBefore = R"js(
   };
 )js";
 
-/// Of each chart: its words, and of the colour #0072b2 the lowest and highest pixel of every column.
+/// For each chart: its words, and the lowest and highest pixel of colour #0072b2 in every column.
 const std::string kAfter = R"js(
   setTimeout(() => {
     const found = [];
@@ -93,7 +93,7 @@ DrawnChart read_axes(const nlohmann::json& chart, const std::string& x_unit) {
   return drawn;
 }
 
-/// Each value as a plateau.
+/// Each value becomes a plateau.
 struct Plateaus {
   std::vector<double> x, y;
 };
@@ -131,7 +131,7 @@ TEST_F(ChartCanvas, LinesStandWhereTheirAxesSay) {
   const std::vector<PictureData> data = picture_data();
   std::vector<Plateaus> lines;
   for (std::size_t i = 0; i < data.size(); ++i) {
-    // Runs of very different length on one page, each with its own axis.
+    // Runs of very different length on one page; each has its own axis.
     lines.push_back(plateaus(data[i].values, i % 3 == 0 ? 0.01 : i % 3 == 1 ? 5.0 : 1e-7));
     page.chart({.title = data[i].name,
                 .lines = {{.name = "line", .x = lines.back().x, .y = lines.back().y, .stepped = i % 2 == 1}},
@@ -150,7 +150,7 @@ TEST_F(ChartCanvas, LinesStandWhereTheirAxesSay) {
     double shift = 0.0;
     int read = 0;
     for (std::size_t k = 0; k < data[i].values.size(); ++k) {
-      // From the plateau's second point to the one before its last: its ends are edges.
+      // From the plateau's second point to its last but one, because its ends are edges.
       const double from = chart.x.place(lines[i].x[k * kRepeats + 1]);
       const double to = chart.x.place(lines[i].x[(k + 1) * kRepeats - 2]);
       const auto end = static_cast<std::size_t>(to - kAligned);
@@ -176,7 +176,7 @@ TEST_F(ChartCanvas, LinesStandWhereTheirAxesSay) {
 TEST_F(ChartCanvas, PointsBetweenGapsAreDots) {
   const double kNone = std::nan("");
   const std::vector<double> x = {0.0, 1.0, 2.0, 3.0, 4.0}, y = {kNone, 1.0, kNone, 2.0, 2.0};
-  std::vector<double> many_x, many_y(201, kNone);  // too many for a dot each
+  std::vector<double> many_x, many_y(201, kNone);  // too many for one dot each
   for (int i = 0; i <= 200; ++i) many_x.push_back(i);
   many_y[50] = -7.0;
   Page page("dots");

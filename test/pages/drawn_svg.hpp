@@ -1,4 +1,4 @@
-// An SVG picture read back: what stands where, and the values that its ticks give to places.
+// Reads an SVG picture back: its elements' places, and the values of places by its ticks.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ inline std::optional<double> label_value(const std::string& text) {
   return text.empty() || *end != '\0' ? std::nullopt : std::optional(value);
 }
 
-/// Places of ticks and the values that their labels tell.
+/// Places of ticks, and the values in their labels.
 struct DrawnAxis {
   std::vector<double> at, value;
   std::vector<std::string> labels;
@@ -63,7 +63,8 @@ struct DrawnAxis {
   double operator()(double place) const { return value.front() + (place - at.front()) * per_unit(); }
   double place(double of) const { return at.front() + (of - value.front()) / per_unit(); }
 
-  /// At least two ticks, no label twice, and each where its value belongs, to within so much of the picture's unit.
+  /// Expects at least two ticks, no repeated label, and each tick at its value's place within `within` of the picture's
+  /// unit.
   void expect_sound(double within) const {
     ASSERT_GE(at.size(), 2U) << "a reader needs two ticks";
     for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -74,7 +75,7 @@ struct DrawnAxis {
   }
 };
 
-/// Where a path's pen stops, by stretch; H and V as the pictures write them, upper case.
+/// Points of a path, by stretch. The pictures write H and V in upper case.
 inline std::vector<std::vector<std::pair<double, double>>> pen_stops(const std::string& d) {
   std::vector<std::vector<std::pair<double, double>>> stretches;
   static const std::regex kStep(R"(([MLHVZ])\s*([-0-9.e]*)\s*([-0-9.e]*))");

@@ -43,7 +43,7 @@ TEST(Decimate, KeepsEveryPeakOfEveryLine) {
   const std::vector<double> x = times(20000);
   std::vector<double> a(x.size()), b(x.size());
   for (double& value : a) value = noise(random);
-  b[12345] = 1000.0;  // one sample each way
+  b[12345] = 1000.0;  // one sample up, one down
   b[777] = -1000.0;
   constexpr std::size_t kColumns = 100;
   const LineData data = decimate(x, {a, b}, kColumns, kNever);
@@ -51,10 +51,10 @@ TEST(Decimate, KeepsEveryPeakOfEveryLine) {
   EXPECT_TRUE(std::ranges::is_sorted(data.x));
   EXPECT_EQ(std::ranges::max(data.y[1]), 1000.0);
   EXPECT_EQ(std::ranges::min(data.y[1]), -1000.0);
-  // Column by column: 200 samples each, the noisy line's extremes among its two points.
+  // Column by column, 200 samples each: the noisy line's extremes are among its two points.
   for (std::size_t column = 0; column < kColumns; ++column) {
     const auto from = a.begin() + static_cast<std::ptrdiff_t>(200 * column);
-    const auto [low, high] = std::minmax_element(from, from + 190);  // the border may fall into the neighbour
+    const auto [low, high] = std::minmax_element(from, from + 190);  // the border may lie in the neighbour
     EXPECT_LE(std::min(data.y[0][2 * column], data.y[0][2 * column + 1]), *low) << column;
     EXPECT_GE(std::max(data.y[0][2 * column], data.y[0][2 * column + 1]), *high) << column;
   }
@@ -105,7 +105,7 @@ TEST(DeltaJson, KeepsValuesToTheStepAndGapsAsGaps) {
     if (std::isnan(values[i])) {
       EXPECT_TRUE(std::isnan(back[i]));
     } else {
-      EXPECT_NEAR(back[i], values[i], 0.5 * 1.0 / 1000.0 + 1e-9);  // half a step; and a double's last bits at 1e6
+      EXPECT_NEAR(back[i], values[i], 0.5 * 1.0 / 1000.0 + 1e-9);  // half a step, and a double's last bits at 1e6
     }
   }
 }

@@ -20,7 +20,7 @@ using testing::Not;
 const std::vector<double> kX = {0.0, 1.0, 2.0}, kY = {3.0, 1.0, 2.0};
 constexpr const char* kHostile = "</script><img src=x onerror=alert(1)> \"&' \xff";
 
-/// A page with one of everything, all called name.
+/// A page with one element of every kind, all with this name.
 Page full_page(const std::string& name) {
   Page page(name);
   page.verdict(Tone::kBad, name);
@@ -69,7 +69,7 @@ TEST(Page, LoadsNothingFromAnywhere) {
   EXPECT_THAT(html, Not(testing::ContainsRegex("(src|href)=\"[^#]")));
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   std::istringstream uplot(kUplotScript);
-  for (std::string line; std::getline(uplot, line);) {  // its licence and comments name addresses
+  for (std::string line; std::getline(uplot, line);) {  // its licence and comments contain addresses
     if (line.find("://") == std::string::npos) continue;
     EXPECT_THAT(line, testing::ContainsRegex("(//|\\*).*https?://"));
   }

@@ -1,4 +1,4 @@
-// Data that pictures are tried with: what recordings really hold, and what they should not.
+// Data for tests of pictures: values of real recordings, and values that recordings should not have.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Bars, plots and histograms are read back from the SVG, by its own ticks: what a reader sees is what was given.
+// Bars, plots and histograms are read back from the SVG by its own ticks: the picture shows the given values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 namespace pmg::pages {
 namespace {
 
-constexpr double kDigit = 0.11;          // coordinates have one decimal: half of it at a tick and at what is read
-constexpr double kCharacter = 6.9;       // widest mean of the fonts that browsers take, at 12 px
+constexpr double kDigit = 0.11;     // coordinates have one decimal: half of it at a tick and half at the read value
+constexpr double kCharacter = 6.9;  // largest mean width among browsers' fonts at 12 px
 constexpr double kPictureWidth = 640.0;  // of every picture, in its own units
 
 using testing::SizeIs;
@@ -43,7 +43,7 @@ DrawnAxis x_axis(const std::vector<DrawnElement>& elements) {
   return axis;
 }
 
-/// Labels beside the grid lines: baselines lie four units below.
+/// The labels beside the grid lines: their baselines are four units lower.
 DrawnAxis y_axis(const std::vector<DrawnElement>& elements) {
   DrawnAxis axis;
   for (const DrawnElement& e : elements) {
@@ -122,7 +122,7 @@ TEST_P(PicturesOf, WhiskersReachTheirEnds) {
   EXPECT_EQ(k, read.size());
 }
 
-/// A line's points as drawn: in stretches between gaps, and dots that stand alone.
+/// A line's points in the picture: stretches between gaps, and dots for single points.
 void expect_plot_shows(const std::vector<double>& x_values, const std::vector<double>& values, bool zero) {
   Plot plot{.title = "plot", .x_name = "x", .lines = {{.name = "line", .x = x_values, .y = values}}, .show_zero = zero};
   const auto elements = drawn_elements(svg(plot));
@@ -135,7 +135,7 @@ void expect_plot_shows(const std::vector<double>& x_values, const std::vector<do
     if (e.tag == "circle") read.emplace_back(x(e.number("cx")), y(e.number("cy")));
     if (!e.is("line")) continue;
     for (const auto& stretch : pen_stops(e.attributes.at("d"))) {
-      if (stretch.size() < 2) continue;  // shows nothing: must be a dot
+      if (stretch.size() < 2) continue;  // invisible: must be a dot
       for (const auto& [px, py] : stretch) read.emplace_back(x(px), y(py));
     }
   }
@@ -156,7 +156,7 @@ TEST_P(PicturesOf, PlotsShowTheirPointsByTheirAxes) {
   std::iota(x.begin(), x.end(), 0.0);
   expect_plot_shows(x, values, false);
   expect_plot_shows(x, values, true);
-  std::vector<double> along = values;  // the same along x, where NaN has no place
+  std::vector<double> along = values;  // the same along x, where NaN is not allowed
   std::ranges::sort(along, [](double a, double b) { return a < b; });
   if (std::ranges::all_of(values, can_be_shown)) {
     along.erase(std::unique(along.begin(), along.end()), along.end());
@@ -171,7 +171,7 @@ TEST_P(PicturesOf, HistogramsCountWhereTheValuesAre) {
   const DrawnAxis x = x_axis(elements), y = y_axis(elements);
   x.expect_sound(kDigit);
   expect_apart(x);
-  // Each bin as drawn: where it reaches, and how high.
+  // The extent and height of each bin in the picture.
   for (const DrawnElement& e : elements) {
     if (!e.is("bins")) continue;
     const auto outline = pen_stops(e.attributes.at("d")).front();
@@ -238,7 +238,7 @@ TEST(SvgPictures, LegendsAndNamesStayInside) {
     bars.sets.push_back({.name = "a set with a long name", .values = {1.0}});
   }
   for (const std::string& picture : {svg(plot), svg(bars)}) {
-    std::vector<std::pair<double, double>> taken;  // by row: how far its texts reach
+    std::vector<std::pair<double, double>> taken;  // by row: the extents of its texts
     for (const DrawnElement& e : drawn_elements(picture)) {
       if (!e.is("entry")) continue;
       const double width = kCharacter * static_cast<double>(e.text.size());

@@ -1,5 +1,5 @@
-// test/data/policies/linear.onnx, one random linear layer with the metadata of a trained policy, fitted to the clips
-// and the variant that a test needs. training/tests/make_linear_policy.py makes it anew when robot or layout change.
+// test/data/policies/linear.onnx: one random linear layer with the metadata of a trained policy, adapted to a test's
+// clips and variant. training/tests/make_linear_policy.py writes it again when robot or layout change.
 #pragma once
 
 #include <unistd.h>
@@ -17,10 +17,10 @@
 namespace pmg::test {
 
 inline const std::filesystem::path kLinearPolicy = PMG_SOURCE_DIR "/test/data/policies/linear.onnx";
-inline const std::string kNoClips(64, '0');  ///< the clip library that it names
+inline const std::string kNoClips(64, '0');  ///< the clip library named in its metadata
 
-/// A copy of it that lives as long as this object. Texts are exchanged for others of the same length, so that the
-/// protobuf around them stays whole.
+/// A copy of the file that lives as long as this object. Replaced texts keep their length, so the surrounding protobuf
+/// stays valid.
 class LinearPolicyFile {
  public:
   LinearPolicyFile() {
@@ -28,7 +28,7 @@ class LinearPolicyFile {
     bytes_.assign(std::istreambuf_iterator<char>(in), {});
     save();
   }
-  /// As if trained on these clips, which the controller then accepts.
+  /// As if trained on these clips: a controller with them accepts it.
   LinearPolicyFile(const std::filesystem::path& clips, Variant variant) : LinearPolicyFile() {
     exchange(kNoClips, model::clip_library_sha256(clips));
     const std::string longest = "\"single_gait\"";
@@ -50,7 +50,7 @@ class LinearPolicyFile {
     bytes_.replace(at, text.size(), instead);
     save();
   }
-  /// So many bytes from where this text begins.
+  /// `size` bytes from the beginning of this text.
   std::string text_at(const std::string& text, std::size_t size) const {
     return bytes_.substr(bytes_.find(text), size);
   }

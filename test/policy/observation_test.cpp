@@ -1,4 +1,4 @@
-// What the actor sees, element by element.
+// The actor's observation, element by element.
 #include "policy/observation.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using test::z1;
 
-/// A state in which every number says what it is: joint i of tick t is at 100 t + i.
+/// A state in which every number shows its place: joint i of tick t is at 100 t + i.
 model::RobotState state_of(int tick) {
   model::RobotState state;
   const int n = z1().joint_index.size();

@@ -1,4 +1,4 @@
-// A policy is checked before it is trusted: what doesn't fit the robot is refused and named.
+// A policy is checked before use: one that doesn't fit the robot is refused with the reason.
 #include "policy/onnx_policy.hpp"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ Reference standing_reference() {
   return reference;
 }
 
-/// What loading says against it.
+/// The error of loading; "was accepted" without one.
 std::string refusal(const fs::path& file, const std::string& clips = kClips, double rate_Hz = 100.0) {
   try {
     const OnnxPolicy policy(file, z1(), clips, rate_Hz);
@@ -130,7 +130,7 @@ TEST(OnnxPolicyFile, GoldenPairsMustBeThereAndProveSomething) {
               HasSubstr("golden_tolerance is 0"));
 }
 
-/// Every variant, and what each is trained to observe, comes from the file alone.
+/// The variant, and with it the observed command, comes from the file alone.
 TEST(OnnxPolicyFile, SaysWhichVariantItIs) {
   for (const Variant variant : {Variant::kPmg, Variant::kWithoutGco, Variant::kSingleGait}) {
     const fs::path clips = z1().directory / "clips";

@@ -1,4 +1,4 @@
-// The pinned ONNX Runtime: library (PyPI wheel) and headers (Debian 13) come from different places and must fit.
+// The pinned ONNX Runtime: library (PyPI wheel) and headers (Debian 13) have different sources and must match.
 #include <gtest/gtest.h>
 #include <onnxruntime_cxx_api.h>
 

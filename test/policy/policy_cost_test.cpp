@@ -1,4 +1,4 @@
-// What an ONNX policy costs a real-time thread besides time: as many heap allocations in each call, and no thread.
+// Side effects of an ONNX policy on a real-time thread: a constant number of heap allocations per call, and no thread.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 using test::z1;
 
-/// Standing, swaying with the tick.
+/// A standing robot whose inputs sway with the tick.
 struct Swaying {
   Swaying() {
     state.q = reference.q = z1().q_stand();

@@ -1,5 +1,5 @@
-// The controller sees what training saw: its assembler against what training's torch code made of the same states.
-// test/data/training/observations.json is written by training/tests/make_observations.py, which says when.
+// The controller's observation agrees with training's torch code on the same states.
+// training/tests/make_observations.py writes test/data/training/observations.json and says when.
 #include <gtest/gtest.h>
 
 #include <fstream>

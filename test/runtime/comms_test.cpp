@@ -1,4 +1,4 @@
-// Comms: what the controller says on the network, and who else may speak as it.
+// Comms: the controller's messages on the network, and other senders under its name.
 #include "runtime/comms.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ class CommsTest : public testing::Test {
     record_.result.command = {.q = zero, .dq = zero, .kp = zero, .kd = zero, .tau_ff = zero};
   }
 
-  /// What the control thread leaves after a tick, and a step of comms; twice, so that this test hears it.
+  /// A tick's record and a step of comms, twice, so that this test receives it.
   void tick() {
     clock_.advance_to(clock_.now_ns() + kTick_ns);
     record_.now_ns = clock_.now_ns();
@@ -82,7 +82,7 @@ class CommsTest : public testing::Test {
 
 TEST_F(CommsTest, EveryTickIsToldOnceAndWhoRunsWhatOnceASecond) {
   for (int k = 0; k < 250; ++k) tick();
-  comms_.step(0);  // no newer tick: nothing to tell again
+  comms_.step(0);  // no newer tick: nothing new to send
   link_.receive(0);
   EXPECT_EQ(heard_["STATUS"], 250);
   EXPECT_EQ(heard_["STATE"], 250);

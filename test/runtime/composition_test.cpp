@@ -1,4 +1,4 @@
-// All threads of pmg_controller and of pmg_sil --realtime together: what ThreadSanitizer has to see.
+// All threads of pmg_controller and of pmg_sil --realtime together, for ThreadSanitizer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -35,7 +35,8 @@ class Composition : public testing::Test {
       std::filesystem::temp_directory_path() / ("pmg_composition_test_" + std::to_string(getpid()));
 };
 
-/// An operator on the controller's own network: memq hears itself. Speaks in the comms thread, between its steps.
+/// An operator on the controller's own network (memq receives its own messages). It works in the comms thread, between
+/// comms' steps.
 struct NetworkOperator {
   explicit NetworkOperator(io::LcmLink& network) : link(network) {
     drive.version = pmg_msgs::command_t::VERSION;

@@ -1,4 +1,4 @@
-// The threaded controller: what its threads promise each other and the robot, whatever goes wrong.
+// The threaded controller: the guarantees of its threads to each other and to the robot, also in every failure.
 #include "runtime/controller.hpp"
 
 #include <gmock/gmock.h>
@@ -120,7 +120,7 @@ TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
   ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
   run.policy->freeze = true;
-  // Nobody asked for anything: the bus alone finds that no command comes.
+  // Without any request: the bus alone finds that no command comes.
   EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0 && run.bus.last_kd_sum > 0.0; }));
   run.policy->freeze = false;
   EXPECT_TRUE(run.sees(control::Mode::kFault)) << "it does not go on as if nothing had been";

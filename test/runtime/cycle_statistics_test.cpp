@@ -1,4 +1,4 @@
-// What is said of a thread's punctuality is true.
+// The statistics of a thread's punctuality are correct.
 #include "runtime/cycle_statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(TimeHistogram, PercentilesAreAtMostOneBucketAboveTheTrueOnes) {
   std::mt19937_64 random(11);
-  std::lognormal_distribution<double> times_ns(11.0, 2.0);  // 60 us in the middle, from below 1 us to seconds
+  std::lognormal_distribution<double> times_ns(11.0, 2.0);  // median 60 us, from below 1 us to seconds
   TimeHistogram histogram;
   std::vector<std::int64_t> all;
   for (int i = 0; i < 20000; ++i) {
@@ -43,9 +43,9 @@ TEST(TimeHistogram, TakesWhateverAClockCanSay) {
 TEST(CycleStatistics, ALateHostIsListedApartFromALateController) {
   CycleStatistics statistics(10 * kMs);
   statistics.add({.planned_ns = 0, .woke_ns = 50'000, .done_ns = 1 * kMs, .missed = 0});
-  statistics.add({.planned_ns = 10 * kMs, .woke_ns = 13 * kMs, .done_ns = 14 * kMs, .missed = 0});  // the host
-  statistics.add({.planned_ns = 20 * kMs, .woke_ns = 20 * kMs, .done_ns = 33 * kMs, .missed = 0});  // overran, and so
-  statistics.add({.planned_ns = 30 * kMs, .woke_ns = 33 * kMs, .done_ns = 34 * kMs, .missed = 0});  // this one waited
+  statistics.add({.planned_ns = 10 * kMs, .woke_ns = 13 * kMs, .done_ns = 14 * kMs, .missed = 0});  // late by the host
+  statistics.add({.planned_ns = 20 * kMs, .woke_ns = 20 * kMs, .done_ns = 33 * kMs, .missed = 0});  // overran, so
+  statistics.add({.planned_ns = 30 * kMs, .woke_ns = 33 * kMs, .done_ns = 34 * kMs, .missed = 0});  // it waited
   EXPECT_EQ(statistics.cycles(), 4);
   EXPECT_EQ(statistics.overruns(), 1);
   ASSERT_EQ(statistics.delayed().size(), 1u);

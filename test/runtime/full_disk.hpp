@@ -1,4 +1,4 @@
-// A disk without room, for the length of a scope.
+// A full disk for the length of a scope.
 #pragma once
 
 #include <sys/resource.h>
@@ -7,7 +7,7 @@
 
 namespace pmg::test {
 
-/// The kernel lets no file of this process grow: EFBIG stands in for ENOSPC. Files can still be made and shortened.
+/// The kernel lets no file of this process grow: EFBIG replaces ENOSPC. Files can still be created and shortened.
 class FullDisk {
  public:
   FullDisk() : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

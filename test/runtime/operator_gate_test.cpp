@@ -1,4 +1,4 @@
-// OperatorGate: nothing that strangers send fills the controller's queues, ends it, or keeps a stop from it.
+// OperatorGate: no messages of strangers can fill the controller's queues, end it, or hold back a stop.
 #include "runtime/operator_gate.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class OperatorGateTest : public testing::Test {
     mode_.mode = mode;
     gate_.take_mode(encoded(mode_));
   }
-  /// What the control cycle would take from the inbox: names of commands' sources.
+  /// The commands that the control cycle would take from the inbox, by the names of their sources.
   std::vector<std::string> take_commands() {
     std::vector<std::string> sources;
     for (control::DriveMessage drive; inbox_.take(drive);) sources.emplace_back(drive.source.name.data());
@@ -236,7 +236,7 @@ TEST_F(OperatorGateTest, RandomBytesEndNothing) {
     if (k % 3 == 0) {
       bytes.resize(size(random));
       for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(byte(random));
-    } else {  // nearly right: with the type's hash, decoders read on
+    } else {  // nearly correct: with the type's hash, decoders read on
       bytes = k % 3 == 1 ? command : mode;
       std::uniform_int_distribution<std::size_t> position(8, bytes.size() - 1);
       for (std::size_t flip = flips(random); flip > 0; --flip) {

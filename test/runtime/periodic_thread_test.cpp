@@ -1,4 +1,4 @@
-// A periodic thread keeps its grid, and the kernel confirms how it is scheduled.
+// A periodic thread keeps its grid, and the kernel confirms its scheduling.
 #include "runtime/periodic_thread.hpp"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ TEST(PeriodicThread, ACpuThatIsNotThereIsNamedAndTheThreadRunsOn) {
   EXPECT_TRUE(eventually([&] { return cycles > 3; }));
 }
 
-/// Without any privilege, in a process of its own: its exit code says which promise was broken.
+/// Runs without any privilege, in a process of its own; the exit code names the broken promise.
 int run_without_privilege() {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_RTPRIO, &none);
@@ -115,7 +115,7 @@ TEST(PeriodicThread, CyclesStayOnTheirGridAndMissedOnesAreCountedNotMadeUpFor) {
     const auto ran = static_cast<std::int64_t>(i);
     EXPECT_EQ(cycles[i].planned_ns, first_ns + (ran + cycles[i].missed) * kPeriod_ns) << i;
   }
-  // Nine of the ten periods are gone; the tenth may still be caught.
+  // Nine of the ten periods are lost; the tenth may still be on time.
   EXPECT_GE(cycles[5].missed - cycles[4].missed, 9);
   EXPECT_EQ(thread.statistics().cycles(), static_cast<std::int64_t>(cycles.size()));
   EXPECT_GE(thread.statistics().overruns(), 1);

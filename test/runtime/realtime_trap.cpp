@@ -19,7 +19,7 @@ thread_local pid_t this_thread = 0;
 thread_local bool apart = false;
 thread_local pmg::test::Trapped counted_apart;
 
-// Sanitizers leave nobody to call it.
+// Under sanitizers nothing calls it.
 [[maybe_unused]] void count_if_watched(std::atomic<long>& calls, long pmg::test::Trapped::*kind,
                                        void* caller) noexcept {
   if (!armed.load(std::memory_order_relaxed)) return;
@@ -81,7 +81,7 @@ bool pmg::test::trap_available() noexcept { return true; }
 
 namespace {
 
-/// glibc's own function of this name, looked up before main: dlsym itself may use heap and locks.
+/// glibc's own function of this name, looked up before main, because dlsym itself may use heap and locks.
 template <typename Function>
 Function* real(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
@@ -96,8 +96,8 @@ using ClockWait = int(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timesp
 
 }  // namespace
 
-// glibc lets a program replace malloc and still reach its own under these names. Locks are looked up at their first
-// call, which the main thread makes long before a trap is armed.
+// In glibc, a program that replaces malloc still reaches the original under these names. Locks are looked up at their
+// first call, which the main thread makes long before a trap is armed.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);

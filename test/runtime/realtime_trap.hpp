@@ -1,4 +1,4 @@
-// Catches threads that must not use the heap or a lock: replaces malloc, free and the pthread locks of this program.
+// Catches threads that must not use heap or locks: replaces malloc, free and the pthread locks of this program.
 #pragma once
 
 #include <sys/types.h>
@@ -15,20 +15,20 @@ struct Trapped {
 
 /// False under sanitizers, which replace the same functions, and outside glibc.
 bool trap_available() noexcept;
-/// From now on calls in these threads (the kernel's numbers) are counted.
+/// From now on counts the calls of these threads (the kernel's numbers).
 void arm_trap(const std::vector<pid_t>& threads) noexcept;
 void disarm_trap() noexcept;
 Trapped trapped() noexcept;
-/// While it lives, this thread's calls are counted apart from the rest.
+/// While it exists, this thread's calls are counted separately.
 class CountedApart {
  public:
   CountedApart() noexcept;
   ~CountedApart();
   CountedApart(const CountedApart&) = delete;
   CountedApart& operator=(const CountedApart&) = delete;
-  Trapped so_far() const noexcept;  ///< since the trap was armed or it came to life
+  Trapped so_far() const noexcept;  ///< since the trap was armed or the object was made
 };
-/// Where the first call came from, for whoever has to find it.
+/// Address of the first call, for debugging.
 std::string first_trapped();
 
 }  // namespace pmg::test

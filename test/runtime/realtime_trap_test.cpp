@@ -1,4 +1,4 @@
-// The real-time threads use neither heap nor locks, in whatever mode and whatever goes wrong.
+// The real-time threads use neither heap nor locks, in every mode and every failure.
 #include "runtime/realtime_trap.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class RealtimeTrap : public testing::Test {
   static void arm(const ThreadedRobot& run) {
     test::arm_trap({run.controller.bus_thread(), run.controller.control_thread()});
   }
-  /// So many more ticks.
+  /// True after this many more ticks.
   static bool ticks(ThreadedRobot& run, std::int64_t count) {
     std::int64_t seen = 0;
     return eventually([&] {
@@ -45,7 +45,7 @@ TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAnd
   arm(run);
   ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(run.reach(control::Mode::kWalk));
-  ASSERT_TRUE(ticks(run, 60));  // half a gait cycle and more
+  ASSERT_TRUE(ticks(run, 60));  // more than half a gait cycle
   run.bus.lost = true;
   ASSERT_TRUE(run.sees(control::Mode::kFault));
   run.bus.lost = false;
@@ -63,7 +63,7 @@ TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAnd
   EXPECT_TRUE(run.controller.stop());
 }
 
-/// An ONNX policy whose own calls are counted apart, act by act.
+/// An ONNX policy; the calls inside each act() are counted separately.
 class CountedOnnxPolicy final : public policy::Policy {
  public:
   explicit CountedOnnxPolicy(const model::RobotModel& robot) {

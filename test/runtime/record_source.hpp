@@ -1,4 +1,4 @@
-// Ticks for tests of what is written about them: numbered, 10 ms apart, well or with a fault.
+// Tick records for tests of their writers: numbered, 10 ms apart, healthy or with a fault.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace pmg::test {
 
-/// Plays the control and the bus thread for an outbox, on a clock of its own.
+/// Replaces the control and the bus thread for an outbox, on its own clock.
 class RecordSource {
  public:
   explicit RecordSource(const model::RobotModel& robot) {
@@ -26,7 +26,7 @@ class RecordSource {
     record_.requests[0].mode = control::Mode::kWalk;
   }
 
-  /// One tick and its five bus cycles into the outbox, as Controller does it.
+  /// Puts one tick and its five bus cycles into the outbox, as Controller does.
   void tick(control::ControllerOutbox& outbox) {
     clock.advance_to(clock.now_ns() + 10'000'000);
     for (int cycle = 4; cycle >= 0; --cycle) {

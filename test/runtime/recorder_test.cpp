@@ -1,4 +1,4 @@
-// What reaches the disk of a run: every tick, whatever happens to disk, log thread or process; and the half minute
+// The files of a run: every tick is in them, in spite of failures of disk, log thread or process; and the half minute
 // before a fault.
 #include "runtime/recorder.hpp"
 
@@ -39,7 +39,7 @@ class RecorderTest : public testing::Test {
     return std::make_unique<Recorder>(*outbox_, robot_, run_, source_.clock, options,
                                       [this](const std::string& text) { said_.push_back(text); });
   }
-  /// As the log's thread would: a pass every other tick.
+  /// Runs ticks; the recorder makes a pass every other tick, as in the log's thread.
   void run(int ticks, Recorder& recorder) {
     for (int k = 0; k < ticks; ++k) {
       source_.tick(*outbox_);
@@ -48,7 +48,7 @@ class RecorderTest : public testing::Test {
     recorder.drain();
   }
 
-  /// Files of the folder that begin so, sorted.
+  /// Files of the folder whose names begin so, sorted.
   std::vector<std::string> files(const std::string& beginning) const {
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
@@ -169,12 +169,12 @@ TEST_F(RecorderTest, KilledInTheMiddleTheLogHasEverythingUpToTheLastPass) {
   ASSERT_EQ(kill(child, SIGKILL), 0);
   int status = 0;
   waitpid(child, &status, 0);
-  while (::read(told[0], &last_tick, sizeof last_tick) == sizeof last_tick) {  // what it had told by then
+  while (::read(told[0], &last_tick, sizeof last_tick) == sizeof last_tick) {  // ticks reported until then
   }
   close(told[0]);
   ASSERT_TRUE(WIFSIGNALED(status));
   ASSERT_GE(last_tick, 301);
-  // Not through read(): the last event may be cut short.
+  // Not through read(), because the last event may be cut short.
   io::LogReader reader(folder_ / "log-0000.lcm");
   std::int64_t ticks = 0;
   while (reader.next()) ticks += reader.channel() == "STATUS" ? 1 : 0;
@@ -259,7 +259,7 @@ TEST_F(RecorderTest, AConsoleThatThrowsEndsNothing) {
   EXPECT_FALSE(read("log-0001.lcm").ticks.empty());
 }
 
-// The flight recorder, by itself: the ordinary log is switched off.
+// The flight recorder alone: the ordinary log is switched off.
 class FlightRecorderTest : public RecorderTest {
  protected:
   RecorderOptions without_log() const {
@@ -352,7 +352,7 @@ TEST_F(FlightRecorderTest, AFullDiskDelaysItAndTheHalfMinuteIsKeptMeanwhile) {
   source_.fault(control::FaultCode::kTilt);
   {
     const test::FullDisk full;
-    run(6000, *recorder);  // long enough for the ring to have forgotten it all
+    run(6000, *recorder);  // long enough for the ring to have lost all of it
     EXPECT_EQ(recorder->flight().waiting(), 1);
     EXPECT_EQ(said_.size(), 1u) << "told once";
   }

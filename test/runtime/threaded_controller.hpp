@@ -1,4 +1,4 @@
-// What tests of the threaded controller share: an operator, a bus that can be broken, and waiting for a condition.
+// Shared by tests of the threaded controller: an operator, a bus that can be broken, and waiting for a condition.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace pmg::test {
 
-/// True when the condition came true within a time that no machine in working order needs.
+/// True if the condition holds within a time that every working machine reaches.
 inline bool eventually(const std::function<bool()>& condition, double deadline_s = 30.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
   while (!condition()) {
@@ -24,7 +24,7 @@ inline bool eventually(const std::function<bool()>& condition, double deadline_s
   return true;
 }
 
-/// Passes on what another bus says until told to lose it.
+/// Passes another bus on until a test makes it lose it.
 class BreakableBus final : public hal::Hal {
  public:
   explicit BreakableBus(hal::Hal& bus) : bus_(bus) {}
@@ -41,7 +41,7 @@ class BreakableBus final : public hal::Hal {
   hal::Hal& bus_;
 };
 
-/// Another policy (the reference alone unless told); other threads may make it stand still or use the heap.
+/// Wraps another policy (default: the reference alone); other threads may freeze it or make it use the heap.
 class SwitchablePolicy final : public policy::Policy {
  public:
   explicit SwitchablePolicy(std::unique_ptr<policy::Policy> inner = nullptr)
@@ -66,7 +66,7 @@ class SwitchablePolicy final : public policy::Policy {
   std::mutex mutex_;
 };
 
-/// The comms thread's work in a test: a command every 5 ms and, when told so, one request.
+/// A test's work in the comms thread: a command every 5 ms and, on demand, one request.
 class TestOperator {
  public:
   explicit TestOperator(control::OperatorInbox& inbox) : inbox_(inbox) {
@@ -85,7 +85,7 @@ class TestOperator {
     request_.reset_fault = reset_;
     inbox_.put(request_);
   }
-  /// Any thread; the request goes out with the next message.
+  /// From any thread; the request goes out with the next message.
   void ask(control::Mode mode, bool reset = false) {
     wanted_ = mode;
     reset_ = reset;
@@ -119,7 +119,7 @@ struct ThreadedRobot {
     return options;
   }
 
-  /// Asks again until the mode is there: a request may meet a tick that has to refuse it.
+  /// Repeats the request until the mode is reached, because a tick may have to refuse one.
   bool reach(control::Mode mode, bool reset = false) {
     std::int64_t asked_ns = 0;
     return eventually([&] {

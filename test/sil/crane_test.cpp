@@ -1,4 +1,4 @@
-// The hoist that sets a robot down when it stands, and takes it up again.
+// The hoist sets a robot down when it stands, and takes it up again.
 #include "sil/crane.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ void raise_for(Crane& crane, const CraneView& view, double seconds) {
   for (double t_s = 0.0; t_s < seconds; t_s += kStep_s) crane.step(view, kStep_s);
 }
 
-/// A robot's legs: they carry what the rope, which gives 0.02 m under the whole weight, leaves.
+/// Load of the robot's legs, as a share of its weight: the rope sags by 0.02 m under the whole weight.
 double carried(const Crane& crane) { return std::clamp(-crane.lift_m() / 0.02, 0.0, 1.0); }
 
 void set_down(Crane& crane) {

@@ -1,5 +1,5 @@
-// Random operators, random sensors, random stalls: whatever comes, the drives get finite commands within their clamps,
-// a fault stays latched, and a stop stops.
+// Random operators, sensors and stalls: in every case the drives get finite commands within their clamps, a fault stays
+// latched, and a stop stops.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Chaos {
   auto pick(const Values& values) {
     return values[static_cast<std::size_t>(below(static_cast<int>(values.size())))];
   }
-  /// One random thing goes wrong, or somebody says something.
+  /// One random failure or operator message.
   void strike() {
     switch (below(12)) {
       case 0:
@@ -76,7 +76,7 @@ class Chaos {
   }
   int below(int count) { return static_cast<int>(random_() % static_cast<std::uint64_t>(count)); }
 
-  bool reset_asked = false;  ///< since somebody last cleared it
+  bool reset_asked = false;  ///< since the last clearing
 
  private:
   double any_number() {
@@ -166,14 +166,14 @@ class Chaos {
   }
 
  public:
-  int corrupted_in = -1;  ///< cycle before which the link was corrupted: its command comes from nobody
+  int corrupted_in = -1;  ///< cycle before which the link was corrupted: no tick gave its command
 
  private:
   test::ControlRig& rig_;
   std::mt19937_64 random_{kSeed};
 };
 
-/// What must hold whatever happens, counted where it does not.
+/// The invariants; counts violations.
 class Watch {
  public:
   Watch(const model::RobotModel& robot, test::ControlRig& rig, Chaos& chaos)
@@ -247,7 +247,7 @@ TEST(Fuzz, CommandsStayFiniteAndWithinTheirClampsAndFaultsStayLatched) {
   };
   for (int sequence = 0; sequence < kSequences; ++sequence) {
     chaos.heal();
-    // Whoever was impersonated with the highest of all sequence numbers starts anew.
+    // A source that was impersonated with the highest sequence number starts a new session.
     ++rig.drive.source.session;
     if (chaos.below(2) == 0) {
       run(25);

@@ -1,5 +1,5 @@
-// Z1's own policy in MuJoCo: lifted, set down, dropped, with dead torque readings. docs/reference/safety.md's table of
-// what happens when the feet carry nothing, row by row.
+// Z1's own policy in MuJoCo: lifted, set down, dropped, with dead torque readings. Each row of the table in
+// docs/reference/safety.md about feet that carry nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 using test::kTick_s;
 constexpr double kLift_m = 0.20;
 
-/// Tells whether it is run.
+/// Counts the policy's calls.
 class CountedPolicy final : public policy::Policy {
  public:
   CountedPolicy(std::unique_ptr<policy::Policy> own, int& calls) : own_(std::move(own)), calls_(calls) {}
@@ -57,20 +57,20 @@ class DeadTorques final : public hal::Hal {
   std::int64_t from_ns_;
 };
 
-/// What one tick showed.
+/// Observations of one tick.
 struct Seen {
   double time_s;
   control::Mode mode;
   bool hanging;
   int policy_calls;     ///< since the start
-  double carried;       ///< true, of the weight
-  double farthest_rad;  ///< a joint from its reference
-  double most_torque;   ///< a joint's, of its effort limit
-  double moved_rad;     ///< largest step of a target since the tick before
+  double carried;       ///< true load of the feet, as a share of the weight
+  double farthest_rad;  ///< largest distance of a joint from its reference
+  double most_torque;   ///< largest torque of a joint, as a share of its effort limit
+  double moved_rad;     ///< largest step of a target since the last tick
   double pelvis_m, walk_gain;
 };
 
-/// A rope, and what it does when: how high above standing it holds the torso, and how firmly.
+/// The rope's state at a time: height of the torso above standing, and share of its stiffness.
 struct Rope {
   double lift_m = 0.0, engaged = 0.0;
 };
@@ -81,7 +81,7 @@ double ramp(double time_s, double from_s, double for_s) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// Tightens within 0.3 s, lifts within up_s, and back again.
+/// Tightens within 0.3 s, lifts within up_s, and later goes back.
 RopeAt lifted_between(double from_s, double to_s, double up_s = 1.0) {
   return [=](double t) {
     const double up = ramp(t, from_s + 0.3, up_s) - ramp(t, to_s, 1.5);
@@ -124,7 +124,7 @@ struct Ride {
     }
     return most;
   }
-  /// The first tick from there on from which the feet carry less than a tenth of the weight for 0.1 s.
+  /// The first tick from from_s on after which the feet carry less than a tenth of the weight for 0.1 s.
   double lifted_at(double from_s) const {
     int ticks = 0;
     for (const Seen& tick : seen) {
@@ -210,7 +210,7 @@ TEST_P(LiftedInMidWalk, HangsStillInItsStandingPostureAndStandsWhenItIsSetDown) 
   const auto draw = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  const double lift_s = draw(4.0, 5.0), down_s = lift_s + 4.0, end_s = down_s + 6.0;  // anywhere in the gait
+  const double lift_s = draw(4.0, 5.0), down_s = lift_s + 4.0, end_s = down_s + 6.0;  // at any phase of the gait
   const Command command{{draw(-0.3, 0.8), draw(-0.2, 0.2), draw(-0.5, 0.5), 0.0, 0.0, 0.0}};
   const Ride it = ride(
       scenario_of(
@@ -274,7 +274,7 @@ TEST(Hanging, WithoutAPolicyItWalksInTheAirAsInAFirstStart) {
 
 TEST(Hanging, SetDownWhileDampedItStandsUpWithItsPolicy) {
   constexpr double kDown_s = 2.0;
-  // Set down at once, held upright until it stands.
+  // Set down at once, and held upright until it stands.
   const auto rope = [](double t) { return Rope{kLift_m * (1.0 - ramp(t, kDown_s, 1.5)), 1.0 - ramp(t, 8.0, 0.5)}; };
   const Ride it = ride(scenario_of({{0.0, control::Mode::kDamping}, {4.0, control::Mode::kStand}}, 11.0), rope);
   EXPECT_GT(it.seen.back().policy_calls, 200);
@@ -283,7 +283,7 @@ TEST(Hanging, SetDownWhileDampedItStandsUpWithItsPolicy) {
 
 TEST(Hanging, DroppedFromAHandsBreadthItsPolicyCatchesIt) {
   constexpr double kDrop_s = 5.0;
-  const auto rope = [](double t) { return t < kDrop_s ? Rope{0.07, 1.0} : Rope{}; };  // 0.05 m: the rope gives 0.02
+  const auto rope = [](double t) { return t < kDrop_s ? Rope{0.07, 1.0} : Rope{}; };  // 0.05 m: the rope sags by 0.02
   const Ride it = ride(scenario_of({{0.0, control::Mode::kStand}}, 10.0), rope);
   EXPECT_EQ(it.most(2.0, kDrop_s, [](const Seen& tick) { return tick.hanging ? 0.0 : 1.0; }), 0.0);
   EXPECT_TRUE(it.stands()) << it.told();
@@ -320,7 +320,7 @@ TEST(Hanging, NeitherChangeOverThrowsATarget) {
     at_changes_rad = std::max(at_changes_rad, it.seen[i].moved_rad);
   }
   EXPECT_EQ(changes, 2);
-  // A ramp of 0.2 s moves a target by 0.7 % of its way in its first tick, and the way is a few radians at most.
+  // A ramp of 0.2 s moves a target by 0.7 % of its way in the first tick, and the way is a few radians at most.
   EXPECT_LT(at_changes_rad, 0.02);
   EXPECT_TRUE(it.stands()) << it.told();
 }

@@ -1,4 +1,4 @@
-// How the gantry takes a robot up, sets it down, and steadies one that carries itself.
+// The gantry takes a robot up, sets it down, and steadies one that carries itself.
 #include "sil/hoist.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A simulated robot whose hoist works by itself, from limp to walking and back up after a fall: the controller's own
-// parts in one thread, by a clock that only the simulation moves.
+// A simulated robot with an automatic hoist, from limp to walking and back up after a fall: the controller's own parts
+// in one thread, on a clock that only the simulation moves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
   }
   const control::TickResult& result() const { return cycle_->record().result; }
 
-  /// 10 ms, in which somebody asks for the velocity.
+  /// 10 ms, with a velocity command.
   void step(double vx_m_s = 0.0) {
     control::DriveMessage drive{.source = control::Source::make("test", 1),
                                 .sequence = ++sequence_,
@@ -123,7 +123,7 @@ TEST_P(HoistedRobot, LiftedInMidWalkAndSetDownItIsOnItsFeet) {
   ask(control::Mode::kWalk);
   run(2.0, 0.4);
   robot_.hoist_line()->ask(true);
-  run(1.0);  // whoever drives has let go meanwhile
+  run(1.0);  // meanwhile the driving source lets go
   ask(control::Mode::kStand);
   until([&] { return robot_.hoist_line()->state() == runtime::CraneState::kHolding; }, 10.0);
   ASSERT_EQ(result().mode, control::Mode::kStand) << describe(result().fault, loaded_.robot);

@@ -77,7 +77,7 @@ TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
   lockstep.after_tick = [&](const RunProgress& progress) {
     ++ticks;
     EXPECT_EQ(progress.result.command.bus_sample, 5 * ticks);
-    // During the five steps before this tick the bus was given what the tick before had computed.
+    // In the five steps before this tick the bus got the command of the tick before.
     EXPECT_EQ(bus.last_command.bus_sample, 5 * (ticks - 1));
     EXPECT_EQ(bus.last_command.q, commanded);
     commanded = progress.result.command.q;
@@ -120,7 +120,7 @@ TEST_F(LockstepRun, TheTruthOfTheSimulationReachesNoDrive) {
     control::Tick tick = make_tick(robot);
     const Scenario scenario = walk(3.0);
     Lockstep lockstep(robot, bus, plant, tick, scenario, nullptr, {});
-    std::string all;  // every byte: of the ticks' commands, and of what the bus gave the drives
+    std::string all;  // every byte of the ticks' commands and of the drives' commands
     lockstep.after_tick = [&](const RunProgress& progress) {
       for (const model::JointCommand& command : {progress.result.command, bus.last_command}) {
         for (const JointVector* values : {&command.q, &command.dq, &command.kp, &command.kd, &command.tau_ff}) {
@@ -152,7 +152,7 @@ TEST_F(LockstepRun, GantryTimeIsReportedAndNotJudged) {
     control::Tick tick = make_tick(robot);
     const RunOutcome outcome =
         Lockstep(robot, bus, plant, tick, scenario, nullptr, {.balanced_by_policy = policy}).run();
-    // Three seconds, and the two that it takes to set the robot down.
+    // Three seconds, and two to set the robot down.
     EXPECT_NEAR(outcome.hoisted_s, policy ? 0.0 : 5.0, 0.03);
     EXPECT_NEAR(outcome.tracking.followed_s, policy ? 6.0 : 1.0, 0.05);
     EXPECT_EQ(plant.hold, 0.0);
@@ -214,7 +214,7 @@ TEST_F(LockstepRun, TheTourDoesNotFallAndItsReferenceKeepsTheFeetOnTheGround) {
   EXPECT_TRUE(outcome.faults.empty());
   EXPECT_GT(outcome.duration_s - outcome.hoisted_s, 15.0) << "on its own feet";
   EXPECT_GT(outcome.hoisted_s, 60.0) << "walking on the gantry";
-  // The project's promise for the ground-aware optimisation, postures, walking in every direction, turning and
+  // The project's guarantee for the ground-aware optimisation: postures, walking in every direction, turning and
   // mixtures.
   const gco::SlipSummary& slip = outcome.reference_slip;
   EXPECT_LE(slip.single_support_max_m_s, 1e-3);

@@ -16,7 +16,7 @@ Eigen::Quaterniond attitude(double yaw_rad, double pitch_rad, double roll_rad) {
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
-/// Upright at standing height, heading along yaw, moving so in its own heading frame.
+/// Upright at standing height, heading along yaw, with these velocities in its own heading frame.
 model::GroundTruth moving(double yaw_rad, double vx_m_s, double vy_m_s, double omega_rad_s = 0.0) {
   model::GroundTruth truth;
   truth.p_WB.z() = kHeight_m;
@@ -59,7 +59,7 @@ TEST(Metrics, SwayWithinAGaitPeriodIsAveragedAway) {
     const double sway = kSway * std::sin(2.0 * std::numbers::pi * kDt_s * k / kPeriod_s);
     metrics.add(moving(0.0, 0.0, sway, sway), Command{}, kPeriod_s);
   }
-  // What is left comes from the first period, when the average is over less than one: at most kSway for 1 s of 20 s.
+  // The remainder comes from the first period, whose average covers less than one: at most kSway for 1 s of 20 s.
   EXPECT_LT(metrics.summary().lin_vel_mae_m_s, kSway / 20.0);
   EXPECT_LT(metrics.summary().yaw_vel_mae_rad_s, kSway / 20.0);
   EXPECT_NEAR(metrics.summary().lin_vel_raw_mae_m_s, kSway * 2.0 / std::numbers::pi, 1e-3) << "mean of |sin|";
@@ -67,7 +67,7 @@ TEST(Metrics, SwayWithinAGaitPeriodIsAveragedAway) {
 }
 
 TEST(Metrics, HeadingIsThePelvisYawAveragedOverAGaitPeriod) {
-  // The pelvis swings its yaw about 0 while the robot goes along x: in H the velocity is steady along x.
+  // The pelvis swings its yaw about 0 while the robot moves along x: in H the velocity is steady along x.
   Metrics metrics(kHeight_m, kDt_s);
   Command user;
   user[kVx] = 0.5;
@@ -77,8 +77,8 @@ TEST(Metrics, HeadingIsThePelvisYawAveragedOverAGaitPeriod) {
     truth.v_WB_W = {0.5, 0.0, 0.0};
     metrics.add(truth, user, kPeriod_s);
   }
-  // Against the momentary yaw the raw error would be 0.5 times the mean of |yaw|, 0.064; only the first second of 20
-  // has it.
+  // Relative to the momentary yaw the raw error would be 0.5 times the mean of |yaw|, 0.064; here only the first second
+  // of 20 has it.
   EXPECT_LT(metrics.summary().lin_vel_raw_mae_m_s, 0.01);
 }
 
@@ -88,8 +88,8 @@ TEST(Metrics, TurningThroughPlusMinusPiIsNoJump) {
   user[kVx] = 0.4;
   user[kOmega] = 0.5;
   for (int k = 0; k < 2000; ++k) metrics.add(moving(0.5 * kDt_s * k, 0.4, 0.0, 0.5), user, kPeriod_s);
-  // H lags a steady turn by half a period: 0.25 rad, which turns 0.4 m/s by 0.1 m/s; a jump would show ten times that.
-  // The first two of 20 s, while both averages fill, take up to a tenth off.
+  // H lags a steady turn by half a period: 0.25 rad, which turns 0.4 m/s by 0.1 m/s. A jump would show ten times that.
+  // The first two of 20 s, in which both averages fill, reduce it by up to a tenth.
   EXPECT_NEAR(metrics.summary().lin_vel_mae_m_s, 2.0 * 0.4 * std::sin(0.125), 0.01);
   EXPECT_NEAR(metrics.summary().yaw_vel_mae_rad_s, 0.0, kExact);
 }
@@ -100,7 +100,7 @@ TEST(Metrics, AttitudeIsTheTorsosPitchForwardAndRollToTheRight) {
     EXPECT_NEAR(torso.pitch_rad, 0.3, kExact);
     EXPECT_NEAR(torso.roll_rad, -0.2, kExact);
   }
-  // Forward: the torso's up leans along x. Right: along -y.
+  // Forward: the torso's z axis leans along x. Right: along -y.
   EXPECT_GT((attitude(0.0, 0.3, 0.0) * Eigen::Vector3d::UnitZ()).x(), 0.0);
   EXPECT_LT((attitude(0.0, 0.0, 0.3) * Eigen::Vector3d::UnitZ()).y(), 0.0);
 
@@ -143,7 +143,7 @@ TEST(Metrics, AfterAFallVelocityAndHeightCountAsZeroToTheEnd) {
   model::GroundTruth truth = moving(0.0, 0.5, 0.0, 0.3);
   truth.p_WB.z() = 0.1;
   metrics.add(truth, user, kPeriod_s);
-  // As if it had stood up and gone on: it stays fallen.
+  // The body seems to stand up and go on, but stays fallen.
   for (int k = 1; k < 100; ++k) metrics.add(moving(0.0, 0.5, 0.0, 0.3), user, kPeriod_s);
   EXPECT_NEAR(metrics.summary().lin_vel_mae_m_s, 0.5, kExact);
   EXPECT_NEAR(metrics.summary().yaw_vel_mae_rad_s, 0.3, kExact);

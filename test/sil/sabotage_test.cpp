@@ -1,5 +1,5 @@
-// A hand-written policy balances Z1 in MuJoCo on drives too soft to stand by themselves, and Z1's own policy walks;
-// spoilt, they trip a fault.
+// A hand-written policy balances Z1 in MuJoCo on drives that are too soft to stand without it, and Z1's own policy
+// walks. Sabotaged, both trip a fault.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ class AnkleBalance final : public policy::Policy {
       const int roll = robot.joint_index.at(std::string(side) + "_ankle_roll");
       pitch_joints_.push_back(pitch);
       roll_joints_.push_back(roll);
-      // Both ankles together: less than half of m g h = 260 Nm/rad, so the robot falls unless it is balanced.
+      // Both ankles together have less than half of m g h = 260 Nm/rad, so without balancing the robot falls.
       gains_.kp_Nm_per_rad[pitch] = gains_.kp_Nm_per_rad[roll] = 60.0;
       gains_.kd_Nm_s_per_rad[pitch] = gains_.kd_Nm_s_per_rad[roll] = 2.0;
     }
@@ -101,7 +101,7 @@ Outcome stand_for_10_s(double action_factor) {
   return stand_for_10_s(std::make_unique<AnkleBalance>(test::z1(), action_factor));
 }
 
-/// Balances, until one of its targets is no number.
+/// Balances until one of its targets is not a number.
 class BreaksDown final : public policy::Policy {
  public:
   explicit BreaksDown(int after_ticks) : left_(after_ticks) {}
@@ -123,8 +123,8 @@ TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToThe
   const Outcome outcome = stand_for_10_s(std::make_unique<BreaksDown>(kSoundTicks));
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
   EXPECT_EQ(outcome.lockstep.faults[0].code, control::FaultCode::kPolicyNotFinite);
-  // Every tick but the first few asks the policy: it is not yet standing, then its feet must be seen to carry for 0.05
-  // s.
+  // Every tick asks the policy except the first ones: the robot isn't standing yet, and then its feet must carry for
+  // 0.05 s.
   EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.1);
   EXPECT_EQ(outcome.mode, control::Mode::kFault);
   EXPECT_TRUE(outcome.command.q.allFinite());
@@ -143,7 +143,7 @@ TEST(Sabotage, ThePolicyAsItIsBalances) {
 struct Sabotaged {
   const char* name;
   double action_factor;
-  double within_s;  ///< of the start or of being spoilt: a fall takes as long as an unstable pendulum needs to grow
+  double within_s;  ///< of the start or of the sabotage: a fall takes the time in which an unstable pendulum grows
 
   friend void PrintTo(const Sabotaged& row, std::ostream* out) { *out << row.name; }
 };
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Actions, Sabotage,
                                          Sabotaged{"Zero", 0.0, 3.0}),
                          [](const auto& row) { return std::string(row.param.name); });
 
-/// Z1's policy, whose actions are multiplied from some tick on and clamped to what its network could give.
+/// Z1's policy; from some tick on its actions are multiplied and clamped to its network's range.
 class GoesWild final : public policy::Policy {
  public:
   GoesWild(std::unique_ptr<policy::Policy> sound, double action_factor, int after_ticks)
@@ -217,7 +217,7 @@ TEST_P(WalkingSabotage, IsDampedBeforeTheRobotHasGoneFar) {
   RecordProperty("fault", fmt::format("after {:.2f} s: {}", after_s, describe(fault, test::z1())));
 }
 
-// docs/reference/safety.md has the times measured; twice the median is allowed, because they depend on the moment in
+// docs/reference/safety.md has the measured times. Twice the median is allowed, because they depend on the moment in
 // the gait.
 INSTANTIATE_TEST_SUITE_P(Actions, WalkingSabotage,
                          testing::Values(Sabotaged{"TimesFive", 5.0, 1.82}, Sabotaged{"Negated", -1.0, 0.8},

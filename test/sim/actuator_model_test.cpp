@@ -1,4 +1,4 @@
-// One joint's drive and transmission: each effect does what it is called after, and nothing when it is neutral.
+// One joint's drive and transmission: each effect acts as its name says, and does nothing when it is neutral.
 #include "sim/actuator_model.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(ActuatorModel, StopsASlidingJointAndKeepsItThere) {
 }
 
 TEST(ActuatorModel, LosesMoreTorqueUnderMoreLoad) {
-  // Driven at a steady pace against an outside torque: what the motor gives beyond it is friction.
+  // Driven at constant speed against an external torque: motor torque beyond it is friction.
   const auto friction_Nm = [](double load_Nm) {
     Joint joint(with([](auto& p) {
       p.friction.coulomb_Nm = 0.2;
@@ -223,7 +223,7 @@ TEST(ActuatorModel, WarmsByTheSquareOfItsTorqueAndCools) {
     for (int k = 0; k < std::lround(for_s / kStep_s); ++k) torque = actuator.step({.feed_forward = wish_Nm}, 0.0, 1.0);
     return wish_Nm - torque.torque_Nm;
   };
-  // 3 Nm for long against 5 s of cooling settle at 3^2 5 = 45 Nm^2 s; a percent is a step's share and e^-8 of the way.
+  // 3 Nm with 5 s of cooling settle at 3^2 * 5 = 45 Nm^2 s. Tolerance: one step, and e^-8 of the way is left.
   EXPECT_NEAR(friction_Nm(3.0, 40.0), std::exp(-0.45), 0.005);
   EXPECT_NEAR(friction_Nm(0.0, 5.0), std::exp(-0.45 / std::exp(1.0)), 0.005);
 }

@@ -1,4 +1,4 @@
-// A display for a test that opens windows: the desktop's if there is one, Xvfb's otherwise.
+// A display for tests that open windows: the desktop's, or else Xvfb's.
 #pragma once
 
 #include <signal.h>
@@ -12,7 +12,7 @@
 
 namespace pmg::test {
 
-/// A display for this process, or none. Xvfb writes its number once it is ready.
+/// A display for this process, or none. Xvfb prints its number when it is ready.
 class Display {
  public:
   Display() {

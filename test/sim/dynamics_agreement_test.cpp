@@ -1,4 +1,4 @@
-// KDL's tree and MuJoCo's model are built from the URDF separately; here they must be the same robot.
+// KDL's tree and MuJoCo's model are built separately from the URDF; they must be the same robot.
 #include <gtest/gtest.h>
 
 #include <kdl/treefksolverpos_recursive.hpp>
@@ -26,8 +26,8 @@ class DynamicsAgreement : public testing::TestWithParam<const model::RobotModel*
       mj_joint.push_back(mj_name2id(world.mj_model(), mjOBJ_JOINT, joint.name.c_str()));
   }
 
-  /// Base at the world's origin, unrotated, at rest: there MuJoCo's floating base and KDL's fixed one have the same
-  /// numbers.
+  /// Puts the base at the world's origin, unrotated and at rest: there MuJoCo's floating base and KDL's fixed one have
+  /// the same numbers.
   void take_posture(const JointVector& q) {
     const mjModel* m = world.mj_model();
     mjData* d = world.mj_data();

@@ -1,4 +1,4 @@
-// Counts every allocation of the process, those inside libmujoco and its collision library included.
+// Counts every allocation of the process, including those inside libmujoco and its collision library.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -26,7 +26,7 @@ TEST(Heap, StepAndReadDontAllocate) {
   for (int i = 0; i < 1500; ++i) {
     if (i == 300) world.set_hoist(0.1, 1.0);
     if (i == 600) world.set_hoist(0.0, 0.0);
-    if (i == 700) command.kp.setZero();  // collapses onto itself: contacts of every kind
+    if (i == 700) command.kp.setZero();  // the robot collapses onto itself: contacts of every kind
     world.step(command);
     world.read(state);
     static_cast<void>(world.truth());

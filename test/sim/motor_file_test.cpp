@@ -1,4 +1,4 @@
-// motor.yaml: what is written is read back, what is wrong is refused, and a world's drives follow it.
+// motor.yaml: written files read back, wrong files are refused, and a world's drives follow the file.
 #include "sim/motor_file.hpp"
 
 #include <gmock/gmock.h>

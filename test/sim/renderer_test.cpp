@@ -36,7 +36,7 @@ TEST(Renderer, ShowsTheRobotWithoutADisplay) {
   std::set<std::array<std::uint8_t, 3>> colours;
   for (std::size_t i = 0; i < picture.size(); i += 3) colours.insert({picture[i], picture[i + 1], picture[i + 2]});
   EXPECT_GT(colours.size(), 200U) << "sky, floor and a shaded robot";
-  // Software OpenGL rasterises in threads and may round an edge either way.
+  // Software OpenGL rasterises in threads, which may round an edge differently.
   EXPECT_LT(differing_pixels(picture, renderer.render(world.mj_data()), 0, 180), 20U) << "one state, one picture";
 }
 

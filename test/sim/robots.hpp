@@ -1,4 +1,4 @@
-// The robots that the simulation is tested with, and the command that lets them stand.
+// The robots of the simulation's tests, and the command with which they stand.
 #pragma once
 
 #include <random>

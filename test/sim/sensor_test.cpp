@@ -9,7 +9,7 @@
 namespace pmg {
 namespace {
 
-/// Reads the sensors of a pelvis in this attitude that turns at omega_B, in the air.
+/// Sensors of a pelvis in the air with this attitude and angular velocity omega_B.
 model::RobotState read_in_attitude(const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& omega_B) {
   sim::World world(z1(), {});
   mjData* d = world.mj_data();
@@ -49,7 +49,7 @@ TEST(Sensors, AccelerometerShowsGravityUpwardsAtRest) {
 TEST(Sensors, BelongToTheStateOfTheSample) {
   sim::World world(z1(), {});
   model::JointCommand command = standing_command(z1());
-  command.kp *= 0.2;  // let it fall
+  command.kp *= 0.2;  // weak gains: the robot falls
   model::RobotState state;
   for (int i = 0; i < 400; ++i) world.step(command);
   world.read(state);
@@ -80,7 +80,7 @@ TEST(Sensors, NoiseHasTheDeviationAskedForAndFollowsTheSeed) {
     gyro += noise.gyro_rad_s().squaredNorm() / 3.0;
     orientation += 4.0 * noise.orientation().vec().squaredNorm() / 3.0;
   }
-  // 12000 numbers: the deviation is known to 0.7 %, so 3 % is more than four times that.
+  // 12000 numbers give the deviation to 0.7 %; the tolerance of 3 % is more than four times that.
   EXPECT_NEAR(std::sqrt(encoder / kDraws), 0.01, 0.0003);
   EXPECT_NEAR(std::sqrt(gyro / kDraws), 0.02, 0.0006);
   EXPECT_NEAR(std::sqrt(orientation / kDraws), 0.03, 0.0009);

@@ -118,7 +118,7 @@ TEST(Variation, ArmatureAndDryFrictionAreScaled) {
   }
 }
 
-/// Steps after which the first joint's torque answers a command, at rest in the air.
+/// Number of steps from a command to the first joint's torque, at rest in the air.
 int steps_until_torque(double delay_s) {
   sim::WorldOptions options;
   options.variation.delay_s = delay_s;

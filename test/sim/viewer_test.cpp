@@ -1,5 +1,5 @@
-// The window, on a display if there is one, on Xvfb otherwise. An executable of its own: MuJoCo keeps the first OpenGL
-// that a process shows it, and the off-screen renderer's is another one.
+// The window, on the desktop's display or on Xvfb's. This is an executable of its own: MuJoCo keeps the first OpenGL of
+// a process, and the off-screen renderer uses another one.
 #include "sim/viewer.hpp"
 
 #include <dlfcn.h>
@@ -30,8 +30,8 @@ std::size_t colours(const std::vector<std::uint8_t>& rgb) {
   return found.size();
 }
 
-/// Mesa's driver keeps some memory and is unloaded with the window: only a library that stays can be told by its name
-/// in test/lsan.supp.
+/// Mesa's driver keeps some memory and is unloaded with the window. Only a library that stays loaded can be named in
+/// test/lsan.supp.
 void keep_loaded_libraries() {
   dl_iterate_phdr(
       [](dl_phdr_info* library, std::size_t, void*) {
@@ -52,7 +52,7 @@ TEST(Viewer, ShowsTheRobotInAWindow) {
   const auto standing = viewer.pixels();
   EXPECT_GE(standing.size(), 320U * 240U * 3U) << "more on a display of high density";
   EXPECT_GT(colours(standing), 200U) << "sky, floor and a shaded robot";
-  // Another posture is another picture, though the simulation itself knows nothing of it.
+  // Another posture gives another picture, although the simulation itself does not change.
   std::vector<double> bent(positions(world).begin(), positions(world).end());
   const int knee = mj_name2id(world.mj_model(), mjOBJ_JOINT, "left_knee");
   ASSERT_GE(knee, 0);

@@ -12,7 +12,7 @@
 namespace pmg {
 namespace {
 
-/// Commands that exercise every term of the drives: targets around the standing posture, all gains, feed-forward.
+/// Commands for every term of the drives: targets around the standing posture, all gains, feed-forward.
 model::JointCommand random_command(const model::RobotModel& robot, std::mt19937_64& random) {
   model::JointCommand command = standing_command(robot);
   for (int j = 0; j < command.q.size(); ++j) {
@@ -138,11 +138,11 @@ TEST(World, StepIsMuJoCosStep) {
   mjData* data = mj_copyData(nullptr, model, world.mj_data());
   for (int i = 0; i < 500; ++i) {
     world.step(command);
-    mju_copy(data->ctrl, world.mj_data()->ctrl, model->nu);  // what the actuator models gave, and its slope in speed
+    mju_copy(data->ctrl, world.mj_data()->ctrl, model->nu);  // the actuator models' torque, and its slope in speed
     mju_copy(model->actuator_biasprm, world.mj_model()->actuator_biasprm, mjNBIAS * model->nu);
     mj_step(model, data);
   }
-  // The solver starts warm from other estimates, so contacts agree to its tolerance only.
+  // The solver starts from other estimates, so contacts agree only to its tolerance.
   for (int i = 0; i < model->nq; ++i) EXPECT_NEAR(world.mj_data()->qpos[i], data->qpos[i], 1e-6) << i;
   mj_deleteData(data);
   mj_deleteModel(model);
