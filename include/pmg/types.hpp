@@ -8,6 +8,7 @@
 
 namespace pmg {
 
+inline constexpr double kGravity_m_s2 = 9.81;  ///< as MuJoCo has it
 inline constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 /// Upper bound on a robot's joints. Vectors of this capacity live on the stack, so no step of the loop allocates.

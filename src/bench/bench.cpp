@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "model/config_reader.hpp"
+#include "pmg/types.hpp"
 
 namespace pmg::bench {
 
@@ -13,7 +14,6 @@ namespace {
 
 using model::ConfigReader;
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kPresliding_m = 1e-5;  // of guides and screws; a joint's milliradian would be a millimetre
 
 /// A positive number, or nothing where the file says "unknown" or nothing at all.

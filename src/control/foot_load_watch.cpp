@@ -5,12 +5,11 @@
 #include <stdexcept>
 
 #include "model/link_chain.hpp"
+#include "pmg/types.hpp"
 
 namespace pmg::control {
 
 namespace {
-
-constexpr double kGravity_m_s2 = 9.81;
 
 double sum(const PerFoot<double>& shares) noexcept { return shares[kLeft] + shares[kRight]; }
 

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "pmg/types.hpp"
+
 namespace pmg::model {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 /// Singular values below this share of the Jacobian's largest count as zero: such motions move no foot.
 constexpr double kRank = 1e-3;
 /// If more than this share of a unit of virtual lift is missing, the torques don't determine the vertical force. A

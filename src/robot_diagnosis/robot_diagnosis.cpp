@@ -7,11 +7,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "pmg/types.hpp"
+
 namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSample_s = 0.05, kBlock_s = 4.0;
 // Of squats and bends that take seconds: noise of accelerations is a fifth of what the hanging part's low-pass leaves.
 // Noise that is in an equation and in its coefficients alike looks like too little mass.

@@ -8,11 +8,12 @@
 #include <array>
 #include <cmath>
 
+#include "pmg/types.hpp"
+
 namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr int kBaseRows = 6, kTiltRows = 4, kHeightRows = 1, kGroundRows = kTiltRows + kHeightRows;
 constexpr double kAngleStep_rad = 1e-5, kMassStep_kg = 0.01, kLengthStep_m = 1e-4;
 

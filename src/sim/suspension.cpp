@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pmg/types.hpp"
+
 namespace pmg::sim {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSway_m = 0.06;  // horizontal deflection under a force equal to the robot's weight
 constexpr double kDampingRatio = 0.7;
 constexpr double kRotationDamping_s = 0.15;  // damping over stiffness: at rest within about half a second

@@ -8,12 +8,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pmg/types.hpp"
+
 namespace pmg::zero {
 
 namespace {
 
-constexpr double kHuber = 2.0;  // weighted misses beyond it count linearly
-constexpr double kGravity_m_s2 = 9.81;
+constexpr double kHuber = 2.0;       // weighted misses beyond it count linearly
 constexpr double kLeastScale = 0.4;  // poses that agree better than expected are trusted so much more, not further
 constexpr double kFirmLoad = 0.35;   // share of the weight from which on more makes no difference
 constexpr double kNamedShare = 0.2;  // of a direction that a joint must have to be named in it

@@ -5,7 +5,7 @@
 #include <kdl/chainjnttojacsolver.hpp>
 #include <random>
 
-#include "allocation_count.hpp"
+#include "generator_core/allocation_count.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
 #include "model/robots.hpp"
@@ -127,12 +127,13 @@ TEST_P(EveryRobotsKinematics, NeitherAllocatesNorDependsOnTheRobotsLifetime) {
   BaseAttitude attitude(*robot);
   const Motion motion = random_motion(*robot, random_);
   robot.reset();
-  const std::size_t before = allocation_count();
+  const long before = test::allocation_count();
   legs.compute(motion.q, motion.dq);
   attitude.compute(motion.q, motion.dq, 0.1, 0.1, 0.2, 0.2);
-  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(test::allocation_count(), before);
   const auto probe = std::make_unique<int>(1);
-  EXPECT_GT(allocation_count(), before) << "the counter counts";
+  if (before < 0) return;  // a sanitizer's malloc isn't counted
+  EXPECT_GT(test::allocation_count(), before) << "the counter counts";
 }
 
 class Attitude : public EveryRobotsKinematics {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "allocation_count.hpp"
+#include "generator_core/allocation_count.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/robots.hpp"
 
@@ -107,13 +107,13 @@ TEST_F(SoleLoadsTest, NeverUseTheHeapNorTheRobot) {
   SoleLoads loads(*robot);
   const JointVector q = robot->q_stand(), torque_Nm = JointVector::Zero(q.size());
   robot.reset();
-  const std::size_t before = allocation_count();
+  const long before = test::allocation_count();
   double sum = 0.0;
   for (int k = 0; k < 100; ++k) {
     loads.set_posture(q, {0.0, 0.0, -1.0});
     sum += loads.of(torque_Nm)[kLeft].force_N;
   }
-  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(test::allocation_count(), before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

@@ -43,7 +43,7 @@ class Chaos {
         spoil_a_sensor();
         break;
       case 5:
-        rig_.policy->how = pick(std::array{How::kNone, How::kStatus, How::kNan, How::kLate, How::kFarAction});
+        rig_.policy->how = pick(std::array{How::kNone, How::kStatus, How::kNotANumber, How::kLate, How::kFarAction});
         break;
       case 6:
         rig_.policy->meanwhile = [this, cycles = below(9)] { stall(cycles); };
