@@ -13,7 +13,7 @@ namespace pmg::ops {
 namespace {
 
 constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the slowest ramp
-constexpr std::array<const char*, kChannels> kChannelNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
+constexpr std::array<const char*, kChannels> kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
 constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
 
 /// As ROBOT_INFO's configuration has it (control::control_json); nothing where it doesn't.
@@ -42,7 +42,7 @@ std::string words(const Command& asked, const RobotNews& news, bool settled) {
     const double wanted = asked.u[i], realised = news.reference->command[i];
     if (wanted == 0.0 || alike(wanted, realised)) continue;
     ++channels;
-    text += fmt::format("{}{} {:.3g} -> {:.3g} {}{}", text.empty() ? "limited: " : "; ", kChannelNames[i], wanted,
+    text += fmt::format("{}{} {:.3g} -> {:.3g} {}{}", text.empty() ? "limited: " : "; ", kShortNames[i], wanted,
                         realised, kUnits[i], settled ? "" : " so far");
     const auto range = range_of(news, i);
     const bool outside = range && (wanted < range->first || wanted > range->second);
