@@ -19,7 +19,7 @@ void ScenarioLog::write(std::int64_t stamp_ns, std::size_t number) {
   message.duration_s = step.duration_s;
   message.text = step.text;
   message.mode = static_cast<std::int8_t>(step.mode);
-  for (int channel = 0; channel < kChannels; ++channel)
+  for (std::size_t channel = 0; channel < kChannels; ++channel)
     message.command[channel] = step.command[static_cast<Channel>(channel)];
   log_.write_step(message);
 }
