@@ -1,10 +1,7 @@
-"""motor.yaml, which calibration writes and the controller's simulation reads: the actuators of some joints, in training's physics."""
-
-from pathlib import Path
+"""The actuators of motor.yaml, which calibration writes and the controller's simulation reads, in training's physics."""
 
 import mujoco
 import torch
-import yaml
 
 from pmg_train.actuation import step_inertia
 from pmg_train.actuator import NEUTRAL, ActuatorModel
@@ -12,27 +9,6 @@ from pmg_train.randomization import Robots
 
 FRICTION = [name for name in NEUTRAL if name.startswith("friction.")]
 DRY_FRICTION = [f"friction.{key}" for key in ("coulomb_Nm", "stribeck_Nm", "load_driving", "load_backdriving")]
-
-
-def read_motor_file(path: str | Path, joints: list[str]) -> dict[str, dict[str, float]]:
-    """What isn't neutral, as "group.key", of each joint there. ValueError names file, joint and key."""
-    try:
-        content = yaml.safe_load(Path(path).read_text())
-    except yaml.YAMLError as error:
-        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
-    if not isinstance(content, dict) or set(content) != {"joints"} or not isinstance(content["joints"], dict):
-        raise ValueError(f"{path}: expected one map, joints")
-    motors = {}
-    for joint, groups in content["joints"].items():
-        if joint not in joints:
-            raise ValueError(f"{path}: {joint} isn't a joint of this robot")
-        motors[joint] = {f"{group}.{key}": value for group, keys in (groups or {}).items() for key, value in keys.items()}
-        for name, value in motors[joint].items():
-            if name not in NEUTRAL:
-                raise ValueError(f"{path}: {joint}: unknown {name}; expected some of {', '.join(NEUTRAL)}")
-            if not isinstance(value, (int, float)) or isinstance(value, bool):
-                raise ValueError(f"{path}: {joint}: {name}: {value}; expected a number")
-    return motors
 
 
 def joints_with_actuators(model: mujoco.MjModel, motors: dict[str, dict[str, float]]) -> list[str]:

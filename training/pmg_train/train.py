@@ -22,9 +22,9 @@ import torch.distributed as dist
 import warp as wp
 import yaml
 
-from pmg_train.configuration import load_config, load_randomization
+from pmg_train.checked_files import read_motor_file, read_randomization
+from pmg_train.configuration import load_config
 from pmg_train.environment import Environment
-from pmg_train.motors import read_motor_file
 from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
 from pmg_train.reference_pool import ReferencePool
@@ -67,7 +67,7 @@ class Training:
         if self.device == "cuda":
             self.device = f"cuda:{os.environ.get('LOCAL_RANK', 0)}"
         self.cuda = self.device.startswith("cuda")
-        self.config, self.ranges = load_config(a.config), load_randomization(a.randomization)
+        self.config, self.ranges = load_config(a.config), read_randomization(a.library, a.randomization)
         c, ppo = self.config, self.config["ppo"]
         for key, value in (("streams", a.streams), ("ticks", a.ticks)):
             c["references"][key] = value or c["references"][key]
@@ -80,7 +80,7 @@ class Training:
         self.description = batch.description
         pool = ReferencePool(batch, c["references"]["ticks"], self.device)
         self.log(f"references ready: {pool.streams} streams of {pool.ticks} ticks")
-        self.motors = read_motor_file(a.motor, [j["name"] for j in batch.description["joints"]]) if a.motor else {}
+        self.motors = read_motor_file(a.library, a.robot, a.motor) if a.motor else {}
         self.env = Environment(a.mjcf, pool, batch.description, batch.fields, c, self.ranges, ppo["worlds"], self.device, self.motors)
         seen = self.env.observation.shape[1]
         if seen != batch.description["observation"]["size"]:
