@@ -77,7 +77,7 @@ std::string svg(const Histogram& histogram) {
   const auto x = [&](double value) { return kLeft + (value - range.from) / range.span() * (kWidth - kLeft - kRight); };
 
   std::string out = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
-                                kWidth, kBottom + kAxis + legend.height(), escape_html(histogram.title));
+                                kWidth, kBottom + kAxis + legend.height(), escape_markup(histogram.title));
   const auto add = std::back_inserter(out);
   for (int decade = 0; decade <= static_cast<int>(decades); ++decade) {
     const double at = y(std::pow(10.0, decade));
@@ -89,7 +89,7 @@ std::string svg(const Histogram& histogram) {
                    x(tick.value), kTop, kBottom, kBottom + 16, tick.label);
   }
   fmt::format_to(add, R"(<text class="tick" x="{}" y="{}">{}</text>)", (kLeft + kWidth - kRight) / 2, kBottom + 31,
-                 escape_html(histogram.unit));
+                 escape_markup(histogram.unit));
   for (std::size_t set = 0; set < bins.size(); ++set) {
     const Bins& b = bins[set];
     std::string path = fmt::format("M{} {}", kLeft, kBottom);

@@ -119,7 +119,7 @@ class Drawing {
           x_(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
     add(R"(<text class="tick" x="{}" y="{}">{}</text>)", (left_ + kWidth - kRight) / 2, bottom_ + 31,
-        escape_html(plot_.x_name));
+        escape_markup(plot_.x_name));
     if (plot_.show_zero && !y_.logarithmic) {
       add(R"(<path d="M{} {:.1f}H{}" stroke="{}"/>)", left_, y_(0.0), kWidth - kRight, colour::kGrey);
     }
@@ -171,7 +171,7 @@ class Drawing {
     const bool to_the_left = at + 4 + text_width(mark.text) > kWidth;
     add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-dasharray="4 3"/>)", at, top_, bottom_, colour::kInk);
     add(R"(<text{} x="{:.1f}" y="{}">{}</text>)", to_the_left ? R"( class="name")" : "", at + (to_the_left ? -4 : 4),
-        top_ + 12, escape_html(mark.text));
+        top_ + 12, escape_markup(mark.text));
   }
 
   Legend legend() const {
@@ -195,7 +195,7 @@ class Drawing {
 std::string svg(const Plot& plot) {
   Drawing drawing(plot, 0);
   return fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)", kWidth,
-                     drawing.end(), escape_html(plot.title)) +
+                     drawing.end(), escape_markup(plot.title)) +
          drawing.svg() + "</svg>";
 }
 
@@ -207,7 +207,7 @@ std::string svg_file(const std::vector<Plot>& plots) {
   int top = 0;
   for (const Plot& plot : plots) {
     body += fmt::format(R"(<text x="{}" y="{}" style="font-weight:bold">{}</text>)", kNarrowestLeft, top + 15,
-                        escape_html(plot.title));
+                        escape_markup(plot.title));
     Drawing drawing(plot, top + kTitle);
     body += drawing.svg();
     top = drawing.end() + 4;

@@ -6,8 +6,8 @@
 
 namespace pmg::pages {
 
-/// & < > " ' as entities: for text and for attributes in quotes.
-std::string escape_html(std::string_view text);
+/// & < > " ' as entities of HTML and XML: for text and for attributes in quotes.
+std::string escape_markup(std::string_view text);
 
 /// JSON that may stand inside a script element: no "<", so no end tag and no comment.
 std::string escape_script(std::string json);
