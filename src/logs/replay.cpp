@@ -14,6 +14,7 @@
 #include "control/control_setup.hpp"
 #include "io/log_series.hpp"
 #include "logs/message_fields.hpp"
+#include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "runtime/tick_messages.hpp"
 
@@ -26,64 +27,6 @@ using nlohmann::ordered_json;
 
 constexpr double kNotANumber = std::numeric_limits<double>::infinity();
 constexpr int kTicksAProgress = 100;
-
-std::string text_of(const ordered_json& options, const char* key, const std::string& otherwise) {
-  return options.contains(key) && options[key].is_string() ? options[key].get<std::string>() : otherwise;
-}
-
-control::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
-                               const ReplayOptions& options) {
-  control::ControlSetup setup;
-  setup.robot = options.robot;
-  setup.clips = options.clips;
-  if (options.robot.empty()) {
-    // Where it was when the log was made, if it still is there; else this computer's robot of that name.
-    setup.robot = text_of(logged, "robot", info.model);
-    const fs::path clips = text_of(logged, "clips", "");
-    if (!fs::is_directory(setup.robot)) setup.robot = info.model;
-    if (setup.clips.empty() && fs::is_directory(clips)) setup.clips = clips;
-  }
-  setup.policy = text_of(logged, "policy", info.policy);
-  setup.blend = text_of(logged, "blend", setup.blend);
-  return setup;
-}
-
-/// Files that differ, by name.
-void note_bundle(const pmg_msgs::robot_info_t& info, const control::LoadedControl& loaded,
-                 std::vector<std::string>& notes) {
-  if (info.bundle.empty()) {
-    notes.push_back("the log doesn't say which files it ran with");
-    return;
-  }
-  if (info.bundle == loaded.bundle) return;
-  std::map<std::string, std::string> logged;
-  for (std::size_t i = 0; i < info.bundle_file.size(); ++i) logged[info.bundle_file[i]] = info.bundle_sha256[i];
-  for (const auto& [name, sha256] : loaded.files) {
-    const auto found = logged.find(name);
-    if (found == logged.end()) {
-      notes.push_back(fmt::format("{} is here, but was not there when the log was made", name));
-    } else if (found->second != sha256) {
-      notes.push_back(fmt::format("{} is not the file that the log was made with", name));
-    }
-    if (found != logged.end()) logged.erase(found);
-  }
-  for (const auto& [name, sha256] : logged) notes.push_back(fmt::format("{} was there when the log was made", name));
-}
-
-/// Options that by themselves would not be those of the log, whose own are replayed; where files lie doesn't matter.
-void note_options(const ordered_json& logged, const ordered_json& now, std::vector<std::string>& notes) {
-  if (!logged.is_object()) return;
-  const ordered_json before = logged.flatten(), after = now.flatten();
-  for (const auto& [key, value] : after.items()) {
-    if (key == "/robot" || key == "/clips") continue;
-    if (!before.contains(key)) {
-      notes.push_back(fmt::format("option {} is {}; the log doesn't name it", key.substr(1), value.dump()));
-    } else if (before[key] != value) {
-      notes.push_back(
-          fmt::format("option {} is the log's {}, not {}", key.substr(1), before[key].dump(), value.dump()));
-    }
-  }
-}
 
 /// The same bits: -0 is not 0, and a NaN is itself.
 bool same(const Field::Value& a, const Field::Value& b) {
@@ -157,13 +100,13 @@ class Replay {
       throw std::runtime_error("these logs are of more than one run; name the files of one");
     }
     const ordered_json logged = ordered_json::parse(info.options, nullptr, false);
-    const control::ControlSetup setup = setup_of(info, logged, options_);
+    const control::ControlSetup setup = replay_setup(info, logged, options_);
     loaded_ = control::load_control(setup);
     if (loaded_.robot.joint_index.names() != info.joint_names) {
       throw std::runtime_error(
           fmt::format("the log's robot {} has other joints than {}", info.model, loaded_.robot.directory.string()));
     }
-    note_bundle(info, loaded_, report_.notes);
+    note_files(info, loaded_, report_.notes);
     if (info.software != runtime::software_version()) {
       report_.notes.push_back(
           fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
@@ -178,13 +121,13 @@ class Replay {
   }
 
   void take_excitation(const ordered_json& bench) {
-    const std::string joint = text_of(bench, "joint", ""), folder = text_of(bench, "excitation", "");
+    const std::string joint = option_text(bench, "joint", ""), folder = option_text(bench, "excitation", "");
     if (!options_.excitation) {
       throw std::runtime_error(
           fmt::format("this run played the excitation in {} on {}, which nobody reads here", folder, joint));
     }
     PlayedExcitation played = options_.excitation(loaded_.robot, joint, folder);
-    if (played.sha256 != text_of(bench, "sha256", "")) {
+    if (played.sha256 != option_text(bench, "sha256", "")) {
       report_.notes.push_back(fmt::format("the excitation of {} is not the one that the log was made with", joint));
     }
     loaded_.options.excitation = std::move(played.plan);

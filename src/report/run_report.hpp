@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "logs/run_series.hpp"
 #include "pages/page.hpp"
+#include "report/run_series.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 inline constexpr std::size_t kMostRuns = 4;  ///< that one picture can hold and a reader can tell apart
 
@@ -14,4 +14,4 @@ inline constexpr std::size_t kMostRuns = 4;  ///< that one picture can hold and 
 /// more than kMostRuns.
 pages::Page run_report(const std::vector<RunSeries>& runs);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "logs/report_sections.hpp"
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
+#include "report/sections.hpp"
 
-namespace pmg::logs::report {
+namespace pmg::report {
 
 namespace {
 
@@ -43,35 +43,26 @@ void commands(pages::Page& page, const Runs& runs) {
       "did on its own feet, velocities averaged over one gait period.");
   page.columns([&] {
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      std::vector<pages::Line> lines;
-      std::vector<std::vector<double>> kept;  // what the lines refer to
-      kept.reserve(2 * runs.size());
-      for (std::size_t i = 0; i < runs.size(); ++i) {
+      chart_of_runs(page, runs, kTitles[channel], [&](std::size_t i) -> std::vector<RunLine> {
         const auto& reference = runs[i].reference;
         const auto& truth = runs[i].truth;
-        const auto keep = [&](const RunSeries::Samples& values) -> const std::vector<double>& {
-          return kept.emplace_back(followed(runs[i], reference.t_s, values));
-        };
         const Palette& colours = palette(i);
-        const std::string behind = suffix(runs, i);
-        lines.push_back({.name = "asked" + behind,
-                         .x = reference.t_s,
-                         .y = reference.user[channel],
-                         .colour = colours.asked,
-                         .dashed = true});
-        lines.push_back({.name = "admissible" + behind,
-                         .x = reference.t_s,
-                         .y = keep(reference.command[channel]),
-                         .colour = colours.admissible,
-                         .width_px = 2.2});
-        lines.push_back({.name = "optimised" + behind,
-                         .x = reference.t_s,
-                         .y = keep(reference.optimised[channel]),
-                         .colour = colours.optimised});
-        lines.push_back(
-            {.name = "measured" + behind, .x = truth.t_s, .y = truth.measured[channel], .colour = colours.measured});
-      }
-      add_chart(page, runs, kTitles[channel], std::move(lines));
+        return {{.name = "asked",
+                 .x = reference.t_s,
+                 .y = reference.user[channel],
+                 .colour = colours.asked,
+                 .dashed = true},
+                {.name = "admissible",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.command[channel]),
+                 .colour = colours.admissible,
+                 .width_px = 2.2},
+                {.name = "optimised",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.optimised[channel]),
+                 .colour = colours.optimised},
+                {.name = "measured", .x = truth.t_s, .y = truth.measured[channel], .colour = colours.measured}};
+      });
     }
   });
 }
@@ -113,33 +104,24 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   }
   page.columns([&] {
     for (std::size_t foot = 0; foot < 2; ++foot) {
-      std::vector<pages::Line> lines;
-      std::vector<std::vector<double>> kept;  // what the lines refer to
-      kept.reserve(2 * runs.size());
-      for (std::size_t i = 0; i < runs.size(); ++i) {
+      const std::string title =
+          fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFeet[foot]);
+      chart_of_runs(page, runs, title, [&](std::size_t i) -> std::vector<RunLine> {
         const auto& reference = runs[i].reference;
         const auto& truth = runs[i].truth;
-        const auto keep = [&](const RunSeries::Samples& values) -> const std::vector<double>& {
-          return kept.emplace_back(followed(runs[i], reference.t_s, values));
-        };
         const Palette& colours = palette(i);
-        const std::string behind = suffix(runs, i);
-        lines.push_back({.name = "before" + behind,
-                         .x = reference.t_s,
-                         .y = keep(reference.slip_before_m_s[foot]),
-                         .colour = colours.admissible});
-        lines.push_back({.name = "after" + behind,
-                         .x = reference.t_s,
-                         .y = keep(reference.slip_after_m_s[foot]),
-                         .colour = colours.optimised});
-        lines.push_back(
-            {.name = "measured" + behind, .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured});
-      }
-      add_chart(page, runs,
-                fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFeet[foot]),
-                std::move(lines));
+        return {{.name = "before",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.slip_before_m_s[foot]),
+                 .colour = colours.admissible},
+                {.name = "after",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.slip_after_m_s[foot]),
+                 .colour = colours.optimised},
+                {.name = "measured", .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured}};
+      });
     }
   });
 }
 
-}  // namespace pmg::logs::report
+}  // namespace pmg::report

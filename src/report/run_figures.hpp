@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "logs/run_series.hpp"
+#include "report/run_series.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 /// Whether the drives followed the reference at each of these increasing times: mode stand or walk. Always, when the
 /// log says nothing of modes.
@@ -35,4 +35,4 @@ std::string verdict(const RunSeries& run);
 
 nlohmann::ordered_json run_json(const RunSeries& run);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

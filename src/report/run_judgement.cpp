@@ -1,8 +1,8 @@
-#include "logs/run_judgement.hpp"
+#include "report/run_judgement.hpp"
 
 #include <algorithm>
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 
@@ -76,4 +76,4 @@ sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const si
   return mean;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

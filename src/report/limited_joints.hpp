@@ -8,7 +8,7 @@
 
 #include "pmg_msgs/limited_t.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 inline constexpr std::array<const char*, 3> kLimitNames = {"range", "speed", "torque"};
 
@@ -36,4 +36,4 @@ class LimitedJoints {
   std::vector<LimitedJoint> joints_;  ///< in the order of their first time
 };
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,4 +1,4 @@
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "pages/histogram.hpp"
 #include "sil/summary.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 
@@ -181,4 +181,4 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"problems", run.problems}};
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

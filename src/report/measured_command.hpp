@@ -8,7 +8,7 @@
 #include "pmg/command.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 /// Velocities in the heading frame H, averaged over the last gait period as the metrics are (metrics.hpp); posture of
 /// the torso in H; height of the pelvis as deviation from standing.
@@ -28,4 +28,4 @@ class MeasuredCommand {
 /// Whether the robot lies: as in metrics.hpp.
 bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

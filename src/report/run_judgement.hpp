@@ -11,7 +11,7 @@
 #include "pmg_msgs/status_t.hpp"
 #include "sil/run_measure.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 class RunJudgement {
  public:
@@ -41,4 +41,4 @@ class RunJudgement {
 /// Mean errors of the time between two sums of one run; foot_slip_mean_m_s is left 0.
 sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const sil::TrackingSummary& after);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,14 +1,15 @@
 // The report's sections, one function each. A section says so when no run has what it needs.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "logs/run_series.hpp"
 #include "pages/page.hpp"
+#include "report/run_series.hpp"
 
-namespace pmg::logs::report {
+namespace pmg::report {
 
 using Runs = std::vector<RunSeries>;
 
@@ -29,9 +30,19 @@ std::vector<pages::Band> fault_bands(const Runs& runs);
 /// values with NaN where the drives did not follow the reference: then it says nothing.
 std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, std::vector<double> values);
 
-/// Adds the chart unless it has no line.
-void add_chart(pages::Page& page, const Runs& runs, const std::string& title, std::vector<pages::Line> lines,
-               int height_px = 200);
+/// A line of one run; without a point it isn't drawn.
+struct RunLine {
+  std::string name;  ///< the chart adds the run's suffix
+  std::span<const double> x;
+  std::vector<double> y;
+  std::string colour;
+  double width_px = 1.3;
+  bool dashed = false, stepped = false;
+};
+
+/// One chart with the lines of all runs: lines_of(number of a run) gives that run's. No chart if there is no line.
+void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title,
+                   const std::function<std::vector<RunLine>(std::size_t)>& lines_of, int height_px = 200);
 
 void verdicts(pages::Page& page, const Runs& runs);
 void timeline(pages::Page& page, const Runs& runs);
@@ -42,4 +53,4 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs);
 void timing(pages::Page& page, const Runs& runs);
 void who_ran_what(pages::Page& page, const Runs& runs);
 
-}  // namespace pmg::logs::report
+}  // namespace pmg::report

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "gco/slip_statistics.hpp"
-#include "logs/limited_joints.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
+#include "report/limited_joints.hpp"
 #include "sil/metrics.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 /// One row a tick and channel; t_s counts from the log's beginning. A channel that the log lacks is empty. Of per-joint
 /// arrays the first index is the joint; they are float because a long run has many.
@@ -101,4 +101,4 @@ using ReadingProgress = std::function<bool(double share)>;
 /// when nothing of a run can be read there.
 RunSeries read_run(const std::filesystem::path& log, const ReadingProgress& progress = {});
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

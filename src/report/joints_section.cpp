@@ -5,10 +5,10 @@
 #include <map>
 #include <numeric>
 
-#include "logs/report_sections.hpp"
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
+#include "report/sections.hpp"
 
-namespace pmg::logs::report {
+namespace pmg::report {
 
 namespace {
 
@@ -49,24 +49,27 @@ double worst(const Joint& joint) {
 }
 
 void charts(pages::Page& page, const Runs& runs, const Joint& joint) {
-  std::vector<std::vector<double>> kept;  // what the lines refer to
-  kept.reserve(3 * runs.size());
-  std::vector<pages::Line> positions, torques;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (joint.place[i] == kAbsent) continue;
-    const RunSeries& run = runs[i];
-    const std::string behind = suffix(runs, i);
-    const std::vector<double>& reference =
-        kept.emplace_back(followed(run, run.reference.t_s, widened(run.reference.q_ref_rad[joint.place[i]])));
-    positions.push_back(
-        {.name = "reference" + behind, .x = run.reference.t_s, .y = reference, .colour = palette(i).asked});
-    const std::vector<double>& q = kept.emplace_back(widened(run.state.q_rad[joint.place[i]]));
-    positions.push_back({.name = "measured" + behind, .x = run.state.t_s, .y = q, .colour = palette(i).measured});
-    const std::vector<double>& torque = kept.emplace_back(widened(run.state.torque_Nm[joint.place[i]]));
-    torques.push_back({.name = "torque" + behind, .x = run.state.t_s, .y = torque, .colour = palette(i).measured});
-  }
-  add_chart(page, runs, joint.name + ", position [rad]", std::move(positions), 180);
-  add_chart(page, runs, joint.name + ", torque [Nm]", std::move(torques), 180);
+  const auto position = [&](std::size_t i) -> std::vector<RunLine> {
+    if (joint.place[i] == kAbsent) return {};
+    const auto& reference = runs[i].reference;
+    const auto& state = runs[i].state;
+    return {
+        {.name = "reference",
+         .x = reference.t_s,
+         .y = followed(runs[i], reference.t_s, widened(reference.q_ref_rad[joint.place[i]])),
+         .colour = palette(i).asked},
+        {.name = "measured", .x = state.t_s, .y = widened(state.q_rad[joint.place[i]]), .colour = palette(i).measured}};
+  };
+  const auto torque = [&](std::size_t i) -> std::vector<RunLine> {
+    if (joint.place[i] == kAbsent) return {};
+    const auto& state = runs[i].state;
+    return {{.name = "torque",
+             .x = state.t_s,
+             .y = widened(state.torque_Nm[joint.place[i]]),
+             .colour = palette(i).measured}};
+  };
+  chart_of_runs(page, runs, joint.name + ", position [rad]", position, 180);
+  chart_of_runs(page, runs, joint.name + ", torque [Nm]", torque, 180);
 }
 
 void bars(pages::Page& page, const Runs& runs, const std::vector<Joint>& joints) {
@@ -115,4 +118,4 @@ void joints(pages::Page& page, const Runs& runs) {
   });
 }
 
-}  // namespace pmg::logs::report
+}  // namespace pmg::report
