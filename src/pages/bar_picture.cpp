@@ -27,7 +27,7 @@ double value_of(const Bars::Set& set, std::size_t row) {
                                                                   : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What is shown: always with zero, from which bars begin.
+/// The shown range. It includes zero, where bars begin.
 Range range_of(const Bars& bars) {
   Range range{0.0, 0.0};
   for (const Bars::Set& set : bars.sets) {
@@ -136,7 +136,7 @@ class Drawing {
     int row;          ///< of its words, from above
   };
 
-  /// Words stand above their lines, in as many rows as it takes that none covers another.
+  /// Words stand above their lines, in as many rows as are needed to avoid overlap.
   void place_marks() {
     std::vector<const Mark*> in_order;
     for (const Mark& mark : bars_.marks) {

@@ -18,8 +18,8 @@ namespace {
 constexpr int kWidth = 640, kPlot = 180, kLeft = 58, kRight = 16, kTop = 8, kAxis = 38, kBins = 60, kLabels = 6;
 constexpr int kBottom = kTop + kPlot;
 
-/// Where a set's values are. Stragglers are left out: the outermost thousandth, and what lies more than four times as
-/// far from the median as the outermost hundredth begins.
+/// The range of a set without outliers. Outliers are the outermost thousandth, and values more than four times as far
+/// from the median as the outermost hundredth.
 Range bulk(std::span<const double> all) {
   constexpr double kFar = 4.0;
   std::vector<double> values;
@@ -32,7 +32,7 @@ Range bulk(std::span<const double> all) {
   return range;
 }
 
-/// Of all sets; with zero where that is not far away.
+/// The range of all sets. It includes zero if zero is near.
 Range range_of(const Histogram& histogram) {
   Range range = Range::empty();
   for (const Histogram::Set& set : histogram.sets) {
@@ -70,7 +70,7 @@ std::string svg(const Histogram& histogram) {
     legend.add(set.colour, summary(set, bins.back(), histogram.unit));
   }
   const double decades = std::max(1.0, std::ceil(std::log10(highest)));
-  // Counts on a logarithmic axis, half a decade for a single one: rare long times are what one looks for.
+  // Counts on a logarithmic axis, half a decade for a count of one, because readers look for rare long times.
   const auto y = [&](double n) {
     return n < 1.0 ? kBottom : kTop + kPlot * (1.0 - (std::log10(n) + 0.5) / (decades + 0.5));
   };

@@ -23,7 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kColumns =
-    1500;  // of a line: wider than a chart on a laptop, so that zooming in finds a bit more
+    1500;  // points of a line: more than a laptop's chart has pixels, so that zooming shows more
 constexpr double kResolution = 5000.0;  // steps over a line's range: finer than a pixel
 
 std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
@@ -40,7 +40,7 @@ std::string axis_name(const std::string& named, const std::string& x_name, const
 
 bool same_x(const Line& a, const Line& b) { return a.x.data() == b.x.data() && a.x.size() == b.x.size(); }
 
-/// The lines sorted so that those over the same x follow each other: they share one track.
+/// Sorts the lines so that lines over the same x are neighbours; they share one track.
 std::vector<std::vector<const Line*>> tracks(const std::vector<Line>& lines) {
   std::vector<std::vector<const Line*>> groups;
   for (const Line& line : lines) {
@@ -126,7 +126,7 @@ void Page::chart(const Chart& chart) {
       {"axis", axis},   {"x_name", chart.x_name}, {"x_unit", chart.x_unit},          {"height", chart.height_px},
       {"lines", lines}, {"bands", bands},         {"marks", marks_json(chart.marks)}};
   std::string text = dump(spec);
-  text.pop_back();  // the closing brace: the tracks follow as text of their own
+  text.pop_back();  // removes the closing brace; the tracks follow as separate text
   text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";
   picture(chart.title, chart_element(text, chart.height_px));
 }
@@ -186,7 +186,7 @@ std::string Page::html() const {
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">\n"
-      // Whatever got into the page, it loads nothing.
+      // The page loads nothing, whatever its text holds.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
       "script-src "
       "'unsafe-inline'\">\n<title>" +

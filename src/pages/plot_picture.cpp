@@ -18,7 +18,7 @@ namespace pmg::pages {
 namespace {
 
 constexpr int kWidth = 640, kNarrowestLeft = 58, kRight = 14, kTop = 8, kAxis = 38;
-constexpr std::size_t kColumns = 280;  // of a line: two points each are all that can be seen
+constexpr std::size_t kColumns = 280;  // of a line: a reader can see at most two points in each
 constexpr double kMargin = 0.04;       // of the range of y, above and below
 constexpr int kLabels = 6;             // along x: far enough apart for long ones
 constexpr const char* kStyle =
@@ -50,7 +50,7 @@ void check(const PlotLine& line) {
   }
 }
 
-/// Where the line has more points than can be seen: its extremes.
+/// The extremes of each column, for a line with more points than a reader can see.
 LineData seen(const PlotLine& line) {
   const bool sorted = std::ranges::is_sorted(line.x);
   if (sorted && line.intervals.empty()) {
@@ -95,7 +95,7 @@ class Drawing {
     return out_ + legend().svg(bottom_ + kAxis);
   }
 
-  int end() const { return bottom_ + kAxis + legend().height(); }  ///< where the next may begin
+  int end() const { return bottom_ + kAxis + legend().height(); }  ///< where the next picture may begin
 
  private:
   void include(double x, double y) {
@@ -137,7 +137,7 @@ class Drawing {
     return k < data.x.size() && x_.shows(data.x[k]) && y_.shows(data.y[0][k]);
   }
 
-  /// Each point where the line asks for it; else those between gaps, which no line would show.
+  /// Dots: at each point if the line has `points`, else only at single points between gaps, which no line would show.
   void dots(const PlotLine& line, const LineData& data) {
     for (std::size_t k = 0; k < data.x.size(); ++k) {
       const bool alone = (k == 0 || !shown(data, k - 1)) && !shown(data, k + 1);
