@@ -19,10 +19,10 @@ using Names = std::vector<std::string>;
 
 template <typename Message>
 bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& fields) {
-  static thread_local Message message;  // its memory is used again
+  static thread_local Message message;  // its memory is reused
   try {
     if (message.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return false;
-  } catch (const std::exception&) {  // a length that no memory has: damaged bytes
+  } catch (const std::exception&) {  // damaged bytes hold a length beyond all memory
     return false;
   }
   fields.clear();

@@ -28,7 +28,7 @@ using nlohmann::ordered_json;
 constexpr double kNotANumber = std::numeric_limits<double>::infinity();
 constexpr int kTicksAProgress = 100;
 
-/// The same bits: -0 is not 0, and a NaN is itself.
+/// Equal bits: -0 differs from 0, and a NaN equals the same NaN.
 bool same(const Field::Value& a, const Field::Value& b) {
   if (std::holds_alternative<double>(a) && std::holds_alternative<double>(b)) {
     return std::bit_cast<std::uint64_t>(std::get<double>(a)) == std::bit_cast<std::uint64_t>(std::get<double>(b));
@@ -179,7 +179,7 @@ class Replay {
     if (!tick_) throw std::runtime_error("the log doesn't begin with ROBOT_INFO: nobody knows what ran");
   }
 
-  /// What this tick started from is all there, and every tick before it was replayed.
+  /// Checks that all inputs of this tick are there and that every tick before it was replayed.
   void check_whole(const pmg_msgs::tick_input_t& input) const {
     const std::int64_t expected = report_.ticks;
     if (input.tick != expected && expected == 0) {
@@ -200,7 +200,7 @@ class Replay {
   }
 
   void compare_status(const io::LogReader& event) {
-    // Known to the threads around the tick alone.
+    // Only the threads around the tick know this value, so the log's is taken.
     run_.realtime = decoded<pmg_msgs::status_t>(event).realtime != 0;
     compare(event, status_);
   }
@@ -222,7 +222,7 @@ class Replay {
     note_differences(event);
   }
 
-  /// Field by field, of a message whose bytes differ from bytes_.
+  /// Compares field by field a message whose bytes differ from bytes_.
   void note_differences(const io::LogReader& event) {
     if (!read_fields(event.channel(), event.data(), loaded_.robot.joint_index.names(), logged_fields_))
       throw std::runtime_error(event.channel() + " is no message that this program knows (another version?)");
@@ -247,7 +247,7 @@ class Replay {
 
   const ReplayOptions& options_;
   const std::function<void(double)>& progress_;
-  const io::SimulationClock stopwatch_;  // nothing is timed
+  const io::SimulationClock stopwatch_;  // a replay measures no times
   control::LoadedControl loaded_;
   runtime::RunInfo run_;
   std::unique_ptr<control::Tick> tick_;

@@ -21,7 +21,7 @@ control::ControlSetup replay_setup(const pmg_msgs::robot_info_t& info, const ord
   setup.robot = options.robot;
   setup.clips = options.clips;
   if (options.robot.empty()) {
-    // Where it was when the log was made, if it still is there; else this computer's robot of that name.
+    // The folder in the log if it still exists, else this computer's robot of that name.
     setup.robot = option_text(logged, "robot", info.model);
     const fs::path clips = option_text(logged, "clips", "");
     if (!fs::is_directory(setup.robot)) setup.robot = info.model;

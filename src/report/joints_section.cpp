@@ -1,4 +1,4 @@
-// How the joints followed: error bars first, then the worst joints, then all.
+// The section about the joints' tracking: error bars, then the worst joints, then all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ constexpr std::size_t kShown = 6;  // joints whose charts are not folded away
 
 std::vector<double> widened(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
-/// A joint's place in each run, by its name: runs of different robots share what they share.
+/// A joint's index in each run, by name: runs of different robots show their common joints together.
 struct Joint {
   std::string name;
   std::vector<std::size_t> place;  // per run; kAbsent

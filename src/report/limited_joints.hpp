@@ -1,4 +1,4 @@
-// Which joints' targets the limiter changed, when, and why: from a log's LIMITED messages.
+// (LIMITED messages) => the joints whose targets the limiter changed, with times and reasons.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct LimitedJoint {
     double from_s, to_s;
     std::array<bool, 3> by;
   };
-  std::vector<Stretch> stretches;  ///< of one reason each
+  std::vector<Stretch> stretches;  ///< each with one set of reasons
 
   double longest_s() const;
   std::string reasons() const;  ///< "torque in 12 ticks, speed in 3"

@@ -1,4 +1,4 @@
-// How drives and computer coped: limits, temperatures, times.
+// The section about drives and computer: limits, temperatures, times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace pmg::report {
 namespace {
 
 constexpr std::size_t kHottest = 4;     // joints whose temperatures are drawn
-constexpr double kDelayed_us = 2000.0;  // a bus cycle: later than that something on the host was in the way
+constexpr double kDelayed_us = 2000.0;  // one bus cycle; a longer delay has its cause on the host
 constexpr std::size_t kListedDelays = 30;
 
 std::int64_t above_zero(const RunSeries::Samples& counts) {
   return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
 }
 
-/// Of any kind.
+/// Ticks with a limit of any kind; a tick with two kinds counts twice.
 std::int64_t limited_ticks(const RunSeries& run) {
   return above_zero(run.status.limited_position) + above_zero(run.status.limited_rate) +
          above_zero(run.status.limited_torque);
@@ -57,9 +57,9 @@ void limit_table(pages::Page& page, const Runs& runs) {
   page.table(table);
 }
 
-constexpr std::size_t kLimitedShown = 8;  // joints: more than any sound run has
+constexpr std::size_t kLimitedShown = 8;  // joints: more than in any healthy run
 
-/// When each joint was limited and why; the worst of them as lanes over time.
+/// Each limited joint with times and reasons; the worst ones as lanes over time.
 void limited_joints(pages::Page& page, const Runs& runs) {
   pages::Table table{.header = {"joint", "limited by", "first at [s]", "longest [s]"}, .rows = {}};
   pages::Lanes lanes{.title = "Joints whose target was limited: by range (blue), speed (orange), torque (red)",
@@ -133,7 +133,7 @@ void limit_chart(pages::Page& page, const Runs& runs) {
       });
 }
 
-/// All values of the runs' samples that aren't finite are left out: stages that did not run.
+/// Leaves out values that aren't finite: those stages did not run.
 void times(pages::Page& page, const Runs& runs, const char* title,
            RunSeries::Samples decltype(RunSeries::timing)::*which) {
   pages::Histogram histogram{.title = title, .unit = "us", .sets = {}};

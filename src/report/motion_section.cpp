@@ -1,4 +1,4 @@
-// What was asked of the robot and what it did: commands, contact, slip.
+// The sections about commanded and measured motion: commands, contact, slip.
 #include <fmt/format.h>
 
 #include <array>
@@ -10,13 +10,13 @@ namespace pmg::report {
 
 namespace {
 
-constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: a foot that barely touches carries nothing
+constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: below it a foot counts as unloaded
 constexpr std::array<const char*, 2> kFeet = {"left", "right"};
 constexpr std::array<const char*, kChannels> kTitles = {
     "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
     "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
 
-/// Stretches in which a sampled condition holds.
+/// The stretches in which a sampled condition holds.
 template <typename Condition>
 std::vector<pages::Lanes::Stretch> stretches(const RunSeries::Samples& t_s, const char* colour, Condition holds) {
   std::vector<pages::Lanes::Stretch> found;

@@ -14,7 +14,7 @@ namespace pmg::report {
 
 namespace {
 
-constexpr std::size_t kShownHash = 12;  // hexadecimal digits that tell bundles apart at a glance
+constexpr std::size_t kShownHash = 12;  // hexadecimal digits, enough to distinguish bundles
 
 nlohmann::ordered_json events_json(const std::vector<RunSeries::Event>& events) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();

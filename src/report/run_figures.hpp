@@ -1,4 +1,4 @@
-// A run's log in a few figures, for the report's tables and for machines.
+// (a run's log) => a few figures, for the report's tables and as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,27 +10,27 @@
 
 namespace pmg::report {
 
-/// Whether the drives followed the reference at each of these increasing times: mode stand or walk. Always, when the
-/// log says nothing of modes.
+/// Whether the drives followed the reference (mode stand or walk) at each of these increasing times. True if the log
+/// has no modes.
 std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s);
 
 struct JointTracking {
-  double error_rms_rad = 0.0;  ///< of q_ref - q while holding; 0 without a single such tick
-  double torque_max_Nm = 0.0;  ///< of its absolute value
+  double error_rms_rad = 0.0;  ///< RMS of q_ref - q while the drives follow; 0 without such a tick
+  double torque_max_Nm = 0.0;  ///< largest |torque|
 };
 std::vector<JointTracking> joint_tracking(const RunSeries& run);
 
-/// Errors against what was asked, and slip: the figures of summary.json in a sentence. Empty without a simulation's
+/// Tracking errors against the command, and slip: the figures of summary.json in a sentence. Empty without ground
 /// truth.
 std::string tracking_text(const RunSeries& run);
 
-/// The joint that was limited most, by what and since when; empty when the log names none.
+/// The joint with the most limited ticks, the limits and the first time; empty if there is none.
 std::string limited_text(const RunSeries& run);
 
-/// For how long the feet carried nothing, so that the policy was not run.
+/// Seconds in which the feet carried nothing, so that the policy did not run.
 double hanging_s(const RunSeries& run);
 
-/// What ran, how long, how it ended, how well it followed and what limited it.
+/// One sentence: policy, duration, end, tracking and limits.
 std::string verdict(const RunSeries& run);
 
 nlohmann::ordered_json run_json(const RunSeries& run);

@@ -33,7 +33,7 @@ Lanes::Lane lane(const std::string& name, const std::vector<RunSeries::Stretch>&
   return row;
 }
 
-/// Neighbours have different colours; a narrow one shows its number.
+/// Neighbours have different colours. A narrow stretch shows its number only.
 Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step>& steps) {
   Lanes::Lane row{.name = name, .stretches = {}};
   for (const RunSeries::Step& step : steps) {
@@ -43,7 +43,7 @@ Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step
   return row;
 }
 
-/// What a step asked for, channels that are not zero.
+/// The step's command, without channels that are zero.
 std::string asked_text(const RunSeries::Step& step) {
   static constexpr std::array<const char*, kChannels> kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s",
                                                                 "turn {:+.2f} rad/s",  "pitch {:+.2f} rad",
@@ -79,7 +79,7 @@ void steps_table(pages::Page& page, const Runs& runs) {
   }
 }
 
-/// The code before the colon: a mark has little room.
+/// The part before the colon, because a mark has little room.
 std::string short_fault(const std::string& text) { return text.substr(0, text.find(':')); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One or more runs as a page of pictures (docs/how-to/reports.md): how it went, at a glance, before any number.
+// (one or more runs) => a page of pictures (docs/how-to/reports.md), with the verdict first.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace pmg::report {
 
-inline constexpr std::size_t kMostRuns = 4;  ///< that one picture can hold and a reader can tell apart
+inline constexpr std::size_t kMostRuns = 4;  ///< in one picture; a reader can distinguish no more
 
-/// The runs are laid over each other, each counted from its own beginning. Throws std::invalid_argument for none or
-/// more than kMostRuns.
+/// The pictures show the runs over each other, each from its own beginning. Throws std::invalid_argument for no run and
+/// for more than kMostRuns.
 pages::Page run_report(const std::vector<RunSeries>& runs);
 
 }  // namespace pmg::report

@@ -32,13 +32,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The file's name, with its folder's, which tells runs apart whose logs are all called log.lcm.
+/// The names of folder and file: many logs are called log.lcm.
 std::string short_name(const fs::path& log) {
   const fs::path path = fs::weakly_canonical(log);
   return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
 }
 
-/// Gathers the events of one run; of several, the last one's.
+/// Gathers the events of one run. If the log holds several runs, the last one remains.
 class Gathering {
  public:
   explicit Gathering(std::string name) { run_.name = std::move(name); }
@@ -68,12 +68,12 @@ class Gathering {
     if (channel == "FAULT") return with(event, &Gathering::fault);
   }
 
-  /// The run; nothing can be added any more.
+  /// The complete run. Call once, at the end.
   RunSeries finish() {
     for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted, &run_.hanging}) {
       std::erase_if(*stretches, [](const auto& stretch) { return stretch.text.empty(); });
     }
-    // A log that begins in a fault, or whose FAULT is lost, still has its words in every status.
+    // If the log begins in a fault, or its FAULT is lost, each status still holds the fault's text.
     for (const RunSeries::Event& fault : latched_) {
       if (!is_known(fault)) run_.faults.push_back(fault);
     }
@@ -98,7 +98,8 @@ class Gathering {
   }
 
  private:
-  /// ROBOT_INFO's stamp when it belongs to the first tick's time: a simulation's times then stay as they are.
+  /// Time zero: ROBOT_INFO's stamp if it is at most a second before the first tick, so that a simulation's times stay
+  /// unchanged; else the first event's.
   std::int64_t beginning(std::int64_t first_event_ns) const {
     constexpr std::int64_t kSoon_ns = 1'000'000'000;
     const std::int64_t ahead_ns = info_ns_ ? first_event_ns - *info_ns_ : -1;
@@ -107,12 +108,12 @@ class Gathering {
 
   template <typename Message>
   void with(const io::LogReader& event, bool (Gathering::*take)(const Message&)) {
-    static thread_local Message message;  // its vectors' memory is used again
+    static thread_local Message message;  // the memory of its vectors is reused
     if (!event.decode_into(message) || !(this->*take)(message)) ++unreadable_;
   }
 
-  /// Rotated files repeat their run's. Another run's differs in its session; lockstep runs have none, and their clocks
-  /// begin anew.
+  /// A rotated file repeats its run's ROBOT_INFO. Another run has another session, or in lockstep, where there is none,
+  /// a clock that starts again.
   void take_info(const io::LogReader& event) {
     auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) {
@@ -140,7 +141,7 @@ class Gathering {
     *this = std::move(next);
   }
 
-  /// Whether a message has this run's joints; without ROBOT_INFO the first message decides.
+  /// Whether a message has as many joints as the run. Without ROBOT_INFO the first message decides.
   bool fits(std::int32_t joint_count) {
     if (run_.joint_names.empty()) {
       for (std::int32_t i = 0; i < joint_count; ++i) run_.joint_names.push_back(fmt::format("joint {}", i));
@@ -235,8 +236,8 @@ class Gathering {
     return true;
   }
 
-  /// Its own stamp says when it latched: a flight recorder's log tells its fault at the beginning, and again in its
-  /// place.
+  /// The message's stamp is the time of the latching. A flight recorder's log holds its fault twice: at the beginning
+  /// and in its place.
   bool fault(const pmg_msgs::fault_t& message) {
     const double latched_s = static_cast<double>(message.stamp_ns - *first_ns_) * 1e-9;
     const RunSeries::Event told{latched_s >= 0.0 ? latched_s : t_s_, message.text};
@@ -245,7 +246,7 @@ class Gathering {
   }
 
   bool is_known(const RunSeries::Event& fault) const {
-    constexpr double kSame_s = 0.05;  // found in one tick, told in the next
+    constexpr double kSame_s = 0.05;  // a fault latches in one tick and is logged in the next
     return std::ranges::any_of(
         run_.faults, [&](const RunSeries::Event& known) { return std::abs(known.t_s - fault.t_s) < kSame_s; });
   }
@@ -257,7 +258,7 @@ class Gathering {
   LimitedJoints limited_;
   std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;
-  std::map<std::string, double> newest_s_;  // of each channel
+  std::map<std::string, double> newest_s_;  // newest time of each channel
   std::vector<RunSeries::Event> latched_;
   std::int64_t newest_ns_ = 0;
   std::int64_t unreadable_ = 0, back_in_time_ = 0, earlier_runs_ = 0;

@@ -1,4 +1,4 @@
-// The report's sections, one function each. A section says so when no run has what it needs.
+// The report's sections, one function each. A section without data says so.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace pmg::report {
 
 using Runs = std::vector<RunSeries>;
 
-inline constexpr double kLongestGap_s = 0.1;  ///< ten ticks: over more nothing is drawn
+inline constexpr double kLongestGap_s = 0.1;  ///< ten ticks; a longer gap interrupts a line
 
 /// Colours of one run's lines.
 struct Palette {
@@ -21,13 +21,13 @@ struct Palette {
 };
 const Palette& palette(std::size_t run);
 
-/// " B" behind a line's name when there are several runs.
+/// " B" behind a line's name if there are several runs.
 std::string suffix(const Runs& runs, std::size_t run);
 
-/// Whether the drives were in a fault, behind the lines.
+/// Bands behind the lines, where a controller was in a fault.
 std::vector<pages::Band> fault_bands(const Runs& runs);
 
-/// values with NaN where the drives did not follow the reference: then it says nothing.
+/// The values with NaN where the drives did not follow the reference, because the reference has no meaning there.
 std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, std::vector<double> values);
 
 /// A line of one run; without a point it isn't drawn.

@@ -12,13 +12,13 @@
 
 namespace pmg::report {
 
-/// t_s counts from the log's beginning. The message has as many joints as the run, and a mode that there is.
+/// t_s counts from the log's beginning. The message must have as many joints as the run, and a valid mode.
 void append(const pmg_msgs::robot_state_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run);
 
-/// measured: what the robot does, by command channel. While the gantry carries the robot nothing is measured.
+/// measured: the robot's motion by command channel. While the gantry carries the robot, the series gets NaN.
 void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kChannels>& measured, double t_s,
             RunSeries& run);
 

@@ -1,4 +1,4 @@
-// The wall times that a lockstep run keeps beside its log.
+// The wall times of a lockstep run, which stand in a file beside its log.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace pmg::report {
 
-/// Adds to run.timing what a timing.csv (time_s,tick_us,generator_us,gco_us,policy_us) holds; nothing when there is
-/// none.
+/// Adds the samples of a timing.csv (time_s,tick_us,generator_us,gco_us,policy_us) to run.timing; none if there is no
+/// file.
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run);
 
 }  // namespace pmg::report
