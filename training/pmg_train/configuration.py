@@ -1,5 +1,5 @@
-"""Reads config.yaml, which only training has: every key there and known, every value of its shape, or one clear line. Files that the C++
-programs read too are checked_files.py's."""
+"""Reads config.yaml, which only training has. Every key must be there and known, every value must have its shape; else one clear line
+says so. checked_files.py reads the files that the C++ programs read too."""
 
 import math
 from pathlib import Path
@@ -107,7 +107,7 @@ def _check(value, schema, where: str) -> None:
 
 
 def load_config(path: str | Path) -> dict:
-    """ValueError names file and key and what was expected."""
+    """ValueError names the file, the key and the expected value."""
     path = Path(path)
     try:
         value = yaml.safe_load(path.read_text())

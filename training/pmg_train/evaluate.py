@@ -63,7 +63,7 @@ class Conditions:
     payload_kg: float = 0.0
     gain_factor: float = 1.0
     delay_steps: int = 1  # of 2 ms
-    noise: float = 0.5    # share of what training adds
+    noise: float = 0.5    # share of training's noise
 
     @staticmethod
     def draw(random: np.random.Generator) -> "Conditions":

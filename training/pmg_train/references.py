@@ -34,7 +34,7 @@ class ReferenceBatch:
             self._handle = None
 
     def reset(self) -> None:
-        """Every stream at rest; random commands go on where they were."""
+        """Puts every stream to rest. Random commands continue."""
         self._lib.pmg_batch_reset(self._handle)
 
     def run(self, ticks: int, commands: np.ndarray | None = None, out: np.ndarray | None = None) -> np.ndarray:
@@ -55,7 +55,7 @@ class ReferenceBatch:
         return out
 
     def observe(self, gyro, quat_wxyz, q, dq, last_action, first: bool = False) -> np.ndarray:
-        """The controller's own observation for stream 0's last tick and this robot state (what a robot senses)."""
+        """The controller's own observation for stream 0's last tick and this robot state (a robot's sensors)."""
         arrays = [np.ascontiguousarray(a, np.float64) for a in (gyro, quat_wxyz, q, dq)]
         action = np.ascontiguousarray(last_action, np.float32)
         out = np.empty(self.description["observation"]["size"], np.float32)

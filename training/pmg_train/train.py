@@ -161,7 +161,7 @@ class Training:
                 + ["falls", "timeouts", "reward"])
 
     def _record(self) -> None:
-        """Compiles everything; on a GPU the two torch halves of a tick become CUDA graphs, as the physics did."""
+        """Compiles everything. On a GPU the two torch halves of a tick become CUDA graphs, like the physics."""
         self.env.worlds.capture()
         self.act, self.observe = self._act, self._observe
         for _ in range(3 if self.cuda else 1):
@@ -183,7 +183,7 @@ class Training:
         self.log("compiled")
 
     def _time_bare_steps(self, calls: int = 40) -> float:
-        """World ticks a second of the physics alone, in this very run."""
+        """World ticks per second of the physics alone, in this run."""
         step = self.env.worlds.step
         step()
         if self.cuda:
@@ -293,7 +293,7 @@ class Training:
         torch.save(dict(actor=actor, **self._meta()), path)
 
     def save(self) -> None:
-        """last.pt: what was learned and how. worlds.pt: each process' momentary state, for an exact continuation."""
+        """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation."""
         if self.rank == 0:
             _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
                         curve=self.curve, **self._meta()), self.a.out / "last.pt")
@@ -305,7 +305,7 @@ class Training:
         return self.a.out / ("worlds.pt" if self.rank == 0 else f"worlds_{self.rank}.pt")
 
     def _load(self) -> None:
-        """Goes on exactly where the run ended; without its worlds.pt (another number of worlds, say) from new starts."""
+        """Continues exactly where the run ended. Without a fitting worlds.pt (as for another number of worlds) it starts new episodes."""
         path = self.a.out / "last.pt"
         state = torch.load(path, map_location=self.device, weights_only=False)
         if state["variant"] != self.a.variant:
@@ -329,7 +329,7 @@ class Training:
         self.log(f"goes on from iteration {self.iteration}" + ("" if exact else ", with new worlds"))
 
     def _start_from(self, path: Path) -> None:
-        """Another run's networks and exploration; steps and curve begin at zero."""
+        """Starts with another run's networks and exploration; steps and curve begin at zero."""
         state = torch.load(path, map_location=self.device, weights_only=False)
         self.network.load_state_dict(state["network"])
         low, high = self.config["ppo"]["learning_rate"]

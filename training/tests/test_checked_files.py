@@ -1,4 +1,4 @@
-"""A file that training shares with the C++ programs, and that is wrong, stops a training with the line of their reader.
+"""A wrong file that the C++ programs read too stops a training with the line of their reader.
 
 test/training/reading_test.py compares that line with pmg_sil's, for many errors.
 """

@@ -1,4 +1,4 @@
-"""What configuration files say counts whole, or not at all."""
+"""A configuration file is read whole or refused."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Actuators of motor.yaml in training's physics: neutral actuators change nothing, others what they say, in the worlds' own factors too."""
+"""Actuators of motor.yaml in training's physics: neutral actuators change nothing; others act on their joints, also with the worlds' own factors."""
 
 import math
 import os
