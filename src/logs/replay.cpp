@@ -123,8 +123,8 @@ class Replay {
   void take_excitation(const ordered_json& bench) {
     const std::string joint = option_text(bench, "joint", ""), folder = option_text(bench, "excitation", "");
     if (!options_.excitation) {
-      throw std::runtime_error(
-          fmt::format("this run played the excitation in {} on {}, which nobody reads here", folder, joint));
+      throw std::runtime_error(fmt::format(
+          "this run played the excitation in {} on {}; this replay has no reader for excitations", folder, joint));
     }
     PlayedExcitation played = options_.excitation(loaded_.robot, joint, folder);
     if (played.sha256 != option_text(bench, "sha256", "")) {
@@ -176,17 +176,19 @@ class Replay {
   }
 
   void require_tick() const {
-    if (!tick_) throw std::runtime_error("the log doesn't begin with ROBOT_INFO: nobody knows what ran");
+    if (!tick_)
+      throw std::runtime_error("the log doesn't begin with ROBOT_INFO, which names the robot, its files and options");
   }
 
   /// Checks that all inputs of this tick are there and that every tick before it was replayed.
   void check_whole(const pmg_msgs::tick_input_t& input) const {
     const std::int64_t expected = report_.ticks;
     if (input.tick != expected && expected == 0) {
-      throw std::runtime_error(fmt::format(
-          "the log begins with tick {}: what the controller remembers of the ticks before is not in it (rotated "
-          "away, or a flight recorder's). Only a log from the controller's start can be replayed",
-          input.tick));
+      throw std::runtime_error(
+          fmt::format("the log begins with tick {}: the ticks before, which set the controller's state, are missing "
+                      "(rotated away, or "
+                      "this is a flight recorder's log). Only a log from the controller's start can be replayed",
+                      input.tick));
     }
     if (input.tick != expected) {
       throw std::runtime_error(

@@ -191,8 +191,8 @@ void timing(pages::Page& page, const Runs& runs) {
     return page.paragraph("No wall-clock times: the log has no TIMING, and there is no timing.csv beside it.");
   }
   page.paragraph(
-      "Counts are on a logarithmic axis; the few longest are told in words. On a computer that is shared with "
-      "others single long times say little.");
+      "Counts are on a logarithmic axis; words give the few longest. On a computer that is shared with "
+      "others, single long times mean little.");
   using Timing = decltype(RunSeries::timing);
   page.columns([&] {
     times(page, runs, "Whole tick", &Timing::tick_us);

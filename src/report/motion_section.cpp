@@ -36,11 +36,11 @@ std::vector<pages::Lanes::Stretch> stretches(const RunSeries::Samples& t_s, cons
 void commands(pages::Page& page, const Runs& runs) {
   page.heading("Commands");
   page.paragraph(
-      "asked: what the driving source wanted. admissible: inside the robot's limits and no faster than it may change; "
+      "asked: the driving source's command. admissible: that command within the robot's limits and with limited rates; "
       "the "
-      "reference realises it. optimised: what that reference really does on the ground. measured: what the simulated "
-      "robot "
-      "did on its own feet, velocities averaged over one gait period.");
+      "reference realises it. optimised: the motion on the ground that this reference gives. measured: the simulated "
+      "robot's "
+      "motion on its own feet, velocities averaged over one gait period.");
   page.columns([&] {
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       chart_of_runs(page, runs, kTitles[channel], [&](std::size_t i) -> std::vector<RunLine> {

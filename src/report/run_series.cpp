@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
 #include "control/mode.hpp"
