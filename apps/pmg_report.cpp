@@ -6,10 +6,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "logs/run_figures.hpp"
-#include "logs/run_report.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
+#include "report/run_figures.hpp"
+#include "report/run_report.hpp"
 
 namespace {
 
@@ -34,11 +34,11 @@ struct Arguments {
   bool json = false;
 };
 
-std::vector<logs::RunSeries> read(const std::vector<fs::path>& logs) {
-  std::vector<logs::RunSeries> runs;
+std::vector<report::RunSeries> read(const std::vector<fs::path>& logs) {
+  std::vector<report::RunSeries> runs;
   apps::ProgressLine progress;
   for (const fs::path& log : logs) {
-    runs.push_back(logs::read_run(log, [&](double share) {
+    runs.push_back(report::read_run(log, [&](double share) {
       progress.show(share, "reading " + log.string());
       return apps::interrupt_requested == 0;
     }));
@@ -46,27 +46,27 @@ std::vector<logs::RunSeries> read(const std::vector<fs::path>& logs) {
   return runs;
 }
 
-void tell(const Arguments& arguments, const std::vector<logs::RunSeries>& runs) {
+void tell(const Arguments& arguments, const std::vector<report::RunSeries>& runs) {
   if (arguments.json) {
     nlohmann::ordered_json json = {{"report", arguments.out.string()}, {"runs", nlohmann::ordered_json::array()}};
-    for (const logs::RunSeries& run : runs) json["runs"].push_back(logs::run_json(run));
+    for (const report::RunSeries& run : runs) json["runs"].push_back(report::run_json(run));
     std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     return;
   }
-  for (const logs::RunSeries& run : runs) {
-    std::cout << logs::verdict(run) << '\n';
+  for (const report::RunSeries& run : runs) {
+    std::cout << report::verdict(run) << '\n';
     for (const std::string& problem : run.problems) std::cout << "  " << problem << '\n';
   }
   std::cout << fmt::format("report in {}\n", arguments.out.string());
 }
 
 int report(const Arguments& arguments) {
-  if (arguments.logs.size() > logs::kMostRuns) {
+  if (arguments.logs.size() > report::kMostRuns) {
     throw std::invalid_argument(
-        fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), logs::kMostRuns));
+        fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), report::kMostRuns));
   }
-  const std::vector<logs::RunSeries> runs = read(arguments.logs);
-  logs::run_report(runs).write(arguments.out);
+  const std::vector<report::RunSeries> runs = read(arguments.logs);
+  report::run_report(runs).write(arguments.out);
   tell(arguments, runs);
   if (apps::interrupt_requested != 0) return kInterrupted;
   return std::ranges::all_of(runs, [](const auto& run) { return run.problems.empty(); }) ? kOk : kIncomplete;

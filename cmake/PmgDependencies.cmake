@@ -1,5 +1,6 @@
 # Finds every external library, once. Libraries come from the distribution unless third_party/ has them; scripts/setup installs them.
 find_package(Threads REQUIRED)
+find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter) # its standard library alone: tables of the messages, tests of scripts
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(yaml-cpp REQUIRED)

@@ -1,4 +1,4 @@
-// What time it is, as an argument: the wall clock on the robot, the simulation's own in lockstep.
+// The clock as an argument: the wall clock on the robot, the simulation's clock in lockstep.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ class WallClock final : public Clock {
   }
 };
 
-/// Stands still until whoever advances the simulation says how far it has come.
+/// The simulation's clock. It moves only by advance_to().
 class SimulationClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }

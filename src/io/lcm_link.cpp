@@ -9,7 +9,7 @@ namespace pmg::io {
 
 namespace {
 
-/// Messages of one channel that wait for receive(); liblcm drops what comes when they are full.
+/// Messages of one channel that may wait for receive(); liblcm drops further ones.
 constexpr int kQueueCapacity = 200;
 
 }  // namespace

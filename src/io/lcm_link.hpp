@@ -1,5 +1,4 @@
-// One place on the LCM network: opened with clear errors, published to without exceptions, received from in bounded
-// steps.
+// A link to the LCM network: opens with clear errors, publishes without exceptions, receives in bounded steps.
 #pragma once
 
 #include <lcm/lcm.h>
@@ -20,32 +19,32 @@ namespace pmg::io {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The message in these bytes; nothing when they are of another type, cut short, too long, or claim sizes that can't
-/// be: whatever a stranger sends.
+/// The message in these bytes; nothing if they are of another type, cut short or too long, or hold impossible lengths.
+/// Safe for foreign packets.
 template <typename Message>
 std::optional<Message> decode_message(Bytes bytes) {
   try {
     Message message{};
     const int size = static_cast<int>(bytes.size());
     if (message.decode(bytes.data(), 0, size) == size) return message;
-  } catch (const std::exception&) {  // lcm-gen's code trusts lengths: std::string and std::vector object
+  } catch (const std::exception&) {  // std::string and std::vector refuse a length that lcm-gen's code trusts
   }
   return std::nullopt;
 }
 
-/// For one thread, and not a real-time one. The first subscription starts liblcm's own receiving thread, which inherits
-/// the caller's scheduling: subscribe before any real-time scheduling is asked for.
+/// For one thread, not a real-time one. The first subscription starts liblcm's receiving thread, which inherits the
+/// caller's scheduling. So subscribe before you request real-time scheduling.
 class LcmLink {
  public:
   using Handler = std::function<void(Bytes)>;
 
-  /// Throws as checked_lcm_url() does, and std::runtime_error when liblcm doesn't open it all the same.
+  /// Throws as checked_lcm_url() does, and std::runtime_error if liblcm still fails to open the address.
   explicit LcmLink(const std::string& url);
 
-  /// handler is called from receive(); an exception that it throws ends there, counted. Throws std::runtime_error.
+  /// receive() calls the handler, and catches and counts its exceptions. Throws std::runtime_error.
   void subscribe(const std::string& channel, Handler handler);
 
-  /// False when the message could not be sent; counted.
+  /// False, and counted, if the message could not be sent.
   template <typename Message>
   bool publish(const std::string& channel, const Message& message) noexcept {
     try {
@@ -57,16 +56,16 @@ class LcmLink {
     ++publish_errors_;
     return false;
   }
-  /// Bytes as they are: for tests of what a stranger may send.
+  /// Sends raw bytes: for tests with foreign packets.
   bool send(const std::string& channel, Bytes bytes) noexcept;
 
-  /// Waits up to timeout_ms for a message, then handles what is there, at most max_messages: a flood doesn't keep the
-  /// caller. Returns how many.
+  /// Waits up to timeout_ms for a message, then handles the waiting ones, at most max_messages, so that a flood can't
+  /// hold the caller. Returns their number.
   int receive(int timeout_ms, int max_messages = 500);
 
-  const std::string& url() const noexcept { return url_; }  ///< as it was given
+  const std::string& url() const noexcept { return url_; }  ///< the constructor's argument
   std::int64_t publish_errors() const noexcept { return publish_errors_; }
-  std::int64_t receive_errors() const noexcept { return receive_errors_; }  ///< those of handlers included
+  std::int64_t receive_errors() const noexcept { return receive_errors_; }  ///< includes errors of handlers
 
  private:
   struct Subscription {

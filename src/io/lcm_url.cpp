@@ -21,7 +21,7 @@ namespace pmg::io {
 
 namespace {
 
-/// Bursts of 100 Hz topics and a flooded host: the kernel grants as much of it as net.core.rmem_max allows.
+/// Enough for bursts of 100 Hz topics on a busy host. The kernel grants at most net.core.rmem_max.
 constexpr const char* kReceiveBuffer = "recv_buf_size=4194304";
 constexpr int kServerAnswers_s = 1;
 
@@ -67,7 +67,7 @@ Address parse_address(const std::string& url, std::string_view text) {
   return {std::string(text.substr(0, colon)), static_cast<int>(*port)};
 }
 
-/// True when the options say how large the receive buffer is.
+/// True if the options hold the size of the receive buffer.
 bool check_options(const std::string& url, std::string_view options) {
   bool sized = false;
   while (!options.empty()) {
@@ -117,7 +117,7 @@ void check_multicast(const std::string& url, const Address& address) {
   require_multicast_route(url, group);
 }
 
-/// Connects and greets as liblcm does: whoever else listens there must not be taken for an LCM server.
+/// Connects and greets as liblcm does, because another kind of server may listen on this port.
 bool answers(const sockaddr_in& server) {
   constexpr std::uint32_t kClientMagic = 0x287617fb, kServerMagic = 0x287617fa, kProtocolVersion = 0x0100;
   const Socket probe(AF_INET, SOCK_STREAM);
@@ -133,10 +133,10 @@ bool answers(const sockaddr_in& server) {
          ::recv(probe.fd(), &magic, sizeof(magic), MSG_WAITALL) == sizeof(magic) && ntohl(magic) == kServerMagic;
 }
 
-/// The address with its host as a number: liblcm knows no names, and ends the process when nobody answers.
+/// The address with a numeric host: liblcm resolves no names, and ends the process if no server answers.
 std::string check_server(const std::string& url, const Address& address) {
   addrinfo hints{};
-  hints.ai_family = AF_INET;  // all that liblcm tries
+  hints.ai_family = AF_INET;  // liblcm tries IPv4 only
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found) != 0) {

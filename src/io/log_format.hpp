@@ -1,4 +1,4 @@
-// LCM's event log: for each event a header, the channel's name and the message's bytes; numbers are big-endian.
+// LCM's event log. Each event is a header, the channel's name and the message's bytes. Numbers are big-endian.
 #pragma once
 
 #include <cstddef>

@@ -37,14 +37,14 @@ bool LogReader::next() {
         cut_short_ = tail_cut;
         return false;
       }
-      tail_cut = true;  // unless another event follows after all
+      tail_cut = true;  // unless another event follows
     }
     ++at_;  // no event begins here
     ++skipped_bytes_;
   }
 }
 
-/// kEnd: the file ends before what seems to begin here does.
+/// kEnd: the file ends before the event that seems to begin here.
 LogReader::Outcome LogReader::parse() {
   if (!available(kLogHeaderBytes)) return Outcome::kEnd;
   const std::uint8_t* header = window_.data() + at_;
@@ -62,7 +62,7 @@ LogReader::Outcome LogReader::parse() {
   return Outcome::kEvent;
 }
 
-/// Brings that many bytes from at_ on into the window.
+/// Loads this many bytes from at_ on into the window.
 bool LogReader::available(std::size_t bytes) {
   while (window_.size() - at_ < bytes) {
     window_.erase(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(at_));

@@ -1,4 +1,4 @@
-// Reads LCM event logs, one event after the other, whatever state they are in.
+// Reads LCM event logs event by event, damaged ones too.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace pmg::io {
 
-/// Damaged stretches are skipped and counted; a last event that is cut short (power lost, file still being written)
-/// ends the log. Not LCM's own reader, which speaks on stdout and believes every length that it finds.
+/// Skips and counts damaged stretches. An incomplete last event (power lost, file still being written) ends the log.
+/// LCM's own reader isn't used: it prints to stdout and trusts every length.
 class LogReader {
  public:
   explicit LogReader(const std::filesystem::path& path);  ///< throws std::runtime_error if the file can't be opened
@@ -23,24 +23,24 @@ class LogReader {
   std::int64_t stamp_ns() const { return stamp_us_ * 1000; }  ///< LCM logs keep microseconds
   const std::vector<std::uint8_t>& data() const { return data_; }
 
-  /// The current event's message; nothing when it is of another type or cut short.
+  /// The current event's message; nothing if it is of another type or cut short.
   template <typename Message>
   std::optional<Message> decode() const {
     Message message;
     if (!decode_into(message)) return std::nullopt;
     return message;
   }
-  /// Likewise, into a message whose memory is used again.
+  /// The same, into a message whose memory is reused.
   template <typename Message>
   bool decode_into(Message& message) const {
     try {
       return message.decode(data_.data(), 0, static_cast<int>(data_.size())) >= 0;
-    } catch (const std::exception&) {  // a length that no memory has: damaged bytes
+    } catch (const std::exception&) {  // damaged bytes hold a length beyond all memory
       return false;
     }
   }
 
-  /// So far: bytes that belong to no event, those of a last event that is cut short included.
+  /// Bytes so far that belong to no event, including an incomplete last event.
   std::int64_t skipped_bytes() const { return skipped_bytes_; }
   bool cut_short() const { return cut_short_; }  ///< at the end: the last event is incomplete
 
@@ -50,7 +50,7 @@ class LogReader {
   bool available(std::size_t bytes);
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  std::vector<std::uint8_t> window_;  // of the file; what lies before at_ is done with
+  std::vector<std::uint8_t> window_;  // a part of the file; bytes before at_ are done
   std::size_t at_ = 0;
   std::string channel_;
   std::int64_t stamp_us_ = 0;

@@ -1,4 +1,4 @@
-// Logs as users name them, files or folders, read one after the other as if they were one.
+// Several logs, given as files or folders, read in order as one log.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace pmg::io {
 
-/// A folder's log-NNNN.lcm by number.
+/// The folder's log-NNNN.lcm files by number.
 std::map<int, std::filesystem::path> rotated_log_files(const std::filesystem::path& folder);
 
-/// The log files that these paths mean, in the order of a run: a file is itself, a folder its log.lcm or its
-/// log-NNNN.lcm by number. A flight recorder's fault-*.lcm are logs of their own and must be named. Throws
-/// std::runtime_error naming the path that is absent or has no log in it.
+/// The log files of these paths, in the order of a run. A folder stands for its log.lcm, or for its log-NNNN.lcm by
+/// number. A flight recorder's fault-*.lcm are logs of their own; name them one by one. Throws std::runtime_error with
+/// the path that is absent or holds no log.
 std::vector<std::filesystem::path> log_files(const std::vector<std::filesystem::path>& paths);
 
 /// All events of these files.
@@ -27,12 +27,12 @@ class LogSeries {
 
   bool next();  ///< to the next event; false at the end of the last file
   const LogReader& event() const { return *reader_; }
-  const std::filesystem::path& file() const { return files_[at_]; }  ///< that the event is from
+  const std::filesystem::path& file() const { return files_[at_]; }  ///< the event's file
   std::size_t file_number() const { return at_; }
 
-  /// Over all files so far.
+  /// Of all files so far.
   std::int64_t skipped_bytes() const { return skipped_before_ + reader_->skipped_bytes(); }
-  bool cut_short() const { return cut_short_; }  ///< the last event of a file that is read to its end is incomplete
+  bool cut_short() const { return cut_short_; }  ///< a file's last event is incomplete
 
  private:
   std::vector<std::filesystem::path> files_;

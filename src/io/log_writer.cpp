@@ -34,7 +34,7 @@ LogWriter::LogWriter(const std::filesystem::path& path) : path_(path) {
 LogWriter::~LogWriter() {
   try {
     flush();
-  } catch (const std::exception&) {  // a destructor can't tell; whoever must know flushes first
+  } catch (const std::exception&) {  // a destructor can't report; a caller that must know flushes first
   }
   close(file_);
 }
@@ -64,7 +64,7 @@ void LogWriter::flush() {
     if (written <= 0) {
       const int error = written < 0 ? errno : EIO;
       buffer_.clear();
-      // What was half written is taken back; where that is impossible the reader skips it.
+      // Removes the half-written event. Where that is impossible, the reader skips it.
       if (ftruncate(file_, flushed_bytes_) == 0) lseek(file_, flushed_bytes_, SEEK_SET);
       errno = error;
       refuse(path_, "can't be written");

@@ -10,18 +10,17 @@
 
 namespace pmg::io {
 
-/// Events carry the stamp that they are given (simulation time in SIL), never the time of writing: the same run gives
-/// the same bytes. The file holds whole events only, also after a refused write: what flush() could not bring to the
-/// disk is taken back. Not LCM's own writer, which leaves half an event on a full disk and doesn't tell what is lost.
-/// Not for a real-time thread.
+/// An event has the caller's stamp (simulation time in SIL), not the time of writing, so the same run gives the same
+/// bytes. The file holds whole events only: after a failed write, flush() removes the part of an event from the file.
+/// LCM's own writer isn't used: on a full disk it leaves half an event without an error. Not for a real-time thread.
 class LogWriter {
  public:
   explicit LogWriter(const std::filesystem::path& path);  ///< throws std::runtime_error if the file can't be made
-  ~LogWriter();                                           ///< flushes; what fails then is lost silently
+  ~LogWriter();                                           ///< flushes; an error here is lost
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  /// Appends one message; to the disk when a megabyte has gathered. Throws std::runtime_error when the disk refuses it.
+  /// Appends one message. Writes to the disk after each megabyte. Throws std::runtime_error if the disk refuses it.
   template <typename Message>
   void write(std::string_view channel, std::int64_t stamp_ns, const Message& message) {
     const int size = message.getEncodedSize();
@@ -31,10 +30,10 @@ class LogWriter {
     flush_when_large();
   }
 
-  /// Everything written so far survives the end of this process. Throws std::runtime_error; everything since the last
-  /// flush is lost then, and the writer is good for another try.
+  /// All events so far survive the end of this process. Throws std::runtime_error; then all events since the last flush
+  /// are lost, and the writer can go on.
   void flush();
-  void sync();  ///< flush(), and it survives a power cut too
+  void sync();  ///< flush(); the events survive a power cut too
 
   std::int64_t bytes() const { return flushed_bytes_ + static_cast<std::int64_t>(buffer_.size()); }
   const std::filesystem::path& path() const { return path_; }

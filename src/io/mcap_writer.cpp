@@ -69,7 +69,7 @@ void McapWriter::put(const Bytes& bytes) {
 
 McapWriter::Id McapWriter::add_schema(std::string_view name, std::string_view encoding, std::string_view data) {
   Bytes schema;
-  schema.u16(++schema_count_);  // 0 would mean none
+  schema.u16(++schema_count_);  // 0 means no schema
   schema.text(name);
   schema.text(encoding);
   schema.text(data);

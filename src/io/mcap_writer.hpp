@@ -11,7 +11,8 @@
 
 namespace pmg::io {
 
-/// Messages of any encoding: the channels say which. Every method throws std::runtime_error when the disk refuses it.
+/// Messages of any encoding; each channel has its own. Every method throws std::runtime_error if the disk refuses the
+/// data.
 class McapWriter {
  public:
   using Id = std::uint16_t;
@@ -24,7 +25,7 @@ class McapWriter {
   /// Times in nanoseconds; readers take them for UTC.
   void write(Id channel, std::int64_t time_ns, std::string_view data);
 
-  /// Index and footer; without them the file is not whole. Once, last.
+  /// Writes index and footer, without which the file is incomplete. Call once, at the end.
   void close();
 
  private:
@@ -66,7 +67,7 @@ class McapWriter {
   std::uint32_t chunk_count_ = 0;
   std::map<Id, std::uint64_t> message_counts_;
   std::uint64_t start_ns_ = 0, end_ns_ = 0, message_count_ = 0;
-  Bytes content_;  // used again
+  Bytes content_;  // memory is reused
 };
 
 }  // namespace pmg::io

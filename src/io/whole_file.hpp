@@ -1,4 +1,4 @@
-// Files that are there whole or not at all.
+// Files that are complete or absent.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace pmg::io {
 
-/// Writes beside the file and renames: an interruption leaves what was there. Throws std::runtime_error.
+/// Writes a file beside the old one and renames it, so an interruption keeps the old one. Throws std::runtime_error.
 void write_whole_file(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace pmg::io

@@ -23,7 +23,7 @@ using nlohmann::ordered_json;
 
 constexpr std::int64_t kEventsAProgress = 500;
 
-/// One message, read.
+/// One decoded message.
 struct Row {
   const io::LogReader& event;
   double time_s;  // since the first event
@@ -32,7 +32,7 @@ struct Row {
   const std::vector<Field>& fields;
 };
 
-/// Reads every message of these files and hands it to write.
+/// Reads every message of these files and calls write with it.
 template <typename Write>
 ExportReport for_each_message(const std::vector<fs::path>& files, const ExportProgress& progress, Write&& write) {
   ExportReport report;
@@ -166,7 +166,7 @@ ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& fil
       const auto schema = writer.add_schema("pmg." + channel, "jsonschema", schema_json(row.fields).dump());
       known = channels.emplace(channel, writer.add_channel(schema, channel, "json")).first;
     }
-    // The session is the wall clock at the start, nearly that of the first event; lockstep has none.
+    // The session is the wall clock at the start, close to the first event's; lockstep has none.
     const std::int64_t started_ns = row.info && row.info->session > 0 ? row.info->session - row.first_ns : 0;
     const ordered_json json = message_json(row.fields);
     writer.write(known->second, row.event.stamp_ns() + started_ns,

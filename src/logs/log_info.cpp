@@ -47,7 +47,7 @@ TimingSpread spread(const char* name, std::vector<std::int64_t>& values_ns) {
   return {.name = name, .p50_us = rank(0.5), .p99_us = rank(0.99), .p999_us = rank(0.999), .max_us = rank(1.0)};
 }
 
-/// Reads one run after the other out of a series of events.
+/// (a series of events) => its runs, one after the other.
 class Summariser {
  public:
   void take(const io::LogReader& event, const std::filesystem::path& file) {
@@ -88,7 +88,7 @@ class Summariser {
 
   double seconds(std::int64_t stamp_ns) const { return static_cast<double>(stamp_ns - first_ns_) * 1e-9; }
 
-  /// A rotated file repeats its run's; another run's differs in its session.
+  /// A rotated file repeats its run's ROBOT_INFO. Another run has another session.
   void take_info(const io::LogReader& event) {
     auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) return;
@@ -123,7 +123,7 @@ class Summariser {
   void take_fault(const io::LogReader& event) {
     const auto fault = event.decode<pmg_msgs::fault_t>();
     if (!fault || !told_faults_.emplace(fault->code, fault->stamp_ns).second) return;
-    // By its own stamp: a flight recorder's file begins with the fault that it is about.
+    // The message's own stamp: a flight recorder's file begins with its fault.
     run_->faults.push_back({seconds(fault->stamp_ns), fault->text});
   }
 
@@ -142,7 +142,7 @@ class Summariser {
   std::optional<RunSummary> run_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::optional<std::int64_t> next_tick_;
-  std::string driver_;  // as of status_ns_; empty: nobody
+  std::string driver_;  // at status_ns_; empty: none
   std::int64_t status_ns_ = 0;
   std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;
   std::array<std::vector<std::int64_t>, kTimings.size()> timings_ns_;
@@ -198,7 +198,7 @@ nlohmann::ordered_json run_json(const RunSummary& run) {
   return json;
 }
 
-/// Who ran what; the hashes are hashes_text's.
+/// Controller, robot and files. hashes_text() gives the hashes.
 std::string info_text(const pmg_msgs::robot_info_t& info) {
   std::string text = fmt::format("robot      {} (model {}), backend {}, policy {}\n", info.robot, info.model,
                                  info.backend, info.policy);

@@ -1,4 +1,4 @@
-// What a log is about: who ran what, for how long, and what happened.
+// A summary of a log: controller, robot and policy, duration, events.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace pmg::logs {
 
-/// Of all values that one field of TIMING had.
+/// Percentiles of one field of TIMING over the run.
 struct TimingSpread {
   std::string name;
   double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
@@ -27,14 +27,14 @@ struct RunSummary {
     std::string text;
   };
 
-  std::optional<pmg_msgs::robot_info_t> info;  ///< nothing: the log doesn't say
+  std::optional<pmg_msgs::robot_info_t> info;  ///< absent: the log has no ROBOT_INFO
   std::vector<std::filesystem::path> files;
   double duration_s = 0.0;
-  bool from_the_start = false;                   ///< the first tick is there
+  bool from_the_start = false;                   ///< the log holds the first tick
   std::map<std::string, std::int64_t> messages;  ///< by channel
-  std::vector<At> modes;                         ///< each when it began
+  std::vector<At> modes;                         ///< with the time of each beginning
   std::vector<At> faults;
-  std::map<std::string, double> driven_s;  ///< by source: for how long the controller followed it
+  std::map<std::string, double> driven_s;  ///< by source: seconds in which the controller followed it
   std::int64_t ticks = 0, lost_ticks = 0, missed_ticks = 0, missed_bus_cycles = 0;
   std::vector<TimingSpread> timing;  ///< empty in lockstep
 };
@@ -45,7 +45,7 @@ struct LogSummary {
   bool cut_short = false;
 };
 
-/// Reads these logs. Throws std::runtime_error when one can't be opened or there is no event in any.
+/// Reads these logs. Throws std::runtime_error if one can't be opened, or if none holds an event.
 LogSummary summarise_logs(const std::vector<std::filesystem::path>& files);
 
 nlohmann::ordered_json to_json(const LogSummary& summary);

@@ -1,4 +1,4 @@
-// The fields of every logged message by name, for those who write them down (CSV, JSON) or compare them.
+// The fields of every logged message by name, for exports (CSV, JSON) and comparisons.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace pmg::logs {
 
-/// One number, flag or text of a message, or one element of a vector of fixed meaning. A list, whose length changes
-/// from message to message, is one field.
+/// One number, flag or text of a message, or one element of an array with named elements. A list, whose length may
+/// change from message to message, is one field.
 struct Field {
   using Value = std::variant<std::int64_t, double, bool, std::string, std::vector<std::string>>;
 
   std::string name;     ///< as in msgs/
-  std::string element;  ///< joint, foot, axis or command channel; empty: no vector
+  std::string element;  ///< joint, foot, axis or command channel; empty: no array
   Value value;
 
   std::string path() const { return element.empty() ? name : name + "." + element; }
 };
 
-/// A number in full, a text as it is, a list with ';' between.
+/// A number in full, a text unchanged, a list with ';' between its entries.
 std::string to_text(const Field::Value& value);
 
-/// Channels whose messages this program knows, in the order of a tick.
+/// Channels of the known messages, in the order of a tick.
 std::span<const std::string_view> known_channels();
 
-/// A message's fields in the order of its type, lengths of vectors left out. False when the channel isn't known or
-/// these bytes aren't such a message. joint_names label vectors of as many entries; others are numbered.
+/// The fields of a message in the order of its .lcm file, without lengths of arrays. False if the channel is unknown or
+/// the bytes are no message of its type. joint_names label arrays of joints of the same length; other arrays have
+/// numbers.
 bool read_fields(std::string_view channel, const std::vector<std::uint8_t>& data,
                  const std::vector<std::string>& joint_names, std::vector<Field>& fields);
 

@@ -14,6 +14,7 @@
 #include "control/control_setup.hpp"
 #include "io/log_series.hpp"
 #include "logs/message_fields.hpp"
+#include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "runtime/tick_messages.hpp"
 
@@ -27,65 +28,7 @@ using nlohmann::ordered_json;
 constexpr double kNotANumber = std::numeric_limits<double>::infinity();
 constexpr int kTicksAProgress = 100;
 
-std::string text_of(const ordered_json& options, const char* key, const std::string& otherwise) {
-  return options.contains(key) && options[key].is_string() ? options[key].get<std::string>() : otherwise;
-}
-
-control::ControlSetup setup_of(const pmg_msgs::robot_info_t& info, const ordered_json& logged,
-                               const ReplayOptions& options) {
-  control::ControlSetup setup;
-  setup.robot = options.robot;
-  setup.clips = options.clips;
-  if (options.robot.empty()) {
-    // Where it was when the log was made, if it still is there; else this computer's robot of that name.
-    setup.robot = text_of(logged, "robot", info.model);
-    const fs::path clips = text_of(logged, "clips", "");
-    if (!fs::is_directory(setup.robot)) setup.robot = info.model;
-    if (setup.clips.empty() && fs::is_directory(clips)) setup.clips = clips;
-  }
-  setup.policy = text_of(logged, "policy", info.policy);
-  setup.blend = text_of(logged, "blend", setup.blend);
-  return setup;
-}
-
-/// Files that differ, by name.
-void note_bundle(const pmg_msgs::robot_info_t& info, const control::LoadedControl& loaded,
-                 std::vector<std::string>& notes) {
-  if (info.bundle.empty()) {
-    notes.push_back("the log doesn't say which files it ran with");
-    return;
-  }
-  if (info.bundle == loaded.bundle) return;
-  std::map<std::string, std::string> logged;
-  for (std::size_t i = 0; i < info.bundle_file.size(); ++i) logged[info.bundle_file[i]] = info.bundle_sha256[i];
-  for (const auto& [name, sha256] : loaded.files) {
-    const auto found = logged.find(name);
-    if (found == logged.end()) {
-      notes.push_back(fmt::format("{} is here, but was not there when the log was made", name));
-    } else if (found->second != sha256) {
-      notes.push_back(fmt::format("{} is not the file that the log was made with", name));
-    }
-    if (found != logged.end()) logged.erase(found);
-  }
-  for (const auto& [name, sha256] : logged) notes.push_back(fmt::format("{} was there when the log was made", name));
-}
-
-/// Options that by themselves would not be those of the log, whose own are replayed; where files lie doesn't matter.
-void note_options(const ordered_json& logged, const ordered_json& now, std::vector<std::string>& notes) {
-  if (!logged.is_object()) return;
-  const ordered_json before = logged.flatten(), after = now.flatten();
-  for (const auto& [key, value] : after.items()) {
-    if (key == "/robot" || key == "/clips") continue;
-    if (!before.contains(key)) {
-      notes.push_back(fmt::format("option {} is {}; the log doesn't name it", key.substr(1), value.dump()));
-    } else if (before[key] != value) {
-      notes.push_back(
-          fmt::format("option {} is the log's {}, not {}", key.substr(1), before[key].dump(), value.dump()));
-    }
-  }
-}
-
-/// The same bits: -0 is not 0, and a NaN is itself.
+/// Equal bits: -0 differs from 0, and a NaN equals the same NaN.
 bool same(const Field::Value& a, const Field::Value& b) {
   if (std::holds_alternative<double>(a) && std::holds_alternative<double>(b)) {
     return std::bit_cast<std::uint64_t>(std::get<double>(a)) == std::bit_cast<std::uint64_t>(std::get<double>(b));
@@ -157,13 +100,13 @@ class Replay {
       throw std::runtime_error("these logs are of more than one run; name the files of one");
     }
     const ordered_json logged = ordered_json::parse(info.options, nullptr, false);
-    const control::ControlSetup setup = setup_of(info, logged, options_);
+    const control::ControlSetup setup = replay_setup(info, logged, options_);
     loaded_ = control::load_control(setup);
     if (loaded_.robot.joint_index.names() != info.joint_names) {
       throw std::runtime_error(
           fmt::format("the log's robot {} has other joints than {}", info.model, loaded_.robot.directory.string()));
     }
-    note_bundle(info, loaded_, report_.notes);
+    note_files(info, loaded_, report_.notes);
     if (info.software != runtime::software_version()) {
       report_.notes.push_back(
           fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
@@ -178,13 +121,13 @@ class Replay {
   }
 
   void take_excitation(const ordered_json& bench) {
-    const std::string joint = text_of(bench, "joint", ""), folder = text_of(bench, "excitation", "");
+    const std::string joint = option_text(bench, "joint", ""), folder = option_text(bench, "excitation", "");
     if (!options_.excitation) {
-      throw std::runtime_error(
-          fmt::format("this run played the excitation in {} on {}, which nobody reads here", folder, joint));
+      throw std::runtime_error(fmt::format(
+          "this run played the excitation in {} on {}; this replay has no reader for excitations", folder, joint));
     }
     PlayedExcitation played = options_.excitation(loaded_.robot, joint, folder);
-    if (played.sha256 != text_of(bench, "sha256", "")) {
+    if (played.sha256 != option_text(bench, "sha256", "")) {
       report_.notes.push_back(fmt::format("the excitation of {} is not the one that the log was made with", joint));
     }
     loaded_.options.excitation = std::move(played.plan);
@@ -233,17 +176,19 @@ class Replay {
   }
 
   void require_tick() const {
-    if (!tick_) throw std::runtime_error("the log doesn't begin with ROBOT_INFO: nobody knows what ran");
+    if (!tick_)
+      throw std::runtime_error("the log doesn't begin with ROBOT_INFO, which names the robot, its files and options");
   }
 
-  /// What this tick started from is all there, and every tick before it was replayed.
+  /// Checks that all inputs of this tick are there and that every tick before it was replayed.
   void check_whole(const pmg_msgs::tick_input_t& input) const {
     const std::int64_t expected = report_.ticks;
     if (input.tick != expected && expected == 0) {
-      throw std::runtime_error(fmt::format(
-          "the log begins with tick {}: what the controller remembers of the ticks before is not in it (rotated "
-          "away, or a flight recorder's). Only a log from the controller's start can be replayed",
-          input.tick));
+      throw std::runtime_error(
+          fmt::format("the log begins with tick {}: the ticks before, which set the controller's state, are missing "
+                      "(rotated away, or "
+                      "this is a flight recorder's log). Only a log from the controller's start can be replayed",
+                      input.tick));
     }
     if (input.tick != expected) {
       throw std::runtime_error(
@@ -257,7 +202,7 @@ class Replay {
   }
 
   void compare_status(const io::LogReader& event) {
-    // Known to the threads around the tick alone.
+    // Only the threads around the tick know this value, so the log's is taken.
     run_.realtime = decoded<pmg_msgs::status_t>(event).realtime != 0;
     compare(event, status_);
   }
@@ -279,7 +224,7 @@ class Replay {
     note_differences(event);
   }
 
-  /// Field by field, of a message whose bytes differ from bytes_.
+  /// Compares field by field a message whose bytes differ from bytes_.
   void note_differences(const io::LogReader& event) {
     if (!read_fields(event.channel(), event.data(), loaded_.robot.joint_index.names(), logged_fields_))
       throw std::runtime_error(event.channel() + " is no message that this program knows (another version?)");
@@ -304,7 +249,7 @@ class Replay {
 
   const ReplayOptions& options_;
   const std::function<void(double)>& progress_;
-  const io::SimulationClock stopwatch_;  // nothing is timed
+  const io::SimulationClock stopwatch_;  // a replay measures no times
   control::LoadedControl loaded_;
   runtime::RunInfo run_;
   std::unique_ptr<control::Tick> tick_;

@@ -1,4 +1,4 @@
-// A log's tick computed again: the logged states, commands and requests through the same Tick, every output compared.
+// (a log's states, commands and requests) => each tick computed again by the same Tick, and each output compared.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace pmg::logs {
 
-/// What a run with --bench played.
+/// The excitation of a run with --bench.
 struct PlayedExcitation {
   control::ExcitationPlan plan;
-  std::string sha256;  ///< of its files
+  std::string sha256;  ///< of the excitation's files
 };
 
 struct ReplayOptions {
-  std::string robot;            ///< name or folder; empty: as the log says
-  std::filesystem::path clips;  ///< empty: as the log says; the robot's own if robot is given
-  /// Reads the excitation of this joint; folder as the log says. Absent: a run with one is refused.
+  std::string robot;            ///< name or folder; empty: the log's
+  std::filesystem::path clips;  ///< empty: the log's, or the robot's own if robot is given
+  /// Reads the excitation of this joint from the log's folder. Without it a run with an excitation can't be replayed.
   std::function<PlayedExcitation(const model::RobotModel&, const std::string& joint,
                                  const std::filesystem::path& folder)>
       excitation{};
 };
 
-/// Where an output isn't the logged one.
+/// The place of a difference between an output and the log.
 struct Difference {
   double time_s = 0.0;  ///< since the log's first event
   std::int64_t tick = 0;
@@ -42,18 +42,19 @@ struct ReplayReport {
   double duration_s = 0.0;
   std::int64_t compared_messages = 0, different_messages = 0;
   std::optional<Difference> first;
-  /// By channel and field: largest |logged - replayed| over numbers; infinite where one is no number or texts differ.
+  /// By channel and field: largest |logged - replayed| of numbers; infinite if one is not finite or if texts differ.
   std::map<std::string, double> largest;
-  std::vector<std::string> notes;  ///< what differs before the first tick: bundle, options, software
+  std::vector<std::string> notes;  ///< differences before the first tick: bundle, options, software
   bool cut_short = false;          ///< the log's last event is incomplete
 
   bool equal() const { return different_messages == 0; }
   double largest_difference() const;
 };
 
-/// REFERENCE, MOTOR_COMMAND and STATUS of every tick, bit for bit. Throws std::runtime_error or
-/// std::invalid_argument when these logs can't be replayed, and says why: they don't begin with the controller's first
-/// tick, ticks are missing, or robot, clips or policy can't be loaded. progress is told the replayed time now and then.
+/// Compares REFERENCE, MOTOR_COMMAND and STATUS of every tick, bit for bit. Throws std::runtime_error or
+/// std::invalid_argument with the reason if these logs can't be replayed: they don't begin with the controller's first
+/// tick, ticks are missing, or robot, clips or policy can't be loaded. From time to time it calls progress with the
+/// replayed time.
 ReplayReport replay(const std::vector<std::filesystem::path>& files, const ReplayOptions& options,
                     const std::function<void(double time_s)>& progress = {});
 

@@ -81,7 +81,7 @@ Progress Climb::wait_for_ground() {
     return Progress::kPending;
   }
   text_ = std::string("the hoist ") + hoist_words(hoist->state);
-  // Standing up ends a wish to stay up, and the hoist says so a moment later.
+  // After standing up the robot no longer stays on the hoist; the hoist's next state says so.
   if (hoist->stays_up && in_part_s() > kHoistAnswer_s) return fail(text_ + " until it is set down");
   return in_part_s() < timeout_s_ ? Progress::kPending : fail(text_ + " and doesn't end");
 }

@@ -1,4 +1,4 @@
-// From whatever mode a robot is in to Stand or Walk, once: by way of the ground when it hangs on a hoist.
+// Takes a robot from any mode to Stand or Walk, once. A robot on a hoist is set down first.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,21 @@
 
 namespace pmg::ops {
 
-/// Asks for each mode once. When somebody stops the robot meanwhile, the climb has failed and asks for nothing more.
+/// Asks for each mode once. If another operator stops the robot meanwhile, the climb fails and asks for nothing more.
 class Climb {
  public:
-  /// A hoist says ten times a second what it does: one that was not heard in this time is not there.
+  /// A hoist sends its state ten times a second. After this time without one there is no hoist.
   static constexpr std::int64_t kLook_ns = 250'000'000;
 
-  /// Keeps a reference. to: kStand or kWalk; whoever wants Walk sends commands meanwhile. timeout_s: for each part.
+  /// Keeps a reference. to: kStand or kWalk; for kWalk the caller sends commands meanwhile. timeout_s: for each part.
   Climb(OperatorSource& source, std::string robot, Goal to, double timeout_s);
 
-  /// To be called after every link.receive().
+  /// Call after each link.receive().
   Progress step();
-  const std::string& text() const noexcept { return text_; }  ///< for people: what it waits for, or why it failed
-  /// The source whose lease is waited for: it drove, fell silent and did not let go. Empty: none.
+  const std::string& text() const noexcept {
+    return text_;
+  }  ///< for people: the event that it waits for, or why it failed
+  /// The source whose lease must end first: it drove, fell silent and did not let go. Empty: none.
   std::string waits_for() const { return wish_ ? wish_->waits_for() : std::string(); }
 
  private:
@@ -44,7 +46,7 @@ class Climb {
   std::string text_;
 };
 
-/// The hoist's state, while it is heard and carries the robot.
+/// The hoist's state while it sends and carries the robot.
 std::optional<pmg_msgs::hoist_state_t> carrying_hoist(const OperatorSource& source, const std::string& robot);
 
 }  // namespace pmg::ops

@@ -10,7 +10,7 @@ namespace pmg::ops {
 
 namespace {
 
-/// A controller that was not heard for so long is gone.
+/// A controller that has been silent for this time is gone.
 constexpr std::int64_t kSilent_ns = 500'000'000;
 
 }  // namespace
@@ -27,7 +27,7 @@ Drive::Drive(OperatorSource& source, std::string robot, const Command& command, 
 void Drive::enter(Phase phase) {
   phase_ = phase;
   phase_since_ns_ = send_at_ns_ = source_.clock().now_ns();
-  send_if_due();  // a wish for Walk finds a command that came before it
+  send_if_due();  // the command must arrive before the request for Walk
   if (phase == Phase::kClimbing) climb_.emplace(source_, robot_, Goal::kWalk, options_.timeout_s);
   if (phase == Phase::kDescending) wish_.emplace(source_, robot_, Goal::kStand, options_.timeout_s);
 }
@@ -96,7 +96,8 @@ Progress Drive::claim() {
   }
   const std::int64_t now_ns = source_.clock().now_ns();
   if (!waits_for().empty() && static_cast<double>(now_ns - begin_ns_) * 1e-9 < options_.timeout_s) {
-    phase_since_ns_ = now_ns;  // once the lease is over the controller gets its time to show this source as driving
+    phase_since_ns_ =
+        now_ns;  // after the end of the lease the controller has kSettle_ns to show this source as driving
     return Progress::kPending;
   }
   const std::string trouble_text = trouble();

@@ -1,4 +1,4 @@
-// One stretch of driving: a command held for some seconds, and velocity brought to zero at its end.
+// One stretch of driving: a command for some seconds, then zero velocity.
 #pragma once
 
 #include <cstdint>
@@ -16,35 +16,38 @@ struct DriveOptions {
   double duration_s = 0.0;
   bool climb = false;  ///< ask for Walk first, and for Stand at the end
   double timeout_s =
-      10;  ///< for each of the two, for a hoist to set the robot down, for a crashed source's lease to end
+      10;  ///< for each of the two requests, for a hoist to set the robot down, for a crashed source's lease to end
 };
 
-/// Sends at 50 Hz from construction on, so that Walk finds a fresh command.
+/// Sends at 50 Hz from construction on, because the controller needs a fresh command to enter Walk.
 class Drive {
  public:
   static constexpr std::int64_t kPeriod_ns = 20'000'000;
-  static constexpr double kLease_s = 0.5;                  ///< a crashed station blocks the others for no longer
-  static constexpr double kLastLease_s = 0.02;             ///< of the last command: the next source needn't wait
-  static constexpr std::int64_t kRelease_ns = 50'000'000;  ///< until that lease is over: a script's next line may drive
-  static constexpr std::int64_t kCalm_ns = 600'000'000;    ///< zero velocity at the end: the generator's ramp and some
-  static constexpr std::int64_t kSettle_ns = 300'000'000;  ///< until the controller must show this source as driving
+  static constexpr double kLease_s = 0.5;       ///< a crashed station blocks the others for this time at most
+  static constexpr double kLastLease_s = 0.02;  ///< of the last command, so that the next source need not wait
+  static constexpr std::int64_t kRelease_ns =
+      50'000'000;  ///< until that lease is over and the next line of a script may drive
+  static constexpr std::int64_t kCalm_ns =
+      600'000'000;  ///< zero velocity at the end: the generator's ramp and a margin
+  static constexpr std::int64_t kSettle_ns =
+      300'000'000;  ///< after this time the controller must show this source as driving
 
   /// Keeps a reference to source.
   Drive(OperatorSource& source, std::string robot, const Command& command, const DriveOptions& options);
 
-  /// To be called after every link.receive(), every 20 ms or oftener.
+  /// Call after each link.receive(), at least every 20 ms.
   Progress step();
-  /// Ends the stretch early, with zero velocity as ever.
+  /// Ends the stretch early, also with zero velocity.
   void end_early() noexcept;
 
   const std::string& text() const noexcept { return text_; }  ///< why it failed, in words
   bool driving() const noexcept { return phase_ == Phase::kDriving; }
   double driven_s() const;
-  /// The source whose lease is waited for: it drove, fell silent and did not let go. Empty: none.
+  /// The source whose lease must end first: it drove, fell silent and did not let go. Empty: none.
   std::string waits_for() const;
 
  private:
-  /// Claiming: nothing is climbed, and commands of zero are sent until the controller shows this source as driving.
+  /// kClaiming: no climb is needed; the drive sends zero commands until the controller shows this source as driving.
   enum class Phase { kClimbing, kClaiming, kDriving, kCalming, kDescending, kEnded };
 
   void enter(Phase phase);
@@ -52,7 +55,7 @@ class Drive {
   Progress follow_climb();
   Progress follow_wish();
   Progress claim();
-  /// What speaks against going on; empty: nothing.
+  /// The reason to stop; empty: none.
   std::string trouble() const;
   void send_if_due();
 

@@ -1,4 +1,5 @@
-// What an operator wants of a simulated robot's hoist: asked for every 50 ms until it is answered, then watched.
+// An operator's request to a simulated robot's hoist: repeated every 50 ms until the answer, then watched until it is
+// fulfilled.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +10,20 @@
 
 namespace pmg::ops {
 
-/// What the hoist does, for people: "holds the robot".
+/// The hoist's state in words: "holds the robot".
 const char* hoist_words(std::int8_t state) noexcept;
 
 class HoistWish {
  public:
-  /// A hoist says ten times a second what it does: one that was not heard for so long is not there.
+  /// A hoist sends its state ten times a second. After this time without one there is no hoist.
   static constexpr std::int64_t kSilent_ns = 1'000'000'000;
 
-  /// Keeps a reference, and asks for the first time.
+  /// Keeps a reference and sends the first request.
   HoistWish(OperatorSource& source, std::string robot, bool lift, double timeout_s);
 
-  /// To be called after every link.receive(). Reached: the robot hangs, or stands on its own.
+  /// Call after each link.receive(). Reached: the robot hangs, or stands by itself.
   Progress step();
-  const std::string& text() const noexcept { return text_; }  ///< for people: how it is, or why not
+  const std::string& text() const noexcept { return text_; }  ///< for people: the state, or why the request failed
   double elapsed_s() const;
 
  private:

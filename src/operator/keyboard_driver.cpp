@@ -30,7 +30,7 @@ void KeyboardDriver::press(Key key, bool fast) {
       hold_back(std::string("stopped: ") + kRises);
       return;
     case Key::kStand:
-      if (stop_) return;  // first of all it must be answered
+      if (stop_) return;  // the stop must be answered before anything else
       keys_.rest();
       keys_.upright();
       held_back_ = false;
@@ -89,14 +89,14 @@ void KeyboardDriver::enter(Doing doing) {
 void KeyboardDriver::climb(Goal to) {
   seen_presses_ = keys_.presses();
   enter(Doing::kClimbing);
-  send_if_due();  // a request for Walk finds a command that came before it
+  send_if_due();  // the command must arrive before the request for Walk
   climb_.emplace(source_, robot_, to, kTimeout_s);
 }
 
 void KeyboardDriver::idle(const std::string& text) {
   const bool drove = doing_ != Doing::kIdle;
   enter(Doing::kIdle);
-  if (drove) source_.send_command(robot_, Command{}, kLastLease_s);  // whoever comes next needn't wait
+  if (drove) source_.send_command(robot_, Command{}, kLastLease_s);  // so that the next source need not wait
   seen_presses_ = keys_.presses();
   text_ = text;
 }
@@ -153,7 +153,7 @@ void KeyboardDriver::follow_keys() {
   if (doing_ == Doing::kDriving) {
     seen_presses_ = keys_.presses();
   } else if (held_back_ || !wants_to_move()) {
-    seen_presses_ = keys_.presses();  // none of them waits for later
+    seen_presses_ = keys_.presses();  // earlier presses have no later effect
     if (!held_back_) return;
     keys_.rest();
     keys_.upright();

@@ -1,4 +1,4 @@
-// Drives one robot by keys: what they ask for becomes commands and requests for modes, over the network.
+// Drives one robot by keys: (keys) => commands and requests for modes on the network.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,19 @@
 
 namespace pmg::ops {
 
-/// For one thread. Sends commands only while it wants the robot to move: an idle keyboard is in nobody's way.
+/// For one thread. Sends commands only while the robot shall move, so an idle keyboard does not block other operators.
 ///
-/// A key that moves or bends takes the robot from wherever it is to Walk. After a stop, whoever asked for it, and after
-/// a fault none does: the robot rises again when its operator asks for Stand (Key::kStand), and for nothing else.
+/// A key for a velocity or a posture takes the robot from any mode to Walk, except after a stop by any operator and
+/// after a fault. Then the robot rises only when its operator asks for Stand (Key::kStand).
 class KeyboardDriver {
  public:
   static constexpr std::int64_t kPeriod_ns = 20'000'000;
   static constexpr double kLease_s = 0.5, kLastLease_s = 0.02;  ///< as Drive's
-  /// Velocity is zero at its end: the generator's ramp and some.
+  /// After this time the velocity is zero: the generator's ramp and a margin.
   static constexpr std::int64_t kCalm_ns = 600'000'000;
-  static constexpr std::int64_t kSettle_ns = 300'000'000;  ///< until the controller must show this source as driving
-  static constexpr std::int64_t kSilent_ns = 500'000'000;  ///< a controller that was not heard for so long is gone
+  static constexpr std::int64_t kSettle_ns =
+      300'000'000;  ///< after this time the controller must show this source as driving
+  static constexpr std::int64_t kSilent_ns = 500'000'000;  ///< a controller that has been silent for this time is gone
   static constexpr double kTimeout_s = 10.0;
   static constexpr std::int64_t kLetGo_ns = 2'000'000'000;  ///< how long let_go() waits for Stand
 
@@ -40,16 +41,16 @@ class KeyboardDriver {
   void release_all() noexcept { keys_.release_all(); }
   void listen() noexcept { keys_.listen(now_ns()); }
 
-  /// To be called after every link.receive(), every 10 ms or oftener.
+  /// Call after each link.receive(), at least every 10 ms.
   void step();
 
-  /// Velocity to zero, then Stand; keys mean nothing any more.
+  /// Velocity to zero, then Stand; further keys have no effect.
   void let_go();
-  bool gone() const noexcept { return gone_; }  ///< let_go() has come to its end
+  bool gone() const noexcept { return gone_; }  ///< let_go() is complete
 
   const std::string& robot() const noexcept { return robot_; }
-  const Command& asked() const noexcept { return asked_; }  ///< by keys, of this moment
-  std::string text() const;                                 ///< what it does, or why the robot doesn't move
+  const Command& asked() const noexcept { return asked_; }  ///< the keys' command at this moment
+  std::string text() const;  ///< for people: the driver's state, or why the robot doesn't move
   bool driving() const noexcept { return doing_ == Doing::kDriving; }
 
  private:
@@ -82,7 +83,7 @@ class KeyboardDriver {
   Doing doing_ = Doing::kIdle;
   std::int64_t doing_since_ns_ = 0, send_at_ns_ = 0, letting_go_since_ns_ = 0;
   Command sent_;
-  std::int64_t seen_presses_ = 0;  // those that were heeded
+  std::int64_t seen_presses_ = 0;  // presses that have been handled
   std::optional<std::int8_t> mode_;
   std::int64_t session_ = 0;
   bool held_back_ = false, letting_go_ = false, gone_ = false;

@@ -1,4 +1,4 @@
-// A keyboard on the network: its own source, the robot that it drives, and what is shown of both.
+// A keyboard on the network: its operator source, the robot that it drives, and the text about both.
 #pragma once
 
 #include <optional>
@@ -18,29 +18,30 @@ namespace pmg::ops {
 /// For one thread.
 class KeyboardStation {
  public:
-  /// robot: the controller's name; empty: the only one that is heard. session: as OperatorSource's.
+  /// robot: the controller's name; empty: the only controller on the address. session: as in OperatorSource.
   KeyboardStation(io::LcmLink& link, std::string robot, KeyReport report, std::int64_t session, const io::Clock& clock);
 
-  /// Names of keys: key_named()'s; others are ignored. Before a robot is known "escape" stops every one on the address.
+  /// Key names are those of key_named(); other names have no effect. Before a robot is known, "escape" stops every
+  /// robot on the address.
   void press(std::string_view key, bool shift);
   void repeat(std::string_view key, bool shift);
   void release(std::string_view key);
   void release_all();
   void listen();
 
-  /// Hears for so long, drives. To be called again and again.
+  /// Receives for this time, then drives. Call repeatedly.
   void step(int wait_ms);
   void let_go();
   bool gone() const noexcept { return !driver_ ? letting_go_ : driver_->gone(); }
 
-  bool heard() const noexcept { return !source_.heard().empty(); }  ///< any controller, ever
+  bool heard() const noexcept { return !source_.heard().empty(); }  ///< any controller has sent a message
   std::vector<std::string> lines() const;                           ///< for a terminal
   DrivingTable table() const;                                       ///< for a window
-  std::string last_words() const;                                   ///< at the end: how the robot was left
+  std::string last_words() const;                                   ///< at the end: the robot's last state
 
  private:
   void find_robot();
-  const RobotNews* news() const;  // null: nothing was heard of the robot
+  const RobotNews* news() const;  // null: the robot has sent nothing
   std::string why_no_robot() const;
 
   io::LcmLink& link_;

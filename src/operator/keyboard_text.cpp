@@ -87,7 +87,7 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
       if (!options.contains(place) || !options[place].is_number()) return std::nullopt;
       (*values)[i] = options[place].get<double>();
     }
-    // Zero is always allowed: what a key that is let go asks for.
+    // A released key commands zero, so zero is always allowed.
     if (!(limits.lower[i] <= 0.0 && limits.upper[i] >= 0.0)) return std::nullopt;
   }
   return limits;

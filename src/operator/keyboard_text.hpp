@@ -1,4 +1,4 @@
-// What is shown beside the keys: in a terminal and in a window alike.
+// The text beside the keys, for a terminal and for a window.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,20 @@
 
 namespace pmg::ops {
 
-/// The ranges of the configuration in force, as ROBOT_INFO's options name them; nothing when they don't.
+/// The command ranges in ROBOT_INFO's options; nothing if the options hold none.
 std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info);
 
-/// Two columns for a window, whose letters are not all as wide: labels and what they stand for, as many lines in both.
+/// Two columns for a window with a proportional font: labels and values, with equally many lines.
 struct DrivingTable {
   std::string labels, values;
 };
 DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
 
-/// For a terminal, one line each: mode, what is asked and taken, what was limited, who drives. news: null before the
-/// robot was heard.
+/// For a terminal, one line each: mode, requested and accepted command, limits in force, driving source. news: null
+/// before the robot's first message.
 std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
 
-/// What the keys do: for a terminal, and for a window.
+/// The meaning of the keys, for a terminal and for a window.
 std::vector<std::string> key_lines();
 DrivingTable key_table();
 

@@ -1,4 +1,4 @@
-// A keyboard station in a thread of its own, for a window: however slowly that draws, commands are sent in time.
+// A keyboard station in its own thread, for a window. A slow window does not delay the commands.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,12 @@
 
 namespace pmg::ops {
 
-/// Everything but construction from any one thread; nothing here waits for longer than a step takes.
+/// One thread at a time may call the methods. None waits longer than one step.
 class KeyboardThread {
  public:
-  /// Speaks on this address to this controller. Throws as LcmLink does.
+  /// Sends to this controller on this address. Throws as LcmLink does.
   KeyboardThread(const std::string& url, const std::string& robot);
-  ~KeyboardThread();  ///< without let_go() commands simply end
+  ~KeyboardThread();  ///< without let_go() the commands end at once
   KeyboardThread(const KeyboardThread&) = delete;
   KeyboardThread& operator=(const KeyboardThread&) = delete;
 
@@ -26,7 +26,7 @@ class KeyboardThread {
   void repeat(const std::string& key, bool shift);
   void release(const std::string& key);
   void release_all();
-  void listen();  ///< the window looked at its keys
+  void listen();  ///< the window has polled its keys
   void let_go();
 
   DrivingTable table() const;
@@ -39,7 +39,7 @@ class KeyboardThread {
 
   io::WallClock clock_;
   io::LcmLink link_;
-  KeyboardStation station_;  // the thread's
+  KeyboardStation station_;  // used by the thread only
   mutable std::mutex mutex_;
   std::vector<Errand> errands_;
   DrivingTable table_;

@@ -11,7 +11,7 @@ std::optional<std::int8_t> HeardRobot::mode() const {
 }
 
 std::string HeardRobot::silent_driver(const std::string& me) const {
-  constexpr double kSilent_s = 0.2;  // who drives sends oftener: the controller takes older commands for stale
+  constexpr double kSilent_s = 0.2;  // a driving source sends more often: older commands are stale for the controller
   const bool another = status && !status->driving_source.empty() && status->driving_source != me;
   return another && status->command_age_s > kSilent_s ? status->driving_source : "";
 }
@@ -99,7 +99,7 @@ void OperatorSource::hear_ack(io::Bytes bytes) {
 
 void OperatorSource::hear_hoist(io::Bytes bytes) {
   const auto hoist = io::decode_message<pmg_msgs::hoist_state_t>(bytes);
-  const auto known = hoist ? heard_.find(hoist->robot) : heard_.end();  // who says no STATUS is no controller
+  const auto known = hoist ? heard_.find(hoist->robot) : heard_.end();  // a sender without STATUS is no controller
   if (known == heard_.end()) return;
   known->second.hoist = hoist;
   known->second.hoist_heard_ns = clock_.now_ns();

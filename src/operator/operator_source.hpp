@@ -1,4 +1,4 @@
-// One source of operators' messages: speaks as a name and a session, hears what controllers say and answer.
+// One source of operators' messages: sends under a name and a session, receives the controllers' states and answers.
 #pragma once
 
 #include <cstdint>
@@ -18,44 +18,44 @@
 
 namespace pmg::ops {
 
-/// What one controller has said.
+/// The newest messages of one controller.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
   std::int64_t status_heard_ns = 0;                ///< by the source's clock
   std::int64_t first_heard_ns = 0;                 ///< likewise
-  std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the request in hand
-  std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< of a simulated robot that has one
+  std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
+  std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< only from a simulated robot with a hoist
   std::int64_t hoist_heard_ns = 0;                 ///< by the source's clock
 
-  /// The newest that is known; nothing before the controller was heard.
+  /// The newest known mode; nothing before the controller's first status.
   std::optional<std::int8_t> mode() const;
-  /// The source that drives, if it isn't this one and has sent nothing for so long that it must have ended without
-  /// letting go: its lease will be over soon. Empty: there is none.
+  /// Another source that drives but is silent: it has probably crashed without letting go, and its lease ends soon.
+  /// Empty: there is none.
   std::string silent_driver(const std::string& me) const;
 };
 
-/// A source's session: larger at every start, as long as this computer's clock isn't set back.
+/// A source's session: larger after each start, unless this computer's clock is set back.
 std::int64_t session_number();
 
-/// For one thread. Hears only while somebody calls link.receive().
+/// For one thread. Receives only within link.receive().
 class OperatorSource {
  public:
-  static constexpr std::size_t kMostRobots = 64;  ///< a flood of invented names ends here
+  static constexpr std::size_t kMostRobots = 64;  ///< limit for a flood of invented names
 
-  /// Keeps references. name: at most 23 characters. session: larger at every start of this name.
+  /// Keeps references. name: at most 23 characters. session: larger after each start of a source with this name.
   OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock);
 
-  /// The robot with this name follows the command as long as lease_s grants, once this source drives.
+  /// Once this source drives, the robot with this name follows the command for lease_s.
   void send_command(const std::string& robot, const Command& command, double lease_s);
 
-  /// A new request, and its first sending; answers to earlier ones are forgotten. No name: a stop for every robot.
+  /// Sends a new request and forgets the answers to earlier ones. No name: a stop for every robot.
   void request(const std::string& robot, std::int8_t mode, bool reset_fault);
   void repeat_request();
 
-  /// Likewise of a simulated robot's hoist. lift: up, and stay there; otherwise down as soon as the robot stands.
+  /// The same for a simulated robot's hoist. lift: lift and hold the robot; otherwise set it down as soon as it stands.
   void request_hoist(const std::string& robot, bool lift);
   void repeat_hoist();
-  /// That this, or a later one, was heard.
+  /// Whether the hoist has answered this request or a later one.
   bool hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept;
 
   const std::map<std::string, HeardRobot>& heard() const noexcept { return heard_; }  ///< by the controllers' names
@@ -68,7 +68,7 @@ class OperatorSource {
   void hear_status(io::Bytes message);
   void hear_ack(io::Bytes message);
   void hear_hoist(io::Bytes message);
-  HeardRobot* place_of(const std::string& robot);  // null: too many
+  HeardRobot* place_of(const std::string& robot);  // null: too many robots
 
   io::LcmLink& link_;
   const io::Clock& clock_;

@@ -1,5 +1,4 @@
-// What is known of each robot that speaks on an LCM address: the newest of every kind of message, and timing over the
-// last seconds.
+// The robots on an LCM address: the newest message of each kind, and timing over the last seconds.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +18,7 @@
 
 namespace pmg::ops {
 
-/// Percentiles by nearest rank over the last kept values.
+/// Percentiles (nearest rank) over the last kKept values.
 class RecentValues {
  public:
   static constexpr std::size_t kKept = 1000;  ///< ten seconds of ticks
@@ -35,26 +34,27 @@ class RecentValues {
 
 struct RobotNews {
   pmg_msgs::status_t status{};
-  std::int64_t heard_ns = 0;  ///< when, by the board's clock
+  std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
   std::optional<pmg_msgs::link_t> link{};
   std::optional<pmg_msgs::reference_t> reference{};
   std::optional<pmg_msgs::robot_state_t> state{};
   std::optional<pmg_msgs::timing_t> timing{};
   RecentValues wake_us{}, tick_us{};
-  int sessions = 1;  ///< how often the controller was started since it was heard first, or how many speak in turns
+  int sessions =
+      1;  ///< changes of the session since the first message, plus 1: restarts, or several controllers with one name
 };
 
-/// For one thread; hears while somebody calls link.receive().
+/// For one thread. Receives only within link.receive().
 class RobotBoard {
  public:
-  static constexpr std::size_t kMostRobots = 64;  ///< a flood of invented names ends here
+  static constexpr std::size_t kMostRobots = 64;  ///< limit for a flood of invented names
 
   /// Keeps references.
   RobotBoard(io::LcmLink& link, const io::Clock& clock);
 
   const std::map<std::string, RobotNews>& robots() const noexcept { return robots_; }
-  /// Since the robot's last status.
+  /// Seconds since the robot's last status.
   double silence_s(const RobotNews& news) const noexcept;
 
  private:

@@ -33,7 +33,8 @@ std::optional<Hottest> hottest(const RobotNews& news) {
   return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
 }
 
-/// The policy's variant (docs/reference/file-formats.md) as the configuration in force tells it; pmg where it doesn't.
+/// The policy's variant (docs/reference/file-formats.md) in the configuration in force; pmg if the configuration has
+/// none.
 std::string variant(const pmg_msgs::robot_info_t& info) {
   const auto options = nlohmann::json::parse(info.options, nullptr, false);
   if (!options.is_object() || !options.contains("variant") || !options["variant"].is_string()) {
@@ -58,7 +59,7 @@ std::string command_text(const double (&u)[kChannels]) {
                      u[kOmega], u[kPitch], u[kRoll], u[kHeight]);
 }
 
-/// What was ignored only when there was any.
+/// Counts of ignored messages, only those above zero.
 std::string network_text(const pmg_msgs::link_t& link) {
   std::string text = fmt::format("{} accepted", link.accepted);
   for (const auto& [count, reason] :

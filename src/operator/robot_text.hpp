@@ -1,4 +1,4 @@
-// A robot's news for people's eyes and for machines.
+// A robot's state as text for people and as JSON for machines.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,19 +9,19 @@
 
 namespace pmg::ops {
 
-/// A controller that was not heard for so long is shown as gone.
+/// The text shows a controller as gone after this time without a status.
 inline constexpr double kGone_s = 1.0;
 
-/// "z1     walk   gamepad  vx 0.40 ... tick 180 us": all that one line holds. No line breaks.
+/// One line without a line break: "z1     walk   gamepad  vx 0.40 ... tick 180 us".
 std::string one_line(const RobotNews& news, double silence_s);
 
-/// What the controller limits at this moment.
+/// The limits in force at this moment.
 std::string limits_text(const RobotNews& news);
 
-/// One robot at full length.
+/// All about one robot, in several lines.
 std::vector<std::string> screen(const RobotNews& news, double silence_s);
 
-/// The same for machines; what was not heard is absent.
+/// The same as JSON; keys of messages that have not arrived are absent.
 nlohmann::ordered_json news_json(const RobotNews& news, double silence_s);
 
 }  // namespace pmg::ops

@@ -16,7 +16,7 @@ constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the 
 constexpr std::array<const char*, kChannels> kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
 constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
 
-/// As ROBOT_INFO's configuration has it (control::control_json); nothing where it doesn't.
+/// From ROBOT_INFO's configuration (control::control_json); nothing if it lacks the key.
 std::optional<std::pair<double, double>> range_of(const RobotNews& news, std::size_t channel) {
   if (!news.info) return std::nullopt;
   const auto options = nlohmann::json::parse(news.info->options, nullptr, false);
@@ -30,7 +30,7 @@ std::optional<std::pair<double, double>> range_of(const RobotNews& news, std::si
   return std::pair{*lower, *upper};
 }
 
-/// To what a person reads of it: a hundredth, and a thousandth near zero.
+/// Rounded for people: to a hundredth, near zero to a thousandth.
 bool alike(double a, double b) { return std::abs(a - b) <= 0.01 * std::max({std::abs(a), std::abs(b), 0.1}); }
 
 /// "limited: vx 50 -> 0.8 m/s (range -0.5 to 0.8)", and whether the ranges alone explain it.

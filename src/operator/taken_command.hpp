@@ -1,4 +1,4 @@
-// What a controller made of a command that it can't follow as asked, and why, in words.
+// The command that a controller follows in place of the requested one, and why, in words.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace pmg::ops {
 
-/// (command that is sent, what the controller says of it) => one line, once it is known. From REFERENCE (what was
-/// asked, what is realised, whether it was limited) and the ranges in ROBOT_INFO: nothing here knows a robot.
+/// (sent command, the controller's REFERENCE and ROBOT_INFO) => one line about the difference. REFERENCE holds the
+/// requested and the realised command, ROBOT_INFO the ranges; so the text fits every robot.
 class TakenCommand {
  public:
-  /// For so long the realised command must stand still: a ramp at the slowest rate moves it in every tick.
+  /// The realised command counts as settled after this time without a change. The slowest ramp changes it in each tick.
   static constexpr std::int64_t kSettled_ns = 150'000'000;
 
   explicit TakenCommand(const Command& asked) : asked_(asked) {}
 
-  /// To be called after every link.receive() while the command is sent. news: of the robot that is driven. last: the
-  /// command ends now, settled or not. The line, once; empty: nothing new, or taken as asked.
+  /// Call after each link.receive() while sending the command. news: the driven robot. last: the command ends now,
+  /// settled or not. Returns the line once; empty: no change, or the robot follows the requested command.
   std::string step(const RobotNews& news, std::int64_t now_ns, bool last = false);
 
  private:

@@ -9,7 +9,7 @@ constexpr std::size_t kLongestSequence = 32;  // longer ones are no key
 
 const TerminalKey kEscapeKey{.name = "escape"};
 
-/// A byte by itself; no name: not a key.
+/// The key of a single byte; without a name it is no key.
 TerminalKey plain(char byte) {
   if (byte == '\r' || byte == '\n') return {.name = "enter"};
   if (byte == ' ') return {.name = "space"};
@@ -67,7 +67,7 @@ void TerminalKeys::take_byte(char byte, std::int64_t now_ns, std::vector<Termina
 }
 
 void TerminalKeys::finish_sequence(char last, std::vector<TerminalKey>& keys) const {
-  const bool shift = sequence_ == "\x1b[1;2";  // xterm's way to say so
+  const bool shift = sequence_ == "\x1b[1;2";  // xterm's code
   if (!shift && sequence_.size() != 2) return;
   switch (last) {
     case 'A':

@@ -1,4 +1,4 @@
-// From the bytes that a terminal sends to keys.
+// (a terminal's bytes) => keys.
 #pragma once
 
 #include <cstdint>
@@ -8,30 +8,31 @@
 
 namespace pmg::ops {
 
-/// One press, by the name that key_named() knows; letters are lower-case.
+/// One press. The name is one of key_named(); letters are lower-case.
 struct TerminalKey {
   std::string name;
   bool shift = false;
   friend bool operator==(const TerminalKey&, const TerminalKey&) = default;
 };
 
-/// Escape is a key, and the first byte of what arrows and function keys send. It is a key unless "[" or "O" follows
-/// within kEscape_ns: nobody types those so fast after it, and it is never lost, whatever else follows.
+/// The byte Escape is a key by itself, and the first byte of an arrow's or function key's sequence. It counts as a key
+/// unless
+/// "[" or "O" follows within kEscape_ns; no person types that fast. So Escape is never lost.
 class TerminalKeys {
  public:
   static constexpr std::int64_t kEscape_ns = 40'000'000;     ///< terminals send a sequence in one piece
-  static constexpr std::int64_t kSequence_ns = 500'000'000;  ///< what isn't whole by then is forgotten
+  static constexpr std::int64_t kSequence_ns = 500'000'000;  ///< an incomplete sequence is dropped after this time
 
-  /// The keys that these bytes complete; sequences of other keys are dropped whole.
+  /// The keys that are complete with these bytes. Sequences of other keys are dropped.
   std::vector<TerminalKey> take(std::string_view bytes, std::int64_t now_ns);
-  /// Those that only time completes. To be called every 10 ms or so.
+  /// The keys that are complete by time alone. Call about every 10 ms.
   std::vector<TerminalKey> wait(std::int64_t now_ns);
 
  private:
   void take_byte(char byte, std::int64_t now_ns, std::vector<TerminalKey>& keys);
   void finish_sequence(char last, std::vector<TerminalKey>& keys) const;
 
-  std::string sequence_;  // from its Escape on; empty: none has begun
+  std::string sequence_;  // bytes from Escape on; empty: no sequence has begun
   std::int64_t since_ns_ = 0;
 };
 

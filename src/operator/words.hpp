@@ -1,4 +1,4 @@
-// What the numbers in controllers' messages mean, in words.
+// The constants of controllers' messages in words.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ const char* mode_name(std::int8_t mode) noexcept;         ///< of pmg_msgs::mode
 bool is_upright(std::int8_t mode) noexcept;               ///< of pmg_msgs::mode_t: Stand or Walk
 const char* verdict_words(std::int8_t verdict) noexcept;  ///< of pmg_msgs::ack_t: why a request was not taken
 
-/// Text from the network, fit for a terminal: control characters, which could move the cursor, become '?'.
+/// Text from the network for a terminal. Control characters could move the cursor; they become '?'.
 std::string printable(std::string text);
 
 }  // namespace pmg::ops

@@ -1,4 +1,4 @@
-// What every page carries: uPlot (MIT, third_party/pins), and this room's own script and style sheet.
+// The parts of every page: uPlot (MIT, third_party/pins), and this room's script and style sheet.
 #pragma once
 
 namespace pmg::pages {

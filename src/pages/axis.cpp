@@ -10,7 +10,7 @@ namespace pmg::pages {
 
 namespace {
 
-constexpr double kFewestUlps = 65536.0;  // of a range: with fewer, ticks and values would be rounded visibly
+constexpr double kFewestUlps = 65536.0;  // of a range; with fewer, rounding of ticks and values would be visible
 
 /// Power of ten of a value's first digit. Products of a step miss round values by a last bit.
 int exponent(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9)); }
@@ -54,7 +54,7 @@ void Range::include(double value) {
 Range shown_range(const Range& data, double margin) {
   if (data.is_empty()) return {0.0, 1.0};
   const double largest = std::max(std::abs(data.from), std::abs(data.to));
-  // Below the smallest normal numbers there are no digits left for ticks.
+  // Denormal numbers have no digits left for ticks.
   if (largest < 1e-290) return {-1.0, 1.0};
   const double least =
       data.span() > 0.0 ? kFewestUlps * std::numeric_limits<double>::epsilon() * largest : 0.2 * largest;
@@ -73,7 +73,7 @@ double tick_step(double span, int count) {
 std::vector<AxisTick> axis_ticks(const Range& range, int count) {
   std::vector<double> values;
   double step = tick_step(range.span(), count);
-  // One tick alone tells no scale.
+  // One tick alone shows no scale.
   while (std::floor(range.to / step + 1e-9) - std::ceil(range.from / step - 1e-9) < 1.0) {
     step = tick_step(range.span(), ++count);
   }
@@ -91,7 +91,7 @@ std::vector<AxisTick> logarithmic_ticks(const Range& decades, int count) {
     ticks.push_back(std::move(labelled({value}, power).front()));
   };
   if (last - first < 1.0) {
-    // Less than two powers of ten: linear steps tell more.
+    // Below two powers of ten linear steps are clearer.
     return axis_ticks({std::pow(10.0, decades.from), std::pow(10.0, decades.to)}, count);
   }
   const bool between = 3.0 * (last - first + 1.0) <= count;

@@ -27,7 +27,7 @@ double value_of(const Bars::Set& set, std::size_t row) {
                                                                   : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What is shown: always with zero, from which bars begin.
+/// The shown range. It includes zero, where bars begin.
 Range bar_range(const Bars& bars) {
   Range range{0.0, 0.0};
   for (const Bars::Set& set : bars.sets) {
@@ -65,7 +65,7 @@ class BarDrawing {
   std::string svg() {
     const Legend names = legend();
     out_ = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
-                       kPictureWidth, bottom_ + kTicksHeight + names.height(), escape_html(bars_.title));
+                       kPictureWidth, bottom_ + kTicksHeight + names.height(), escape_markup(bars_.title));
     axis();
     for (std::size_t row = 0; row < bars_.names.size(); ++row) {
       name(row);
@@ -90,14 +90,14 @@ class BarDrawing {
       add(R"(<path class="grid" d="M{0:.1f} {1}V{2}"/><text class="tick" x="{0:.1f}" y="{3}">{4}</text>)",
           x(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
-    add(R"(<text x="{:.1f}" y="{}">{}</text>)", to_px_ + 20.0, bottom_ + 15, escape_html(bars_.unit));
+    add(R"(<text x="{:.1f}" y="{}">{}</text>)", to_px_ + 20.0, bottom_ + 15, escape_markup(bars_.unit));
   }
 
   void name(std::size_t row) {
     const std::string shown = fitted(bars_.names[row], kMostNames);
-    const std::string whole = shown == bars_.names[row] ? "" : "<title>" + escape_html(bars_.names[row]) + "</title>";
+    const std::string whole = shown == bars_.names[row] ? "" : "<title>" + escape_markup(bars_.names[row]) + "</title>";
     add(R"(<text class="name" x="{:.1f}" y="{}">{}{}</text>)", names_ - 8.0, row_top(row) + (row_ - kGap) / 2 + 4,
-        escape_html(shown), whole);
+        escape_markup(shown), whole);
   }
 
   void bar(std::size_t row, std::size_t set) {
@@ -106,7 +106,7 @@ class BarDrawing {
     const int top = row_top(row) + static_cast<int>(set) * bar_;
     double low = std::min(x(0.0), x(value)), high = std::max(x(0.0), x(value));
     add(R"(<rect class="bar" x="{:.1f}" y="{}" width="{:.1f}" height="{}" fill="{}"/>)", low, top, high - low, bar_ - 1,
-        escape_html(bars_.sets[set].colour));
+        escape_markup(bars_.sets[set].colour));
     if (row < bars_.sets[set].intervals.size()) {
       const auto [lower, upper] = bars_.sets[set].intervals[row];
       if (can_be_shown(lower) && can_be_shown(upper)) {
@@ -136,7 +136,7 @@ class BarDrawing {
     int row;          ///< of its words, from above
   };
 
-  /// Words stand above their lines, in as many rows as it takes that none covers another.
+  /// Words stand above their lines, in as many rows as are needed to avoid overlap.
   void place_marks() {
     std::vector<const Mark*> in_order;
     for (const Mark& mark : bars_.marks) {
@@ -161,7 +161,7 @@ class BarDrawing {
     add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-width="1.5" stroke-dasharray="4 3"/>)"
         R"(<text class="mark" x="{4:.1f}" y="{5}" paint-order="stroke" stroke="white" stroke-width="3">{6}</text>)",
         x(placed.mark->x), words_y + 2, bottom_, colour::kInk, placed.words_px, words_y,
-        escape_html(placed.mark->text));
+        escape_markup(placed.mark->text));
   }
 
   Legend legend() const {

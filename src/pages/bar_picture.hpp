@@ -1,4 +1,4 @@
-// Bars as inline SVG: they show without a script.
+// Bars as inline SVG, which needs no script.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace pmg::pages {
 
-/// Bars begin at zero, to the right or to the left. What can't be shown (NaN, infinite) has no bar.
+/// Bars begin at zero, to the right or to the left. NaN and infinite values have no bar.
 std::string svg(const Bars& bars);
 
 }  // namespace pmg::pages

@@ -13,13 +13,13 @@ struct Bins {
   std::int64_t below = 0, above = 0;  ///< outside the bins
   std::int64_t not_finite = 0;
 
-  std::int64_t total() const;  ///< all values: counts, those outside, and those that aren't finite
+  std::int64_t total() const;  ///< number of all values: in the bins, outside, not finite
 };
 
-/// bins of equal width over [from, to]; the last one holds to as well.
+/// Bins of equal width over [from, to]. The last bin includes `to`.
 Bins count(std::span<const double> values, double from, double to, int bins);
 
-/// Nearest rank of the finite values, share in (0, 1]; 0 when there are none.
+/// Quantile of the finite values by nearest rank, share in (0, 1]; 0 without values.
 double percentile(std::span<const double> values, double share);
 
 }  // namespace pmg::pages

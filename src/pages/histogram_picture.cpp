@@ -18,8 +18,8 @@ namespace {
 constexpr int kPlot = 180, kLeft = 58, kRight = 16, kBins = 60, kMostLabels = 6;
 constexpr int kBottom = kTop + kPlot;
 
-/// Where a set's values are. Stragglers are left out: the outermost thousandth, and what lies more than four times as
-/// far from the median as the outermost hundredth begins.
+/// The range of a set without outliers. Outliers are the outermost thousandth, and values more than four times as far
+/// from the median as the outermost hundredth.
 Range bulk(std::span<const double> all) {
   constexpr double kFar = 4.0;
   std::vector<double> values;
@@ -32,7 +32,7 @@ Range bulk(std::span<const double> all) {
   return range;
 }
 
-/// Of all sets; with zero where that is not far away.
+/// The range of all sets. It includes zero if zero is near.
 Range histogram_range(const Histogram& histogram) {
   Range range = Range::empty();
   for (const Histogram::Set& set : histogram.sets) {
@@ -70,7 +70,7 @@ std::string svg(const Histogram& histogram) {
     legend.add(set.colour, summary(set, bins.back(), histogram.unit));
   }
   const double decades = std::max(1.0, std::ceil(std::log10(highest)));
-  // Counts on a logarithmic axis, half a decade for a single one: rare long times are what one looks for.
+  // Counts on a logarithmic axis, half a decade for a count of one, because readers look for rare long times.
   const auto y = [&](double n) {
     return n < 1.0 ? kBottom : kTop + kPlot * (1.0 - (std::log10(n) + 0.5) / (decades + 0.5));
   };
@@ -79,7 +79,7 @@ std::string svg(const Histogram& histogram) {
   };
 
   std::string out = fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
-                                kPictureWidth, kBottom + kAxisHeight + legend.height(), escape_html(histogram.title));
+                                kPictureWidth, kBottom + kAxisHeight + legend.height(), escape_markup(histogram.title));
   const auto add = std::back_inserter(out);
   for (int decade = 0; decade <= static_cast<int>(decades); ++decade) {
     const double at = y(std::pow(10.0, decade));
@@ -91,7 +91,7 @@ std::string svg(const Histogram& histogram) {
                    x(tick.value), kTop, kBottom, kBottom + 16, tick.label);
   }
   fmt::format_to(add, R"(<text class="tick" x="{}" y="{}">{}</text>)", (kLeft + kPictureWidth - kRight) / 2,
-                 kBottom + 31, escape_html(histogram.unit));
+                 kBottom + 31, escape_markup(histogram.unit));
   for (std::size_t set = 0; set < bins.size(); ++set) {
     const Bins& b = bins[set];
     std::string path = fmt::format("M{} {}", kLeft, kBottom);

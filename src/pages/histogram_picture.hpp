@@ -1,4 +1,4 @@
-// Histograms as inline SVG: they show without a script.
+// Histograms as inline SVG, which needs no script.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace pmg::pages {
 
-/// Counts on a logarithmic axis. The few values far beyond all others are told in words: they would press those into
-/// one bin.
+/// Counts on a logarithmic axis. Words give the few values far beyond all others, which would press the rest into one
+/// bin.
 std::string svg(const Histogram& histogram);
 
 }  // namespace pmg::pages

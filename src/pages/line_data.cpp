@@ -26,7 +26,7 @@ struct Extremes {
   double first = kNoPoint, second = kNoPoint;
 };
 
-/// The smallest and the largest finite value of [from, to), in the order in which they came.
+/// The smallest and the largest finite value of [from, to), in their order of time.
 Extremes extremes(std::span<const double> y, std::size_t from, std::size_t to) {
   std::size_t low = to, high = to;
   for (std::size_t i = from; i < to; ++i) {
@@ -51,7 +51,7 @@ void push_column(LineData& data, std::span<const double> x, const std::vector<st
   }
 }
 
-/// decimate() of the points whose place is known.
+/// decimate() of the points with a finite x.
 LineData decimate_placed(std::span<const double> x, const std::vector<std::span<const double>>& y, std::size_t columns,
                          double longest_gap) {
   const auto placed = [&x](std::span<const double> values) {
@@ -100,7 +100,7 @@ std::string delta_json(const std::vector<double>& values, double resolution) {
   }
   if (!(low <= high)) low = high = 0.0;
   const double range = high - low;
-  // Below the last bits of the values themselves there is nothing to resolve.
+  // The step is never below the last bit of the values.
   const double finest = std::max({range / resolution, std::abs(low) * 1e-15, 1e-300});
   const double step = range > 0.0 ? std::pow(10.0, std::floor(std::log10(finest))) : 1.0;
   const double offset = range > 0.0 && std::abs(low / step) < 1e15 ? std::floor(low / step) * step : low;

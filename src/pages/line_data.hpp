@@ -1,4 +1,4 @@
-// A long recording as the few points that a picture can show, and those as compact text.
+// (a long recording) => the few points that a picture can show => compact text.
 #pragma once
 
 #include <span>
@@ -13,10 +13,10 @@ struct LineData {
   std::vector<std::vector<double>> y;
 };
 
-/// At most two points per column of equal width in x: of every line the smallest and the largest finite value, in the
-/// order in which they came, so no peak is lost. Fewer than 2 * columns points are kept as they are. Where x jumps by
-/// more than longest_gap a gap is put in; points whose x isn't finite are left out. y's lines have x.size() values; x
-/// doesn't decrease (throws std::invalid_argument otherwise).
+/// At most two points for each column of equal width in x: each line's smallest and largest finite value in their order
+/// of time, so that no peak is lost. Fewer than 2 * columns points stay as they are. A jump of x beyond longest_gap
+/// becomes a gap; points with an x that isn't finite are left out. Each line of y has x.size() values and x does not
+/// decrease, else std::invalid_argument.
 LineData decimate(std::span<const double> x, const std::vector<std::span<const double>>& y, std::size_t columns,
                   double longest_gap);
 

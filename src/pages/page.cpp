@@ -23,7 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kChartColumns =
-    1500;  // of a line: wider than a chart on a laptop, so that zooming in finds a bit more
+    1500;  // points of a line: more than a laptop's chart has pixels, so that zooming shows more
 constexpr double kResolution = 5000.0;  // steps over a line's range: finer than a pixel
 
 std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
@@ -40,7 +40,7 @@ std::string axis_name(const std::string& named, const std::string& x_name, const
 
 bool same_x(const Line& a, const Line& b) { return a.x.data() == b.x.data() && a.x.size() == b.x.size(); }
 
-/// The lines sorted so that those over the same x follow each other: they share one track.
+/// Sorts the lines so that lines over the same x are neighbours; they share one track.
 std::vector<std::vector<const Line*>> tracks(const std::vector<Line>& lines) {
   std::vector<std::vector<const Line*>> groups;
   for (const Line& line : lines) {
@@ -82,24 +82,24 @@ Page::Page(std::string title) : title_(std::move(title)) {}
 
 void Page::verdict(Tone tone, const std::string& text) {
   const char* name = tone == Tone::kGood ? "good" : tone == Tone::kBad ? "bad" : "neutral";
-  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", name, escape_html(text));
+  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", name, escape_markup(text));
 }
 
 void Page::heading(const std::string& text) {
   ++headings_;
-  body_ += fmt::format("<h2 id=\"s{}\">{}</h2>\n", headings_, escape_html(text));
-  contents_ += fmt::format("<a href=\"#s{}\">{}</a> ", headings_, escape_html(text));
+  body_ += fmt::format("<h2 id=\"s{}\">{}</h2>\n", headings_, escape_markup(text));
+  contents_ += fmt::format("<a href=\"#s{}\">{}</a> ", headings_, escape_markup(text));
 }
 
-void Page::paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
+void Page::paragraph(const std::string& text) { body_ += "<p>" + escape_markup(text) + "</p>\n"; }
 
 void Page::table(const Table& table) {
   body_ += "<div class=\"scroll\"><table class=\"data\"><tr>";
-  for (const std::string& cell : table.header) body_ += "<th>" + escape_html(cell) + "</th>";
+  for (const std::string& cell : table.header) body_ += "<th>" + escape_markup(cell) + "</th>";
   body_ += "</tr>\n";
   for (const auto& row : table.rows) {
     body_ += "<tr>";
-    for (const std::string& cell : row) body_ += "<td>" + escape_html(cell) + "</td>";
+    for (const std::string& cell : row) body_ += "<td>" + escape_markup(cell) + "</td>";
     body_ += "</tr>\n";
   }
   body_ += "</table></div>\n";
@@ -126,7 +126,7 @@ void Page::chart(const Chart& chart) {
       {"axis", axis},   {"x_name", chart.x_name}, {"x_unit", chart.x_unit},          {"height", chart.height_px},
       {"lines", lines}, {"bands", bands},         {"marks", marks_json(chart.marks)}};
   std::string text = dump(spec);
-  text.pop_back();  // the closing brace: the tracks follow as text of their own
+  text.pop_back();  // removes the closing brace; the tracks follow as separate text
   text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";
   picture(chart.title, chart_element(text, chart.height_px));
 }
@@ -163,13 +163,13 @@ void Page::columns(const std::function<void()>& fill) {
 }
 
 void Page::folded(const std::string& summary, const std::function<void()>& fill) {
-  body_ += "<details><summary>" + escape_html(summary) + "</summary>\n";
+  body_ += "<details><summary>" + escape_markup(summary) + "</summary>\n";
   fill();
   body_ += "</details>\n";
 }
 
 void Page::picture(const std::string& title, const std::string& content) {
-  body_ += "<div class=\"picture\"><h3>" + escape_html(title) + "</h3>" + content + "</div>\n";
+  body_ += "<div class=\"picture\"><h3>" + escape_markup(title) + "</h3>" + content + "</div>\n";
 }
 
 void Page::show_x(const std::string& axis, double x) {
@@ -182,16 +182,16 @@ std::string Page::html() const {
     const Range shown = shown_range(range, 0.0);
     axes[name] = {shown.from, shown.to};
   }
-  const std::string title = escape_html(title_);
+  const std::string title = escape_markup(title_);
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">\n"
-      // Whatever got into the page, it loads nothing.
+      // The page loads nothing, whatever its text holds.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
       "script-src "
       "'unsafe-inline'\">\n<title>" +
       title + "</title>\n<style>" + kUplotStyle + "\n" + kPageStyle + "</style></head>\n";
-  text += fmt::format("<body data-axes=\"{}\">\n<h1>{}</h1>\n", escape_html(dump(axes)), title);
+  text += fmt::format("<body data-axes=\"{}\">\n<h1>{}</h1>\n", escape_markup(dump(axes)), title);
   if (headings_ > 1) text += "<nav>" + contents_ + "</nav>\n";
   text += "<noscript><p>The charts need JavaScript; tables, bars and histograms don't.</p></noscript>\n" + body_;
   text += std::string("<script>") + kUplotScript + "\n" + kPageScript + "</script>\n</body></html>\n";

@@ -1,5 +1,5 @@
-// One self-contained HTML page, pictures first: no network is needed to read it, and its tables, bars and histograms
-// need no script either. Charts over the same axis share range, cursor and zoom.
+// One self-contained HTML page, pictures first. It needs no network; its tables, bars and histograms need no script
+// either. Charts over the same axis share range, cursor and zoom.
 #pragma once
 
 #include <filesystem>
@@ -15,23 +15,23 @@ namespace pmg::pages {
 
 enum class Tone { kGood, kBad, kNeutral };
 
-/// Adds to its end with each call. All text is escaped.
+/// Each call appends to the page. The page escapes all text.
 class Page {
  public:
   explicit Page(std::string title);
 
-  void verdict(Tone tone, const std::string& text);  ///< one line that stands out
-  void heading(const std::string& text);             ///< a section, listed at the page's top
+  void verdict(Tone tone, const std::string& text);  ///< one highlighted line
+  void heading(const std::string& text);             ///< begins a section, which the list at the top names
   void paragraph(const std::string& text);
   void table(const Table& table);
-  void chart(const Chart& chart);  ///< throws std::invalid_argument when a line's x decreases or y has another size
+  void chart(const Chart& chart);  ///< throws std::invalid_argument if a line's x decreases or y has another size
   void lanes(const Lanes& lanes);
   void bars(const Bars& bars);
   void histogram(const Histogram& histogram);
-  void plot(const Plot& plot);  ///< throws std::invalid_argument where svg(Plot) does
+  void plot(const Plot& plot);  ///< throws std::invalid_argument as svg(Plot) does
 
-  void columns(const std::function<void()>& fill);  ///< pictures side by side where there is room
-  void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown on a click
+  void columns(const std::function<void()>& fill);  ///< pictures side by side if the window is wide enough
+  void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown after a click
 
   std::string html() const;
   void write(const std::filesystem::path& file) const;  ///< throws std::runtime_error
@@ -42,7 +42,7 @@ class Page {
 
   std::string title_, body_, contents_;
   int headings_ = 0;
-  std::map<std::string, Range> axes_;  ///< what charts show of each axis at first
+  std::map<std::string, Range> axes_;  ///< range of each axis when the page opens
 };
 
 }  // namespace pmg::pages

@@ -1,4 +1,4 @@
-// What a page can show. Plain data; spans are read while the picture is added to the page and not kept.
+// The pictures of a page, as plain data. The page reads the spans when it adds a picture, and does not keep them.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace pmg::pages {
 
-/// Okabe and Ito's colours, which colour-blind readers tell apart, on a light ground.
+/// Okabe and Ito's colours on a light ground; colour-blind readers can distinguish them.
 namespace colour {
 inline constexpr const char* kInk = "#1b1f24";
 inline constexpr const char* kGrey = "#8a929c";
@@ -48,13 +48,13 @@ struct Chart {
   std::vector<Band> bands = {};
   std::vector<Mark> marks = {};
   int height_px = 230;
-  double longest_gap = std::numeric_limits<double>::infinity();  ///< of x, over which a line is not drawn
-  /// Charts of a page that name the same axis share its range, cursor and zoom. Empty: those of the same quantity, by
-  /// x_name and x_unit.
+  double longest_gap =
+      std::numeric_limits<double>::infinity();  ///< of x; a longer gap between points interrupts the line
+  /// Charts with the same axis share range, cursor and zoom. Empty: charts with the same x_name and x_unit share one.
   std::string axis = {};
 };
 
-/// Rows of coloured stretches over x: who was when in which state. They share the axis of charts of the same quantity.
+/// Rows of coloured stretches over x: states over time. They share the axis of charts of the same quantity.
 struct Lanes {
   struct Stretch {
     double from, to;
@@ -71,24 +71,25 @@ struct Lanes {
   std::vector<Mark> marks = {};
 };
 
-/// How sure a value is.
+/// The confidence interval of a value.
 struct Interval {
   double lower, upper;
 };
 
-/// Horizontal bars from zero, to either side; names.size() rows of one bar a set.
+/// Horizontal bars from zero to either side; names.size() rows with one bar for each set.
 struct Bars {
   struct Set {
     std::string name;
     std::vector<double> values;
     std::string colour = colour::kBlue;
-    std::vector<Interval> intervals = {};  ///< whiskers, one a value; those that aren't finite are left out
+    std::vector<Interval> intervals =
+        {};  ///< whiskers, one for each value; the picture leaves out those that aren't finite
   };
   std::string title;
   std::string unit;
   std::vector<std::string> names;
   std::vector<Set> sets;
-  std::vector<Mark> marks = {};  ///< lines across all bars: limits
+  std::vector<Mark> marks = {};  ///< lines across all bars, as for limits
 };
 
 struct Histogram {
@@ -107,7 +108,7 @@ struct PlotLine {
   std::string name;              ///< "" leaves it out of the legend
   std::span<const double> x, y;  ///< NaN in y is a gap
   std::string colour = colour::kBlue;
-  std::vector<Interval> intervals = {};  ///< one a value, or none
+  std::vector<Interval> intervals = {};  ///< one for each value, or none
   double width_px = 1.4;
   bool dashed = false;
   bool stepped = false;
@@ -115,7 +116,7 @@ struct PlotLine {
   bool joined = true;   ///< a line between them
 };
 
-/// Lines over any quantity, each picture with axes of its own.
+/// Lines over any quantity. Each picture has its own axes.
 struct Plot {
   std::string title;   ///< with the unit of y
   std::string x_name;  ///< with its unit

@@ -18,7 +18,7 @@ namespace pmg::pages {
 namespace {
 
 constexpr int kNarrowestLeft = 58, kRightEdge = 14;
-constexpr std::size_t kColumns = 280;  // of a line: two points each are all that can be seen
+constexpr std::size_t kColumns = 280;  // of a line: a reader can see at most two points in each
 constexpr double kRangeMargin = 0.04;  // of the range of y, above and below
 constexpr int kLabelsAlongX = 6;       // along x: far enough apart for long ones
 constexpr const char* kStyle =
@@ -50,7 +50,7 @@ void check(const PlotLine& line) {
   }
 }
 
-/// Where the line has more points than can be seen: its extremes.
+/// The extremes of each column, for a line with more points than a reader can see.
 LineData seen(const PlotLine& line) {
   const bool sorted = std::ranges::is_sorted(line.x);
   if (sorted && line.intervals.empty()) {
@@ -95,7 +95,7 @@ class PlotDrawing {
     return out_ + legend().svg(bottom_ + kAxisHeight);
   }
 
-  int end() const { return bottom_ + kAxisHeight + legend().height(); }  ///< where the next may begin
+  int end() const { return bottom_ + kAxisHeight + legend().height(); }  ///< where the next picture may begin
 
  private:
   void include(double x, double y) {
@@ -119,7 +119,7 @@ class PlotDrawing {
           x_(tick.value), top_, bottom_, bottom_ + 15, tick.label);
     }
     add(R"(<text class="tick" x="{}" y="{}">{}</text>)", (left_ + kPictureWidth - kRightEdge) / 2, bottom_ + 31,
-        escape_html(plot_.x_name));
+        escape_markup(plot_.x_name));
     if (plot_.show_zero && !y_.logarithmic) {
       add(R"(<path d="M{} {:.1f}H{}" stroke="{}"/>)", left_, y_(0.0), kPictureWidth - kRightEdge, colour::kGrey);
     }
@@ -137,7 +137,7 @@ class PlotDrawing {
     return k < data.x.size() && x_.shows(data.x[k]) && y_.shows(data.y[0][k]);
   }
 
-  /// Each point where the line asks for it; else those between gaps, which no line would show.
+  /// Dots: at each point if the line has `points`, else only at single points between gaps, which no line would show.
   void dots(const PlotLine& line, const LineData& data) {
     for (std::size_t k = 0; k < data.x.size(); ++k) {
       const bool alone = (k == 0 || !shown(data, k - 1)) && !shown(data, k + 1);
@@ -171,7 +171,7 @@ class PlotDrawing {
     const bool to_the_left = at + 4 + text_width(mark.text) > kPictureWidth;
     add(R"(<path d="M{0:.1f} {1}V{2}" stroke="{3}" stroke-dasharray="4 3"/>)", at, top_, bottom_, colour::kInk);
     add(R"(<text{} x="{:.1f}" y="{}">{}</text>)", to_the_left ? R"( class="name")" : "", at + (to_the_left ? -4 : 4),
-        top_ + 12, escape_html(mark.text));
+        top_ + 12, escape_markup(mark.text));
   }
 
   Legend legend() const {
@@ -195,7 +195,7 @@ class PlotDrawing {
 std::string svg(const Plot& plot) {
   PlotDrawing drawing(plot, 0);
   return fmt::format(R"(<svg viewBox="0 0 {0} {1}" style="max-width:{0}px" role="img" aria-label="{2}">)",
-                     kPictureWidth, drawing.end(), escape_html(plot.title)) +
+                     kPictureWidth, drawing.end(), escape_markup(plot.title)) +
          drawing.svg() + "</svg>";
 }
 
@@ -207,7 +207,7 @@ std::string svg_file(const std::vector<Plot>& plots) {
   int top = 0;
   for (const Plot& plot : plots) {
     body += fmt::format(R"(<text x="{}" y="{}" style="font-weight:bold">{}</text>)", kNarrowestLeft, top + 15,
-                        escape_html(plot.title));
+                        escape_markup(plot.title));
     PlotDrawing drawing(plot, top + kTitle);
     body += drawing.svg();
     top = drawing.end() + 4;

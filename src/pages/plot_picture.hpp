@@ -1,4 +1,4 @@
-// Lines over any quantity as SVG: they show without a script, and stand in documents too.
+// Lines over any quantity as SVG, for pages without a script and for documents.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace pmg::pages {
 
-/// Inline in a page. Throws std::invalid_argument when a line's x and y, or y and intervals, aren't equally many.
+/// For use inside a page. Throws std::invalid_argument if a line's x and y, or y and intervals, differ in number.
 std::string svg(const Plot& plot);
 
-/// A file of its own: with its title, style and ground.
+/// A complete file, with title, style and background.
 std::string svg_file(const Plot& plot);
 
-/// The same for several below one another, over the same width.
+/// The same for several pictures below each other, of one width.
 std::string svg_file(const std::vector<Plot>& plots);
 
 }  // namespace pmg::pages

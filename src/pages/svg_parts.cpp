@@ -54,9 +54,9 @@ std::string Legend::svg(double top) const {
   for (const Entry& entry : entries_) {
     const double y = top + kRow * entry.row + 14.0;
     out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", entry.x,
-                       y - 10.0, escape_html(entry.colour));
+                       y - 10.0, escape_markup(entry.colour));
     out += fmt::format(R"(<text class="entry" x="{:.1f}" y="{:.1f}">{}</text>)", entry.x + kSquare, y,
-                       escape_html(fitted(entry.text, right_ - entry.x - kSquare)));
+                       escape_markup(fitted(entry.text, right_ - entry.x - kSquare)));
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// What inline SVG pictures have in common.
+// The shared parts of inline SVG pictures.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ inline constexpr int kPictureWidth = 640;  ///< of all pictures, so that those b
 inline constexpr int kTop = 8;             ///< above a plot
 inline constexpr int kAxisHeight = 38;     ///< below it: labels, and the axis's name under them
 
-/// About how wide a text of the pictures' font is, in the picture's units: on the safe side.
+/// Upper estimate of a text's width in the pictures' font, in the picture's units.
 double text_width(const std::string& text);
 
-/// The text, or as much of its beginning as fits, with an ellipsis; not escaped.
+/// The text, or its beginning with an ellipsis if it doesn't fit; not escaped.
 std::string fitted(const std::string& text, double width);
 
 /// Coloured squares with names, in as many rows as they need.

@@ -18,7 +18,7 @@ std::string without_trailing_zeros(std::string text) {
 
 }  // namespace
 
-std::string escape_html(std::string_view text) {
+std::string escape_markup(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size());
   for (const char c : text) {

@@ -1,4 +1,4 @@
-// Text for pages: nothing that a file or a message is called may become markup.
+// Text for pages and other markup: no name from a file or a message may become markup.
 #pragma once
 
 #include <string>
@@ -6,14 +6,14 @@
 
 namespace pmg::pages {
 
-/// & < > " ' as entities: for text and for attributes in quotes.
-std::string escape_html(std::string_view text);
+/// & < > " ' as entities of HTML and XML, for text and for attributes in quotes.
+std::string escape_markup(std::string_view text);
 
-/// JSON that may stand inside a script element: no "<", so no end tag and no comment.
+/// JSON for a script element: without "<", so without an end tag or a comment.
 std::string escape_script(std::string json);
 
-/// A number for people: four significant digits (integers below ten million whole), no exponent where a few zeros do;
-/// "-" when it isn't finite.
+/// A number for people: four significant digits (integers below ten million in full), an exponent only for very small
+/// and very large ones; "-" if the number isn't finite.
 std::string number(double value);
 
 }  // namespace pmg::pages

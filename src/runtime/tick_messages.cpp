@@ -1,60 +1,56 @@
 #include "runtime/tick_messages.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
+
+#include "runtime/message_copy.hpp"
 
 namespace pmg::runtime {
 
 namespace {
 
-void copy(const JointVector& from, int joint_count, std::vector<double>& to) {
-  to.assign(from.data(), from.data() + from.size());
-  to.resize(static_cast<std::size_t>(joint_count), std::numeric_limits<double>::quiet_NaN());
+/// Each value of an operator's message beside its field, for both ways.
+template <typename Way, typename Request, typename Message>
+void pair_sender(Way& way, Request& request, Message& message) {
+  way(request.source, message.source, message.session);
+  way(request.sequence, message.sequence);
+  way(request.stamp_ns, message.stamp_ns);
 }
-void copy(const Command& from, double (&to)[kChannels]) { std::ranges::copy(from.u, to); }
-template <typename T, typename U>
-void copy(const PerFoot<T>& from, U (&to)[2]) {
-  for (const std::size_t foot : {kLeft, kRight}) to[foot] = from[foot];
+template <typename Way, typename Drive, typename Message>
+void pair_drive(Way& way, Drive& drive, Message& message) {
+  pair_sender(way, drive, message);
+  way(drive.lease_s, message.lease_s);
+  auto& u = drive.command.u;
+  way(u[kVx], message.vx_m_s);
+  way(u[kVy], message.vy_m_s);
+  way(u[kOmega], message.omega_rad_s);
+  way(u[kPitch], message.pitch_rad);
+  way(u[kRoll], message.roll_rad);
+  way(u[kHeight], message.height_m);
 }
-void copy(const Eigen::Vector3d& from, double (&to)[3]) { std::copy_n(from.data(), 3, to); }
-void copy(const Eigen::Quaterniond& from, double (&to)[4]) {
-  to[0] = from.w();
-  to[1] = from.x();
-  to[2] = from.y();
-  to[3] = from.z();
+template <typename Way, typename Request, typename Message>
+void pair_request(Way& way, Request& request, Message& message) {
+  pair_sender(way, request, message);
+  way(request.mode, message.mode);
+  way(request.reset_fault, message.reset_fault);
 }
-
-template <typename From, typename Message>
-void copy_sender(const From& from, const RunInfo& run, Message& message) {
-  message.version = Message::VERSION;
-  message.robot = run.robot;
-  message.stamp_ns = from.stamp_ns;
-  message.source = from.source.name.data();
-  message.session = from.source.session;
-  message.sequence = from.sequence;
-}
-
-template <typename Message, typename To>
-void take_sender(const Message& message, std::int64_t received_ns, To& to) {
-  to.source = control::Source::make(message.source, message.session);
-  to.sequence = message.sequence;
-  to.stamp_ns = message.stamp_ns;
-  to.received_ns = received_ns;
-}
-
-bool take(const std::vector<double>& from, int joint_count, JointVector& to) {
-  if (std::ssize(from) != joint_count) return false;
-  to = Eigen::Map<const Eigen::VectorXd>(from.data(), joint_count);
-  return true;
+template <typename Way, typename State, typename Message>
+void pair_state(Way& way, State& state, Message& message) {
+  way(state.stamp_ns, message.stamp_ns);
+  way(state.bus_sample, message.bus_sample);
+  way(state.q, message.q_rad);
+  way(state.dq, message.dq_rad_s);
+  way(state.tau, message.torque_Nm);
+  way(state.temperature_degC, message.temperature_degC);
+  way(state.gyro_rad_s, message.gyro_rad_s);
+  way(state.acceleration_m_s2, message.acceleration_m_s2);
+  way(state.orientation_WI, message.orientation_WI);
 }
 
 }  // namespace
 
 void fill(const RunInfo& run, const model::RobotModel& robot, double control_rate_Hz, std::int64_t stamp_ns,
           pmg_msgs::robot_info_t& message) {
-  const int n = robot.joint_index.size();
+  const ToMessage copy{robot.joint_index.size()};
   message.stamp_ns = stamp_ns;
   message.robot = run.robot;
   message.model = robot.name;
@@ -73,36 +69,29 @@ void fill(const RunInfo& run, const model::RobotModel& robot, double control_rat
   }
   message.refused_count = static_cast<std::int32_t>(run.refused.size());
   message.refused = run.refused;
-  message.joint_count = n;
+  message.joint_count = copy.joint_count;
   message.joint_names = robot.joint_index.names();
-  copy(robot.q_lower(), n, message.lower_rad);
-  copy(robot.q_upper(), n, message.upper_rad);
-  copy(robot.q_stand(), n, message.stand_rad);
+  copy(robot.q_lower(), message.lower_rad);
+  copy(robot.q_upper(), message.upper_rad);
+  copy(robot.q_stand(), message.stand_rad);
   message.standing_height_m = robot.standing_height_m;
   message.control_rate_hz = control_rate_Hz;
 }
 
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::robot_state_t& message) {
-  const model::RobotState& state = record.state;
-  message.stamp_ns = state.stamp_ns;
-  message.bus_sample = static_cast<std::int64_t>(state.bus_sample);
   message.joint_count = joint_count;
-  copy(state.q, joint_count, message.q_rad);
-  copy(state.dq, joint_count, message.dq_rad_s);
-  copy(state.tau, joint_count, message.torque_Nm);
-  copy(state.temperature_degC, joint_count, message.temperature_degC);
-  copy(state.gyro_rad_s, message.gyro_rad_s);
-  copy(state.acceleration_m_s2, message.acceleration_m_s2);
-  copy(state.orientation_WI, message.orientation_WI);
+  const ToMessage copy{joint_count};
+  pair_state(copy, record.state, message);
 }
 
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::reference_t& message) {
   const Reference& reference = record.result.reference;
   const gco::Result& optimised = record.result.optimised;
+  const ToMessage copy{joint_count};
   message.stamp_ns = record.now_ns;
   message.joint_count = joint_count;
-  copy(reference.q, joint_count, message.q_ref_rad);
-  copy(reference.dq, joint_count, message.dq_ref_rad_s);
+  copy(reference.q, message.q_ref_rad);
+  copy(reference.dq, message.dq_ref_rad_s);
   message.phase = reference.phase;
   message.phase_rate_per_s = reference.phase_rate_per_s;
   message.gain = reference.gain;
@@ -121,30 +110,32 @@ void fill(const control::TickRecord& record, int joint_count, pmg_msgs::referenc
     message.yaw_slip_after_rad_s[foot] = optimised.foot[foot].yaw_rate_after_rad_s;
     message.foot_height_m[foot] = optimised.foot[foot].height_m;
   }
-  message.gco_status = static_cast<std::int8_t>(optimised.status);
+  copy(optimised.status, message.gco_status);
   message.command_limited = reference.command_limited;
   message.joint_clamped = reference.joint_clamped;
 }
 
 void fill(const control::TickRecord& record, int joint_count, pmg_msgs::motor_command_t& message) {
   const model::JointCommand& command = record.result.command;
+  const ToMessage copy{joint_count};
   message.stamp_ns = record.now_ns;
-  message.bus_sample = static_cast<std::int64_t>(command.bus_sample);
+  copy(command.bus_sample, message.bus_sample);
   message.joint_count = joint_count;
-  copy(command.q, joint_count, message.q_rad);
-  copy(command.dq, joint_count, message.dq_rad_s);
-  copy(command.kp, joint_count, message.kp_Nm_per_rad);
-  copy(command.kd, joint_count, message.kd_Nm_s_per_rad);
-  copy(command.tau_ff, joint_count, message.torque_ff_Nm);
+  copy(command.q, message.q_rad);
+  copy(command.dq, message.dq_rad_s);
+  copy(command.kp, message.kp_Nm_per_rad);
+  copy(command.kd, message.kd_Nm_s_per_rad);
+  copy(command.tau_ff, message.torque_ff_Nm);
 }
 
 void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
           pmg_msgs::status_t& message) {
   const control::TickResult& result = record.result;
+  const ToMessage copy;
   message.stamp_ns = record.now_ns;
   message.robot = run.robot;
   message.session = run.session;
-  message.mode = static_cast<std::int8_t>(result.mode);
+  copy(result.mode, message.mode);
   message.fault_code = static_cast<std::int32_t>(result.fault.code);
   if (result.fault.code == control::FaultCode::kNone) {
     message.fault.clear();
@@ -179,10 +170,11 @@ void fill(const control::TickRecord& record, pmg_msgs::limited_t& message) {
 
 void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
   const control::TickInput input = record.input();
+  const ToMessage copy;
   message.stamp_ns = input.now_ns;
   message.tick = record.tick;
-  message.bus = static_cast<std::int8_t>(input.bus);
-  message.guard_trip = static_cast<std::int8_t>(input.guard_trip);
+  copy(input.bus, message.bus);
+  copy(input.guard_trip, message.guard_trip);
   message.stop = input.stop;
   message.late_ns = input.late_ns;
   message.policy_late = input.policy_late;
@@ -222,35 +214,32 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
 }
 
 void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message) {
-  copy_sender(drive, run, message);
-  message.lease_s = drive.lease_s;
-  const Command& u = drive.command;
-  message.vx_m_s = u[kVx];
-  message.vy_m_s = u[kVy];
-  message.omega_rad_s = u[kOmega];
-  message.pitch_rad = u[kPitch];
-  message.roll_rad = u[kRoll];
-  message.height_m = u[kHeight];
+  message.version = pmg_msgs::command_t::VERSION;
+  message.robot = run.robot;
+  const ToMessage copy;
+  pair_drive(copy, drive, message);
 }
 
 void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message) {
-  copy_sender(request, run, message);
-  message.mode = static_cast<std::int8_t>(request.mode);
-  message.reset_fault = request.reset_fault;
+  message.version = pmg_msgs::mode_t::VERSION;
+  message.robot = run.robot;
+  const ToMessage copy;
+  pair_request(copy, request, message);
 }
 
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message) {
   message.stamp_ns = stamp_ns;
   message.robot = run.robot;
-  message.source = ack.source.name.data();
-  message.session = ack.source.session;
   message.sequence = ack.sequence;
-  message.verdict = static_cast<std::int8_t>(ack.verdict);
-  message.mode = static_cast<std::int8_t>(ack.mode);
+  const ToMessage copy;
+  copy(ack.source, message.source, message.session);
+  copy(ack.verdict, message.verdict);
+  copy(ack.mode, message.mode);
 }
 
 void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message) {
   message.stamp_ns = stamp_ns;
+  const ToMessage copy;
   copy(truth.p_WB, message.p_WB_m);
   copy(truth.q_WB, message.q_WB);
   copy(truth.v_WB_W, message.v_WB_W_m_s);
@@ -263,31 +252,24 @@ void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, 
 
 control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns) {
   control::DriveMessage drive;
-  take_sender(message, received_ns, drive);
-  drive.lease_s = message.lease_s;
-  drive.command = {.u = {message.vx_m_s, message.vy_m_s, message.omega_rad_s, message.pitch_rad, message.roll_rad,
-                         message.height_m}};
+  FromMessage take;
+  pair_drive(take, drive, message);
+  drive.received_ns = received_ns;
   return drive;
 }
 
 control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns) {
   control::ModeRequest request;
-  take_sender(message, received_ns, request);
-  request.mode = static_cast<control::Mode>(message.mode);
-  request.reset_fault = message.reset_fault != 0;
+  FromMessage take;
+  pair_request(take, request, message);
+  request.received_ns = received_ns;
   return request;
 }
 
 bool robot_state(const pmg_msgs::robot_state_t& message, int joint_count, model::RobotState& state) {
-  state.stamp_ns = message.stamp_ns;
-  state.bus_sample = static_cast<std::uint64_t>(message.bus_sample);
-  state.gyro_rad_s = Eigen::Map<const Eigen::Vector3d>(message.gyro_rad_s);
-  state.acceleration_m_s2 = Eigen::Map<const Eigen::Vector3d>(message.acceleration_m_s2);
-  const double* q = message.orientation_WI;
-  state.orientation_WI = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  return take(message.q_rad, joint_count, state.q) && take(message.dq_rad_s, joint_count, state.dq) &&
-         take(message.torque_Nm, joint_count, state.tau) &&
-         take(message.temperature_degC, joint_count, state.temperature_degC);
+  FromMessage take{.joint_count = joint_count};
+  pair_state(take, state, message);
+  return take.complete;
 }
 
 }  // namespace pmg::runtime

@@ -8,12 +8,15 @@
 #include <utility>
 
 #include "model/config_error.hpp"
+#include "pages/text.hpp"
 #include "sim/mjcf_geometry.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sim {
 
 namespace {
+
+using pages::escape_markup;
 
 // Contact classes: soles touch only the floor, bodies touch the floor and each other. Two geoms collide when one's
 // contype meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2); a foot body meets
@@ -60,7 +63,7 @@ class MjcfText {
   MjcfText(const model::RobotModel& robot, const WorldOptions& options) : robot_(robot), options_(options) {}
 
   std::string build() {
-    text_ = fmt::format("<mujoco model=\"{}\">", xml_escaped(robot_.name));
+    text_ = fmt::format("<mujoco model=\"{}\">", escape_markup(robot_.name));
     text_ += fmt::format(
         kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("friction", options_.floor_friction),
         fmt::arg("look_height", robot_.standing_height_m), fmt::arg("extent", 2.0 * robot_.standing_height_m));
@@ -87,7 +90,7 @@ class MjcfText {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     if (joint == nullptr) T.translation().z() = robot_.standing_height_m;
     if (joint != nullptr) T = isometry(joint->parent_to_joint_origin_transform);
-    line(depth, fmt::format(R"(<body name="{}" {}>)", xml_escaped(link.name), pose_attributes(T)));
+    line(depth, fmt::format(R"(<body name="{}" {}>)", escape_markup(link.name), pose_attributes(T)));
     if (joint == nullptr) line(depth + 1, R"(<freejoint name="base"/>)");
     if (joint == nullptr) line(depth + 1, kLight);
     if (joint != nullptr && joint->type != urdf::Joint::FIXED) write_joint(joint->name, depth + 1);
@@ -110,7 +113,7 @@ class MjcfText {
     line(depth,
          fmt::format(R"(<joint name="{}" type="hinge" axis="{} {} {}" limited="true" range="{} {}" armature="{}" )"
                      R"(damping="{}" frictionloss="{}"/>)",
-                     xml_escaped(name), joint.axis.x(), joint.axis.y(), joint.axis.z(), joint.lower_rad,
+                     escape_markup(name), joint.axis.x(), joint.axis.y(), joint.axis.z(), joint.lower_rad,
                      joint.upper_rad, joint.armature_kg_m2, joint.damping_Nm_s_per_rad, joint.friction_Nm));
   }
 
@@ -143,7 +146,7 @@ class MjcfText {
     if (foot == nullptr) return;
     const Eigen::Vector3d &c = foot->box_center_F, &h = foot->box_half_size_m;
     line(depth, fmt::format(R"(<geom name="{}_sole" class="sole" type="box" pos="{} {} {}" size="{} {} {}"/>)",
-                            xml_escaped(link.name), c.x(), c.y(), c.z(), h.x(), h.y(), h.z()));
+                            escape_markup(link.name), c.x(), c.y(), c.z(), h.x(), h.y(), h.z()));
   }
 
   /// Children sorted so that MuJoCo's depth-first order of coordinates is the robot's joint order, if the tree allows
@@ -166,7 +169,7 @@ class MjcfText {
   void write_exclusions() {
     text_ += "  <contact>\n";
     for (const auto& [above, below] : neighbours_)
-      line(2, fmt::format(R"(<exclude body1="{}" body2="{}"/>)", xml_escaped(above), xml_escaped(below)));
+      line(2, fmt::format(R"(<exclude body1="{}" body2="{}"/>)", escape_markup(above), escape_markup(below)));
     text_ += "  </contact>\n";
   }
 
@@ -175,7 +178,7 @@ class MjcfText {
     for (const auto& joint : robot_.joints)
       line(2, fmt::format(R"(<general name="{0}" joint="{0}" gaintype="fixed" gainprm="{1}" biastype="affine" )"
                           R"(biasprm="0 {2} {3}" forcelimited="true" forcerange="{4} {5}"/>)",
-                          xml_escaped(joint.name), joint.kp_Nm_per_rad, -joint.kp_Nm_per_rad, -joint.kd_Nm_s_per_rad,
+                          escape_markup(joint.name), joint.kp_Nm_per_rad, -joint.kp_Nm_per_rad, -joint.kd_Nm_s_per_rad,
                           -joint.effort_limit_Nm, joint.effort_limit_Nm));
     text_ += "  </actuator>\n";
   }

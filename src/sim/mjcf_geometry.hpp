@@ -10,8 +10,6 @@
 
 namespace pmg::sim {
 
-std::string xml_escaped(const std::string& text);
-
 /// `pos="x y z" quat="w x y z"`; the printed numbers read back exactly.
 std::string pose_attributes(const Eigen::Isometry3d& T);
 Eigen::Isometry3d isometry(const urdf::Pose& pose);

@@ -8,7 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "model/config_reader.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sim {
@@ -34,14 +33,6 @@ class UniformSource {
  private:
   std::mt19937_64 engine_;
 };
-
-Range read_range(model::ConfigReader& reader, const std::string& key, const Range& otherwise,
-                 const model::NumberCheck& check) {
-  if (!reader.has(key)) return otherwise;
-  const std::vector<double> ends = reader.numbers(key, 2, check);
-  if (ends[0] > ends[1]) reader.fail(key, "runs backwards", "[lower, upper]");
-  return {ends[0], ends[1]};
-}
 
 double deviation(double half_width) { return half_width / std::numbers::sqrt3; }
 
@@ -82,37 +73,6 @@ int body(const mjModel* model, const std::string& link) {
 }
 
 }  // namespace
-
-VariationRanges load_variation_ranges(const std::filesystem::path& file) {
-  model::ConfigReader reader = model::ConfigReader::from_file(file);
-  VariationRanges ranges;
-  const model::NumberCheck any = model::any_number(), positive = model::positive(), some = model::non_negative();
-  ranges.friction = read_range(reader, "friction", ranges.friction, positive);
-  ranges.torso_mass_kg = read_range(reader, "torso_mass_kg", ranges.torso_mass_kg, any);
-  ranges.torso_center_of_mass_m = reader.optional<double>("torso_center_of_mass_m", 0.0, some);
-  ranges.hand_payload_kg = read_range(reader, "hand_payload_kg", ranges.hand_payload_kg, some);
-  ranges.payload_share = reader.optional<double>("payload_share", 0.0, model::in_range(0.0, 1.0));
-  ranges.link_mass_factor = read_range(reader, "link_mass_factor", ranges.link_mass_factor, positive);
-  ranges.armature_factor = read_range(reader, "armature_factor", ranges.armature_factor, positive);
-  ranges.joint_friction_factor = read_range(reader, "joint_friction_factor", ranges.joint_friction_factor, some);
-  ranges.kp_factor = read_range(reader, "kp_factor", ranges.kp_factor, positive);
-  ranges.kd_factor = read_range(reader, "kd_factor", ranges.kd_factor, positive);
-  ranges.delay_s = read_range(reader, "delay_s", ranges.delay_s, model::in_range(0.0, 0.2));
-  ranges.encoder_offset_rad = reader.optional<double>("encoder_offset_rad", 0.0, some);
-  if (reader.has("noise")) {
-    model::ConfigReader noise = reader.map("noise");
-    ranges.gyro_noise_rad_s = noise.optional<double>("gyro_rad_s", 0.0, some);
-    ranges.gravity_direction_noise = noise.optional<double>("gravity_direction", 0.0, some);
-    ranges.encoder_noise_rad = noise.optional<double>("q_rad", 0.0, some);
-    ranges.velocity_noise_rad_s = noise.optional<double>("dq_rad_s", 0.0, some);
-    noise.finish();
-  }
-  for (const char* training_only : {"kicks", "upper_body"}) {
-    if (reader.has(training_only)) reader.map(training_only);
-  }
-  reader.finish();
-  return ranges;
-}
 
 // A seed's meaning includes the order of the draws: new draws go to the end.
 void vary(WorldOptions& options, const VariationRanges& ranges, const model::RobotModel& robot, std::uint64_t seed) {

@@ -5,13 +5,13 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <string>
 
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
 #include "sim/actuator_parameters.hpp"
+#include "sim/variation_ranges.hpp"
 
 namespace pmg::sim {
 
@@ -29,30 +29,6 @@ struct Variation {
   JointVector encoder_offset_rad;  ///< encoder reading minus true angle; the drives use the reading too
   double delay_s = 0.0;            ///< from the command to the torque; rounded to whole physics steps
 };
-
-/// A uniform distribution.
-struct Range {
-  double lower = 0.0, upper = 0.0;
-};
-
-/// Distributions of a variation; the format is that of training/randomization.yaml.
-struct VariationRanges {
-  Range friction{0.8, 0.8};  ///< sole on floor
-  Range torso_mass_kg;
-  double torso_center_of_mass_m = 0.0;  ///< +- on each axis
-  Range hand_payload_kg;                ///< per hand, on a payload_share of the robots
-  double payload_share = 0.0;
-  Range link_mass_factor{1.0, 1.0};
-  Range armature_factor{1.0, 1.0}, joint_friction_factor{1.0, 1.0}, kp_factor{1.0, 1.0}, kd_factor{1.0, 1.0};
-  Range delay_s;
-  double encoder_offset_rad = 0.0;  ///< +-
-  /// Half widths of uniform distributions; a world's noise is normal with the same standard deviation (width / sqrt 3).
-  double gyro_noise_rad_s = 0.0, gravity_direction_noise = 0.0, encoder_noise_rad = 0.0, velocity_noise_rad_s = 0.0;
-};
-
-/// Reads a YAML with the keys of training/randomization.yaml; missing keys leave the model as it is. The keys kicks and
-/// upper_body concern only training and are ignored. Throws model::ConfigError.
-VariationRanges load_variation_ranges(const std::filesystem::path& file);
 
 /// Draws friction, sensor noise, the seed of this noise and all other variations of the world. The same ranges, robot
 /// and seed give the same world on every machine. Throws std::invalid_argument if a payload is drawn for a robot

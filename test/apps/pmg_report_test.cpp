@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/running_program.hpp"
-#include "logs/small_log.hpp"
+#include "report/small_log.hpp"
 
 namespace pmg {
 namespace {

@@ -57,6 +57,13 @@ TEST(Mjcf, LoadsFromItsTextWithTheRobotsJointsLimitsAndMass) {
   }
 }
 
+TEST(Mjcf, ANameMayHoldWhatXmlReserves) {
+  model::RobotModel robot = model::load_robot(z1().directory);
+  robot.name = R"(a<b> & "c" 'd')";
+  const Loaded loaded(sim::mjcf(robot, {}));
+  EXPECT_STREQ(loaded.model->names, robot.name.c_str());  // begins with the model's own
+}
+
 TEST(Mjcf, CoordinatesOfZ1AreInJointOrder) {
   const Loaded loaded(sim::mjcf(z1(), {}));
   for (int j = 0; j < z1().joint_index.size(); ++j)

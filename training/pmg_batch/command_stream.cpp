@@ -6,7 +6,7 @@
 namespace pmg::training {
 
 namespace {
-// Share of the range below which a velocity counts as none: nobody asks for a crawl.
+// A velocity below this share of its range becomes zero: operators do not command a crawl.
 constexpr double kSmallestShare = 0.08;
 constexpr std::array<double, kChannels> kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
 }  // namespace

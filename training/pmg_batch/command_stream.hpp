@@ -1,4 +1,4 @@
-// What an operator might ask for, drawn at random: the commands that a policy is trained on.
+// Random commands as from an operator, for training.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace pmg::training {
 
-/// Piecewise constant commands: every channel alone, pairs, all six, standing in postures, pauses, hasty changes, and
-/// now and then five seconds of jumps between the ends of the ranges.
-/// Ranges are stretched, so that the edges of what is evaluated lie inside what was trained.
+/// Piecewise constant commands: each channel alone, pairs, all six, postures at rest, pauses, fast changes, and from
+/// time to time five seconds of jumps between the ends of the ranges. The ranges are larger than the robot's, so that
+/// training covers the edges of the evaluated ranges.
 class CommandStream {
  public:
   static constexpr double kRangeStretch = 1.15;

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "checked_files.hpp"
 #include "model/clip_library_file.hpp"
 #include "policy/observation.hpp"
 #include "reference_stream.hpp"
@@ -17,6 +18,19 @@
 namespace {
 
 thread_local std::string last_error;
+
+/// The text of a checked file for a caller of the C interface; NULL when it throws.
+template <typename Read>
+const char* answer(Read&& read) {
+  thread_local std::string text;
+  try {
+    text = read();
+    return text.c_str();
+  } catch (const std::exception& error) {
+    last_error = error.what();
+    return nullptr;
+  }
+}
 
 pmg::Variant variant_of(const std::string& name) {
   const auto variant = pmg::variant_named(name);
@@ -170,5 +184,15 @@ int32_t pmg_batch_observe(pmg_batch* batch, int32_t first, const double* gyro, c
   const Eigen::VectorXf& seen = batch->observation.assemble(state, stream.reference(), stream.observed(), action);
   std::copy(seen.begin(), seen.end(), out);
   return 0;
+}
+
+const char* pmg_batch_randomization(const char* file) {
+  return answer([&] { return pmg::training::randomization_json(file); });
+}
+const char* pmg_batch_motors(const char* robot, const char* file) {
+  return answer([&] { return pmg::training::motors_json(robot, file); });
+}
+const char* pmg_batch_scenario(const char* file) {
+  return answer([&] { return pmg::training::scenario_json(file); });
 }
 }

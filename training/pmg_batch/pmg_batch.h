@@ -35,6 +35,13 @@ PMG_BATCH_API int32_t pmg_batch_observe(struct pmg_batch* batch, int32_t first, 
                                         const double* quat_wxyz, const double* q, const double* dq,
                                         const float* last_action, float* out);
 
+/* Files that the C++ programs read too, read and checked by the same code. JSON, or NULL where pmg_batch_error() is the line that pmg_sil
+ * prints for that file. The text of each lives until the same function is called again in its thread. robot: its directory.
+ */
+PMG_BATCH_API const char* pmg_batch_randomization(const char* file);
+PMG_BATCH_API const char* pmg_batch_motors(const char* robot, const char* file);
+PMG_BATCH_API const char* pmg_batch_scenario(const char* file);
+
 #ifdef __cplusplus
 }
 #endif

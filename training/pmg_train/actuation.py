@@ -1,4 +1,4 @@
-"""What lies between a tick's target and the drives, as src/sim has it: delay, and the length of a physics step."""
+"""(a tick's target) => the targets at the drives, as in src/sim: delay, and the length of a physics step."""
 
 import math
 
@@ -8,16 +8,16 @@ import torch
 def step_lead_s(step_s: float, deployed_step_s: float) -> float:
     """How much earlier a command acts in training's longer steps.
 
-    A semi-implicit Euler step uses the force of its beginning for a velocity that belongs to half a step later: whatever
-    changes from step to step comes half a step early, here and in the controller's simulation.
+    A semi-implicit Euler step applies the force of its beginning to a velocity half a step later. So every change from step
+    to step acts half a step early, here and in the controller's simulation: lead = (step - deployed step) / 2.
     """
     return (step_s - deployed_step_s) / 2
 
 
 def target_shares(delay_s: torch.Tensor, tick_s: float, step_s: float, deployed_step_s: float) -> torch.Tensor:
-    """(steps a tick, ages, worlds, 1): the part of each physics step in which the target of so many ticks ago is at the drive.
+    """(steps of a tick, ages, worlds, 1): the share of each physics step in which the target of that age [ticks] is at the drive.
 
-    delay_s (worlds,) may be of any length: the step that it ends in gets the mean of both targets.
+    delay_s (worlds,) may have any value: the step in which it ends gets the weighted mean of both targets.
     """
     late = delay_s + step_lead_s(step_s, deployed_step_s)
     steps, ages = round(tick_s / step_s), 1 + math.ceil(float(late.max()) / tick_s - 1e-9)
@@ -31,5 +31,6 @@ def target_shares(delay_s: torch.Tensor, tick_s: float, step_s: float, deployed_
 
 
 def step_inertia(kd: torch.Tensor, step_s: float, deployed_step_s: float) -> torch.Tensor:
-    """Inertia [kg m^2] that a damping kd [Nm s/rad], taken at the end of a step, adds beyond what the deployed step adds."""
+    """Inertia [kg m^2] that a damping kd [Nm s/rad], taken at the end of a step, adds beyond that of the deployed step:
+    kd * lead."""
     return kd * step_lead_s(step_s, deployed_step_s)

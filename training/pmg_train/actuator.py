@@ -1,13 +1,13 @@
-"""Drives and transmissions, batched: src/sim/actuator_model.cpp in torch, step by step, effect by effect.
+"""Drives and transmissions, batched: src/sim/actuator_model.cpp in torch, with the same steps and effects.
 
-What each number means is said in src/sim/actuator_parameters.hpp; test/data/training/actuators.json holds what the C++ gives.
+src/sim/actuator_parameters.hpp explains each parameter; test/data/training/actuators.json holds the results of the C++.
 """
 
 import math
 
 import torch
 
-# By group and key of motor.yaml.
+# The neutral value of each parameter, by group and key of motor.yaml.
 NEUTRAL = {
     "command.delay_s": 0.0, "command.rate_limit_rad_s": math.inf, "command.hold_s": 0.0,
     "drive.kp_scale": 1.0, "drive.kd_scale": 1.0, "drive.limit": math.inf, "drive.dead_band_rad": 0.0,
@@ -23,14 +23,14 @@ NEUTRAL = {
     "thermal.friction_per_K": 0.0, "thermal.torque_per_K": 0.0, "thermal.friction_per_Nm2_s": 0.0, "thermal.cooling_s": math.inf,
     "ripple.amplitude_Nm": 0.0, "ripple.order": 1.0, "ripple.phase_rad": 0.0, "ripple.offset_Nm": 0.0,
 }
-REFERENCE_TEMPERATURE_C = 25.0  # at which friction and torque are as their parameters say
+REFERENCE_TEMPERATURE_C = 25.0  # the parameters of friction and torque hold at this temperature
 
 
 class ActuatorModel:
-    """(worlds, joints) of them. No branch depends on values and every state tensor stays where it is: a CUDA graph can hold step()."""
+    """(worlds, joints) actuators. No branch depends on values, and every state tensor keeps its memory, so a CUDA graph can hold step()."""
 
     def __init__(self, parameters: list[dict[str, float]], step_s: float, worlds: int, device="cpu", dtype=torch.float32):
-        """parameters: a map of what isn't neutral for each joint. ValueError on an unknown name."""
+        """parameters: for each joint a map of the values that aren't neutral. ValueError for an unknown name."""
         unknown = sorted({name for joint in parameters for name in joint} - set(NEUTRAL))
         if unknown:
             raise ValueError(f"actuator parameters {unknown}; expected some of {', '.join(NEUTRAL)}")
@@ -40,7 +40,7 @@ class ActuatorModel:
         self.elastic = torch.isfinite(p["transmission.stiffness_Nm_per_rad"])
         self.lagging, self.velocity_lagging = p["sensor.lag_s"] > 0, p["sensor.velocity_lag_s"] > 0
         self.torque_speed = torch.isfinite(p["drive.stall_torque_Nm"])
-        # Where there is no such effect its number isn't used; a finite one keeps NaN out of what is computed all the same.
+        # Joints without the effect get a finite value, which keeps NaN out of unused results.
         self.stall = torch.where(self.torque_speed, p["drive.stall_torque_Nm"], 1.0)
         self.stiffness = torch.where(self.elastic, p["transmission.stiffness_Nm_per_rad"], 0.0)
         steps = p["command.delay_s"] / step_s
@@ -49,7 +49,7 @@ class ActuatorModel:
         share = steps - whole
         self.ages = torch.where(ages == whole, 1 - share, torch.where(ages == whole + 1, share, 0.0))[:, None, None]
         state = lambda: torch.zeros(worlds, len(parameters), device=device, dtype=dtype)
-        # What the drive was told, newest first: q_des, dq_des, kp, kd, feed forward.
+        # The drive's commands, newest first: q_des, dq_des, kp, kd, feed forward.
         self.past = torch.stack([torch.stack([state() for _ in range(5)]) for _ in range(len(ages))])
         self.told_before = torch.zeros(worlds, 1, device=device, dtype=torch.bool)
         self.command, self.held_for, self.held_output = (state() for _ in range(3))
@@ -59,8 +59,8 @@ class ActuatorModel:
         self.given_torque, self.given_slope, self.given_at = (state() for _ in range(3))
 
     def reset(self, q: torch.Tensor, where: torch.Tensor | None = None) -> None:
-        """At rest at q [rad] (worlds, joints); where (worlds,) bool, or everywhere. What was told before the first step is taken
-        to be as its input, but commanded at q."""
+        """At rest at q [rad] (worlds, joints); where (worlds,) bool, or everywhere. Commands before the first step count as equal to the
+        first one, with q as position."""
         mask = torch.ones_like(q[:, :1], dtype=torch.bool) if where is None else where[:, None]
         put = lambda state, value: state.copy_(torch.where(mask, value, state))
         put(self.sensor_at, q)
@@ -75,20 +75,20 @@ class ActuatorModel:
             put(state, torch.zeros_like(q))
 
     def momentary(self) -> dict[str, torch.Tensor]:
-        """All that changes from step to step."""
+        """The whole state, which changes from step to step."""
         names = ("past", "told_before", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "sensor_at",
                  "heat", "driven", "bristle", "load", "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
         return {name: getattr(self, name) for name in names}
 
     def reading(self, q: torch.Tensor) -> torch.Tensor:
-        """What the drive reports for joints that have come to q [rad] since the last step."""
+        """(joint angles q [rad]) => the angles that the drives report [rad]."""
         p, seen, quantum = self.p, self._followed(q), self.p["sensor.quantum_rad"]
         reading = seen + p["sensor.zero_offset_rad"] + p["sensor.eccentricity_rad"] * torch.sin(seen + p["sensor.eccentricity_phase_rad"])
         some = torch.where(quantum > 0, quantum, 1.0)
         return torch.where(quantum > 0, some * torch.sign(reading) * torch.floor((reading / some).abs() + 0.5), reading)
 
     def _followed(self, q: torch.Tensor) -> torch.Tensor:
-        """Where the sensor's end of its play is: it stays until the joint takes it along."""
+        """The angle of the sensor's side of its play [rad]. It stays until the joint moves it."""
         half = 0.5 * self.p["sensor.hysteresis_rad"]
         return torch.maximum(torch.minimum(self.sensor_at, q + half), q - half)
 
@@ -117,14 +117,14 @@ class ActuatorModel:
         return self.given_torque, self.given_slope
 
     def _warm(self, temperature_C) -> tuple[torch.Tensor, torch.Tensor]:
-        """By what friction and torque per unit are multiplied at this temperature and heat."""
+        """The factors of friction and of torque per unit at this temperature and heat."""
         p, above = self.p, temperature_C - REFERENCE_TEMPERATURE_C
         self.heat.add_(self.step_s * (self.driven ** 2 - self.heat / p["thermal.cooling_s"]))
         return (torch.exp(p["thermal.friction_per_K"] * above + p["thermal.friction_per_Nm2_s"] * self.heat),
                 (1 + p["thermal.torque_per_K"] * above).clamp(min=0))
 
     def _told(self, *now) -> torch.Tensor:
-        """What has arrived of it, after the delay: straight between two steps."""
+        """The delayed command, interpolated linearly between two steps."""
         told = torch.stack([x.expand_as(self.command) if isinstance(x, torch.Tensor) else torch.full_like(self.command, x) for x in now])
         before = torch.cat([self.command[None], told[1:]])
         self.past.copy_(torch.where(self.told_before, self.past, before))
@@ -165,11 +165,11 @@ class ActuatorModel:
         return torch.where(error.abs() < self.p["drive.dead_band_rad"], 0.0, error)
 
     def _powered(self, wish, kd, supply, dq, unit) -> tuple[torch.Tensor, torch.Tensor]:
-        """The drive's loop, and what the motor makes of its output."""
+        """(the drive's output) => the motor's torque [Nm] and its slope [Nm s/rad]."""
         p, h = self.p, self.step_s
         back_emf, hold = p["drive.back_emf_s_per_rad"], p["command.hold_s"]
         held_for = self.held_for + h
-        due = held_for >= hold - 1e-4 * h  # single precision must not miss its turn
+        due = held_for >= hold - 1e-4 * h  # a tolerance for single precision
         self.held_for.copy_(torch.where(due, (held_for - hold).clamp(max=h), held_for))
         within = torch.minimum(torch.maximum(wish, -p["drive.limit"]), p["drive.limit"])
         self.held_output.copy_(torch.where(due, within, self.held_output))
@@ -203,7 +203,7 @@ class ActuatorModel:
         return torch.where(slides, -direction * most, -stiffness * bend), torch.where(slides, 0.0, -stiffness * self.step_s)
 
     def _elastic(self, torque, slope, q, dq) -> tuple[torch.Tensor, torch.Tensor]:
-        """What the joint feels of a rotor behind a spring with play; moves the rotor. Means nothing where it is rigid."""
+        """Torque on a joint from a rotor behind a spring with play, and its slope. Moves the rotor. Unused for rigid joints."""
         p, h = self.p, self.step_s
         before, before_slope = self._shaft(self.rotor, self.rotor_speed, q, dq)
         inertia = p["transmission.armature_kg_m2"] / h - slope + before_slope

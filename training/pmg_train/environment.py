@@ -67,10 +67,10 @@ class Environment:
         kicks = self.ranges["kicks"]
         self.kick = self._tensor([kicks["linear_m_s"]] * 2 + [kicks["vertical_m_s"]] + [kicks["angular_rad_s"]] * 3)
         self.action_scale = self.config["action_scale"]
-        self.action_unit = (self.action_scale / 0.25) ** 2  # penalties on actions are meant in radians
+        self.action_unit = (self.action_scale / 0.25) ** 2  # the penalties on actions are set in radians
 
     def _of_kinds(self, values: dict[str, float], otherwise: float) -> torch.Tensor:
-        """One number a leg joint from a table by kind; ValueError on a kind that the legs don't have."""
+        """One number for each leg joint from a table by kind. ValueError for a kind that the legs don't have."""
         unknown = set(values) - set(self.leg_kinds)
         if unknown:
             raise ValueError(f"joint kinds {sorted(unknown)}; expected some of {sorted(set(self.leg_kinds))}")
@@ -92,7 +92,7 @@ class Environment:
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
         self.layout = Observation(self.stand, actions, n)
         self.history = self.layout.history
-        # Slow averages: what the base does, what the admissible command asks, what the user wants.
+        # Slow averages of the base's velocity, of the admissible command and of the user's command.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
         self.reward, self.done, self.timeout = zeros(n), zeros(n), zeros(n)
@@ -106,13 +106,13 @@ class Environment:
         return self.row[:, self.fields[name]]
 
     def _user(self) -> torch.Tensor:
-        """The user's command within the robot's ranges; training asks for a little more at times."""
+        """The user's command, clamped to the robot's ranges; training sometimes commands a little more."""
         return torch.minimum(torch.maximum(self.get("user"), self.command_lower), self.command_upper)
 
     # ------------------------------------------------------------------------------------------------------- resets
 
     def _draw_start(self) -> dict[str, torch.Tensor]:
-        """For every world a place in the references, and the robot as that reference has it, a little disturbed."""
+        """Puts every world at a random place of the references, with the robot near that reference."""
         n, device, f = self.n, self.device, self.fields
         stream = torch.randint(0, self.pool.streams, (n,), device=device)
         tick = torch.randint(0, max(1, self.pool.ticks - 300), (n,), device=device)
@@ -137,7 +137,7 @@ class Environment:
         return dict(stream=stream, tick=tick, row=row, sway=sway, q_ref=q_ref, qpos=qpos, qvel=qvel)
 
     def _reference(self, row: torch.Tensor, sway: torch.Tensor, time_s: torch.Tensor) -> torch.Tensor:
-        """q_ref, with what the operator's arms or the surroundings add to the upper body."""
+        """q_ref plus the motion of the upper body, as from an operator's arms."""
         offset, amplitude, frequency, phase = sway.unbind(1)
         moved = offset + amplitude * torch.sin(2 * math.pi * frequency * time_s[:, None] + phase)
         return (row[:, self.fields["q_ref"]] + moved).clamp(self.lower, self.upper)
@@ -169,7 +169,7 @@ class Environment:
 
     def reset_all(self) -> None:
         self._reset(torch.ones(self.n, dtype=torch.bool, device=self.device))
-        # Staggered, so that not all episodes end at once.
+        # Staggered starts, so that the episodes end at different times.
         self.time_s.uniform_(0, 0.75 * self.config["episode_s"])
         low, high = self.ranges["kicks"]["every_s"]
         self.kick_in_s.uniform_(low, high)
@@ -185,11 +185,11 @@ class Environment:
             self.worlds.motors.momentary() if self.worlds.motors else {})
 
     def state(self) -> dict[str, torch.Tensor]:
-        """All that changes from tick to tick; references and robots follow from the seed."""
+        """The whole state, which changes from tick to tick. References and robots follow from the seed."""
         return {name: value.clone() for name, value in self._momentary().items()}
 
     def restore(self, state: dict[str, torch.Tensor]) -> bool:
-        """False, and nothing done, when the state is of another number of worlds or of an earlier version."""
+        """False, without any change, if the state has another number of worlds or is of an earlier version."""
         mine = self._momentary()
         if set(mine) != set(state) or any(mine[name].shape != value.shape for name, value in state.items()):
             return False
@@ -206,7 +206,7 @@ class Environment:
         self.action.copy_(action.clamp(-4, 4))
         target = self.q_ref.clone()
         target[:, :self.actions] += self.action_scale * self.action
-        # The drive holds what its encoder says, as in the controller's simulation.
+        # The drive controls its encoder's reading, as in the controller's simulation.
         target = torch.maximum(torch.minimum(target, self.upper), self.lower) - self.robots.encoder_offset
         self.targets.copy_(torch.cat([target[None], self.targets[:-1]], 0))
         for now, share in zip(self.worlds.target, self.shares, strict=True):
@@ -220,7 +220,7 @@ class Environment:
         self.kick_in_s.copy_(torch.where(due, again, self.kick_in_s))
 
     def observe(self) -> None:
-        """Judges the tick, restarts who fell, moves on to the next reference and looks."""
+        """Rewards the tick, restarts fallen robots, goes to the next reference and computes the observations."""
         m, fallen = self._measure()
         weights = self.config["rewards"]
         self.terms = rewards.reward_terms(m, weights, self.action_unit)
@@ -289,7 +289,7 @@ class Environment:
         return m, fallen
 
     def _errors(self, m: dict, user: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
-        """For the curves. Velocities to height: against the user's command, not against the admissible one as rewards are."""
+        """Errors for the curves. Velocities, attitude and height are against the user's command; rewards use the admissible one."""
         slow, q_error = self.velocity - self.wanted, m["q_error"].abs()
         errors = dict(velocity=slow[:, :2].norm(dim=1), yaw_rate=slow[:, 2].abs(),
                       pitch=(attitude[:, 0] - user[:, 3]).abs(), roll=(attitude[:, 1] - user[:, 4]).abs(),

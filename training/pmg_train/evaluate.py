@@ -15,12 +15,11 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import onnxruntime
-import yaml
 
+from pmg_train.checked_files import read_scenario
 from pmg_train.references import ReferenceBatch
 from pmg_train.robot import evaluation_model, joint_kind
 
-CHANNELS = ("vx_m_s", "vy_m_s", "omega_rad_s", "pitch_rad", "roll_rad", "height_m")
 TICK_S, AVERAGE_TICKS = 0.01, 100
 SETTLE_S = 1.5  # after a change of the command; reported apart from errors over everything
 
@@ -47,17 +46,13 @@ class Policy:
         return self.session.run(None, {"observation": seen[None]})[0][0]
 
 
-def read_scenario(path: Path) -> list[tuple[str, float, np.ndarray]]:
-    """(text, seconds, command); what a gantry does is left out."""
-    steps = []
-    for step in yaml.safe_load(path.read_text())["steps"]:
-        if "hoist_without_policy" in step:
-            continue
-        unknown = set(step.get("command", {})) - set(CHANNELS)
-        if unknown:
-            raise ValueError(f"{path}: unknown channel {sorted(unknown)}")
-        steps.append((step["text"], float(step["for_s"]),
-                      np.array([step.get("command", {}).get(c, 0.0) for c in CHANNELS])))
+def steps_without_gantry(scenario: list[dict]) -> list[tuple[str, float, np.ndarray]]:
+    """(text, seconds, command) of a scenario's steps, less those in which the gantry lifts the robot or sets it down."""
+    steps, hoisted = [], False
+    for step in scenario:
+        if step["hoist_without_policy"] == hoisted:
+            steps.append((step["text"], step["for_s"], np.array(step["command"])))
+        hoisted = step["hoist_without_policy"]
     return steps
 
 
@@ -68,7 +63,7 @@ class Conditions:
     payload_kg: float = 0.0
     gain_factor: float = 1.0
     delay_steps: int = 1  # of 2 ms
-    noise: float = 0.5    # share of what training adds
+    noise: float = 0.5    # share of training's noise
 
     @staticmethod
     def draw(random: np.random.Generator) -> "Conditions":
@@ -250,7 +245,7 @@ def main() -> int:
     parser.add_argument("--motion", type=Path, help="write qpos of seed 0 there (.npy)")
     a = parser.parse_args()
     try:
-        policy, scenario = Policy.load(a.policy), read_scenario(a.scenario)
+        policy, scenario = Policy.load(a.policy), steps_without_gantry(read_scenario(a.library, a.scenario))
         batch = ReferenceBatch(a.library, a.robot, policy.meta["variant"], 1, 0, 1)
     except (OSError, KeyError, ValueError, RuntimeError) as error:
         print(f"evaluate: {error}", file=sys.stderr)

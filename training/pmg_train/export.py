@@ -1,4 +1,4 @@
-"""Writes a trained actor as ONNX with all that a controller must check before it trusts it.
+"""Writes a trained actor as ONNX, with the metadata that a controller checks before it uses the policy.
 
 Example: python3 -m pmg_train.export runs/pmg/actor.pt --robot config/robots/z1 --out pmg.onnx
 Exit codes: 0 done, 2 bad input.

@@ -1,10 +1,7 @@
-"""motor.yaml, which calibration writes and the controller's simulation reads: the actuators of some joints, in training's physics."""
-
-from pathlib import Path
+"""The actuators of motor.yaml, which calibration writes and the controller's simulation reads, in training's physics."""
 
 import mujoco
 import torch
-import yaml
 
 from pmg_train.actuation import step_inertia
 from pmg_train.actuator import NEUTRAL, ActuatorModel
@@ -14,36 +11,15 @@ FRICTION = [name for name in NEUTRAL if name.startswith("friction.")]
 DRY_FRICTION = [f"friction.{key}" for key in ("coulomb_Nm", "stribeck_Nm", "load_driving", "load_backdriving")]
 
 
-def read_motor_file(path: str | Path, joints: list[str]) -> dict[str, dict[str, float]]:
-    """What isn't neutral, as "group.key", of each joint there. ValueError names file, joint and key."""
-    try:
-        content = yaml.safe_load(Path(path).read_text())
-    except yaml.YAMLError as error:
-        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
-    if not isinstance(content, dict) or set(content) != {"joints"} or not isinstance(content["joints"], dict):
-        raise ValueError(f"{path}: expected one map, joints")
-    motors = {}
-    for joint, groups in content["joints"].items():
-        if joint not in joints:
-            raise ValueError(f"{path}: {joint} isn't a joint of this robot")
-        motors[joint] = {f"{group}.{key}": value for group, keys in (groups or {}).items() for key, value in keys.items()}
-        for name, value in motors[joint].items():
-            if name not in NEUTRAL:
-                raise ValueError(f"{path}: {joint}: unknown {name}; expected some of {', '.join(NEUTRAL)}")
-            if not isinstance(value, (int, float)) or isinstance(value, bool):
-                raise ValueError(f"{path}: {joint}: {name}: {value}; expected a number")
-    return motors
-
-
 def joints_with_actuators(model: mujoco.MjModel, motors: dict[str, dict[str, float]]) -> list[str]:
-    """Joints that a motor file names or that have dry friction, in the model's order: MuJoCo's own friction isn't the deployed one."""
+    """Joints that a motor file names or that have dry friction, in the model's order. MuJoCo's own friction differs from the deployed one."""
     friction = lambda name: model.dof_frictionloss[model.joint(name).dofadr[0]]
     names = [model.actuator(a).name for a in range(model.nu)]
     return [name for name in names if name in motors or friction(name) > 0]
 
 
 def actuator_in_force(model: mujoco.MjModel, actuator: int, values: dict[str, float]) -> dict[str, float]:
-    """What `values` don't say is the robot's own, as src/sim/motors_in_force.cpp has it."""
+    """Values that `values` lacks are the robot's own, as in src/sim/motors_in_force.cpp."""
     dof = model.jnt_dofadr[model.actuator_trnid[actuator, 0]]
     own = {}
     if not values.get("transmission.armature_kg_m2"):
@@ -54,10 +30,10 @@ def actuator_in_force(model: mujoco.MjModel, actuator: int, values: dict[str, fl
 
 
 class Motors:
-    """The batched actuators of the joints that `motors` names; hands their joints over as src/sim/actuator_joint.cpp does."""
+    """The batched actuators of the joints in `motors`. They replace MuJoCo's as in src/sim/actuator_joint.cpp."""
 
     def __init__(self, model: mujoco.MjModel, motors: dict[str, dict[str, float]], worlds: int, device):
-        """Changes the model: what the actuators do from now on is no longer MuJoCo's."""
+        """Changes the model: MuJoCo's own actuators of these joints become plain torques."""
         self.actuator = [model.actuator(name).id for name in motors]
         self.index = torch.tensor(self.actuator, device=device)
         column = lambda values: torch.tensor(values, dtype=torch.float32, device=device)
@@ -79,7 +55,7 @@ class Motors:
         model.actuator_biasprm[actuator, :3] = 0.0
 
     def vary(self, robots: Robots, deployed_step_s: float) -> None:
-        """The drawn factors of gains, rotor inertias and dry friction, as src/sim/variation.cpp applies them. Once, before the first step."""
+        """Applies the drawn factors of gains, rotor inertias and dry friction as src/sim/variation.cpp does. Once, before the first step."""
         self.kp *= robots.kp[:, self.actuator]
         self.kd *= robots.kd[:, self.actuator]
         for name in DRY_FRICTION:
@@ -90,7 +66,7 @@ class Motors:
         self.model.p[name] = torch.where(self.model.elastic, torch.maximum(armature - added, 0.1 * armature), armature)
 
     def drive(self, target: torch.Tensor, qpos: torch.Tensor, qvel: torch.Tensor, ctrl: torch.Tensor, bias: torch.Tensor) -> None:
-        """Torques of the step to come into MuJoCo's ctrl, their slopes into its velocity bias. target: q_des of all joints [rad]."""
+        """Writes the next step's torques into MuJoCo's ctrl and their slopes into its velocity bias. target: q_des of all joints [rad]."""
         q, dq = qpos[:, 7:].index_select(1, self.index), qvel[:, 6:].index_select(1, self.index)
         torque, slope = self.model.step(target.index_select(1, self.index), self.kp, self.kd, q, dq)
         ctrl.copy_(target.index_copy(1, self.index, torque - slope * dq))
@@ -100,7 +76,7 @@ class Motors:
         self.model.reset(qpos[:, 7:].index_select(1, self.index), where)
 
     def reading(self, q: torch.Tensor) -> torch.Tensor:
-        """What encoders of all joints show."""
+        """The encoders' readings of all joints [rad]."""
         return q.index_copy(1, self.index, self.model.reading(q.index_select(1, self.index)))
 
     def momentary(self) -> dict[str, torch.Tensor]:

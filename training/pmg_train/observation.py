@@ -1,4 +1,4 @@
-"""What the actor sees, batched: terms, order, scales and ages of src/policy/observation_layout.cpp.
+"""The actor's observation, batched: terms, order, scales and ages of src/policy/observation_layout.cpp.
 
 test/data/training/observations.json holds what this code gives; the controller's own assembler is tested against it.
 """
@@ -7,7 +7,7 @@ import torch
 
 from pmg_train.rotations import rotate_back
 
-AGES = (2, 4, 6)        # ticks that the older frames lie back
+AGES = (2, 4, 6)        # ages of the older frames [ticks]
 VELOCITY_SCALE = 0.1
 
 
@@ -24,13 +24,13 @@ class Observation:
         return rotate_back(quat / quat.norm(dim=1, keepdim=True), self.down.expand(len(quat), 3))
 
     def now(self, gyro, gravity, q, dq, command, user_command, phase, q_ref, dq_ref, last_action) -> torch.Tensor:
-        """The terms of this tick. command: u', or what a baseline observes; user_command: the admissible one; phase: gain sin,
+        """The terms of this tick. command: u', or a baseline's command; user_command: the admissible one; phase: gain sin,
         gain cos, gain; q_ref, dq_ref, q, dq of all joints [rad], [rad/s]."""
         return torch.cat([gyro, gravity, command, user_command, phase, q_ref - self.stand, VELOCITY_SCALE * dq_ref[:, :self.actions],
                           q - self.stand, VELOCITY_SCALE * dq, last_action], 1)
 
     def with_history(self, now: torch.Tensor, gyro, gravity, q, dq, last_action, fresh: torch.Tensor) -> torch.Tensor:
-        """The whole vector; remembers this tick. fresh (worlds,): this is the first frame, and stands for the older ones."""
+        """The whole vector; stores this tick. fresh (worlds,): the first frame, which also replaces the older ones."""
         legs = self.actions
         frame = torch.cat([gyro, gravity, q[:, :legs] - self.stand[:legs], VELOCITY_SCALE * dq[:, :legs], last_action], 1)
         self.history.copy_(torch.where(fresh[:, None, None], frame[:, None], self.history))

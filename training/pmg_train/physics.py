@@ -1,4 +1,4 @@
-"""mujoco_warp worlds whose state and per-world parameters are torch tensors on the same memory."""
+"""mujoco_warp worlds. Torch tensors share the memory of their states and per-world parameters."""
 
 import mujoco
 import mujoco_warp as mjw
@@ -36,12 +36,12 @@ def _sole_forces(contacts: wp.array(dtype=int), geom: wp.array(dtype=wp.vec2i), 
 
 
 class Worlds:
-    """`substeps` physics steps a call. Positions and forces of bodies are those of the last substep's start."""
+    """`substeps` physics steps in each call. Positions and forces of bodies are those at the start of the last substep."""
 
     def __init__(self, model: mujoco.MjModel, worlds: int, substeps: int, foot_links: list[str], limits: dict,
                  device: str, motors: dict[str, dict[str, float]] | None = None):
-        """motors: what a motor.yaml says of some joints' actuators. Joints with dry friction have an actuator of src/sim's kind in any
-        case; the others are MuJoCo's position servos."""
+        """motors: the actuators of some joints, from a motor.yaml. These joints and all joints with dry friction have an actuator as in
+        src/sim; the others are MuJoCo's position servos."""
         self.device = device
         self.deployed_step_s = limits["deployed_timestep_s"]
         motors = motors or {}
@@ -82,7 +82,7 @@ class Worlds:
             self.motors.vary(robots, self.deployed_step_s)
 
     def _set_armature(self, factor: torch.Tensor) -> None:
-        """The drawn one, less what the damping in these longer steps adds."""
+        """The drawn rotor inertia minus the inertia that damping adds in these longer steps."""
         model, armature = self.model, wp.to_torch(self.m.dof_armature)[:, 6:]
         kd = torch.tensor(model.dof_damping[6:] - model.actuator_biasprm[:, 2], dtype=torch.float32, device=self.torch_device)
         if self.motors:
@@ -93,7 +93,7 @@ class Worlds:
         armature.copy_(torch.maximum(armature * factor - added, 0.1 * armature))
 
     def capture(self) -> None:
-        """Compiles; on a GPU also records a call as CUDA graphs: one, or a torch and a warp graph a step with motors."""
+        """Compiles. On a GPU it also records a call as CUDA graphs: one graph, or with motors a torch and a warp graph for each step."""
         self.step()
         if self.device.startswith("cuda"):
             wp.synchronize()
@@ -105,7 +105,7 @@ class Worlds:
             part()
 
     def _parts_of_a_call(self, by_warp, by_torch) -> list:
-        """What follows upon what; by_warp and by_torch make something to call of each part."""
+        """The parts of a call in their order. by_warp and by_torch turn a part into a callable."""
         if not self.motors:
             return [by_warp(self._all_steps)]
         physics, parts = by_warp(self._one_step), []
@@ -148,5 +148,5 @@ class Worlds:
                           self.d.efc.force, self.d.naconmax, self._soles[0], self._soles[1], self._sole_force_warp])
 
     def fullest(self) -> tuple[int, int]:
-        """(most constraints of a world, contacts of all worlds) of the last step: compare with what was allocated."""
+        """(most constraints of a world, contacts of all worlds) of the last step, for comparison with the allocated numbers."""
         return int(wp.to_torch(self.d.nefc).max()), int(self.d.nacon.numpy()[0])

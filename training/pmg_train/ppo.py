@@ -22,7 +22,7 @@ class Rollout:
         self.value = zeros(steps + 1, worlds)
 
     def advantages(self, gamma: float, lambda_: float) -> torch.Tensor:
-        """Generalised advantage estimation; an episode that only ran out of time is worth what its state was."""
+        """Generalised advantage estimation. An episode that ends by time alone gets the value of its last state."""
         steps = self.reward.shape[0]
         out, running = torch.empty_like(self.reward), torch.zeros_like(self.reward[0])
         for t in reversed(range(steps)):
@@ -35,7 +35,7 @@ class Rollout:
 
 
 class Ppo:
-    """mirrors: of observations and of actions. symmetry: the weight of the mirror loss; 0 leaves the sides to themselves."""
+    """mirrors: of observations and of actions. symmetry: the weight of the mirror loss; 0 switches it off."""
 
     def __init__(self, network: ActorCritic, config: dict, device, mirrors: tuple[Mirror, Mirror], symmetry: float):
         self.network, self.config = network, config
@@ -87,7 +87,7 @@ class Ppo:
         kl, value_loss, policy_loss, asymmetry = sums / (c["epochs"] * c["minibatches"])
         with torch.no_grad():
             some = seen[::4]
-            # With its mirror image: what is normalised alike on both sides can be answered alike.
+            # With its mirror image: equal normalisation of both sides allows equal answers.
             net.actor_norm.update(torch.cat([some, self.mirror_seen(some)]) if self.symmetry else some)
             net.critic_norm.update(critic_seen[::4])
         return dict(kl=kl, value_loss=value_loss, policy_loss=policy_loss, asymmetry=asymmetry)

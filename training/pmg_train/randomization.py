@@ -10,7 +10,7 @@ import torch
 class Robots:
     friction: torch.Tensor
     body_mass: torch.Tensor       # [kg], all bodies
-    link_mass: torch.Tensor       # factor a body: of mass and inertia
+    link_mass: torch.Tensor       # factor of mass and inertia for each body
     torso_com: torch.Tensor       # offset [m]
     armature: torch.Tensor        # factor a joint
     joint_friction: torch.Tensor  # factor a joint
@@ -18,7 +18,7 @@ class Robots:
     kd: torch.Tensor              # factor a joint
     delay_s: torch.Tensor         # from the command to the torque
     encoder_offset: torch.Tensor  # [rad]
-    privileged: torch.Tensor      # what the critic may know, about unit size
+    privileged: torch.Tensor      # the critic's extra inputs, of about unit size
 
 
 def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, device: str) -> Robots:
@@ -45,7 +45,7 @@ def draw(ranges: dict, model: mujoco.MjModel, torso: str, worlds: int, device: s
 
 
 def nominal(model: mujoco.MjModel, worlds: int, device: str) -> Robots:
-    """As the model says."""
+    """Robots without any variation."""
     one = torch.ones(worlds, model.nu, device=device)
     mass = torch.tensor(model.body_mass, dtype=torch.float32, device=device).repeat(worlds, 1)
     return Robots(torch.full((worlds,), 0.8, device=device), mass, torch.ones_like(mass), torch.zeros(worlds, 3, device=device),

@@ -1,4 +1,4 @@
-"""References made ahead, kept on the device: worlds read a row each tick and may enter any stream anywhere."""
+"""References, computed in advance and kept on the device. A world reads a row in each tick and may start anywhere in any stream."""
 
 import numpy as np
 import torch

@@ -1,11 +1,12 @@
 """References from the deployed C++ generator (training/pmg_batch), through ctypes."""
 
-import ctypes
 import json
 import os
 from pathlib import Path
 
 import numpy as np
+
+from pmg_train.library import load
 
 
 class ReferenceBatch:
@@ -17,7 +18,7 @@ class ReferenceBatch:
 
     def __init__(self, library: str | Path, robot: str | Path, variant: str = "pmg", streams: int = 1, seed: int = 0,
                  threads: int | None = None):
-        self._lib = _load(library)
+        self._lib = load(library)
         self._handle = self._lib.pmg_batch_create(str(robot).encode(), variant.encode(), streams, seed,
                                                   threads or os.cpu_count() or 1)
         if not self._handle:
@@ -33,7 +34,7 @@ class ReferenceBatch:
             self._handle = None
 
     def reset(self) -> None:
-        """Every stream at rest; random commands go on where they were."""
+        """Puts every stream to rest. Random commands continue."""
         self._lib.pmg_batch_reset(self._handle)
 
     def run(self, ticks: int, commands: np.ndarray | None = None, out: np.ndarray | None = None) -> np.ndarray:
@@ -54,27 +55,10 @@ class ReferenceBatch:
         return out
 
     def observe(self, gyro, quat_wxyz, q, dq, last_action, first: bool = False) -> np.ndarray:
-        """The controller's own observation for stream 0's last tick and this robot state (what a robot senses)."""
+        """The controller's own observation for stream 0's last tick and this robot state (a robot's sensors)."""
         arrays = [np.ascontiguousarray(a, np.float64) for a in (gyro, quat_wxyz, q, dq)]
         action = np.ascontiguousarray(last_action, np.float32)
         out = np.empty(self.description["observation"]["size"], np.float32)
         self._lib.pmg_batch_observe(self._handle, int(first), *(a.ctypes.data for a in arrays), action.ctypes.data,
                                     out.ctypes.data)
         return out
-
-
-def _load(path: str | Path) -> ctypes.CDLL:
-    lib = ctypes.CDLL(str(path))
-    pointer, integer = ctypes.c_void_p, ctypes.c_int32
-    lib.pmg_batch_create.restype = pointer
-    lib.pmg_batch_create.argtypes = [ctypes.c_char_p, ctypes.c_char_p, integer, ctypes.c_uint64, integer]
-    lib.pmg_batch_destroy.argtypes = [pointer]
-    lib.pmg_batch_error.restype = ctypes.c_char_p
-    lib.pmg_batch_description.restype = ctypes.c_char_p
-    lib.pmg_batch_description.argtypes = [pointer]
-    lib.pmg_batch_run.restype = integer
-    lib.pmg_batch_run.argtypes = [pointer, integer, pointer, pointer]
-    lib.pmg_batch_reset.argtypes = [pointer]
-    lib.pmg_batch_observe.restype = integer
-    lib.pmg_batch_observe.argtypes = [pointer, integer] + [pointer] * 6
-    return lib

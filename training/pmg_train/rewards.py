@@ -1,12 +1,12 @@
-"""What the robot is paid for: weights and widths from config.yaml, quantities measured by the environment."""
+"""The rewards: weights and widths from config.yaml, quantities measured by the environment."""
 
 import torch
 
 
 def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) -> dict[str, torch.Tensor]:
-    """One tensor (worlds,) a term, per second. m: the environment's measurements, see Environment.measure().
+    """One tensor (worlds,) for each term, per second. m: the environment's measurements, see Environment.measure().
 
-    Linear errors of what is followed count m["strictness"] of their weight: all of it early would pay a beginner for falling."""
+    The linear tracking errors have m["strictness"] of their weight: with the full weight from the start, falling early would pay."""
     terms = {}
 
     def exponential(name, squared_error):
@@ -26,7 +26,7 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     exponential("attitude", (attitude ** 2).sum(1))
     exponential("joint_position", (m["leg_weight"] * m["q_error"] ** 2).sum(1))
     exponential("joint_velocity", (m["leg_weight"] * m["dq_error"] ** 2).sum(1))
-    # Sharp where the exponential is flat; bounded, so that a pushed robot isn't held to its reference.
+    # Steep where the exponential is flat. Bounded, so that a pushed robot may leave its reference.
     terms["joint_position_linear"] = m["strictness"] * (m["leg_linear_weight"] * m["q_error"].abs().clamp(max=0.3)).sum(1)
     terms["alive"] = torch.full_like(m["gain"], weights["alive"])
     strict("velocity_linear", slow[:, :2].abs().sum(1))
@@ -34,7 +34,7 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     strict("attitude_linear", attitude.abs().sum(1))
     strict("height_linear", m["height_error"].abs())
 
-    # A disturbed robot that should stand may step: what asks it to stand still fades while it is pushed about.
+    # A pushed robot may step while its command is to stand: the terms for standing still fade with the disturbance.
     standing = 1 - (m["gain"] > 0).float()
     calm = 1 - standing * (1 - torch.exp(-(slow[:, :2] ** 2).sum(1) / 0.02))
     linear("contact_mismatch", (m["touching"] != m["contact"]).float().mean(1) * calm)
@@ -58,6 +58,6 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
 
 
 def total(terms: dict[str, torch.Tensor], fallen: torch.Tensor, fall_weight: float, tick_s: float) -> torch.Tensor:
-    """A tick's reward, scaled to values of order one; a bad tick costs no more than a fall would."""
+    """A tick's reward, scaled to order one. A bad tick costs at most as much as a fall."""
     per_tick = sum(terms.values()) * tick_s
     return 0.25 * (per_tick.clamp(min=-0.2) + fall_weight * fallen)

@@ -1,4 +1,4 @@
-"""The exported MJCF (`pmg_sil --export-mjcf`) as MuJoCo models: one light for training, one faithful for evaluation."""
+"""The exported MJCF (`pmg_sil --export-mjcf`) as MuJoCo models: a light one for training, a faithful one for evaluation."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def joint_kind(name: str) -> str:
 
 
 def policy_gains(description: dict, gains: dict) -> tuple[np.ndarray, np.ndarray]:
-    """kp, kd of every joint in the robot's order [Nm/rad], [Nm s/rad]: the policy's on its joints, robot.yaml's elsewhere."""
+    """kp, kd of every joint in the robot's order [Nm/rad], [Nm s/rad]: the policy's gains on its joints, robot.yaml's on the others."""
     kinds = {joint_kind(j["name"]) for j in description["joints"] if j["policy"]}
     if kinds != set(gains):
         raise ValueError(f"gains of {', '.join(sorted(gains))}; expected exactly {', '.join(sorted(kinds))}")
@@ -49,8 +49,8 @@ def _check(model: mujoco.MjModel, description: dict) -> mujoco.MjModel:
 
 
 def evaluation_model(mjcf: str | Path, description: dict, gains: dict) -> mujoco.MjModel:
-    """The exported model (2 ms, implicit, all collision shapes), with the policy's gains: the controller's simulation but for dry friction,
-    which is MuJoCo's own here."""
+    """The exported model (2 ms, implicit, all collision shapes) with the policy's gains. It equals the controller's simulation except for
+    dry friction, which is MuJoCo's own here."""
     spec = mujoco.MjSpec.from_file(str(mjcf))
     _set_gains(spec, description, gains)
     return _check(spec.compile(), description)
@@ -65,7 +65,7 @@ def training_model(mjcf: str | Path, description: dict, gains: dict, physics: di
         if geom.name in soles:
             geom.contype, geom.conaffinity, geom.condim = 0, 1, 3
         elif geom.name == "floor":
-            geom.friction = [0.01, 0.005, 0.0001]  # MuJoCo takes the larger of two: the sole's decides
+            geom.friction = [0.01, 0.005, 0.0001]  # MuJoCo takes the larger of two frictions: the sole's
         elif geom.type == mujoco.mjtGeom.mjGEOM_CAPSULE and "knee" in geom.parent.name and geom.contype:
             left = geom.parent.name.startswith("left")
             geom.contype, geom.conaffinity, geom.condim = (2, 4, 1) if left else (4, 2, 1)
@@ -79,7 +79,7 @@ def training_model(mjcf: str | Path, description: dict, gains: dict, physics: di
     policy = {j["name"] for j in description["joints"] if j["policy"]}
     for joint in spec.joints:
         if joint.type == mujoco.mjtJoint.mjJNT_HINGE and joint.name not in policy:
-            joint.frictionloss = 0.0  # an actuator model each, and no balance depends on it
+            joint.frictionloss = 0.0  # it would cost an actuator model for each joint, and balance does not depend on it
     for sensor in list(spec.sensors):
         spec.delete(sensor)
     spec.option.timestep = physics["timestep_s"]

@@ -1,4 +1,4 @@
-"""The robot in a mirror: left and right change places. Maps of observations and actions, by the names of the layout.
+"""The mirrored robot: left and right change places. Maps of observations and actions, by the names of the layout.
 
 A robot whose sides are alike should act on a mirrored situation with the mirrored action. PPO is told so with a loss
 (Yu, Turk and Liu, Learning symmetric and low-energy locomotion, ACM TOG 2018): |mean(M s) - M mean(s)|^2.

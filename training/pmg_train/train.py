@@ -22,9 +22,9 @@ import torch.distributed as dist
 import warp as wp
 import yaml
 
-from pmg_train.configuration import load_config, load_randomization
+from pmg_train.checked_files import read_motor_file, read_randomization
+from pmg_train.configuration import load_config
 from pmg_train.environment import Environment
-from pmg_train.motors import read_motor_file
 from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
 from pmg_train.reference_pool import ReferencePool
@@ -67,7 +67,7 @@ class Training:
         if self.device == "cuda":
             self.device = f"cuda:{os.environ.get('LOCAL_RANK', 0)}"
         self.cuda = self.device.startswith("cuda")
-        self.config, self.ranges = load_config(a.config), load_randomization(a.randomization)
+        self.config, self.ranges = load_config(a.config), read_randomization(a.library, a.randomization)
         c, ppo = self.config, self.config["ppo"]
         for key, value in (("streams", a.streams), ("ticks", a.ticks)):
             c["references"][key] = value or c["references"][key]
@@ -80,7 +80,7 @@ class Training:
         self.description = batch.description
         pool = ReferencePool(batch, c["references"]["ticks"], self.device)
         self.log(f"references ready: {pool.streams} streams of {pool.ticks} ticks")
-        self.motors = read_motor_file(a.motor, [j["name"] for j in batch.description["joints"]]) if a.motor else {}
+        self.motors = read_motor_file(a.library, a.robot, a.motor) if a.motor else {}
         self.env = Environment(a.mjcf, pool, batch.description, batch.fields, c, self.ranges, ppo["worlds"], self.device, self.motors)
         seen = self.env.observation.shape[1]
         if seen != batch.description["observation"]["size"]:
@@ -161,7 +161,7 @@ class Training:
                 + ["falls", "timeouts", "reward"])
 
     def _record(self) -> None:
-        """Compiles everything; on a GPU the two torch halves of a tick become CUDA graphs, as the physics did."""
+        """Compiles everything. On a GPU the two torch halves of a tick become CUDA graphs, like the physics."""
         self.env.worlds.capture()
         self.act, self.observe = self._act, self._observe
         for _ in range(3 if self.cuda else 1):
@@ -183,7 +183,7 @@ class Training:
         self.log("compiled")
 
     def _time_bare_steps(self, calls: int = 40) -> float:
-        """World ticks a second of the physics alone, in this very run."""
+        """World ticks per second of the physics alone, in this run."""
         step = self.env.worlds.step
         step()
         if self.cuda:
@@ -293,7 +293,7 @@ class Training:
         torch.save(dict(actor=actor, **self._meta()), path)
 
     def save(self) -> None:
-        """last.pt: what was learned and how. worlds.pt: each process' momentary state, for an exact continuation."""
+        """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation."""
         if self.rank == 0:
             _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
                         curve=self.curve, **self._meta()), self.a.out / "last.pt")
@@ -305,7 +305,7 @@ class Training:
         return self.a.out / ("worlds.pt" if self.rank == 0 else f"worlds_{self.rank}.pt")
 
     def _load(self) -> None:
-        """Goes on exactly where the run ended; without its worlds.pt (another number of worlds, say) from new starts."""
+        """Continues exactly where the run ended. Without a fitting worlds.pt (as for another number of worlds) it starts new episodes."""
         path = self.a.out / "last.pt"
         state = torch.load(path, map_location=self.device, weights_only=False)
         if state["variant"] != self.a.variant:
@@ -329,7 +329,7 @@ class Training:
         self.log(f"goes on from iteration {self.iteration}" + ("" if exact else ", with new worlds"))
 
     def _start_from(self, path: Path) -> None:
-        """Another run's networks and exploration; steps and curve begin at zero."""
+        """Starts with another run's networks and exploration; steps and curve begin at zero."""
         state = torch.load(path, map_location=self.device, weights_only=False)
         self.network.load_state_dict(state["network"])
         low, high = self.config["ppo"]["learning_rate"]

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import onnx
 import torch
-import yaml
 
 from pmg_train import export
+from pmg_train.configuration import load_config
 from pmg_train.references import ReferenceBatch
 
 VARIANT_ROOM = len("single_gait") - len("pmg")
@@ -25,7 +25,7 @@ VARIANT_ROOM = len("single_gait") - len("pmg")
 
 def main(library: str, robot: Path, out: Path) -> None:
     description = ReferenceBatch(library, robot).description
-    config = yaml.safe_load((Path(export.__file__).parent.parent / "config.yaml").read_text())
+    config = load_config(Path(export.__file__).parent.parent / "config.yaml")
     generator = torch.Generator().manual_seed(1)
     size, actions = description["observation"]["size"], len(description["action_joints"])
     actor = {"actor_norm.mean": torch.zeros(size), "actor_norm.variance": torch.ones(size),

@@ -1,4 +1,4 @@
-"""motor.yaml in training's physics: neutral actuators change nothing, others what they say, in the worlds' own factors too."""
+"""Actuators of motor.yaml in training's physics: neutral actuators change nothing; others act on their joints, also with the worlds' own factors."""
 
 import math
 import os
@@ -8,7 +8,6 @@ import pytest
 import torch
 
 from pmg_train.configuration import load_config
-from pmg_train.motors import read_motor_file
 from pmg_train.physics import Worlds
 from pmg_train.randomization import nominal
 from pmg_train.references import ReferenceBatch
@@ -55,14 +54,3 @@ def test_an_effect_acts_on_its_joint():
     names = [j["name"] for j in ReferenceBatch(LIBRARY, ROBOT).description["joints"]]
     moved = (plain - slow)[-1, 0].abs()
     assert moved.argmax() == names.index("left_knee") and moved.max() > 0.02
-
-
-def test_a_motor_file_is_read_whole_or_refused(tmp_path):
-    path = tmp_path / "motor.yaml"
-    path.write_text("joints:\n  a:\n    friction:\n      coulomb_Nm: 0.5\n    command: {delay_s: 0.004}\n  b: {}\n")
-    assert read_motor_file(path, ["a", "b", "c"]) == {"a": {"friction.coulomb_Nm": 0.5, "command.delay_s": 0.004}, "b": {}}
-    for text, said in (("joints: {z: {}}", "z isn't a joint"), ("joints: {a: {friction: {culomb_Nm: 1}}}", "unknown friction.culomb_Nm"),
-                       ("joints: {a: {friction: {coulomb_Nm: much}}}", "much; expected a number"), ("motors: {}", "expected one map, joints")):
-        path.write_text(text)
-        with pytest.raises(ValueError, match=f"motor.yaml: .*{said}"):
-            read_motor_file(path, ["a"])

@@ -8,7 +8,8 @@ import pytest
 import torch
 import warp as wp
 
-from pmg_train.configuration import load_config, load_randomization
+from pmg_train.checked_files import read_randomization
+from pmg_train.configuration import load_config
 from pmg_train.environment import Environment
 from pmg_train.reference_pool import ReferencePool
 from pmg_train.references import ReferenceBatch
@@ -25,7 +26,7 @@ TOLERANCE = 1e-6  # of values of order one in float32; velocities are scaled to 
 @pytest.fixture(scope="module")
 def setting():
     wp.config.quiet = True
-    config, ranges = load_config(HERE / "config.yaml"), load_randomization(HERE / "randomization.yaml")
+    config, ranges = load_config(HERE / "config.yaml"), read_randomization(LIBRARY, HERE / "randomization.yaml")
     ranges["noise"] = dict.fromkeys(ranges["noise"], 0.0)
     ranges["encoder_offset_rad"] = 0.0
     ranges["upper_body"]["share"] = 0.0

@@ -1,4 +1,4 @@
-"""test/data/training/observations.json, which the controller's assembler is tested against, is what this code gives. Torch is enough."""
+"""This code reproduces test/data/training/observations.json, the reference of the tests of the controller's assembler. Needs only torch."""
 
 import json
 from pathlib import Path

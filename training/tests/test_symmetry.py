@@ -49,7 +49,7 @@ def cycle(batch: ReferenceBatch, command: np.ndarray) -> tuple[np.ndarray, np.nd
 
 @pytest.mark.parametrize("variant", ["pmg", "without_gco", "single_gait"])
 def test_a_mirrored_command_gives_the_mirrored_references_half_a_cycle_later(description, variant):
-    """What the loss relies on: the policy's inputs really are mirror images."""
+    """The loss relies on this: the policy's inputs are mirror images."""
     batch = ReferenceBatch(LIBRARY, ROBOT, variant, 1, 1, 1)
     command = np.array([0.3, 0.1, 0.4, 0.05, 0.08, -0.04], np.float32)
     rows, phase = cycle(batch, command)

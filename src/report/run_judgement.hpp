@@ -1,5 +1,5 @@
-// A logged run measured again as a running one is (runtime/run_measure.hpp): the report's errors and slip are those of
-// summary.json.
+// A logged run measured again by the measure of a live run (sil/run_measure.hpp), so that the report's errors and slip
+// equal those of summary.json.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 #include "pmg_msgs/status_t.hpp"
 #include "sil/run_measure.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 class RunJudgement {
  public:
@@ -23,22 +23,22 @@ class RunJudgement {
   void status(const pmg_msgs::status_t& message);
   void truth(const pmg_msgs::ground_truth_t& message);
 
-  /// Of the ticks so far. Without GROUND_TRUTH followed_s is 0, without REFERENCE all of slip.
+  /// The outcome of the ticks so far. Without GROUND_TRUTH followed_s is 0; without REFERENCE the slip is 0.
   sil::RunOutcome outcome() const { return measure_.outcome(); }
 
  private:
-  /// What the driving source wants; in a fault what the last one that drove wants; without a source nothing.
+  /// The driving source's command; in a fault that of the last driving source; zero without a source.
   Command asked() const;
 
   sil::RunMeasure measure_;
-  control::TickResult tick_;  ///< what the measure reads of it
+  control::TickResult tick_;  ///< only the parts that the measure reads
   std::int64_t reference_ns_ = -1;
   std::string driving_, last_driving_;
-  std::map<std::string, Command> commands_;  ///< newest of each source
+  std::map<std::string, Command> commands_;  ///< newest command of each source
   bool has_status_ = false;
 };
 
-/// Mean errors of the time between two sums of one run; foot_slip_mean_m_s is left 0.
+/// Mean errors between two sums of one run; foot_slip_mean_m_s stays 0.
 sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const sil::TrackingSummary& after);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,11 +1,11 @@
-#include "logs/timing_csv.hpp"
+#include "report/timing_csv.hpp"
 
 #include <array>
 #include <fstream>
 #include <limits>
 #include <sstream>
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
@@ -34,4 +34,4 @@ void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
   }
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

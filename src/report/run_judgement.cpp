@@ -1,10 +1,10 @@
-#include "logs/run_judgement.hpp"
+#include "report/run_judgement.hpp"
 
 #include <algorithm>
 
-#include "logs/measured_command.hpp"
+#include "report/measured_command.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 
@@ -76,4 +76,4 @@ sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const si
   return mean;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,4 +1,4 @@
-#include "logs/run_report.hpp"
+#include "report/run_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "small_log.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_F(RunReport, RefusesNoneAndTooMany) {
 }
 
 }  // namespace
-}  // namespace pmg::logs
+}  // namespace pmg::report

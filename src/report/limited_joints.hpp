@@ -1,4 +1,4 @@
-// Which joints' targets the limiter changed, when, and why: from a log's LIMITED messages.
+// (LIMITED messages) => the joints whose targets the limiter changed, with times and reasons.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "pmg_msgs/limited_t.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 inline constexpr std::array<const char*, 3> kLimitNames = {"range", "speed", "torque"};
 
@@ -21,7 +21,7 @@ struct LimitedJoint {
     double from_s, to_s;
     std::array<bool, 3> by;
   };
-  std::vector<Stretch> stretches;  ///< of one reason each
+  std::vector<Stretch> stretches;  ///< each with one set of reasons
 
   double longest_s() const;
   std::string reasons() const;  ///< "torque in 12 ticks, speed in 3"
@@ -36,4 +36,4 @@ class LimitedJoints {
   std::vector<LimitedJoint> joints_;  ///< in the order of their first time
 };
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,4 +1,4 @@
-#include "logs/run_series.hpp"
+#include "report/run_series.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "logs/measured_command.hpp"
-#include "logs/run_figures.hpp"
+#include "report/measured_command.hpp"
+#include "report/run_figures.hpp"
 #include "small_log.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ TEST(MeasuredCommand, AveragesOverOneGaitPeriod) {
 }
 
 }  // namespace
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,4 +1,4 @@
-// The six channels as a simulated robot really did them, to be laid over what was asked.
+// (ground truth) => the six command channels as the simulated robot realised them, for comparison with the command.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,16 +9,16 @@
 #include "pmg/command.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 /// Messages hold quaternions as w, x, y, z.
 inline Eigen::Quaterniond to_quaternion(const double (&wxyz)[4]) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
 
-/// Velocities in the heading frame H, averaged over the last gait period as the metrics are (metrics.hpp); posture of
-/// the torso in H; height of the pelvis as deviation from standing.
+/// Velocities in the heading frame H, averaged over the last gait period as in metrics.hpp; posture of the torso in H;
+/// height of the pelvis as deviation from standing.
 class MeasuredCommand {
  public:
-  /// One call a tick. Averages start anew when time jumps by more than a period or runs back.
+  /// Call once for each tick. A jump of time by more than a period, or backwards, restarts the averages.
   std::array<double, kChannels> add(const pmg_msgs::ground_truth_t& truth, double gait_period_s,
                                     double standing_height_m);
 
@@ -29,7 +29,7 @@ class MeasuredCommand {
   std::deque<Sample> samples_;
 };
 
-/// Whether the robot lies: as in metrics.hpp.
+/// Whether the robot has fallen, by the rule of metrics.hpp.
 bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m);
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,11 +1,11 @@
-#include "logs/measured_command.hpp"
+#include "report/measured_command.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "sil/metrics.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 constexpr double kLongestGaitPeriod_s = 4.0;
@@ -59,4 +59,4 @@ bool fallen(const pmg_msgs::ground_truth_t& truth, double standing_height_m) {
          up_W.z() < std::cos(sil::Metrics::kFallenTilt_rad);
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

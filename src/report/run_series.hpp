@@ -1,4 +1,4 @@
-// A run's log as plain arrays over time: what pictures are drawn from.
+// (a run's log) => plain arrays over time, for pictures.
 #pragma once
 
 #include <array>
@@ -9,20 +9,20 @@
 #include <vector>
 
 #include "gco/slip_statistics.hpp"
-#include "logs/limited_joints.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
+#include "report/limited_joints.hpp"
 #include "sil/metrics.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
-/// One row a tick and channel; t_s counts from the log's beginning. A channel that the log lacks is empty. Of per-joint
-/// arrays the first index is the joint; they are float because a long run has many.
+/// One sample for each tick and channel; t_s counts from the log's beginning. Channels without a message are empty. The
+/// first index of a per-joint array is the joint; these arrays are float to save memory in long runs.
 struct RunSeries {
   using Samples = std::vector<double>;
   using JointSamples = std::vector<std::vector<float>>;
 
-  std::string name;  ///< of the log, short
+  std::string name;  ///< short name of the log
   bool identified = false;
   pmg_msgs::robot_info_t info{};  ///< if identified
   std::vector<std::string> joint_names;
@@ -54,31 +54,31 @@ struct RunSeries {
 
   struct {
     Samples t_s, wake_us, tick_us, generator_us, gco_us, policy_us;
-    Samples bus_wake_us, bus_exchange_us;  ///< the worst of the bus cycles since the last tick
+    Samples bus_wake_us, bus_exchange_us;  ///< largest value of the bus cycles since the last tick
     std::int64_t missed_ticks = 0, bus_missed_cycles = 0, dropped_records = 0;
-  } timing;  ///< of the wall clock; stages that did not run are NaN
+  } timing;  ///< by the wall clock; NaN for stages that did not run
 
   struct Stretch {
     double from_s, to_s;
     std::string text;
   };
   std::vector<Stretch> modes, sources, hoisted;
-  std::vector<Stretch> hanging;  ///< the feet carried nothing, so the policy was not run
+  std::vector<Stretch> hanging;  ///< the feet carried nothing, so the policy did not run
 
   struct Event {
     double t_s;
     std::string text;
   };
-  std::vector<Event> faults;  ///< as they latched, in words
+  std::vector<Event> faults;  ///< in order of time, in words
   std::vector<Event> guard_trips, stops;
 
-  /// A scenario's step, as the log tells it.
+  /// A scenario's step in the log.
   struct Step {
     double from_s, to_s;
     int number;
     std::string text;
     std::array<double, kChannels> asked;
-    sil::TrackingSummary tracking;  ///< within it
+    sil::TrackingSummary tracking;  ///< within the step
   };
   std::string scenario;
   std::vector<Step> steps;
@@ -89,16 +89,16 @@ struct RunSeries {
 
   bool fell = false;
   double fell_at_s = -1.0;
-  std::int64_t lost_ticks = 0;        ///< numbers that the log jumps over
-  std::vector<std::string> problems;  ///< what could not be read, one sentence each
+  std::int64_t lost_ticks = 0;        ///< tick numbers that are missing in the log
+  std::vector<std::string> problems;  ///< problems while reading, one sentence each
 };
 
-/// Called now and then with the share of the bytes that are read; false ends the reading, what was read is kept.
+/// Called from time to time with the share of the bytes read; false ends the reading and keeps the part so far.
 using ReadingProgress = std::function<bool(double share)>;
 
-/// log: a .lcm file, or a run's folder, whose log.lcm or log-NNNN.lcm are taken as one; of several runs the last. Wall
-/// times come from the log, or from a timing.csv beside it. Reads on over what is damaged. Throws std::runtime_error
-/// when nothing of a run can be read there.
+/// log: a .lcm file, or a run's folder with log.lcm or log-NNNN.lcm, which count as one log. If the log holds several
+/// runs, the last one is read. Wall times come from the log, or from a timing.csv beside it. Skips damaged parts.
+/// Throws std::runtime_error if it finds no part of a run.
 RunSeries read_run(const std::filesystem::path& log, const ReadingProgress& progress = {});
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,20 +1,15 @@
-#include "logs/run_series.hpp"
+#include "report/run_series.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
 #include "control/mode.hpp"
 #include "io/log_series.hpp"
-#include "logs/measured_command.hpp"
-#include "logs/run_judgement.hpp"
-#include "logs/timing_csv.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
@@ -24,34 +19,24 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
+#include "report/measured_command.hpp"
+#include "report/run_judgement.hpp"
+#include "report/series_samples.hpp"
+#include "report/timing_csv.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// The file's name, with its folder's, which tells runs apart whose logs are all called log.lcm.
+/// The names of folder and file: many logs are called log.lcm.
 std::string short_name(const fs::path& log) {
   const fs::path path = fs::weakly_canonical(log);
   return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
 }
 
-double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
-double stage_us(std::int64_t ns) { return ns > 0 ? us(ns) : kNone; }
-
-void append(const std::vector<double>& row, RunSeries::JointSamples& to) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i].push_back(static_cast<float>(row[i]));
-}
-
-void extend(std::vector<RunSeries::Stretch>& stretches, double t_s, const std::string& text) {
-  if (!stretches.empty()) stretches.back().to_s = t_s;
-  if (stretches.empty() || stretches.back().text != text) stretches.push_back({t_s, t_s, text});
-}
-
-/// Gathers the events of one run; of several, the last one's.
+/// Gathers the events of one run. If the log holds several runs, the last one remains.
 class Gathering {
  public:
   explicit Gathering(std::string name) { run_.name = std::move(name); }
@@ -81,12 +66,12 @@ class Gathering {
     if (channel == "FAULT") return with(event, &Gathering::fault);
   }
 
-  /// The run; nothing can be added any more.
+  /// The complete run. Call once, at the end.
   RunSeries finish() {
     for (auto* stretches : {&run_.modes, &run_.sources, &run_.hoisted, &run_.hanging}) {
       std::erase_if(*stretches, [](const auto& stretch) { return stretch.text.empty(); });
     }
-    // A log that begins in a fault, or whose FAULT is lost, still has its words in every status.
+    // If the log begins in a fault, or its FAULT is lost, each status still holds the fault's text.
     for (const RunSeries::Event& fault : latched_) {
       if (!is_known(fault)) run_.faults.push_back(fault);
     }
@@ -111,7 +96,8 @@ class Gathering {
   }
 
  private:
-  /// ROBOT_INFO's stamp when it belongs to the first tick's time: a simulation's times then stay as they are.
+  /// Time zero: ROBOT_INFO's stamp if it is at most a second before the first tick, so that a simulation's times stay
+  /// unchanged; else the first event's.
   std::int64_t beginning(std::int64_t first_event_ns) const {
     constexpr std::int64_t kSoon_ns = 1'000'000'000;
     const std::int64_t ahead_ns = info_ns_ ? first_event_ns - *info_ns_ : -1;
@@ -120,12 +106,12 @@ class Gathering {
 
   template <typename Message>
   void with(const io::LogReader& event, bool (Gathering::*take)(const Message&)) {
-    static thread_local Message message;  // its vectors' memory is used again
+    static thread_local Message message;  // the memory of its vectors is reused
     if (!event.decode_into(message) || !(this->*take)(message)) ++unreadable_;
   }
 
-  /// Rotated files repeat their run's. Another run's differs in its session; lockstep runs have none, and their clocks
-  /// begin anew.
+  /// A rotated file repeats its run's ROBOT_INFO. Another run has another session, or in lockstep, where there is none,
+  /// a clock that starts again.
   void take_info(const io::LogReader& event) {
     auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) {
@@ -153,7 +139,7 @@ class Gathering {
     *this = std::move(next);
   }
 
-  /// Whether a message has this run's joints; without ROBOT_INFO the first message decides.
+  /// Whether a message has as many joints as the run. Without ROBOT_INFO the first message decides.
   bool fits(std::int32_t joint_count) {
     if (run_.joint_names.empty()) {
       for (std::int32_t i = 0; i < joint_count; ++i) run_.joint_names.push_back(fmt::format("joint {}", i));
@@ -169,10 +155,7 @@ class Gathering {
 
   bool state(const pmg_msgs::robot_state_t& message) {
     if (!fits(message.joint_count)) return false;
-    run_.state.t_s.push_back(t_s_);
-    append(message.q_rad, run_.state.q_rad);
-    append(message.torque_Nm, run_.state.torque_Nm);
-    append(message.temperature_degC, run_.state.temperature_degC);
+    append(message, t_s_, run_);
     return true;
   }
 
@@ -206,23 +189,7 @@ class Gathering {
   bool reference(const pmg_msgs::reference_t& message) {
     if (!fits(message.joint_count)) return false;
     if (judgement_) judgement_->reference(message);
-    auto& to = run_.reference;
-    to.t_s.push_back(t_s_);
-    append(message.q_ref_rad, to.q_ref_rad);
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      to.user[channel].push_back(message.user[channel]);
-      to.command[channel].push_back(message.command[channel]);
-      to.optimised[channel].push_back(message.optimised[channel]);
-    }
-    for (std::size_t foot = 0; foot < 2; ++foot) {
-      to.contact[foot].push_back(message.contact[foot] != 0);
-      to.contact_weight[foot].push_back(message.contact_weight[foot]);
-      to.slip_before_m_s[foot].push_back(message.slip_before_m_s[foot]);
-      to.slip_after_m_s[foot].push_back(message.slip_after_m_s[foot]);
-    }
-    to.not_converged += message.gco_status == pmg_msgs::reference_t::NOT_CONVERGED;
-    to.command_limited += message.command_limited != 0;
-    to.joint_clamped += message.joint_clamped != 0;
+    append(message, t_s_, run_);
     if (message.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / message.phase_rate_per_s;
     return true;
   }
@@ -236,30 +203,14 @@ class Gathering {
           {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
     }
     if (judgement_) judgement_->status(message);
-    extend(run_.modes, t_s_, to_string(mode));
-    extend(run_.sources, t_s_, message.driving_source);
-    extend(run_.hanging, t_s_, message.hanging ? "hanging, no policy" : "");
-    run_.status.t_s.push_back(t_s_);
-    run_.status.limited_position.push_back(message.limited_position);
-    run_.status.limited_rate.push_back(message.limited_rate);
-    run_.status.limited_torque.push_back(message.limited_torque);
+    append(message, t_s_, run_);
     return true;
   }
 
   bool truth(const pmg_msgs::ground_truth_t& message) {
-    auto& to = run_.truth;
-    to.t_s.push_back(t_s_);
     if (judgement_) judgement_->truth(message);
     const double standing_height_m = run_.info.standing_height_m;
-    const auto measured = measured_command_.add(message, gait_period_s_, standing_height_m);
-    // What the gantry carries does not follow.
-    for (std::size_t channel = 0; channel < kChannels; ++channel)
-      to.measured[channel].push_back(message.hoisted != 0 ? kNone : measured[channel]);
-    for (std::size_t foot = 0; foot < 2; ++foot) {
-      to.foot_force_N[foot].push_back(message.foot_force_N[foot]);
-      to.foot_slip_m_s[foot].push_back(message.foot_slip_m_s[foot]);
-    }
-    extend(run_.hoisted, t_s_, message.hoisted != 0 ? "on the gantry" : "");
+    append(message, measured_command_.add(message, gait_period_s_, standing_height_m), t_s_, run_);
     if (!run_.fell && fallen(message, standing_height_m)) {
       run_.fell = true;
       run_.fell_at_s = t_s_;
@@ -268,19 +219,7 @@ class Gathering {
   }
 
   bool timing(const pmg_msgs::timing_t& message) {
-    auto& to = run_.timing;
-    to.t_s.push_back(t_s_);
-    to.wake_us.push_back(us(message.wake_ns));
-    to.tick_us.push_back(us(message.tick_ns));
-    to.generator_us.push_back(stage_us(message.generator_ns));
-    to.gco_us.push_back(stage_us(message.gco_ns));
-    to.policy_us.push_back(stage_us(message.policy_ns));
-    const bool cycles = message.bus_cycles > 0;
-    to.bus_wake_us.push_back(cycles ? us(message.bus_wake_max_ns) : kNone);
-    to.bus_exchange_us.push_back(cycles ? us(message.bus_exchange_max_ns) : kNone);
-    to.missed_ticks = message.missed_ticks;
-    to.bus_missed_cycles = message.bus_missed_cycles;
-    to.dropped_records = message.dropped_records;
+    append(message, t_s_, run_);
     return true;
   }
 
@@ -295,8 +234,8 @@ class Gathering {
     return true;
   }
 
-  /// Its own stamp says when it latched: a flight recorder's log tells its fault at the beginning, and again in its
-  /// place.
+  /// The message's stamp is the time of the latching. A flight recorder's log holds its fault twice: at the beginning
+  /// and in its place.
   bool fault(const pmg_msgs::fault_t& message) {
     const double latched_s = static_cast<double>(message.stamp_ns - *first_ns_) * 1e-9;
     const RunSeries::Event told{latched_s >= 0.0 ? latched_s : t_s_, message.text};
@@ -305,7 +244,7 @@ class Gathering {
   }
 
   bool is_known(const RunSeries::Event& fault) const {
-    constexpr double kSame_s = 0.05;  // found in one tick, told in the next
+    constexpr double kSame_s = 0.05;  // a fault latches in one tick and is logged in the next
     return std::ranges::any_of(
         run_.faults, [&](const RunSeries::Event& known) { return std::abs(known.t_s - fault.t_s) < kSame_s; });
   }
@@ -317,7 +256,7 @@ class Gathering {
   LimitedJoints limited_;
   std::optional<std::int64_t> info_ns_, first_ns_, last_tick_;
   double t_s_ = 0.0, gait_period_s_ = 1.0;
-  std::map<std::string, double> newest_s_;  // of each channel
+  std::map<std::string, double> newest_s_;  // newest time of each channel
   std::vector<RunSeries::Event> latched_;
   std::int64_t newest_ns_ = 0;
   std::int64_t unreadable_ = 0, back_in_time_ = 0, earlier_runs_ = 0;
@@ -357,4 +296,4 @@ RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
   return run;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,4 +1,4 @@
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include "pages/histogram.hpp"
 #include "sil/summary.hpp"
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 
-constexpr std::size_t kShownHash = 12;  // hexadecimal digits that tell bundles apart at a glance
+constexpr std::size_t kShownHash = 12;  // hexadecimal digits, enough to distinguish bundles
 
 nlohmann::ordered_json events_json(const std::vector<RunSeries::Event>& events) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -181,4 +181,4 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
           {"problems", run.problems}};
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

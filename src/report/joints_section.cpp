@@ -1,14 +1,14 @@
-// How the joints followed: error bars first, then the worst joints, then all.
+// The section about the joints' tracking: error bars, then the worst joints, then all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 
-#include "logs/report_sections.hpp"
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
+#include "report/sections.hpp"
 
-namespace pmg::logs::report {
+namespace pmg::report {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr std::size_t kShown = 6;  // joints whose charts are not folded away
 
 std::vector<double> widened(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
-/// A joint's place in each run, by its name: runs of different robots share what they share.
+/// A joint's index in each run, by name: runs of different robots show their common joints together.
 struct Joint {
   std::string name;
   std::vector<std::size_t> place;  // per run; kAbsent
@@ -49,24 +49,27 @@ double worst(const Joint& joint) {
 }
 
 void charts(pages::Page& page, const Runs& runs, const Joint& joint) {
-  std::vector<std::vector<double>> kept;  // what the lines refer to
-  kept.reserve(3 * runs.size());
-  std::vector<pages::Line> positions, torques;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (joint.place[i] == kAbsent) continue;
-    const RunSeries& run = runs[i];
-    const std::string behind = suffix(runs, i);
-    const std::vector<double>& reference =
-        kept.emplace_back(followed(run, run.reference.t_s, widened(run.reference.q_ref_rad[joint.place[i]])));
-    positions.push_back(
-        {.name = "reference" + behind, .x = run.reference.t_s, .y = reference, .colour = palette(i).asked});
-    const std::vector<double>& q = kept.emplace_back(widened(run.state.q_rad[joint.place[i]]));
-    positions.push_back({.name = "measured" + behind, .x = run.state.t_s, .y = q, .colour = palette(i).measured});
-    const std::vector<double>& torque = kept.emplace_back(widened(run.state.torque_Nm[joint.place[i]]));
-    torques.push_back({.name = "torque" + behind, .x = run.state.t_s, .y = torque, .colour = palette(i).measured});
-  }
-  add_chart(page, runs, joint.name + ", position [rad]", std::move(positions), 180);
-  add_chart(page, runs, joint.name + ", torque [Nm]", std::move(torques), 180);
+  const auto position = [&](std::size_t i) -> std::vector<RunLine> {
+    if (joint.place[i] == kAbsent) return {};
+    const auto& reference = runs[i].reference;
+    const auto& state = runs[i].state;
+    return {
+        {.name = "reference",
+         .x = reference.t_s,
+         .y = followed(runs[i], reference.t_s, widened(reference.q_ref_rad[joint.place[i]])),
+         .colour = palette(i).asked},
+        {.name = "measured", .x = state.t_s, .y = widened(state.q_rad[joint.place[i]]), .colour = palette(i).measured}};
+  };
+  const auto torque = [&](std::size_t i) -> std::vector<RunLine> {
+    if (joint.place[i] == kAbsent) return {};
+    const auto& state = runs[i].state;
+    return {{.name = "torque",
+             .x = state.t_s,
+             .y = widened(state.torque_Nm[joint.place[i]]),
+             .colour = palette(i).measured}};
+  };
+  chart_of_runs(page, runs, joint.name + ", position [rad]", position, 180);
+  chart_of_runs(page, runs, joint.name + ", torque [Nm]", torque, 180);
 }
 
 void bars(pages::Page& page, const Runs& runs, const std::vector<Joint>& joints) {
@@ -115,4 +118,4 @@ void joints(pages::Page& page, const Runs& runs) {
   });
 }
 
-}  // namespace pmg::logs::report
+}  // namespace pmg::report

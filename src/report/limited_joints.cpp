@@ -1,10 +1,10 @@
-#include "logs/limited_joints.hpp"
+#include "report/limited_joints.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace pmg::logs {
+namespace pmg::report {
 
 namespace {
 constexpr double kTick_s = 0.01;
@@ -53,4 +53,4 @@ std::vector<LimitedJoint> LimitedJoints::most_first() const {
   return sorted;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,27 +1,28 @@
-// How drives and computer coped: limits, temperatures, times.
+// The section about drives and computer: limits, temperatures, times.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
-#include "logs/report_sections.hpp"
 #include "pages/histogram.hpp"
 #include "pages/text.hpp"
+#include "report/sections.hpp"
 
-namespace pmg::logs::report {
+namespace pmg::report {
 
 namespace {
 
 constexpr std::size_t kHottest = 4;     // joints whose temperatures are drawn
-constexpr double kDelayed_us = 2000.0;  // a bus cycle: later than that something on the host was in the way
+constexpr double kDelayed_us = 2000.0;  // one bus cycle; a longer delay has its cause on the host
 constexpr std::size_t kListedDelays = 30;
 
 std::int64_t above_zero(const RunSeries::Samples& counts) {
   return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
 }
 
-/// Of any kind.
+/// Ticks with a limit of any kind; a tick with two kinds counts twice.
 std::int64_t limited_ticks(const RunSeries& run) {
   return above_zero(run.status.limited_position) + above_zero(run.status.limited_rate) +
          above_zero(run.status.limited_torque);
@@ -56,9 +57,9 @@ void limit_table(pages::Page& page, const Runs& runs) {
   page.table(table);
 }
 
-constexpr std::size_t kLimitedShown = 8;  // joints: more than any sound run has
+constexpr std::size_t kLimitedShown = 8;  // joints: more than in any healthy run
 
-/// When each joint was limited and why; the worst of them as lanes over time.
+/// Each limited joint with times and reasons; the worst ones as lanes over time.
 void limited_joints(pages::Page& page, const Runs& runs) {
   pages::Table table{.header = {"joint", "limited by", "first at [s]", "longest [s]"}, .rows = {}};
   pages::Lanes lanes{.title = "Joints whose target was limited: by range (blue), speed (orange), torque (red)",
@@ -89,30 +90,50 @@ void limited_joints(pages::Page& page, const Runs& runs) {
 }
 
 void temperature_chart(pages::Page& page, const Runs& runs) {
-  std::vector<std::vector<double>> kept;
-  kept.reserve(kHottest * runs.size());
-  std::vector<pages::Line> lines;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
+  static constexpr std::array<const char*, kHottest> kColours = {pages::colour::kVermillion, pages::colour::kOrange,
+                                                                 pages::colour::kPurple, pages::colour::kBlue};
+  const auto lines_of = [&](std::size_t i) {
     const auto& temperatures = runs[i].state.temperature_degC;
     std::vector<std::size_t> order(temperatures.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t joint) { return hottest(temperatures[joint]); });
-    static constexpr const char* kColours[] = {pages::colour::kVermillion, pages::colour::kOrange,
-                                               pages::colour::kPurple, pages::colour::kBlue};
+    std::vector<RunLine> lines;
     for (std::size_t k = 0; k < std::min(kHottest, order.size()); ++k) {
       const std::vector<float>& values = temperatures[order[k]];
-      const std::vector<double>& wide = kept.emplace_back(values.begin(), values.end());
-      lines.push_back({.name = runs[i].joint_names[order[k]] + suffix(runs, i),
+      lines.push_back({.name = runs[i].joint_names[order[k]],
                        .x = runs[i].state.t_s,
-                       .y = wide,
+                       .y = {values.begin(), values.end()},
                        .colour = kColours[k],
                        .dashed = i > 0});
     }
-  }
-  add_chart(page, runs, fmt::format("Temperatures of the {} hottest drives [degC]", kHottest), std::move(lines));
+    return lines;
+  };
+  chart_of_runs(page, runs, fmt::format("Temperatures of the {} hottest drives [degC]", kHottest), lines_of);
 }
 
-/// All values of the runs' samples that aren't finite are left out: stages that did not run.
+/// How many joints were limited in each tick.
+void limit_chart(pages::Page& page, const Runs& runs) {
+  chart_of_runs(
+      page, runs, "How many joints' targets were limited, and by what", [&](std::size_t i) -> std::vector<RunLine> {
+        const auto& status = runs[i].status;
+        const Palette& colours = palette(i);
+        if (limited_ticks(runs[i]) == 0) return {};
+        return {
+            {.name = "range",
+             .x = status.t_s,
+             .y = status.limited_position,
+             .colour = colours.measured,
+             .stepped = true},
+            {.name = "speed", .x = status.t_s, .y = status.limited_rate, .colour = colours.admissible, .stepped = true},
+            {.name = "torque",
+             .x = status.t_s,
+             .y = status.limited_torque,
+             .colour = colours.optimised,
+             .stepped = true}};
+      });
+}
+
+/// Leaves out values that aren't finite: those stages did not run.
 void times(pages::Page& page, const Runs& runs, const char* title,
            RunSeries::Samples decltype(RunSeries::timing)::*which) {
   pages::Histogram histogram{.title = title, .unit = "us", .sets = {}};
@@ -159,28 +180,7 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs) {
   limit_table(page, runs);
   limited_joints(page, runs);
   page.columns([&] {
-    std::vector<pages::Line> lines;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const auto& status = runs[i].status;
-      const std::string behind = suffix(runs, i);
-      if (limited_ticks(runs[i]) == 0) continue;
-      lines.push_back({.name = "range" + behind,
-                       .x = status.t_s,
-                       .y = status.limited_position,
-                       .colour = palette(i).measured,
-                       .stepped = true});
-      lines.push_back({.name = "speed" + behind,
-                       .x = status.t_s,
-                       .y = status.limited_rate,
-                       .colour = palette(i).admissible,
-                       .stepped = true});
-      lines.push_back({.name = "torque" + behind,
-                       .x = status.t_s,
-                       .y = status.limited_torque,
-                       .colour = palette(i).optimised,
-                       .stepped = true});
-    }
-    add_chart(page, runs, "How many joints' targets were limited, and by what", std::move(lines));
+    limit_chart(page, runs);
     temperature_chart(page, runs);
   });
 }
@@ -191,8 +191,8 @@ void timing(pages::Page& page, const Runs& runs) {
     return page.paragraph("No wall-clock times: the log has no TIMING, and there is no timing.csv beside it.");
   }
   page.paragraph(
-      "Counts are on a logarithmic axis; the few longest are told in words. On a computer that is shared with "
-      "others single long times say little.");
+      "Counts are on a logarithmic axis; words give the few longest. On a computer that is shared with "
+      "others, single long times mean little.");
   using Timing = decltype(RunSeries::timing);
   page.columns([&] {
     times(page, runs, "Whole tick", &Timing::tick_us);
@@ -206,4 +206,4 @@ void timing(pages::Page& page, const Runs& runs) {
   delays(page, runs);
 }
 
-}  // namespace pmg::logs::report
+}  // namespace pmg::report

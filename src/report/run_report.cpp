@@ -1,18 +1,17 @@
-#include "logs/run_report.hpp"
+#include "report/run_report.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "control/mode.hpp"
-#include "logs/report_sections.hpp"
-#include "logs/run_figures.hpp"
+#include "report/run_figures.hpp"
+#include "report/sections.hpp"
 
-namespace pmg::logs {
-
-namespace report {
+namespace pmg::report {
 
 namespace {
 
@@ -34,7 +33,7 @@ Lanes::Lane lane(const std::string& name, const std::vector<RunSeries::Stretch>&
   return row;
 }
 
-/// Neighbours have different colours; a narrow one shows its number.
+/// Neighbours have different colours. A narrow stretch shows its number only.
 Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step>& steps) {
   Lanes::Lane row{.name = name, .stretches = {}};
   for (const RunSeries::Step& step : steps) {
@@ -44,7 +43,7 @@ Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step
   return row;
 }
 
-/// What a step asked for, channels that are not zero.
+/// The step's command, without channels that are zero.
 std::string asked_text(const RunSeries::Step& step) {
   static constexpr std::array<const char*, kChannels> kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s",
                                                                 "turn {:+.2f} rad/s",  "pitch {:+.2f} rad",
@@ -80,7 +79,7 @@ void steps_table(pages::Page& page, const Runs& runs) {
   }
 }
 
-/// The code before the colon: a mark has little room.
+/// The part before the colon, because a mark has little room.
 std::string short_fault(const std::string& text) { return text.substr(0, text.find(':')); }
 
 }  // namespace
@@ -119,15 +118,29 @@ std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, 
   return values;
 }
 
-void add_chart(pages::Page& page, const Runs& runs, const std::string& title, std::vector<pages::Line> lines,
-               int height_px) {
-  std::erase_if(lines, [](const pages::Line& line) { return line.x.empty(); });
-  if (lines.empty()) return;
-  page.chart({.title = title,
-              .lines = std::move(lines),
-              .bands = fault_bands(runs),
-              .height_px = height_px,
-              .longest_gap = kLongestGap_s});
+void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title,
+                   const std::function<std::vector<RunLine>(std::size_t)>& lines_of, int height_px) {
+  std::vector<RunLine> drawn;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (RunLine& line : lines_of(i)) {
+      if (line.x.empty()) continue;
+      line.name += suffix(runs, i);
+      drawn.push_back(std::move(line));
+    }
+  }
+  if (drawn.empty()) return;
+  pages::Chart chart{
+      .title = title, .lines = {}, .bands = fault_bands(runs), .height_px = height_px, .longest_gap = kLongestGap_s};
+  for (const RunLine& line : drawn) {
+    chart.lines.push_back({.name = line.name,
+                           .x = line.x,
+                           .y = line.y,
+                           .colour = line.colour,
+                           .width_px = line.width_px,
+                           .dashed = line.dashed,
+                           .stepped = line.stepped});
+  }
+  page.chart(chart);
 }
 
 void verdicts(pages::Page& page, const Runs& runs) {
@@ -206,8 +219,6 @@ void who_ran_what(pages::Page& page, const Runs& runs) {
   }
 }
 
-}  // namespace report
-
 pages::Page run_report(const std::vector<RunSeries>& runs) {
   if (runs.empty() || runs.size() > kMostRuns) {
     throw std::invalid_argument(fmt::format("a report shows 1 to {} runs, not {}", kMostRuns, runs.size()));
@@ -215,15 +226,15 @@ pages::Page run_report(const std::vector<RunSeries>& runs) {
   std::string title;
   for (const RunSeries& run : runs) title += (title.empty() ? "" : " and ") + run.name;
   pages::Page page("PMG report: " + title);
-  report::verdicts(page, runs);
-  report::timeline(page, runs);
-  report::commands(page, runs);
-  report::contact_and_slip(page, runs);
-  report::joints(page, runs);
-  report::limits_and_temperatures(page, runs);
-  report::timing(page, runs);
-  report::who_ran_what(page, runs);
+  verdicts(page, runs);
+  timeline(page, runs);
+  commands(page, runs);
+  contact_and_slip(page, runs);
+  joints(page, runs);
+  limits_and_temperatures(page, runs);
+  timing(page, runs);
+  who_ran_what(page, runs);
   return page;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::report

@@ -1,0 +1,127 @@
+// The sections about commanded and measured motion: commands, contact, slip.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "report/run_figures.hpp"
+#include "report/sections.hpp"
+
+namespace pmg::report {
+
+namespace {
+
+constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: below it a foot counts as unloaded
+constexpr std::array<const char*, 2> kFeet = {"left", "right"};
+constexpr std::array<const char*, kChannels> kTitles = {
+    "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
+    "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
+
+/// The stretches in which a sampled condition holds.
+template <typename Condition>
+std::vector<pages::Lanes::Stretch> stretches(const RunSeries::Samples& t_s, const char* colour, Condition holds) {
+  std::vector<pages::Lanes::Stretch> found;
+  bool open = false;
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    if (i > 0 && t_s[i] - t_s[i - 1] > kLongestGap_s) open = false;
+    const bool now = holds(i);
+    if (open) found.back().to = t_s[i];
+    if (now && !open) found.push_back({t_s[i], t_s[i], "", colour});
+    open = now;
+  }
+  return found;
+}
+
+}  // namespace
+
+void commands(pages::Page& page, const Runs& runs) {
+  page.heading("Commands");
+  page.paragraph(
+      "asked: the driving source's command. admissible: that command within the robot's limits and with limited rates; "
+      "the "
+      "reference realises it. optimised: the motion on the ground that this reference gives. measured: the simulated "
+      "robot's "
+      "motion on its own feet, velocities averaged over one gait period.");
+  page.columns([&] {
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      chart_of_runs(page, runs, kTitles[channel], [&](std::size_t i) -> std::vector<RunLine> {
+        const auto& reference = runs[i].reference;
+        const auto& truth = runs[i].truth;
+        const Palette& colours = palette(i);
+        return {{.name = "asked",
+                 .x = reference.t_s,
+                 .y = reference.user[channel],
+                 .colour = colours.asked,
+                 .dashed = true},
+                {.name = "admissible",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.command[channel]),
+                 .colour = colours.admissible,
+                 .width_px = 2.2},
+                {.name = "optimised",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.optimised[channel]),
+                 .colour = colours.optimised},
+                {.name = "measured", .x = truth.t_s, .y = truth.measured[channel], .colour = colours.measured}};
+      });
+    }
+  });
+}
+
+void contact_and_slip(pages::Page& page, const Runs& runs) {
+  page.heading("Contact and slip");
+  pages::Lanes lanes{
+      .title = "Feet on the ground: as the reference plans it (dark), as the simulation measures it (light)",
+      .lanes = {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& reference = runs[i].reference;
+    const auto& truth = runs[i].truth;
+    const std::vector<bool> held = holding(runs[i], reference.t_s);
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      const std::string name = kFeet[foot] + suffix(runs, i);
+      if (!reference.t_s.empty())
+        lanes.lanes.push_back(
+            {name, stretches(reference.t_s, "#5b7fa6", [&](std::size_t k) { return reference.contact[foot][k]; })});
+      if (!truth.t_s.empty())
+        lanes.lanes.push_back({"", stretches(truth.t_s, "#b7cde4", [&](std::size_t k) {
+                                 return truth.foot_force_N[foot][k] > kLoadedFoot_N;
+                               })});
+    }
+  }
+  if (!lanes.lanes.empty()) page.lanes(lanes);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].reference.t_s.empty()) continue;
+    const gco::SlipSummary& slip = runs[i].reference_slip;
+    std::string text = fmt::format(
+        "Slip is the horizontal speed of a stance sole's contact point. Of the reference while it steps{}: mean {:.4f} "
+        "m/s "
+        "if the base moved as commanded, {:.4f} m/s as optimised.",
+        suffix(runs, i), slip.before_mean_m_s, slip.after_mean_m_s);
+    if (runs[i].tracking.followed_s > 0.0) {
+      text +=
+          fmt::format(" Of the simulated robot's loaded feet: mean {:.4f} m/s.", runs[i].tracking.foot_slip_mean_m_s);
+    }
+    page.paragraph(text);
+  }
+  page.columns([&] {
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      const std::string title =
+          fmt::format("Slip of the {} foot [m/s], before and after the ground-aware optimisation", kFeet[foot]);
+      chart_of_runs(page, runs, title, [&](std::size_t i) -> std::vector<RunLine> {
+        const auto& reference = runs[i].reference;
+        const auto& truth = runs[i].truth;
+        const Palette& colours = palette(i);
+        return {{.name = "before",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.slip_before_m_s[foot]),
+                 .colour = colours.admissible},
+                {.name = "after",
+                 .x = reference.t_s,
+                 .y = followed(runs[i], reference.t_s, reference.slip_after_m_s[foot]),
+                 .colour = colours.optimised},
+                {.name = "measured", .x = truth.t_s, .y = truth.foot_slip_m_s[foot], .colour = colours.measured}};
+      });
+    }
+  });
+}
+
+}  // namespace pmg::report

@@ -1,0 +1,38 @@
+// (a run's log) => a few figures, for the report's tables and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/run_series.hpp"
+
+namespace pmg::report {
+
+/// Whether the drives followed the reference (mode stand or walk) at each of these increasing times. True if the log
+/// has no modes.
+std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s);
+
+struct JointTracking {
+  double error_rms_rad = 0.0;  ///< RMS of q_ref - q while the drives follow; 0 without such a tick
+  double torque_max_Nm = 0.0;  ///< largest |torque|
+};
+std::vector<JointTracking> joint_tracking(const RunSeries& run);
+
+/// Tracking errors against the command, and slip: the figures of summary.json in a sentence. Empty without ground
+/// truth.
+std::string tracking_text(const RunSeries& run);
+
+/// The joint with the most limited ticks, the limits and the first time; empty if there is none.
+std::string limited_text(const RunSeries& run);
+
+/// Seconds in which the feet carried nothing, so that the policy did not run.
+double hanging_s(const RunSeries& run);
+
+/// One sentence: policy, duration, end, tracking and limits.
+std::string verdict(const RunSeries& run);
+
+nlohmann::ordered_json run_json(const RunSeries& run);
+
+}  // namespace pmg::report

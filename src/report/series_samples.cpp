@@ -1,0 +1,94 @@
+#include "report/series_samples.hpp"
+
+#include <limits>
+
+#include "control/mode.hpp"
+
+namespace pmg::report {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+double stage_us(std::int64_t ns) { return ns > 0 ? us(ns) : kNone; }
+
+void append_row(const std::vector<double>& row, RunSeries::JointSamples& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i].push_back(static_cast<float>(row[i]));
+}
+
+/// A new text begins a new stretch.
+void extend(std::vector<RunSeries::Stretch>& stretches, double t_s, const std::string& text) {
+  if (!stretches.empty()) stretches.back().to_s = t_s;
+  if (stretches.empty() || stretches.back().text != text) stretches.push_back({t_s, t_s, text});
+}
+
+}  // namespace
+
+void append(const pmg_msgs::robot_state_t& message, double t_s, RunSeries& run) {
+  run.state.t_s.push_back(t_s);
+  append_row(message.q_rad, run.state.q_rad);
+  append_row(message.torque_Nm, run.state.torque_Nm);
+  append_row(message.temperature_degC, run.state.temperature_degC);
+}
+
+void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run) {
+  auto& to = run.reference;
+  to.t_s.push_back(t_s);
+  append_row(message.q_ref_rad, to.q_ref_rad);
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    to.user[channel].push_back(message.user[channel]);
+    to.command[channel].push_back(message.command[channel]);
+    to.optimised[channel].push_back(message.optimised[channel]);
+  }
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    to.contact[foot].push_back(message.contact[foot] != 0);
+    to.contact_weight[foot].push_back(message.contact_weight[foot]);
+    to.slip_before_m_s[foot].push_back(message.slip_before_m_s[foot]);
+    to.slip_after_m_s[foot].push_back(message.slip_after_m_s[foot]);
+  }
+  to.not_converged += message.gco_status == pmg_msgs::reference_t::NOT_CONVERGED;
+  to.command_limited += message.command_limited != 0;
+  to.joint_clamped += message.joint_clamped != 0;
+}
+
+void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run) {
+  extend(run.modes, t_s, to_string(static_cast<control::Mode>(message.mode)));
+  extend(run.sources, t_s, message.driving_source);
+  extend(run.hanging, t_s, message.hanging ? "hanging, no policy" : "");
+  run.status.t_s.push_back(t_s);
+  run.status.limited_position.push_back(message.limited_position);
+  run.status.limited_rate.push_back(message.limited_rate);
+  run.status.limited_torque.push_back(message.limited_torque);
+}
+
+void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run) {
+  auto& to = run.timing;
+  to.t_s.push_back(t_s);
+  to.wake_us.push_back(us(message.wake_ns));
+  to.tick_us.push_back(us(message.tick_ns));
+  to.generator_us.push_back(stage_us(message.generator_ns));
+  to.gco_us.push_back(stage_us(message.gco_ns));
+  to.policy_us.push_back(stage_us(message.policy_ns));
+  const bool cycles = message.bus_cycles > 0;
+  to.bus_wake_us.push_back(cycles ? us(message.bus_wake_max_ns) : kNone);
+  to.bus_exchange_us.push_back(cycles ? us(message.bus_exchange_max_ns) : kNone);
+  to.missed_ticks = message.missed_ticks;
+  to.bus_missed_cycles = message.bus_missed_cycles;
+  to.dropped_records = message.dropped_records;
+}
+
+void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kChannels>& measured, double t_s,
+            RunSeries& run) {
+  auto& to = run.truth;
+  to.t_s.push_back(t_s);
+  for (std::size_t channel = 0; channel < kChannels; ++channel)
+    to.measured[channel].push_back(message.hoisted != 0 ? kNone : measured[channel]);
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    to.foot_force_N[foot].push_back(message.foot_force_N[foot]);
+    to.foot_slip_m_s[foot].push_back(message.foot_slip_m_s[foot]);
+  }
+  extend(run.hoisted, t_s, message.hoisted != 0 ? "on the gantry" : "");
+}
+
+}  // namespace pmg::report

@@ -1,0 +1,25 @@
+// (one message, its time) => one more sample of a run's series.
+#pragma once
+
+#include <array>
+
+#include "pmg_msgs/ground_truth_t.hpp"
+#include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_state_t.hpp"
+#include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/timing_t.hpp"
+#include "report/run_series.hpp"
+
+namespace pmg::report {
+
+/// t_s counts from the log's beginning. The message must have as many joints as the run, and a valid mode.
+void append(const pmg_msgs::robot_state_t& message, double t_s, RunSeries& run);
+void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run);
+void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run);
+void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run);
+
+/// measured: the robot's motion by command channel. While the gantry carries the robot, the series gets NaN.
+void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kChannels>& measured, double t_s,
+            RunSeries& run);
+
+}  // namespace pmg::report

@@ -1,0 +1,30 @@
+"""Files that the C++ programs read too: randomization.yaml, motor.yaml, scenarios. The programs' own code reads and checks them, through
+libpmg_batch.so. ValueError holds the line that pmg_sil prints for the same file."""
+
+import json
+from pathlib import Path
+
+from pmg_train.library import load
+
+
+def read_randomization(library: str | Path, path: str | Path) -> dict:
+    """The file's keys and values; every key must be there. SI units, as the keys say."""
+    return _read(library, "randomization", path)
+
+
+def read_motor_file(library: str | Path, robot: str | Path, path: str | Path) -> dict[str, dict[str, float]]:
+    """What isn't neutral, as "group.key", of each joint in the file. robot: the robot's directory."""
+    return _read(library, "motors", robot, path)
+
+
+def read_scenario(library: str | Path, path: str | Path) -> list[dict]:
+    """Steps: text, for_s, command (vx, vy [m/s], omega [rad/s], pitch, roll [rad], height [m]), hoist_without_policy."""
+    return _read(library, "scenario", path)
+
+
+def _read(library: str | Path, kind: str, *paths: str | Path):
+    lib = load(library)
+    text = getattr(lib, f"pmg_batch_{kind}")(*(str(path).encode() for path in paths))
+    if text is None:
+        raise ValueError(lib.pmg_batch_error().decode())
+    return json.loads(text.decode())
