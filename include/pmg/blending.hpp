@@ -53,8 +53,7 @@ inline constexpr std::array<Corner, kCorners> kCornerTable = [] {
 /// (three signs, not all 0) => (index in kCornerTable).
 constexpr std::size_t corner_of(const Corner& corner) noexcept {
   constexpr auto code = [](const Corner& c) {
-    const int digits = 9 * (c.sign[0] + 1) + 3 * (c.sign[1] + 1) + c.sign[2] + 1;
-    return static_cast<std::size_t>(digits);
+    return static_cast<std::size_t>(9 * (c.sign[0] + 1) + 3 * (c.sign[1] + 1) + c.sign[2] + 1);
   };
   constexpr std::array<std::size_t, 27> index = [code] {
     std::array<std::size_t, 27> table{};

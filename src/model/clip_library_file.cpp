@@ -229,7 +229,6 @@ std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& 
   }
   const Eigen::MatrixXd slopes = system.partialPivLu().solve(right);
   std::vector<JointVector> result;
-  result.reserve(static_cast<std::size_t>(n));
   for (Eigen::Index k = 0; k < n; ++k) result.emplace_back(slopes.row(k).transpose());
   return result;
 }

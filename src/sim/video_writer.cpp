@@ -52,9 +52,9 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& path, int
 /// Starts a program with these as its standard input and standard error, in a process group of its own. A Ctrl-C at the
 /// terminal goes to the whole foreground group, and must not end ffmpeg before the last frame is written. Returns 0 or
 /// an errno.
-int spawn_apart(const std::vector<std::string>& arguments, int standard_input, int standard_error, pid_t& pid) {
+int spawn_apart(std::vector<std::string> arguments, int standard_input, int standard_error, pid_t& pid) {
   std::vector<char*> argv;
-  for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -131,7 +131,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
 VideoWriter::~VideoWriter() {
   try {
     close();
-  } catch (const std::runtime_error&) {  // a destructor can't report it
+  } catch (const std::runtime_error&) {  // NOLINT(bugprone-empty-catch): a destructor can't report it
   }
   if (words_ >= 0) ::close(words_);
 }
