@@ -148,7 +148,7 @@ class Commands(unittest.TestCase):
             for x in $(eighth); do printf x | xargs -0 -n 1 ninth > "$(tenth)"; done
             ./hidden; src/hidden; "$program" hidden; [ -f hidden ] && echo hidden
         """
-        names = "inner second third fourth fifth sixth seventh eighth ninth tenth".split()
+        names = ["inner", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"]
         self.assertEqual(commands(script), {*names, "env", "xargs"})
 
     def test_a_command_that_no_listed_package_has_is_found(self):

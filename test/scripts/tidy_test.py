@@ -42,8 +42,9 @@ class Tidy(unittest.TestCase):
         self.cache.mkdir()
         tools = pathlib.Path(subprocess.run(TOOLS, capture_output=True, text=True, check=True).stdout.strip())
         (self.cache / "pmg-python").symlink_to(tools.parent)
-        for command in (["init", "-q", "-b", "main"], ["add", "scripts", "src"], ["commit", "-qm", "First"], ["commit", "-qm", "Second", "--allow-empty"]):
-            subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", "-C", self.root, *command], check=True)
+        commit = ["-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "--allow-empty", "-m"]
+        for command in (["init", "-q", "-b", "main"], ["add", "scripts", "src"], [*commit, "First"], [*commit, "Second"]):
+            subprocess.run(["git", "-C", self.root, *command], check=True)
 
     def write(self, name, text):
         (self.root / name).write_text(text)
@@ -84,7 +85,8 @@ class Tidy(unittest.TestCase):
                 self.expect(1, check, "src/a.cpp")
 
     def test_units_frames_and_symbols_in_names_are_no_breach(self):
-        self.write("src/a.cpp", "namespace {\nconstexpr double kLimit_Nm = 1.0;\n}\ndouble f(double R_HB, double p_WF, double R) { return kLimit_Nm * R_HB * p_WF * R; }\n")
+        limit = "namespace {\nconstexpr double kLimit_Nm = 1.0;\n}\n"
+        self.write("src/a.cpp", f"{limit}double f(double R_HB, double p_WF, double R) {{ return kLimit_Nm * R_HB * p_WF * R; }}\n")
         self.expect(0, "0 with findings", "src/a.cpp")
 
     def test_what_changed_is_checked_and_a_header_through_one_that_includes_it(self):
