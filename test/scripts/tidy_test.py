@@ -28,7 +28,7 @@ class Tidy(unittest.TestCase):
         self.write("src/a.hpp", "#pragma once\nint twice(int value);\n")
         self.write("src/a.cpp", '#include "a.hpp"\nint twice(int value) { return 2 * value; }\n')
         self.write("src/user.cpp", '#include "a.hpp"\nint four() { return twice(2); }\n')
-        (self.root / "build/ci").mkdir(parents=True)
+        (self.root / "build/tidy").mkdir(parents=True)
         entries = [
             {
                 "file": str(self.root / "src" / name),
@@ -37,7 +37,7 @@ class Tidy(unittest.TestCase):
             }
             for name in ("a.cpp", "user.cpp")
         ]
-        (self.root / "build/ci/compile_commands.json").write_text(json.dumps(entries))
+        (self.root / "build/tidy/compile_commands.json").write_text(json.dumps(entries))
         self.cache = pathlib.Path(folder.name) / "cache"
         self.cache.mkdir()
         tools = pathlib.Path(subprocess.run(TOOLS, capture_output=True, text=True, check=True).stdout.strip())
