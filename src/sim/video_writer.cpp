@@ -131,7 +131,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
 VideoWriter::~VideoWriter() {
   try {
     close();
-  } catch (const std::runtime_error&) {  // NOLINT(bugprone-empty-catch): a destructor can't report it
+  } catch (const std::runtime_error&) {  // a destructor can't report it
   }
   if (words_ >= 0) ::close(words_);
 }
