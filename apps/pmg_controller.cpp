@@ -161,7 +161,7 @@ class EndSignals {
   }
 
  private:
-  sigset_t signals_;
+  sigset_t signals_{};
 };
 
 /// Says what changes, as it happens.

@@ -127,6 +127,7 @@ class Watch {
   }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
+  ~Watch() = default;
   const evaluation::Supervision& supervision() const { return supervision_; }
 
  private:

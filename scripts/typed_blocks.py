@@ -50,7 +50,7 @@ def read_blocks(text, page):
         at += 1
         if not fence:
             continue
-        indent, ticks, language = fence.groups()
+        _, ticks, language = fence.groups()
         first = at
         while at < len(lines) and lines[at].strip() != ticks:
             at += 1

@@ -9,7 +9,7 @@
 set -euo pipefail
 if [[ $# -lt 3 || $1 == --help ]]; then sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 2; fi
 here=$(cd "$(dirname "$0")" && pwd); build=$(cd "$1" && pwd); robot=$2; out=$(mkdir -p "$3" && cd "$3" && pwd); sm=${4:-90}
-: "${PYTHON:=python3}" "${PATCHELF:=patchelf}"
+: "${PYTHON:=python3}"
 tmp=$(mktemp -d); trap 'rm -rf "$tmp"' EXIT
 
 mkdir -p "$tmp/host/lib" "$tmp/host/robot"
@@ -18,7 +18,7 @@ cp "$build/lib/libpmg_batch.so" "$tmp/host/lib/"
 ldd "$build/lib/libpmg_batch.so" | awk '$2 == "=>" {print $3}' | grep -Ev '/(libc|libm|libgcc_s|libstdc\+\+|libpthread|libdl)\.so' |
   while read -r library; do cp -L "$library" "$tmp/host/lib/"; done
 chmod u+w "$tmp"/host/lib/*
-for library in "$tmp"/host/lib/*.so*; do strip "$library"; "$PATCHELF" --set-rpath '$ORIGIN' "$library"; done
+for library in "$tmp"/host/lib/*.so*; do strip "$library"; patchelf --set-rpath '$ORIGIN' "$library"; done
 "$build/bin/pmg_sil" --robot "$robot" --export-mjcf "$tmp/host/robot.xml" > /dev/null
 robot_dir=$robot; [[ -d $robot_dir ]] || robot_dir=$here/../config/robots/$robot
 cp -r "$robot_dir"/. "$tmp/host/robot/"; rm -rf "$tmp/host/robot/policies"

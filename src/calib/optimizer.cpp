@@ -25,9 +25,11 @@ void search_nlopt(Method method, const Loss& loss, std::vector<double> point, co
   optimizer.set_maxeval(options.most_evaluations);
   optimizer.set_ftol_rel(options.relative_tolerance);
   optimizer.set_xtol_abs(1e-6);
-  optimizer.set_min_objective([](const std::vector<double>& x, std::vector<double>&,
-                                 void* data) { return (*static_cast<const Loss*>(data))(x); },
-                              const_cast<Loss*>(&loss));
+  optimizer.set_min_objective(
+      [](const std::vector<double>& x, std::vector<double>&, void* data) {
+        return (*static_cast<const Loss*>(data))(x);
+      },
+      const_cast<Loss*>(&loss));  // NOLINT(cppcoreguidelines-pro-type-const-cast): NLopt's void*
   double lowest = 0.0;
   try {
     optimizer.optimize(point, lowest);

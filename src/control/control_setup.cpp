@@ -37,7 +37,7 @@ std::vector<std::string> policy_names(const model::RobotModel& robot) {
 /// Below the robot's policies/, or the file itself. Nothing for none.
 std::optional<fs::path> policy_file(const std::string& name, const char* named_by, const model::RobotModel& robot) {
   if (name == "none") return std::nullopt;
-  const fs::path file =
+  fs::path file =
       fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
   if (!fs::exists(file)) {
     const std::string meant = model::nearest_name(name, policy_names(robot));

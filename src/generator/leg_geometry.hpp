@@ -60,13 +60,13 @@ FootMotion<T> foot_motion(const LegGeometry& leg, const LegVector<T>& q, const L
     const Eigen::Matrix3d K{{0.0, -segment.axis.z(), segment.axis.y()},
                             {segment.axis.z(), 0.0, -segment.axis.x()},
                             {-segment.axis.y(), segment.axis.x(), 0.0}};
-    const Eigen::Matrix3d KK = K * K;
+    const Eigen::Matrix3d K_squared = K * K;
     const T s = sin(q[role]);
     const T c1 = T(1.0) - cos(q[role]);
     Matrix3<T> turn = Matrix3<T>::Identity();
     for (int row = 0; row < 3; ++row) {
       for (int col = 0; col < 3; ++col) {
-        turn(row, col) += s * K(row, col) + c1 * KK(row, col);
+        turn(row, col) += s * K(row, col) + c1 * K_squared(row, col);
       }
     }
     foot.R_BF = foot.R_BF * turn;

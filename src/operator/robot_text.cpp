@@ -26,9 +26,9 @@ struct Hottest {
 
 std::optional<Hottest> hottest(const RobotNews& news) {
   if (!news.state || news.state->temperature_degC.empty()) return std::nullopt;
-  const std::vector<double>& degC = news.state->temperature_degC;
-  const auto found = std::ranges::max_element(degC);
-  const auto index = static_cast<std::size_t>(found - degC.begin());
+  const std::vector<double>& temperature_degC = news.state->temperature_degC;
+  const auto found = std::ranges::max_element(temperature_degC);
+  const auto index = static_cast<std::size_t>(found - temperature_degC.begin());
   const bool named = news.info && index < news.info->joint_names.size();
   return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
 }

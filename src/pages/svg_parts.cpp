@@ -29,7 +29,8 @@ std::string fitted(const std::string& text, double width) {
   std::string shown;
   double used = 2.0 * kCharacter;  // the ellipsis
   for (const char byte : text) {
-    if (begins(byte) && (used += kCharacter) > width) break;
+    if (begins(byte)) used += kCharacter;
+    if (used > width) break;
     shown += byte;
   }
   while (!shown.empty() && shown.back() == ' ') shown.pop_back();

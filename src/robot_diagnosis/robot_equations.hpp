@@ -85,7 +85,7 @@ class RobotEquations {
   RobotDynamics dynamics_;
   const int joints_;
   int torso_;
-  PerFoot<int> foot_body_;
+  PerFoot<int> foot_body_{};
   bool legs_of_six_;
   std::vector<bool> in_leg_, below_torso_;
 };

@@ -18,7 +18,7 @@ constexpr std::size_t kFewest = 8;    // samples
 double ratio(const FootForce& foot) { return foot.tangential_N / foot.normal_N; }
 
 double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto at = static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
 }

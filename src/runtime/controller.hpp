@@ -49,6 +49,8 @@ class Controller {
   /// Keeps references. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
   /// threads to be had.
   Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options = {});
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
   ~Controller();  ///< stops
 
   control::OperatorInbox& inbox() noexcept {

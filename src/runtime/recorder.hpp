@@ -42,6 +42,8 @@ class Recorder {
   /// when the folder or the first file can't be made.
   Recorder(control::ControllerOutbox& outbox, const model::RobotModel& robot, const RunInfo& run,
            const io::Clock& clock, const RecorderOptions& options, Say say);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
   ~Recorder();  ///< closes
 
   /// Called with every record, in order, after it was logged; in drain().

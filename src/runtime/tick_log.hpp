@@ -53,7 +53,7 @@ class TickLog {
   pmg_msgs::motor_command_t motor_command_;
   pmg_msgs::status_t status_;
   pmg_msgs::timing_t timing_;
-  pmg_msgs::ground_truth_t truth_;
+  pmg_msgs::ground_truth_t truth_{};
   pmg_msgs::limited_t limited_;
   pmg_msgs::fault_t fault_;
 };

@@ -53,7 +53,9 @@ class GlContext {
       throw std::runtime_error("OSMesa gives no OpenGL context");
     }
   }
-  ~GlContext() { OsMesa::get().destroy(context_); }
+  ~GlContext() {
+    OsMesa::get().destroy(context_);
+  }  // NOLINT(bugprone-exception-escape): get() throws at its first call only
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 

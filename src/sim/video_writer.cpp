@@ -52,9 +52,9 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& path, int
 /// Starts a program with these as its standard input and standard error, in a process group of its own. A Ctrl-C at the
 /// terminal goes to the whole foreground group, and must not end ffmpeg before the last frame is written. Returns 0 or
 /// an errno.
-int spawn_apart(const std::vector<std::string>& arguments, int standard_input, int standard_error, pid_t& pid) {
+int spawn_apart(std::vector<std::string> arguments, int standard_input, int standard_error, pid_t& pid) {
   std::vector<char*> argv;
-  for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

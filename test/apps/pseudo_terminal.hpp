@@ -25,8 +25,8 @@ class PseudoTerminal {
     int slave = -1;
     if (openpty(&master_, &slave, nullptr, nullptr, &size) != 0) return;
     tcgetattr(slave, &before_);
-    const std::string path = std::string(PMG_BIN_DIR) + "/" + program;
-    std::vector<char*> argv{const_cast<char*>(path.c_str())};
+    std::string path = std::string(PMG_BIN_DIR) + "/" + program;
+    std::vector<char*> argv{path.data()};
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     child_ = fork();

@@ -26,8 +26,8 @@ class RunningProgram {
  public:
   RunningProgram(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder)
       : out_(folder / (name + ".out")), err_(folder / (name + ".err")) {
-    const std::string program = std::string(PMG_BIN_DIR) + "/" + name;
-    std::vector<char*> argv{const_cast<char*>(program.c_str())};
+    std::string program = std::string(PMG_BIN_DIR) + "/" + name;
+    std::vector<char*> argv{program.data()};
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     child_ = fork();

@@ -28,7 +28,7 @@ namespace {
 constexpr double kDuration_s = 2.0;
 
 double thread_cpu_s() {
-  timespec now;
+  timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }

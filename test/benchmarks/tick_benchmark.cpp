@@ -22,7 +22,7 @@ namespace {
 class ThreadCpuClock final : public io::Clock {
  public:
   std::int64_t now_ns() const noexcept override {
-    timespec now;
+    timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
   }

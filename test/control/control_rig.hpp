@@ -2,6 +2,7 @@
 // Everything can be stalled, corrupted and silenced.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -87,7 +88,7 @@ class ControlRig {
     if (after_cycle) after_cycle();
   }
   void run(double duration_s) {
-    for (int k = 0; k < static_cast<int>(duration_s * 500.0 + 0.5); ++k) cycle();
+    for (long k = 0; k < std::lround(duration_s * 500.0); ++k) cycle();
   }
   /// Runs until this number of cycles after a tick.
   void align(int cycles_after_tick) {

@@ -1,6 +1,7 @@
 // Shared by the tests of control and runtime: robots, a bus without physics, a policy that can be made to fail.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <kdl/chaindynparam.hpp>
@@ -181,7 +182,7 @@ struct DrivenTick {
     return result;
   }
   const control::TickResult& run(double duration_s, bool speaking = true) {
-    for (int k = 0; k < static_cast<int>(duration_s * 100.0 + 0.5); ++k) step(speaking);
+    for (long k = 0; k < std::lround(duration_s * 100.0); ++k) step(speaking);
     return tick.result();
   }
 

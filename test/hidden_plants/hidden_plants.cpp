@@ -71,7 +71,7 @@ int make(const Arguments& arguments) {
                              1e3 * truth.floor_rad, 1e3 * truth.healthy_error_rad, 1e3 * truth.error_rad);
     for (const auto& effect : truth.effects)
       std::cout << fmt::format("; {} moves {:.1f} floors", effect.name, effect.moves_floors);
-    std::cout << std::endl;
+    std::cout << '\n' << std::flush;
   }
   return kOk;
 }
@@ -90,7 +90,7 @@ int run(const Arguments& arguments) {
     const hidden::Score score = hidden::score(nlohmann::json::parse(stream));
     std::cout << fmt::format("{:3} {:8} planted {}; said {} ({:.1f} s)", seed, score.kind,
                              score.planted.empty() ? "nothing" : score.planted, score.said, score.seconds)
-              << std::endl;
+              << '\n' << std::flush;
   }
   return kOk;
 }

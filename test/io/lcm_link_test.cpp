@@ -107,13 +107,13 @@ class FakeServer {
     socklen_t size = sizeof(address);
     sockaddr any{};
     std::memcpy(&any, &address, size);
-    ::bind(listener_, &any, size);
+    EXPECT_EQ(::bind(listener_, &any, size), 0);
     ::getsockname(listener_, &any, &size);
     std::memcpy(&address, &any, sizeof(address));
     port_ = ntohs(address.sin_port);
     ::listen(listener_, 8);
     thread_ = std::thread([this] {
-      for (int client; (client = ::accept(listener_, nullptr, nullptr)) >= 0;) {
+      for (int client = -1; (client = ::accept(listener_, nullptr, nullptr)) >= 0;) {
         ::send(client, greeting_.data(), greeting_.size(), MSG_NOSIGNAL);
         clients_.push_back(client);
       }

@@ -132,8 +132,8 @@ TEST_F(Log, DamageCostsTheEventThatItHitsAndIsCounted) {
     for (const unsigned char byte : bytes) file.put(static_cast<char>(byte));
   };
   struct Case {
-    const char* what;
-    std::int64_t at;
+    const char* what = nullptr;
+    std::int64_t at = 0;
     std::initializer_list<unsigned char> bytes;
   };
   for (const Case& damage : {Case{"sync word", size, {0}}, Case{"a length beyond reason", size + 24, {0xff}},

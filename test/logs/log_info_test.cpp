@@ -59,7 +59,7 @@ TEST_F(LogInfo, SaysWhoRanWhatAndWhatHappened) {
   EXPECT_LT(place("\nfaults"), place("\ndriven by"));
   EXPECT_LT(place("\ndriven by"), place("\nrobot"));
   EXPECT_LT(place("\nmessages"), place("\nbundle")) << "hashes come last";
-  EXPECT_EQ(text.find("\n", place("\nbundle") + 1), text.find("\n", place(run.info->bundle.c_str())));
+  EXPECT_EQ(text.find('\n', place("\nbundle") + 1), text.find('\n', place(run.info->bundle.c_str())));
   const auto json = to_json(summary)["runs"][0];
   EXPECT_GT(json["driven_s"].size(), 0u) << "somebody drove";
   EXPECT_EQ(json["bundle_files"].size(), run.info->bundle_file.size());

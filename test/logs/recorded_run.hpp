@@ -2,6 +2,7 @@
 // broken and repeated messages, a stop, a fault and its reset.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -49,7 +50,7 @@ inline void record_run(io::LogWriter& writer, const std::function<void(runtime::
     if (hot) state.temperature_degC[2] = 95.0;
   };
   const control::Source stranger = control::Source::make("stranger", 3);
-  const auto at = [](int tick, double time_s) { return tick == static_cast<int>(time_s * 100.0 + 0.5); };
+  const auto at = [](int tick, double time_s) { return tick == std::lround(time_s * 100.0); };
 
   rig.drive.command[kVx] = 0.3;
   for (int tick = 0; tick < static_cast<int>(kRecorded_s * 100.0); ++tick) {

@@ -23,7 +23,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr std::int64_t kPeriod_ns = 2'000'000;
-const io::WallClock wall;
+const io::WallClock kWall;
 
 TEST(PeriodicThread, WhatTheKernelSaysIsWhatWasGranted) {
   const ThreadSchedule wanted{.name = "punctual", .priority = 50, .cpu = kernel_schedule(getpid()).cpus.front()};
@@ -52,7 +52,7 @@ TEST(PeriodicThread, ACpuThatIsNotThereIsNamedAndTheThreadRunsOn) {
   ASSERT_EQ(thread.refused().size(), 1u);
   EXPECT_THAT(thread.refused()[0], HasSubstr("CPU 1023 for thread lost"));
   EXPECT_THAT(thread.refused()[0], HasSubstr("may use CPUs"));
-  thread.start(wall.now_ns());
+  thread.start(kWall.now_ns());
   EXPECT_TRUE(eventually([&] { return cycles > 3; }));
 }
 
@@ -79,7 +79,7 @@ int run_without_privilege() {
     if (sentence.find(part) == std::string::npos) return 4;
   }
   if (kernel_schedule(thread.id()).policy != SCHED_OTHER) return 5;
-  thread.start(wall.now_ns());
+  thread.start(kWall.now_ns());
   return eventually([&] { return cycles > 3; }) ? 0 : 6;
 }
 
@@ -98,15 +98,15 @@ TEST(PeriodicThread, WhatTheSystemRefusesIsSaidAndTheThreadRunsOn) {
 
 TEST(PeriodicThread, CyclesStayOnTheirGridAndMissedOnesAreCountedNotMadeUpFor) {
   std::vector<control::CycleTiming> cycles;
-  const std::int64_t first_ns = wall.now_ns() + kPeriod_ns;
+  const std::int64_t first_ns = kWall.now_ns() + kPeriod_ns;
   PeriodicThread thread({.name = "grid"}, kPeriod_ns, [&](const control::CycleTiming& timing) {
     cycles.push_back(timing);
     if (cycles.size() == 5) {  // one cycle takes ten periods
-      while (wall.now_ns() < timing.planned_ns + 10 * kPeriod_ns) std::this_thread::yield();
+      while (kWall.now_ns() < timing.planned_ns + 10 * kPeriod_ns) std::this_thread::yield();
     }
   });
   thread.start(first_ns);
-  ASSERT_TRUE(eventually([&] { return wall.now_ns() > first_ns + 40 * kPeriod_ns; }));
+  ASSERT_TRUE(eventually([&] { return kWall.now_ns() > first_ns + 40 * kPeriod_ns; }));
   thread.stop();
   ASSERT_GT(cycles.size(), 6u);
   EXPECT_EQ(cycles.front().planned_ns, first_ns);

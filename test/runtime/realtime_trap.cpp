@@ -99,11 +99,13 @@ using ClockWait = int(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timesp
 // In glibc, a program that replaces malloc still reaches the original under these names. Locks are looked up at their
 // first call, which the main thread makes long before a trap is armed.
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* memory);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 #define PMG_HEAP() count_if_watched(heap_calls, &pmg::test::Trapped::heap, __builtin_return_address(0))
 #define PMG_LOCK() count_if_watched(lock_calls, &pmg::test::Trapped::locks, __builtin_return_address(0))

@@ -71,7 +71,8 @@ class Pages(unittest.TestCase):
 
     def test_terminals_side_by_side_run_until_the_last_has_ended(self):
         waits = "mkfifo out/pipe; cat out/pipe"
-        self.expect(0, "3 commands", "mkdir out", f"# (a terminal each)\nsh -c 'trap \"exit 130\" INT; echo up; while :; do sleep 0.1; done'\necho last")
+        self.expect(0, "3 commands", "mkdir out",
+                    "# (a terminal each)\nsh -c 'trap \"exit 130\" INT; echo up; while :; do sleep 0.1; done'\necho last")
         self.expect(1, "expected 0 or 130", "mkdir out", "# (a terminal each)\nsh -c 'echo up; exit 1'\necho last")
         self.expect(1, "ended with 1", "mkdir out", f"# (a terminal each)\nsh -c 'echo up; {waits}'\nfalse")
 

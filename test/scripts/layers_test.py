@@ -31,9 +31,16 @@ def allowed(page_text):
 
 
 def included(text):
-    """Rooms that a source file includes."""
-    firsts = re.findall(r'^#include "(\w+)/', text, re.M)
-    return {CORE.get(first, f"src/{first}") for first in firsts}
+    """Rooms that a source file includes. A path that begins with .. hides its room and stands for itself; a name alone is of the same folder."""
+    ours = {path.name for path in (ROOT / "src").iterdir()} | set(CORE)
+    rooms = set()
+    for mark, path in re.findall(r'^\s*#\s*include\s*(["<])(.+?)[">]', text, re.M):
+        first, slash, _ = path.partition("/")
+        if first == "..":
+            rooms.add(path)
+        elif slash and (mark == '"' or first in ours):
+            rooms.add(CORE.get(first, f"src/{first}"))
+    return rooms
 
 
 def linked(text):
@@ -52,8 +59,7 @@ def breaches(room, sees, texts):
 
 
 def files_of(room):
-    folder = ROOT / room
-    paths = [path for path in folder.glob("*") if path.suffix in (".hpp", ".cpp") or path.name == "CMakeLists.txt"]
+    paths = [path for path in (ROOT / room).rglob("*") if set(path.suffixes) & {".h", ".hpp", ".c", ".cpp"} or path.name == "CMakeLists.txt"]
     return {path.relative_to(ROOT): path.read_text() for path in paths}
 
 
@@ -68,13 +74,21 @@ class Layers(unittest.TestCase):
     def test_every_room_uses_only_what_it_sees(self):
         found = []
         for room in self.sees:
-            if room.startswith("src/"):
-                found += breaches(room, self.sees, files_of(room))
+            found += breaches(room, self.sees, files_of(room))
         self.assertEqual(found, [])
 
+    def test_a_room_is_linked_in_its_own_folder(self):
+        for path in ROOT.glob("[a-z]*/**/CMakeLists.txt"):
+            for room in re.findall(r"target_link_libraries\(\s*pmg_room_(\w+)", path.read_text()):
+                self.assertEqual(path.parent, ROOT / "src" / room, f"{path} links pmg_room_{room}")
+
     def test_a_breach_is_found(self):
-        header = {pathlib.Path("src/control/tick.cpp"): '#include "sim/world.hpp"\n#include "control/fault.hpp"\n'}
-        self.assertEqual(breaches("src/control", self.sees, header), ["src/control/tick.cpp uses src/sim"])
+        tick = pathlib.Path("src/control/tick.cpp")
+        for line, used in (('#include "sim/world.hpp"', "src/sim"), ("#include <sim/world.hpp>", "src/sim"),
+                           ('  # include "sim/world.hpp"', "src/sim"), ('#include "../sim/world.hpp"', "../sim/world.hpp"),
+                           ('#include "nowhere/a.hpp"', "src/nowhere")):
+            text = f'#include "control/fault.hpp"\n#include <vector>\n{line}\n'
+            self.assertEqual(breaches("src/control", self.sees, {tick: text}), [f"src/control/tick.cpp uses {used}"])
         build = {pathlib.Path("src/model/CMakeLists.txt"): "pmg_add_room(model LINK pmg_core pmg_room_sil)"}
         self.assertEqual(breaches("src/model", self.sees, build), ["src/model/CMakeLists.txt uses src/sil"])
 

@@ -6,7 +6,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("apps", "cmake", "config", "docs", "include", "msgs", "scripts", "src", "test", "training")
-BUILDS = ("release", "ci", "debug", "asan", "tsan")  # of CMakePresets.json, each in build/NAME
+BUILDS = ("release", "ci", "tidy", "debug", "asan", "tsan")  # of CMakePresets.json, each in build/NAME
 OUTPUTS = ("build", "out")  # there or not, as the tree was used; which builds there can be is checked apart
 FENCE = re.compile(r"^ *```.*?^ *```", re.M | re.S)
 SOURCE_NAME = re.compile(r"[\w-]+\.(?:cpp|hpp|md|py|sh)")

@@ -228,7 +228,7 @@ TEST(Variation, DrawsFillTheirRangesAndStayInside) {
   EXPECT_LE(most, 1.2);
   EXPECT_LT(least, 0.45);
   EXPECT_GT(most, 1.15);
-  EXPECT_NEAR(payloads, kSeeds / 2, 4 * std::sqrt(kSeeds / 4.0));
+  EXPECT_NEAR(payloads, kSeeds / 2.0, 4 * std::sqrt(kSeeds / 4.0));
 }
 
 TEST(Variation, WhatTheRangesDontNameIsAsTheModelSays) {

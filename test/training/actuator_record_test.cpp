@@ -98,12 +98,13 @@ const std::map<std::string, Values> kCases = {
 
 struct Step {
   sim::ActuatorInput input;
-  double q_rad, dq_rad_s;
+  double q_rad = 0.0, dq_rad_s = 0.0;
 };
 
 /// A joint that swings by 0.3 rad while its command, new every five steps, swings otherwise; switched off for a while.
 Step step_at(int k) {
-  const double t = k * kStep_s, commanded_at = (k / 5) * 5 * kStep_s;
+  const int commanded_step = k / 5 * 5;
+  const double t = k * kStep_s, commanded_at = commanded_step * kStep_s;
   Step step;
   step.q_rad = 0.3 * std::sin(9.0 * t + 0.5);
   step.dq_rad_s = 2.7 * std::cos(9.0 * t + 0.5);

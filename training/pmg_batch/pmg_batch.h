@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-struct pmg_batch;
+struct pmg_batch;  // NOLINT(readability-identifier-naming): a name of C
 
 #define PMG_BATCH_API __attribute__((visibility("default")))
 

@@ -149,7 +149,6 @@ class ActuatorModel:
     def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled, unit) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
         q_des, dq_des, kp, kd, feed_forward = self._told(q_des, dq_des, kp, kd, feed_forward)
-        on = torch.full_like(self.command, float(enabled))
         self.command.copy_(self._limited(q_des))
         sensed = self._sensed(q)
         dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / self.step_s, dq))

@@ -75,7 +75,7 @@ class Simulation:
     def __init__(self, policy: Policy, description: dict, mjcf: Path, conditions: Conditions, seed: int):
         self.policy, self.c, self.random = policy, conditions, np.random.default_rng(seed)
         gains = {}
-        for joint, kp, kd in zip(description["joints"], policy.meta["kp_Nm_per_rad"], policy.meta["kd_Nm_s_per_rad"]):
+        for joint, kp, kd in zip(description["joints"], policy.meta["kp_Nm_per_rad"], policy.meta["kd_Nm_s_per_rad"], strict=True):
             if joint["policy"]:
                 gains[joint_kind(joint["name"])] = (kp, kd)
         self.model = m = evaluation_model(mjcf, description, gains)

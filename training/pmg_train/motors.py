@@ -39,9 +39,9 @@ class Motors:
         column = lambda values: torch.tensor(values, dtype=torch.float32, device=device)
         self.kp = column(model.actuator_gainprm[self.actuator, 0]).repeat(worlds, 1)
         self.kd = column(-model.actuator_biasprm[self.actuator, 2]).repeat(worlds, 1)
-        in_force = [actuator_in_force(model, a, values) for a, values in zip(self.actuator, motors.values())]
+        in_force = [actuator_in_force(model, a, values) for a, values in zip(self.actuator, motors.values(), strict=True)]
         self.model = ActuatorModel(in_force, model.opt.timestep, worlds, device)
-        for a, values in zip(self.actuator, in_force):
+        for a, values in zip(self.actuator, in_force, strict=True):
             self._hand_over(model, a, NEUTRAL | values)
 
     @staticmethod

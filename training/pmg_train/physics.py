@@ -9,6 +9,9 @@ from pmg_train.actuation import step_inertia
 from pmg_train.motors import Motors, joints_with_actuators
 from pmg_train.randomization import Robots
 
+if not hasattr(torch.Tensor, "untyped_storage"):  # torch before 2.0, as Debian 12's: warp asks each tensor for it
+    torch.Tensor.untyped_storage = lambda tensor: tensor.storage().untyped()
+
 BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_gainprm", "actuator_biasprm", "dof_armature")
 
 
@@ -49,7 +52,7 @@ class Worlds:
         self.motors = Motors(model, modelled, worlds, device) if modelled else None
         self.model = model
         with wp.ScopedDevice(device):
-            self.m = mjw.put_model(model, batch_sizes={name: worlds for name in BATCHED})
+            self.m = mjw.put_model(model, batch_sizes=dict.fromkeys(BATCHED, worlds))
             self.d = mjw.make_data(model, nworld=worlds, nconmax=limits["contacts_per_world"],
                                    njmax=limits["constraints_per_world"])
         view = wp.to_torch

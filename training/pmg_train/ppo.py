@@ -81,7 +81,7 @@ class Ppo:
                 self.optimizer.zero_grad(set_to_none=True)
                 loss.backward()
                 self._average_gradients()
-                nn.utils.clip_grad_norm_(net.parameters(), c["gradient_norm"], foreach=True)
+                nn.utils.clip_grad_norm_(net.parameters(), c["gradient_norm"])
                 self.optimizer.step()
                 sums += torch.stack([kl, value_loss.detach(), policy_loss.detach(), asymmetry.detach()])
         kl, value_loss, policy_loss, asymmetry = sums / (c["epochs"] * c["minibatches"])
@@ -98,7 +98,7 @@ class Ppo:
 
     def _adapt(self, kl: torch.Tensor) -> None:
         if self.world_size > 1:
-            dist.all_reduce(kl, op=dist.ReduceOp.AVG)
+            self._average(kl)
         low, high = self.config["learning_rate"]
         target = self.config["kl_target"]
         rate = torch.where(kl > 2 * target, self.rate / 1.5, torch.where(kl < target / 2, self.rate * 1.5, self.rate))
@@ -107,12 +107,17 @@ class Ppo:
             for group in self.optimizer.param_groups:
                 group["lr"] = float(self.rate)
 
+    def _average(self, values: torch.Tensor) -> None:
+        """In place, over the processes. Gloo, which is the CPU's, knows no average in every version of torch."""
+        dist.all_reduce(values)
+        values.div_(self.world_size)
+
     def _average_gradients(self) -> None:
         if self.world_size == 1:
             return
         gradients = [p.grad for p in self.network.parameters() if p.grad is not None]
         together = torch.cat([g.flatten() for g in gradients])
-        dist.all_reduce(together, op=dist.ReduceOp.AVG)
+        self._average(together)
         at = 0
         for g in gradients:
             g.copy_(together[at:at + g.numel()].view_as(g))

@@ -262,16 +262,17 @@ class Training:
                    steps_per_s=self.steps / max(1e-9, self.learned_s), learning_rate=float(self.ppo.rate),
                    std=float(self.network.std().detach().mean()), kl=float(info["kl"]), value_loss=float(info["value_loss"]),
                    asymmetry=float(info["asymmetry"]))
-        row |= dict(zip(self._names(), values))
+        row |= dict(zip(self._names(), values, strict=True))
         row["falls_per_minute"] = row.pop("falls") * 60 / self.env.tick_s
         self.curve.append(row)
         constraints, contacts = self.env.worlds.fullest() if self.iteration % 100 == 0 or len(self.curve) == 1 else (0, 0)
         e = lambda name: row[f"error/{name}"]
         self.log(f"{self.iteration} {row['minutes']:.2f} min {self.steps / 1e6:.0f}M {row['steps_per_s'] / 1e3:.0f}k/s "
                  f"reward {row['reward']:.4f} falls/min {row['falls_per_minute']:.2f} v {e('velocity'):.3f} yaw {e('yaw_rate'):.3f} "
-                 f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} ankle {e('ankle_pitch'):.3f} contact {e('contact'):.3f} "
-                 f"tau {e('torque'):.1f} a {e('action'):.2f} std {row['std']:.2f} kl {row['kl']:.4f} lr {row['learning_rate']:.1e} "
-                 f"vl {row['value_loss']:.3f} sides {row['asymmetry']:.3f} broken {e('broken'):.1e}" + (f" rows {constraints} contacts {contacts}" if constraints else ""))
+                 f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} ankle {e('ankle_pitch'):.3f} "
+                 f"contact {e('contact'):.3f} tau {e('torque'):.1f} a {e('action'):.2f} std {row['std']:.2f} kl {row['kl']:.4f} "
+                 f"lr {row['learning_rate']:.1e} vl {row['value_loss']:.3f} sides {row['asymmetry']:.3f} broken {e('broken'):.1e}"
+                 + (f" rows {constraints} contacts {contacts}" if constraints else ""))
         if self.rank == 0:
             with open(self.a.out / "curve.csv", "w", newline="") as file:
                 writer = csv.DictWriter(file, fieldnames=list(self.curve[-1]))

@@ -59,7 +59,7 @@ def main(library: str, robot: str, out: Path) -> None:
     stand, actions = [j["stand_rad"] for j in description["joints"]], len(description["action_joints"])
     random = np.random.default_rng(11)
     ticks = [draw_tick(random, stand, actions) for _ in range(TICKS)]
-    for tick, seen in zip(ticks, observations(ticks, stand, actions)):
+    for tick, seen in zip(ticks, observations(ticks, stand, actions), strict=True):
         tick["observation"] = [float(f"{x:.9g}") for x in seen]
     text = json.dumps(dict(robot=description["robot"], joints=[j["name"] for j in description["joints"]], stand_rad=stand,
                            action_joints=description["action_joints"], layout=layout_of(description), ticks=ticks))

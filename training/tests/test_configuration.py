@@ -50,5 +50,5 @@ def test_a_key_or_value_that_means_nothing_is_named(tmp_path, change, said):
 def test_a_file_that_is_no_yaml_is_named(tmp_path):
     path = tmp_path / "config.yaml"
     path.write_text("ppo: {")
-    with pytest.raises(ValueError, match="config.yaml: .*line 1"):
+    with pytest.raises(ValueError, match=r"config.yaml: .*line 1"):
         load_config(path)

@@ -272,7 +272,10 @@ def looks(side):
         "shoulder_pitch_link": [hub(Y, 0.032, 0.042, "metal")],
         "shoulder_roll_link": [sphere((0, side * 0.010, 0.006), 0.046, "shell"), hub(X, 0.049, 0.024, "metal")],
         "shoulder_yaw_link": capsule((0, 0, -0.065), (0, 0, -UPPER_ARM + 0.055), 0.036, "shell")
-        + [cylinder((0, 0, -0.02), (0, 0, -0.07), 0.030, "graphite"), cylinder((0, 0, -UPPER_ARM + 0.05), (0, 0, -UPPER_ARM + 0.01), 0.028, "graphite")],
+        + [
+            cylinder((0, 0, -0.02), (0, 0, -0.07), 0.030, "graphite"),
+            cylinder((0, 0, -UPPER_ARM + 0.05), (0, 0, -UPPER_ARM + 0.01), 0.028, "graphite"),
+        ],
         "elbow_link": [hub(Y, 0.034, 0.033, "metal"), hub(Y, 0.038, 0.019, "accent")]
         + capsule((0, 0, -0.065), (0, 0, -FOREARM + 0.06), 0.032, "shell")
         + [cylinder((0, 0, -0.02), (0, 0, -0.07), 0.026, "graphite")],
