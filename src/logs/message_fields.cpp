@@ -240,6 +240,8 @@ void gather(const pmg_msgs::timing_t& m, Gatherer& to) {
   to.number("bus_exchange_max_ns", m.bus_exchange_max_ns);
   to.number("bus_missed_cycles", m.bus_missed_cycles);
   to.number("dropped_records", m.dropped_records);
+  to.number("dropped_bus_cycles", m.dropped_bus_cycles);
+  to.number("dropped_acks", m.dropped_acks);
 }
 
 void gather(const pmg_msgs::ground_truth_t& m, Gatherer& to) {

@@ -34,7 +34,7 @@ class FlightRecorder {
   FlightRecorder(std::filesystem::path directory, const model::RobotModel& robot, const RunInfo& run,
                  double control_rate_Hz, const io::Clock& clock, const FlightRecorderOptions& options, Say say);
 
-  void add(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  void add(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped);
 
   /// Writes what is due. What the disk refuses is kept, and tried again in a later pass.
   void pass();
@@ -48,7 +48,7 @@ class FlightRecorder {
   struct Row {
     control::TickRecord record;
     BusTiming bus;
-    std::int64_t dropped_records = 0;
+    control::DroppedItems dropped;
   };
   /// A fault that is not on the disk yet.
   struct Incident {

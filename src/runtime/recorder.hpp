@@ -62,6 +62,7 @@ class Recorder {
  private:
   void take_records();
   void note_queue_losses();
+  control::DroppedItems dropped() const;  // the disk's losses included
   void log_record();
   void flush();
   void begin_file(std::int64_t stamp_ns);

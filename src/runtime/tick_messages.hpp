@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "control/controller_outbox.hpp"
 #include "control/tick_record.hpp"
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
@@ -36,7 +37,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
           pmg_msgs::status_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::limited_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message);
-void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records,
+void fill(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped,
           pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
 void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,

@@ -76,7 +76,7 @@ void RealtimeRun::record_tick() {
   if (log_ != nullptr) {
     if (const std::size_t step = spoken_step_.load(); step > 0) scenario_log_->write(record_.now_ns, step);
     log_->write(record_);
-    log_->write_timing(record_, bus_, controller_.outbox().dropped_records.load());
+    log_->write_timing(record_, bus_, controller_.outbox().dropped());
     if (truth != nullptr) log_->write_truth(record_.now_ns, truth->truth, truth->hoisted);
   }
   if (!measuring_.load()) return;

@@ -52,8 +52,8 @@ TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
   EXPECT_GT(run.bus.last_kd_sum, 0.0);
   EXPECT_EQ(modes.front(), control::Mode::kPassive);
   EXPECT_EQ(modes.back(), control::Mode::kDamping);
-  EXPECT_EQ(run.controller.outbox().dropped_records, 0);
-  EXPECT_EQ(run.controller.outbox().dropped_bus_cycles, 0);
+  EXPECT_EQ(run.controller.outbox().dropped().records, 0);
+  EXPECT_EQ(run.controller.outbox().dropped().bus_cycles, 0);
   EXPECT_EQ(bus_cycles, run.controller.bus_statistics().cycles());
   ASSERT_EQ(static_cast<std::int64_t>(indices.size()), run.controller.control_statistics().cycles());
   for (std::size_t i = 1; i < indices.size(); ++i) ASSERT_EQ(indices[i], indices[i - 1] + 1);
