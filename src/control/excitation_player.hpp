@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "hal/command_guard.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::control {
@@ -27,8 +28,9 @@ struct ExcitationProgress {
   bool given_up = false;      ///< the robot left Stand: it isn't taken up again
 };
 
-/// Throws std::invalid_argument when a command leaves the joint's range, a gain is implausible, or there is no run.
-void check(const ExcitationPlan& plan, const model::RobotModel& robot);
+/// Throws std::invalid_argument when a command leaves the joint's range, a gain exceeds what the bus guard lets pass, or
+/// there is no run.
+void check(const ExcitationPlan& plan, const model::RobotModel& robot, const hal::GuardOptions& guard = {});
 
 class ExcitationPlayer {
  public:
@@ -37,7 +39,8 @@ class ExcitationPlayer {
   };
 
   /// rest: where the joint stands before and after, and with what gains. Throws as check().
-  ExcitationPlayer(const ExcitationPlan& plan, const model::RobotModel& robot, const Told& rest, double dt_s);
+  ExcitationPlayer(const ExcitationPlan& plan, const model::RobotModel& robot, const Told& rest, double dt_s,
+                   const hal::GuardOptions& guard = {});
 
   int joint() const noexcept { return plan_.joint; }
   const Told& step() noexcept;  ///< one tick on; at rest when it is over

@@ -1,5 +1,7 @@
 #include "control/tick.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -31,21 +33,23 @@ policy::DriveGains own_gains(const model::RobotModel& robot) {
 }
 
 /// The policy's gains, or robot.yaml's. The bus guard would clamp implausible ones in silence: they are refused here.
-policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy) {
-  const auto gains = policy.gains();
-  if (!gains) return own_gains(robot);
+policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy,
+                                  const hal::GuardOptions& guard) {
+  const auto told = policy.gains();
+  const policy::DriveGains gains = told ? *told : own_gains(robot);
   const auto plausible = [&](const JointVector& values, double largest) {
     return values.size() == robot.joint_index.size() && (values.array() >= 0.0).all() &&
            (values.array() <= largest).all();
   };
-  const hal::GuardOptions guard;
-  if (!plausible(gains->kp_Nm_per_rad, guard.max_kp_Nm_per_rad) ||
-      !plausible(gains->kd_Nm_s_per_rad, guard.max_kd_Nm_s_per_rad)) {
-    throw std::invalid_argument("the policy's drive gains don't fit the robot; expected one of each for " +
-                                std::to_string(robot.joint_index.size()) +
-                                " joints, none negative, none above the bus guard's largest");
+  if (!plausible(gains.kp_Nm_per_rad, guard.max_kp_Nm_per_rad) ||
+      !plausible(gains.kd_Nm_s_per_rad, guard.max_kd_Nm_s_per_rad)) {
+    throw std::invalid_argument(fmt::format(
+        "{} drive gains don't fit the robot; expected one of each for {} joints, kp from 0 to {:g} Nm/rad and kd from "
+        "0 to {:g} Nm s/rad, the most that the bus guard lets pass",
+        told ? "the policy's" : "robot.yaml's", robot.joint_index.size(), guard.max_kp_Nm_per_rad,
+        guard.max_kd_Nm_s_per_rad));
   }
-  return *gains;
+  return gains;
 }
 
 ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy::Policy& policy) {
@@ -77,7 +81,8 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     : stopwatch_(stopwatch),
       dt_s_(options.dt_s),
       policy_may_owe_ticks_(options.late_policy_ticks),
-      gains_(gains_in_force(robot, *policy)),
+      guard_(options.guard),
+      gains_(gains_in_force(robot, *policy, guard_)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
       motion_(robot, library, policy->variant(), options.generator, options.gco),
       policy_(std::move(policy)),
@@ -100,7 +105,8 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
   if (joint < 0 || joint >= target_.size()) throw std::invalid_argument("excitation: no such joint");
   excitation_.emplace(
       *options.excitation, robot,
-      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s);
+      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s,
+      guard_);
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {

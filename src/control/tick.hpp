@@ -32,6 +32,7 @@ struct TickOptions {
   gco::Options gco;
   SupervisorOptions supervisor;
   LimiterOptions limiter;
+  hal::GuardOptions guard;  ///< of the bus that this tick's commands go to
   EntryRampOptions entry;
   FootLoadOptions foot_load;
   /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
@@ -103,6 +104,8 @@ class Tick {
   /// No exception, no lock, no I/O; no heap but the policy's own.
   const TickResult& step(const TickInput& input) noexcept;
   const TickResult& result() const noexcept { return result_; }
+  /// The bus takes its guard's options from here: the gains of this tick were checked against them.
+  const hal::GuardOptions& guard() const noexcept { return guard_; }
 
  private:
   void take_messages(const TickInput& input) noexcept;
@@ -124,6 +127,7 @@ class Tick {
   const io::Clock& stopwatch_;
   double dt_s_;
   int policy_may_owe_ticks_;
+  hal::GuardOptions guard_;
   policy::DriveGains gains_;
   JointVector brake_kd_;
   gco::MotionComposition motion_;

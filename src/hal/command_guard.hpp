@@ -39,6 +39,7 @@ class CommandGuard {
   /// the URDF's ranges, speeds and efforts.
   const model::JointCommand& next(const ControlOutput* fresh, std::uint32_t stop_pulls) noexcept;
 
+  const GuardOptions& options() const noexcept { return options_; }
   std::uint32_t trips() const noexcept { return trips_; }
   TripCause cause() const noexcept { return cause_; }  ///< of the last trip
   bool damping() const noexcept { return damping_; }   ///< this cycle's command is the guard's own

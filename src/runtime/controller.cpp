@@ -33,7 +33,7 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::T
                        const ControllerOptions& options)
     : options_(options),
       inbox_(link_.stop),
-      bus_cycle_(bus, link_, robot, clock_, options.guard),
+      bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_) {
   if (options.realtime) refused_ = lock_memory();
   bus_thread_ = std::make_unique<PeriodicThread>(scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,

@@ -26,7 +26,6 @@ struct ControllerOptions {
   /// The bus before the control tick: whatever the tick does, the drives are answered and the guard can act.
   ThreadSchedule bus{.name = "bus", .priority = 80};
   ThreadSchedule control{.name = "control", .priority = 70};
-  hal::GuardOptions guard{};
   double first_sample_within_s = 2.0;  ///< the drives must answer once before control starts
   double confirm_stop_within_s = 0.5;  ///< how long stop() waits for the control thread's damping
   double damp_s = 0.2;                 ///< how long stop() lets the drives damp before the threads end
@@ -46,7 +45,7 @@ class Controller {
   /// What an ordinary thread does again and again. A throw ends the thread, damps, and is kept as failure().
   using Pass = std::function<void()>;
 
-  /// Keeps references. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
+  /// Keeps references; the bus guard gets the tick's options. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
   /// threads to be had.
   Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options = {});
   ~Controller();  ///< stops

@@ -12,7 +12,7 @@ Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, 
       log_(log),
       options_(options),
       inbox_(link_.stop),
-      bus_cycle_(bus, link_, robot, clock_),
+      bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_),
       player_(scenario),
       measure_(robot.standing_height_m) {

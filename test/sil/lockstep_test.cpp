@@ -64,6 +64,20 @@ class LockstepRun : public testing::Test {
       std::filesystem::temp_directory_path() / ("pmg_lockstep_test_" + std::to_string(getpid()));
 };
 
+TEST_F(LockstepRun, TheBusGuardHasTheTicksOptions) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  control::TickOptions options = control::tick_options(robot);
+  options.guard.hold_cycles = 2;  // fewer than a tick has
+  control::Tick tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock_, options);
+  const Scenario scenario = walk(0.5);
+  const RunOutcome outcome = Lockstep(robot, bus, plant, tick, scenario, nullptr, {}).run();
+  ASSERT_EQ(outcome.faults.size(), 1U);
+  EXPECT_EQ(outcome.faults[0].code, control::FaultCode::kControlFrozen);
+}
+
 TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
   const model::RobotModel& robot = test::z1();
   test::IdealBus bus(robot);
