@@ -64,6 +64,16 @@ class LockstepRun : public testing::Test {
       std::filesystem::temp_directory_path() / ("pmg_lockstep_test_" + std::to_string(getpid()));
 };
 
+TEST_F(LockstepRun, HoldingACommandForATickTakesAsLongAsATick) {
+  sim::World world(test::biped(), {});
+  model::JointCommand command;
+  command.q = test::biped().q_stand();
+  command.dq = command.kp = command.kd = command.tau_ff = JointVector::Zero(test::biped().joint_index.size());
+  const double start_s = world.time_s();
+  hold_for_one_tick(world, command);
+  EXPECT_NEAR(world.time_s() - start_s, control::tick_options(test::biped()).dt_s, 1e-12) << "rounding of five sums";
+}
+
 TEST_F(LockstepRun, TheBusGuardHasTheTicksOptions) {
   const model::RobotModel& robot = test::z1();
   test::IdealBus bus(robot);
