@@ -153,6 +153,13 @@ LoadedControl load_control(const ControlSetup& setup) {
   return loaded;
 }
 
+void take_limits(const hal::BackendLimits& limits, TickOptions& options) {
+  options.guard = limits.guard;
+  FaultLimits& faults = options.supervisor.fault_limits;
+  faults.stale_state_s = limits.stale_state_s.value_or(faults.stale_state_s);
+  faults.overrun_ticks = limits.overrun_ticks.value_or(faults.overrun_ticks);
+}
+
 std::string told_bundle(const ControlSetup& setup) {
   const LoadedControl loaded = load_control(setup);
   return fmt::format("{} (robot {}, policy {})", loaded.bundle, loaded.robot.name, loaded.policy_name);

@@ -57,8 +57,6 @@ ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy:
   return options;
 }
 
-bool drives(Mode mode) noexcept { return mode == Mode::kStand || mode == Mode::kWalk; }
-
 bool finite(const Command& command) noexcept {
   return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
 }
@@ -122,7 +120,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   const Mode mode = supervisor_.update(supervisor_input(input));
   result_.user = supervisor_.admit(intake_.command());
   if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
-  if (drives(mode)) {
+  if (upright(mode)) {
     Fault fault = drive(input.state);
     if (fault.code != FaultCode::kNone) {
       fault.stamp_ns = input.now_ns;
@@ -131,7 +129,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   }
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
-  if (!drives(result_.mode)) release(input.state);
+  if (!upright(result_.mode)) release(input.state);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
@@ -179,7 +177,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                         .gco_held_ticks = gco_held_ticks_,
                         .policy_waits = policy_waits()};
   // On its way from the posture in which it was found the torso may be anywhere.
-  if (drives(result_.mode) && entry_.done()) {
+  if (upright(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
     known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
   }
@@ -187,7 +185,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
 }
 
 void Tick::watch_feet(const model::RobotState& state) noexcept {
-  if (!feet_ || !drives(result_.mode)) return;
+  if (!feet_ || !upright(result_.mode)) return;
   result_.foot_load.reset();
   // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
   if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;

@@ -43,7 +43,7 @@ class Comms {
 
   /// From now on HOIST is listened to, and HOIST_STATE told; without, both are counted as no_hoist. Keeps the pointer;
   /// null: there is no hoist.
-  void work(HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
+  void work(hal::HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
 
   /// Before the controller speaks: who else is on this address? Returns the other robots' names after that many seconds
   /// of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our name is heard:

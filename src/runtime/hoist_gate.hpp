@@ -1,13 +1,13 @@
-// What the network may ask of a simulated robot's hoist (pmg_msgs::hoist_t), and what it is told of it.
+// What the network may ask of the robot's hoist (pmg_msgs::hoist_t), and what it is told of it.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "control/tick.hpp"
+#include "hal/hoist_line.hpp"
 #include "io/lcm_link.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
-#include "runtime/hoist_line.hpp"
 #include "runtime/operator_gate.hpp"
 
 namespace pmg::runtime {
@@ -17,12 +17,12 @@ class HoistGate {
  public:
   explicit HoistGate(std::string robot) : robot_(std::move(robot)) {}  ///< the controller's name
 
-  void work(HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
+  void work(hal::HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
   bool there() const noexcept { return line_ != nullptr; }
 
   void take(io::Bytes message);  ///< channel HOIST
   void see(const control::TickResult& result) noexcept {
-    if (line_ != nullptr) line_->see(result.mode, result.entering);
+    if (line_ != nullptr) line_->see(control::upright(result.mode), result.entering);
   }
 
   /// The message for channel HOIST_STATE but for its stamp. True when there is something in it that wasn't before.
@@ -35,7 +35,7 @@ class HoistGate {
   bool overtaken(const std::string& source, std::int64_t session, std::int64_t sequence) const;
 
   std::string robot_;
-  HoistLine* line_ = nullptr;
+  hal::HoistLine* line_ = nullptr;
   GateCounts counts_;
   std::string source_;  // of the last request that was taken
   std::int64_t session_ = 0, sequence_ = 0;

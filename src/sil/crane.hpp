@@ -2,7 +2,7 @@
 // feet carry it, and takes it up again when asked to, wherever it lies.
 #pragma once
 
-#include "runtime/hoist_line.hpp"
+#include "hal/hoist_line.hpp"
 
 namespace pmg::sil {
 
@@ -28,15 +28,15 @@ class Crane {
 
   void step(const CraneView& view, double dt_s) noexcept;
 
-  runtime::CraneState state() const noexcept { return state_; }
+  hal::CraneState state() const noexcept { return state_; }
   double lift_m() const noexcept { return lift_m_; }    ///< of the anchor, as sim::World::set_hoist's
   double engaged() const noexcept { return engaged_; }  ///< likewise
-  bool carrying() const noexcept { return state_ != runtime::CraneState::kFree; }
+  bool carrying() const noexcept { return state_ != hal::CraneState::kFree; }
 
  private:
   void lower(const CraneView& view, double dt_s) noexcept;
 
-  runtime::CraneState state_ = runtime::CraneState::kHolding;
+  hal::CraneState state_ = hal::CraneState::kHolding;
   double lift_m_ = kLift_m, engaged_ = 1.0;
   double carried_s_ = 0.0;
 };

@@ -12,6 +12,7 @@
 
 #include "control/fixtures.hpp"
 #include "io/log_reader.hpp"
+#include "sil/scripted_plant.hpp"
 #include "sil/sil_hal.hpp"
 #include "sil/summary.hpp"
 
