@@ -119,9 +119,8 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   }
 }
 
-runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded,
-                          const hal::Backend& backend, const runtime::Controller& controller,
-                          const runtime::BenchSession* bench) {
+runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded, const hal::Backend& backend,
+                          const runtime::Controller& controller, const runtime::BenchSession* bench) {
   return {.robot = arguments.name,
           .session = std::chrono::system_clock::now().time_since_epoch().count(),
           .policy = arguments.control.policy,
@@ -228,8 +227,7 @@ int run_controller(Arguments& arguments) {
     if (excited->progress().over) bench_over = true;
   };
   Console console(loaded.robot, arguments.name);
-  const ExitCode code =
-      run(arguments, signals, controller, comms, recorder, backend->window(), console, bench_over);
+  const ExitCode code = run(arguments, signals, controller, comms, recorder, backend->window(), console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;

@@ -58,7 +58,7 @@ struct Stage {
   io::LogWriter& log_file;
   control::Tick& tick;
   sil::LiveView* view;                      // may be null
-  const runtime::BenchSession* bench;          // may be null
+  const runtime::BenchSession* bench;       // may be null
   runtime::ExcitationRecorder* excitation;  // null without a bench
   bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
@@ -243,8 +243,7 @@ int simulate(Arguments arguments) {
   } else if (bench) {
     std::cout << fmt::format("{}; results in {}\n", summary["bench"].get<std::string>(), arguments.out.string());
   } else {
-    std::cout << sil::run_text(played.outcome, summary)
-              << fmt::format("results in {}\n", arguments.out.string());
+    std::cout << sil::run_text(played.outcome, summary) << fmt::format("results in {}\n", arguments.out.string());
   }
   const sil::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted && !arguments.by_operators()) return kInterrupted;

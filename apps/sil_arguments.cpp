@@ -30,8 +30,7 @@ output (a film that fails leaves the other results whole), 130 interrupted or th
 
 void SilArguments::declare(CLI::App& app) {
   app.footer(kFooter);
-  app.add_option("--robot", control.robot, "robot's name below config/robots, or its folder")
-      ->capture_default_str();
+  app.add_option("--robot", control.robot, "robot's name below config/robots, or its folder")->capture_default_str();
   app.add_option("--scenario", scenario, "scenario to play (YAML); with --realtime it may be left out");
   app.add_option("--out", out, "folder for the results; made if absent");
   app.add_option("--policy", control.policy,
@@ -52,9 +51,8 @@ void SilArguments::declare(CLI::App& app) {
                  "draw the simulated robot, its ground and its noise from these ranges (YAML) by the seed");
   app.add_option("--seed", seed, "of the sensor noise")->capture_default_str();
   CLI::Option* threads = app.add_flag("--realtime", realtime,
-                                       "the robot's threads and the wall clock instead of lockstep; not reproducible");
-  app.add_option("--lcm-url", lcm_url,
-                 "where operators are heard; LCM_DEFAULT_URL or this computer alone if not given")
+                                      "the robot's threads and the wall clock instead of lockstep; not reproducible");
+  app.add_option("--lcm-url", lcm_url, "where operators are heard; LCM_DEFAULT_URL or this computer alone if not given")
       ->needs(threads)
       ->excludes("--scenario");
   CLI::Option* film = app.add_flag("--video", video, "film the run (needs ffmpeg)")->excludes(threads);
@@ -62,8 +60,7 @@ void SilArguments::declare(CLI::App& app) {
       app.add_option("--bench", bench, "excite this joint of the hanging robot and write a bench of it")
           ->excludes(threads)
           ->excludes("--scenario");
-  app.add_option("--excitation", excitation,
-                 "what to excite it by: a folder of pmg_calibrate_motor --make-excitation")
+  app.add_option("--excitation", excitation, "what to excite it by: a folder of pmg_calibrate_motor --make-excitation")
       ->needs(joint);
   app.add_flag("--viewer", viewer, "watch the run in a window, at the speed of real time; Esc or q ends it")
       ->excludes(film);

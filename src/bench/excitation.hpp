@@ -21,8 +21,9 @@ struct ExcitationGains {
   double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;
 };
 
-/// For one joint of a hanging robot: half of the way from the standing posture to the nearer end of the range, and no more
-/// than half a radian (the others hold still, and a limb that swings far meets them); a third of the joint's speed.
+/// For one joint of a hanging robot: half of the way from the standing posture to the nearer end of the range, and no
+/// more than half a radian (the others hold still, and a limb that swings far meets them); a third of the joint's
+/// speed.
 ExcitationLimits excitation_limits(const model::Joint& joint, const ExcitationLimits& rate_and_seconds = {});
 /// The joint's own, half its kp, half of both: two kd tell Kd from damping.
 std::vector<ExcitationGains> excitation_gains(const model::Joint& joint);

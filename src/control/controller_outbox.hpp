@@ -1,4 +1,5 @@
-// From the real-time threads to those that log and publish: bounded, wait-free, and whatever doesn't fit is counted.
+// Queues from the real-time threads to the threads that log and publish: bounded and wait-free. Items that don't fit
+// are counted.
 #pragma once
 
 #include <atomic>

@@ -9,8 +9,8 @@ namespace pmg::control {
 
 policy::DriveGains own_gains(const model::RobotModel& robot);  ///< robot.yaml's
 
-/// The policy's gains, or robot.yaml's where it has none. Throws std::invalid_argument for gains that don't fit the robot
-/// or exceed the guard's largest: the bus guard would clamp them in silence.
+/// The policy's gains, or robot.yaml's where it has none. Throws std::invalid_argument for gains that don't fit the
+/// robot or exceed the guard's largest: the bus guard would clamp them in silence.
 policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy,
                                   const hal::GuardOptions& guard);
 

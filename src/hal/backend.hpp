@@ -67,8 +67,8 @@ class Backend {
   virtual OptionValues configuration() const = 0;
   virtual BackendLimits limits() const { return {}; }
 
-  /// Opens bus and windows. Called once; the services below exist afterwards. From then on the bus thread alone uses the
-  /// drives. A backend that waits for its drives asks interrupted() and gives up when that is true. Throws
+  /// Opens bus and windows. Called once; the services below exist afterwards. From then on the bus thread alone uses
+  /// the drives. A backend that waits for its drives asks interrupted() and gives up when that is true. Throws
   /// std::runtime_error: one line.
   virtual Hal& connect(const std::function<bool()>& interrupted) = 0;
 

@@ -48,7 +48,8 @@ std::string BackendFactory::help() const {
   if (kinds_.empty()) text += "this build has no backend";
   if (kinds_.size() == 1) text += summaries.front() + ", is the one backend of this build";
   if (kinds_.size() > 1) text += fmt::format("{}", fmt::join(summaries, "; "));
-  if (!missing.empty()) text += fmt::format("; {} {} not in it", enumerated(missing), missing.size() > 1 ? "are" : "is");
+  if (!missing.empty())
+    text += fmt::format("; {} {} not in it", enumerated(missing), missing.size() > 1 ? "are" : "is");
   return text;
 }
 

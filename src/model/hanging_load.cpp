@@ -48,7 +48,8 @@ HangingLoad hanging_load(const RobotModel& robot, const std::string& joint) {
   const auto link = link_moved_by(robot, joint);
   const KDL::Segment& segment = GetTreeElementSegment(link->second);
   const KDL::Frame parent = pose(robot, GetTreeElementParent(link->second));
-  const KDL::Vector axis = parent.M * segment.getJoint().JointAxis(), origin = parent * segment.getJoint().JointOrigin();
+  const KDL::Vector axis = parent.M * segment.getJoint().JointAxis(),
+                    origin = parent * segment.getJoint().JointOrigin();
   const KDL::RigidBodyInertia beyond = inertia_from(robot, link);
   const auto body_at = [&](double q_rad) { return parent * segment.pose(q_rad) * beyond; };  // in the base's axes
 

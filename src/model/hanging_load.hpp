@@ -15,9 +15,9 @@ struct HangingLoad {
 };
 
 /// The links beyond the joint as one rigid body, the others in the standing posture, base upright and held:
-/// inertia = a^T I_o a, gravity torque = a . ((c - o) x m g), with the axis a through o, the inertia I_o about o and the
-/// centre of mass c. (A robot in straps recoils: its limbs seem lighter.) Throws std::invalid_argument when there is no
-/// such joint.
+/// inertia = a^T I_o a, gravity torque = a . ((c - o) x m g), with the axis a through o, the inertia I_o about o and
+/// the centre of mass c. (A robot in straps recoils: its limbs seem lighter.) Throws std::invalid_argument when there
+/// is no such joint.
 HangingLoad hanging_load(const RobotModel& robot, const std::string& joint);
 
 }  // namespace pmg::model

@@ -1,4 +1,4 @@
-// What the network may ask of the robot's hoist (pmg_msgs::hoist_t), and what it is told of it.
+// Requests from the network for the robot's hoist (pmg_msgs::hoist_t), and the answers (pmg_msgs::hoist_state_t).
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,10 @@ class HoistGate {
     if (line_ != nullptr) line_->see(control::upright(result.mode), result.entering);
   }
 
-  /// The message for channel HOIST_STATE but for its stamp. True when there is something in it that wasn't before.
+  /// Fills the message for channel HOIST_STATE, all but its stamp. True when it says something new.
   bool fill(pmg_msgs::hoist_state_t& message);
 
-  /// Beside these, what is repeated or overtaken is ignored and not counted: it is acknowledged anew.
+  /// Requests that were ignored. Repeated and overtaken ones are not among them: they are acknowledged anew.
   const GateCounts& counts() const noexcept { return counts_; }
 
  private:

@@ -1,6 +1,5 @@
-// Between the controller's own types and LCM messages (msgs/): what the log writes and the network tells, and back for
-// a replay. Filling a message that was filled before allocates nothing, text of a fault apart. Not for a real-time
-// thread.
+// (the controller's types) => (LCM messages, msgs/) for log and network, and back for a replay. Filling a message that
+// was filled before allocates nothing, text of a fault apart. Not for a real-time thread.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +46,7 @@ void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mod
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
 void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
 
-/// The other way: the values as they are, unchecked; who hears strangers validates first.
+/// The other way: the values as they are. Unchecked: a caller that hears strangers validates first.
 control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns);
 control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns);
 /// False when the message's vectors don't have joint_count entries each.

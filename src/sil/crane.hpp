@@ -1,12 +1,12 @@
-// Who works the hoist of a simulated robot: holds it while it is limp, sets it down once it stands, lets go when its
-// feet carry it, and takes it up again when asked to, wherever it lies.
+// Works the hoist of a simulated robot. The crane holds a limp robot, sets it down once it stands, lets go when its
+// feet carry it, and lifts it again on request, wherever it lies.
 #pragma once
 
 #include "hal/hoist_line.hpp"
 
 namespace pmg::sil {
 
-/// What somebody beside the robot sees, and was told.
+/// The crane's inputs: a person beside the robot would see or hear them.
 struct CraneView {
   bool stands = false;          ///< the controller holds the standing posture, or walks; its ramp into it is over
   bool stays_up = false;        ///< somebody wants it to hang

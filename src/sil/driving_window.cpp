@@ -4,10 +4,6 @@
 
 namespace pmg::sil {
 
-namespace {
-constexpr std::chrono::milliseconds kFrame{33}, kPoll{10}, kLongestCalm{2500};
-}  // namespace
-
 DrivingWindow::DrivingWindow(const mjModel* model, SimulatedRobot& robot, const std::string& name,
                              const std::string& url)
     : robot_(robot),
@@ -25,6 +21,7 @@ void DrivingWindow::listen() {
 }
 
 void DrivingWindow::let_go() {
+  constexpr std::chrono::milliseconds kPoll{10}, kLongestCalm{2500};
   keyboard_.listen();
   keyboard_.let_go();
   const auto end = std::chrono::steady_clock::now() + kLongestCalm;
@@ -32,6 +29,7 @@ void DrivingWindow::let_go() {
 }
 
 void DrivingWindow::paint(const std::stop_token& stop) {
+  constexpr std::chrono::milliseconds kFrame{33};
   const ops::DrivingTable keys = ops::key_table();
   PoseSample pose;
   for (auto next = std::chrono::steady_clock::now(); !stop.stop_requested();) {

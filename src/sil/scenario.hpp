@@ -1,4 +1,4 @@
-// A scripted operator: config/scenarios/*.yaml, what to ask of the controller and when.
+// A scripted operator: config/scenarios/*.yaml lists its commands and modes over time.
 #pragma once
 
 #include <filesystem>

@@ -59,15 +59,16 @@ class SimulatedBackend final : public hal::Backend {
 }  // namespace
 
 void register_backend(hal::BackendFactory& factory) {
-  factory.add({.name = "sil",
-               .summary = "MuJoCo in their place",
-               .options = {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands",
-                            false},
-                           {"viewer", "a window with the robot, whose keys drive it", false},
-                           {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none",
-                            std::string()},
-                           {"seed", "of the sensor noise", std::uint64_t{0}}},
-               .make = [](const hal::BackendSetup& setup) { return std::make_unique<SimulatedBackend>(setup); }});
+  factory.add(
+      {.name = "sil",
+       .summary = "MuJoCo in their place",
+       .options = {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands",
+                    false},
+                   {"viewer", "a window with the robot, whose keys drive it", false},
+                   {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none",
+                    std::string()},
+                   {"seed", "of the sensor noise", std::uint64_t{0}}},
+       .make = [](const hal::BackendSetup& setup) { return std::make_unique<SimulatedBackend>(setup); }});
 }
 
 }  // namespace pmg::sil

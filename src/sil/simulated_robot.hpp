@@ -1,4 +1,4 @@
-// A simulated robot for the bus thread: what others want of it and from it crosses wait-free.
+// A simulated robot for the bus thread. Other threads reach it wait-free.
 #pragma once
 
 #include <array>

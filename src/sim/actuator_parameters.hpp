@@ -1,4 +1,5 @@
-// The actuator's parameters under the name of the room that simulates it. Rooms that simulate nothing take them from model/.
+// The actuator's parameters under the name of the room that simulates it. Rooms that simulate nothing take them from
+// model/.
 #pragma once
 
 #include "model/actuator_parameters.hpp"

@@ -65,9 +65,8 @@ TEST(BackendFactory, NamesWhatTheBuildHasAndWhatItLacks) {
   EXPECT_EQ(refusal(factory, "serial"), "taken");
 
   factory.add(serial("second"));
-  EXPECT_EQ(
-      factory.help(),
-      "the drives: serial, drives on a serial line; second, drives on a serial line; can and sil are not in it");
+  EXPECT_EQ(factory.help(),
+            "the drives: serial, drives on a serial line; second, drives on a serial line; can and sil are not in it");
   EXPECT_EQ(refusal(factory, "sil"), "--hal sil: this build has no simulated robot; expected one of serial, second");
   EXPECT_EQ(refusal(factory, "pigeon"), "--hal pigeon: this build has no such backend; expected one of serial, second");
 }
