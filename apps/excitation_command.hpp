@@ -68,8 +68,6 @@ class ExcitationCommand {
   }
 
  private:
-  /// Half of the way from the standing posture to the nearer end of the range, and no more than half a radian: others
-  /// hold still, and a limb that swings far meets them.
   void take_robot(const std::string& name, bench::ExcitationLimits& limits,
                   std::vector<bench::ExcitationGains>& gains) const {
     const model::RobotModel robot = model::load_robot(model::find_robot(robot_));
@@ -78,13 +76,8 @@ class ExcitationCommand {
       throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint; {}", name, robot.name,
                                               model::expected_name(name, robot.joint_index.names())));
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(*index)];
-    const double nearer_rad = std::min(joint.stand_rad - joint.lower_rad, joint.upper_rad - joint.stand_rad);
-    const double reach_rad = std::min(0.5, 0.5 * nearer_rad);
-    limits.lower_rad = joint.stand_rad - reach_rad;
-    limits.upper_rad = joint.stand_rad + reach_rad;
-    limits.speed_rad_s = joint.velocity_limit_rad_s / 3.0;
-    const double kp = joint.kp_Nm_per_rad, kd = joint.kd_Nm_s_per_rad;
-    gains = {{kp, kd}, {0.5 * kp, kd}, {0.5 * kp, 0.5 * kd}};
+    limits = bench::excitation_limits(joint, limits);
+    gains = bench::excitation_gains(joint);
   }
 
   static std::pair<double, double> pair(const std::string& text, char between, const char* option, const char* form) {

@@ -1,6 +1,5 @@
 // pmg_controller: the controller on its own host: real-time threads, wall clock, operators over LCM.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -10,23 +9,18 @@
 #include <csignal>
 #include <ctime>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bench_session.hpp"
-#include "control/control_setup.hpp"
 #include "control/mode_text.hpp"
-#include "driving_window.hpp"
+#include "controller_arguments.hpp"
 #include "io/lcm_link.hpp"
-#include "option_checks.hpp"
 #include "program.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/controller.hpp"
 #include "runtime/controller_report.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
-#include "sil/simulated_robot.hpp"
-#include "sim/motors_in_force.hpp"
 
 namespace {
 
@@ -38,104 +32,7 @@ enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2 };
 constexpr int kCommsWait_ms = 5;   // how late a tick is published at most
 constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
 
-constexpr const char* kFooter = R"(
-Starts in Passive and waits for operators on LCM (pmg_send, pmg_watch). SIGINT, SIGTERM and SIGHUP damp the robot, close the
-log and end the program. Software stops are not safety-rated: docs/reference/safety.md.
-
-With --bench the robot excites one joint as soon as it stands (pmg_send stand), the others holding, and damps when all is
-recorded. It must hang clear of the ground with its base held fast. Stops, faults and limits are in force as ever, and what
-was recorded whole until then is kept; nothing begins again by itself.
-
-Example:
-  pmg_controller --hal sil --robot z1 --log out/first
-  pmg_send walk --robot z1 --vx 0.4 --for 5
-  pmg_controller --hal sil --viewer
-  pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
-
-Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
-was damped), 2 bad input, or a network, name or log folder that can't be used.)";
-
-struct Arguments {
-  std::string hal;
-  control::ControlSetup control;
-  std::string name, lcm_url;
-  fs::path log, motor, excitation, bench_out;
-  std::string bench;
-  bool no_log = false, gantry = false, viewer = false, no_realtime = false, print_config = false, json = false;
-  std::uint64_t seed = 0;
-  std::optional<double> duration_s;
-  runtime::ControllerOptions threads;
-};
-
-void declare(CLI::App& app, Arguments& arguments) {
-  app.footer(kFooter);
-  app.add_option("--hal", arguments.hal,
-                 "the drives: sil, MuJoCo in their place, is the one backend of this build; can and ethercat are not "
-                 "in it")
-      ->required()
-      ->check(apps::one_of({"sil", "can", "ethercat"}));
-  app.add_option("--robot", arguments.control.robot, "robot's name below config/robots, or its folder")
-      ->capture_default_str();
-  app.add_option("--name", arguments.name, "name that messages are addressed to; the robot's own if not given");
-  app.add_option("--policy", arguments.control.policy,
-                 "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
-                 "given, and none with --bench");
-  app.add_option("--clips", arguments.control.clips, "clip library; the robot's own clips/ if not given");
-  app.add_option("--lcm-url", arguments.lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
-  CLI::Option* log = app.add_option("--log", arguments.log, "folder of the log; out/NAME-TIME if not given");
-  app.add_flag("--no-log", arguments.no_log, "write no log but that of the seconds around a fault")->excludes(log);
-  app.add_flag("--gantry", arguments.gantry,
-               "sil: hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands");
-  app.add_flag("--viewer", arguments.viewer, "sil: a window with the robot, whose keys drive it");
-  app.add_option("--motor", arguments.motor,
-                 "sil: motor.yaml, how the drives really are; robot.yaml's if not given, none for none");
-  CLI::Option* bench = app.add_option("--bench", arguments.bench, "excite this joint of the hanging robot once");
-  CLI::Option* excitation = app.add_option("--excitation", arguments.excitation,
-                                           "what to excite it by: a folder of pmg_calibrate_motor --make-excitation");
-  CLI::Option* bench_out = app.add_option("--bench-out", arguments.bench_out, "folder of the bench that is recorded");
-  excitation->needs(bench);
-  bench_out->needs(bench);
-  bench->needs(excitation)->needs(bench_out);
-  app.add_option("--seed", arguments.seed, "sil: of the sensor noise")->capture_default_str();
-  app.add_option("--bus-cpu", arguments.threads.bus.cpu, "the one CPU of the bus thread; -1: any")
-      ->check(apps::in_range(-1, 4095))
-      ->capture_default_str();
-  app.add_option("--control-cpu", arguments.threads.control.cpu, "the one CPU of the control thread; -1: any")
-      ->check(apps::in_range(-1, 4095))
-      ->capture_default_str();
-  app.add_option("--bus-priority", arguments.threads.bus.priority, "SCHED_FIFO priority of the bus thread")
-      ->check(apps::in_range(1, 99))
-      ->capture_default_str();
-  app.add_option("--control-priority", arguments.threads.control.priority, "SCHED_FIFO priority of the control thread")
-      ->check(apps::in_range(1, 99))
-      ->capture_default_str();
-  app.add_flag("--no-realtime", arguments.no_realtime, "ordinary scheduling: for trying things out, not for a robot");
-  app.add_option("--duration", arguments.duration_s, "end after so many seconds")->check(apps::positive());
-  app.add_flag("--print-config", arguments.print_config, "print the configuration in force as JSON and exit");
-  app.add_flag("--json", arguments.json, "print how the run went as JSON on stdout at the end");
-}
-
-nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
-  return {{"priority", schedule.priority}, {"cpu", schedule.cpu}};
-}
-
-/// bench: null without --bench.
-nlohmann::ordered_json config_json(const Arguments& arguments, const control::LoadedControl& loaded,
-                                   const apps::BenchSession* bench) {
-  nlohmann::ordered_json json = control::control_json(loaded);
-  json["name"] = arguments.name;
-  json["hal"] = arguments.hal;
-  json["lcm_url"] = arguments.lcm_url;
-  json["log"] = arguments.log.string();
-  json["gantry"] = arguments.gantry;
-  json["seed"] = arguments.seed;
-  if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
-  if (bench != nullptr) json["bench"] = bench->json();
-  json["realtime"] = {{"asked_for", arguments.threads.realtime},
-                      {"bus", thread_json(arguments.threads.bus)},
-                      {"control", thread_json(arguments.threads.control)}};
-  return json;
-}
+using Arguments = apps::ControllerArguments;
 
 std::string utc_time() {
   const std::time_t now = std::time(nullptr);
@@ -200,17 +97,11 @@ void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant v
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
 }
 
-/// The simulated robot, and the window on it if there is one.
-struct Stage {
-  sil::SimulatedRobot& robot;
-  apps::DrivingWindow* window;  // may be null
-};
-
-/// Waits until somebody or something ends the run.
+/// Waits until somebody or something ends the run. window: may be null.
 void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
-               const Stage& stage, Console& console, const std::atomic<bool>& bench_over) {
+               hal::Window* window, Console& console, const std::atomic<bool>& bench_over) {
   constexpr long kPoll_ms = 20, kKeys_ms = 5;
-  if (stage.window != nullptr) stage.window->show(stage.robot);
+  if (window != nullptr) window->show();
   const auto start = std::chrono::steady_clock::now();
   const auto expired = [&] {
     return arguments.duration_s &&
@@ -218,23 +109,23 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   };
   bool signalled = false;
   while (!signalled && !expired() && !bench_over && controller.failure().empty()) {
-    signalled = signals.wait_ms(stage.window == nullptr ? kPoll_ms : kKeys_ms);
+    signalled = signals.wait_ms(window == nullptr ? kPoll_ms : kKeys_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
-    if (stage.window == nullptr) continue;
-    stage.window->listen();
-    if (!stage.window->closed()) continue;
+    if (window == nullptr) continue;
+    window->listen();
+    if (!window->closed()) continue;
     spdlog::info("the window was closed: velocity to zero first");
-    return stage.window->let_go();
+    return window->let_go();
   }
 }
 
-runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded,
-                          const runtime::Controller& controller, const apps::BenchSession* bench) {
+runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded, const hal::Backend& backend,
+                          const runtime::Controller& controller, const runtime::BenchSession* bench) {
   return {.robot = arguments.name,
           .session = std::chrono::system_clock::now().time_since_epoch().count(),
           .policy = arguments.control.policy,
-          .backend = arguments.hal,
-          .options = config_json(arguments, loaded, bench).dump(),
+          .backend = arguments.backend.hal(),
+          .options = config_json(arguments, loaded, backend, bench).dump(),
           .bundle = loaded.bundle,
           .files = loaded.files,
           .realtime = controller.refused().empty(),
@@ -243,13 +134,13 @@ runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedContr
 
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
-             runtime::Comms& comms, runtime::Recorder& recorder, const Stage& stage, Console& console,
+             runtime::Comms& comms, runtime::Recorder& recorder, hal::Window* window, Console& console,
              const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
     controller.start([&] { comms.step(kCommsWait_ms); }, [&] { recorder.drain(); });
     spdlog::info("mode: passive");
-    supervise(controller, signals, arguments, stage, console, bench_over);
+    supervise(controller, signals, arguments, window, console, bench_over);
     failure = controller.failure();
     spdlog::info("{}: damping, then closing", failure.empty() ? "asked to end" : "can't run on");
     if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
@@ -274,72 +165,69 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
   std::cout << json.dump(2) << '\n';
 }
 
-int run_controller(Arguments& arguments) {
-  if (arguments.hal != "sil") {
-    throw std::invalid_argument(fmt::format("--hal {}: this build has no {} backend; expected sil, the one that it has",
-                                            arguments.hal, arguments.hal == "can" ? "CAN" : "EtherCAT"));
-  }
-  if (!arguments.bench.empty()) {
-    if (arguments.control.policy.empty()) arguments.control.policy = "none";
-    if (arguments.control.policy != "none") {
-      throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
-    }
-    arguments.gantry = true;
-  }
-  control::LoadedControl loaded = control::load_control(arguments.control);
-  arguments.control.policy = loaded.policy_name;
-  sil::expect_shared_host(loaded.options);
-  std::optional<apps::BenchSession> bench;
-  std::optional<runtime::ExcitationRecorder> excited;
-  if (!arguments.bench.empty()) {
-    bench.emplace(loaded.robot, arguments.bench, arguments.excitation, arguments.bench_out, loaded.options.dt_s);
-    excited.emplace(bench->recorder());
-    loaded.options.excitation = bench->plan();
-  }
-  if (arguments.name.empty()) arguments.name = loaded.robot.name;
+/// Fills in the arguments that follow from others.
+void complete(Arguments& arguments, const model::RobotModel& robot) {
+  if (arguments.name.empty()) arguments.name = robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
   arguments.threads.realtime = !arguments.no_realtime;
+}
+
+int run_controller(Arguments& arguments) {
+  const hal::BackendKind& kind = arguments.backend.kind();
+  const hal::OptionValues backend_options = arguments.backend.values();
+  if (arguments.benching()) runtime::expect_no_policy(arguments.control);
+  control::LoadedControl loaded = control::load_control(arguments.control);
+  arguments.control.policy = loaded.policy_name;
+  complete(arguments, loaded.robot);
+  const io::WallClock clock;
+  const std::unique_ptr<hal::Backend> backend = kind.make({.robot = loaded.robot,
+                                                           .clock = clock,
+                                                           .name = arguments.name,
+                                                           .lcm_url = arguments.lcm_url,
+                                                           .benched_joint = arguments.bench,
+                                                           .keeps_truth = !arguments.no_log,
+                                                           .options = backend_options});
+  control::take_limits(backend->limits(), loaded.options);
+  std::optional<runtime::BenchSession> bench;
+  std::optional<runtime::ExcitationRecorder> excited;
+  if (arguments.benching()) {
+    bench.emplace(loaded.robot, arguments.bench, arguments.excitation, arguments.bench_out, loaded.options);
+    excited.emplace(bench->recorder());
+    loaded.options.excitation = bench->plan();
+  }
+  const runtime::BenchSession* session = bench ? &*bench : nullptr;
   if (arguments.print_config) {
-    std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
+    std::cout << config_json(arguments, loaded, *backend, session).dump(2) << '\n';
     return kOk;
   }
 
   const EndSignals signals;
-  const io::WallClock clock;
   io::LcmLink link(arguments.lcm_url);
-  sim::WorldOptions world_options = sil::world_with_noise(arguments.seed, true);
-  world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
-  world_options.benched_joint = arguments.bench;
-  sim::World world(loaded.robot, world_options);
-  sil::SimulatedRobot robot(world, arguments.gantry ? sil::HoistedBy::kGantry : sil::HoistedBy::kCrane,
-                            !arguments.no_log);
-  std::optional<apps::DrivingWindow> window;
-  if (arguments.viewer) window.emplace(world.mj_model(), arguments.name, arguments.lcm_url);
+  hal::Hal& drives = backend->connect([&signals] { return signals.wait_ms(0); });
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);
-  runtime::Controller controller(loaded.robot, robot, *tick, arguments.threads);
-  const runtime::RunInfo info = run_info(arguments, loaded, controller, bench ? &*bench : nullptr);
+  runtime::Controller controller(loaded.robot, drives, *tick, arguments.threads);
+  const runtime::RunInfo info = run_info(arguments, loaded, *backend, controller, session);
   announce(arguments, info, loaded.variant);
 
   const double rate_Hz = 1.0 / loaded.options.dt_s;
   const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };
   runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock);
   comms.on_warning = warn;
-  comms.work(robot.hoist_line());
+  comms.work(backend->hoist());
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
   std::atomic<bool> bench_over{false};
   recorder.after_record = [&](const control::TickRecord& record) {
-    const sil::TruthSample* truth = robot.take_truth(record.state.bus_sample);
+    const hal::TruthSample* truth = backend->take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
     if (!excited) return;
     excited->add(record);
     if (excited->progress().over) bench_over = true;
   };
   Console console(loaded.robot, arguments.name);
-  const ExitCode code =
-      run(arguments, signals, controller, comms, recorder, {robot, window ? &*window : nullptr}, console, bench_over);
+  const ExitCode code = run(arguments, signals, controller, comms, recorder, backend->window(), console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;
@@ -351,7 +239,7 @@ int run_controller(Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("The controller on its own host: real-time threads, operators over LCM.", "pmg_controller");
   Arguments arguments;
-  declare(app, arguments);
+  arguments.declare(app);
   const auto body = [&]() -> int {
     spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bench_session.hpp"
 #include "io/log_series.hpp"
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
@@ -15,6 +14,7 @@
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
+#include "runtime/bench_session.hpp"
 
 namespace {
 
@@ -133,7 +133,7 @@ logs::PlayedExcitation played_excitation(const model::RobotModel& robot, const s
         "this run excited {} by {}, which isn't here; expected its place now in --excitation", joint, folder.string()));
   }
   const bench::Excitation excitation = bench::read_excitation(folder);
-  return {apps::excitation_plan(robot, joint, excitation), bench::excitation_sha256(folder, excitation)};
+  return {runtime::excitation_plan(robot, joint, excitation), bench::excitation_sha256(folder, excitation)};
 }
 
 logs::ReplayReport replay_with_progress(const Arguments& arguments) {

@@ -12,13 +12,15 @@ find_package(Ceres REQUIRED)
 find_package(Boost REQUIRED) # headers: wait-free queues between threads
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(spdlog REQUIRED)
-find_package(glfw3 REQUIRED)
 find_package(console_bridge REQUIRED) # urdfdom's log: what it says of a file is heard there
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
-pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
-pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)
-find_path(PAGMO_INCLUDE_DIR pagmo/pagmo.hpp REQUIRED)
-find_library(PAGMO_LIBRARY pagmo REQUIRED)
+if(PMG_SIL) # for simulation and calibration
+  find_package(glfw3 REQUIRED)
+  pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+  pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)
+  find_path(PAGMO_INCLUDE_DIR pagmo/pagmo.hpp REQUIRED)
+  find_library(PAGMO_LIBRARY pagmo REQUIRED)
+endif()
 if(PMG_BUILD_TESTS)
   find_package(GTest REQUIRED)
   find_package(benchmark REQUIRED)
@@ -38,9 +40,11 @@ target_include_directories(pmg_lcm SYSTEM INTERFACE ${LCM_INCLUDE_DIR})
 target_link_libraries(pmg_lcm INTERFACE ${LCM_LIBRARY})
 
 # pagmo's package file asks for libraries that CMA-ES doesn't need; one source file of the calibration includes it.
-add_library(pmg_pagmo INTERFACE)
-target_include_directories(pmg_pagmo SYSTEM INTERFACE ${PAGMO_INCLUDE_DIR})
-target_link_libraries(pmg_pagmo INTERFACE ${PAGMO_LIBRARY} boost_serialization Threads::Threads)
+if(PMG_SIL)
+  add_library(pmg_pagmo INTERFACE)
+  target_include_directories(pmg_pagmo SYSTEM INTERFACE ${PAGMO_INCLUDE_DIR})
+  target_link_libraries(pmg_pagmo INTERFACE ${PAGMO_LIBRARY} boost_serialization Threads::Threads)
+endif()
 
 # KDL's package file defines no target.
 add_library(pmg_kdl INTERFACE)
@@ -55,11 +59,13 @@ if(NOT fetched EQUAL 0)
   message(FATAL_ERROR "third_party/fetch failed; see its message above")
 endif()
 
-add_library(pmg_mujoco SHARED IMPORTED GLOBAL)
-set_target_properties(pmg_mujoco PROPERTIES
-  IMPORTED_LOCATION ${PMG_THIRD_PARTY}/mujoco/lib/libmujoco.so.2.2.2
-  IMPORTED_SONAME libmujoco.so.2.2.2)
-target_include_directories(pmg_mujoco SYSTEM INTERFACE ${PMG_THIRD_PARTY}/mujoco/include)
+if(PMG_SIL)
+  add_library(pmg_mujoco SHARED IMPORTED GLOBAL)
+  set_target_properties(pmg_mujoco PROPERTIES
+    IMPORTED_LOCATION ${PMG_THIRD_PARTY}/mujoco/lib/libmujoco.so.2.2.2
+    IMPORTED_SONAME libmujoco.so.2.2.2)
+  target_include_directories(pmg_mujoco SYSTEM INTERFACE ${PMG_THIRD_PARTY}/mujoco/include)
+endif()
 
 add_library(pmg_onnxruntime SHARED IMPORTED GLOBAL)
 set_target_properties(pmg_onnxruntime PROPERTIES

@@ -42,11 +42,11 @@ function(pmg_add_room name)
   target_link_libraries(pmg_room_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
 endfunction()
 
-# pmg_add_app(NAME LINK targets...): the executable bin/NAME from apps/NAME.cpp. The target `programs` builds all of these.
+# pmg_add_app(NAME SOURCES... LINK targets...): the executable bin/NAME from apps/NAME.cpp and these. The target `programs` builds all of these.
 add_custom_target(programs)
 function(pmg_add_app name)
-  cmake_parse_arguments(APP "" "" "LINK" ${ARGN})
-  add_executable(${name} ${name}.cpp)
+  cmake_parse_arguments(APP "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${name}.cpp ${APP_SOURCES})
   target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
   add_dependencies(programs ${name})
 endfunction()

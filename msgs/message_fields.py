@@ -11,6 +11,7 @@ Two conventions in the files' comments, which change no message's type hash:
 
 Exit codes: 0 done, 2 a file that can't be used.
 """
+
 import re
 import sys
 from dataclasses import dataclass
@@ -117,26 +118,39 @@ def field(struct: Struct, member: Member) -> str:
     names = member.elements()
     elements = f"{struct.package}::element_names::{struct.name}_{member.name}" if names else "{}"
     flag = "true" if member.is_length else "false"
-    return (f"    Field<{struct.package}::{struct.name}, decltype({struct.package}::{struct.name}::{member.name})>{{"
-            f"{quoted(member.name)}, {quoted(member.type)}, {quoted(member.length)}, {flag}, {elements}, {quoted(member.comment)}, "
-            f"&{struct.package}::{struct.name}::{member.name}}}")
+    return (
+        f"    Field<{struct.package}::{struct.name}, decltype({struct.package}::{struct.name}::{member.name})>{{"
+        f"{quoted(member.name)}, {quoted(member.type)}, {quoted(member.length)}, {flag}, {elements}, {quoted(member.comment)}, "
+        f"&{struct.package}::{struct.name}::{member.name}}}"
+    )
 
 
 def header(structs: list[Struct]) -> str:
     """The text of the C++ header."""
-    lines = ["// Made by msgs/message_fields.py from the .lcm files.", "#pragma once", "#include <array>", "#include <tuple>", "",
-             '#include "pmg_msgs/field.hpp"']
+    lines = [
+        "// Made by msgs/message_fields.py from the .lcm files.",
+        "#pragma once",
+        "#include <array>",
+        "#include <tuple>",
+        "",
+        '#include "pmg_msgs/field.hpp"',
+    ]
     lines += [f'#include "{struct.package}/{struct.name}.hpp"' for struct in structs]
     lines.append("")
     for struct in structs:
         for member in struct.members:
             if names := member.elements():
-                lines.append(f"namespace {struct.package}::element_names {{ inline constexpr std::array<std::string_view, {len(names)}> "
-                             f"{struct.name}_{member.name} = {{{', '.join(map(quoted, names))}}}; }}")
+                lines.append(
+                    f"namespace {struct.package}::element_names {{ inline constexpr std::array<std::string_view, {len(names)}> "
+                    f"{struct.name}_{member.name} = {{{', '.join(map(quoted, names))}}}; }}"
+                )
     lines += ["", "namespace pmg_msgs {"]
     for struct in structs:
-        lines += ["template <>", f"inline constexpr auto kFields<{struct.package}::{struct.name}> = std::tuple{{",
-                  ",\n".join(field(struct, member) for member in struct.members) + "};"]
+        lines += [
+            "template <>",
+            f"inline constexpr auto kFields<{struct.package}::{struct.name}> = std::tuple{{",
+            ",\n".join(field(struct, member) for member in struct.members) + "};",
+        ]
         if struct.channel:
             lines += ["template <>", f"inline constexpr std::string_view kChannel<{struct.package}::{struct.name}> = {quoted(struct.channel)};"]
     lines += ["", "}  // namespace pmg_msgs", ""]

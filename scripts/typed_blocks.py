@@ -1,4 +1,5 @@
 """Reads from a Markdown page what its reader is meant to type (the conventions: docs/reference/pages.md)."""
+
 import re
 import textwrap
 from dataclasses import dataclass, field
@@ -15,7 +16,7 @@ class PageError(Exception):
 @dataclass
 class Command:
     line: int
-    text: str          # as bash takes it, without the comment
+    text: str  # as bash takes it, without the comment
     comment: str = ""  # behind it
     marks: list = field(default_factory=list)  # of the whole block, then of this line
 
@@ -100,7 +101,7 @@ def split_comment(line, place):
         elif char in "'\"":
             quote = char
         elif char == "#" and before.isspace():
-            return line[:at].strip(), line[at + 1:].strip()
+            return line[:at].strip(), line[at + 1 :].strip()
         before = char
     if quote:
         raise PageError(f"{place}: a quotation that doesn't end")
@@ -118,4 +119,4 @@ def read_marks(comment, place):
     for mark in marks:
         if not re.match(r"builds$|needs (a|an) \w|takes \w|a terminal each$", mark):
             raise PageError(f"{place}: the mark ({mark}); expected (builds), (needs a ...), (takes ...) or (a terminal each)")
-    return marks, comment[bracket.end():]
+    return marks, comment[bracket.end() :]

@@ -30,7 +30,7 @@ std::optional<double> known_number(ConfigReader& reader, const std::string& key)
 void take(Bench& bench, ConfigReader& drive, const std::string& key, const std::string& parameter) {
   const std::optional<double> value = known_number(drive, key);
   if (value)
-    sim::actuator_parameter(parameter).in(bench.known) = *value;
+    model::actuator_parameter(parameter).in(bench.known) = *value;
   else
     bench.unknown.push_back(parameter);
 }

@@ -10,7 +10,7 @@
 #include "bench/csv_table.hpp"
 #include "bench/recording.hpp"
 #include "bench/row_filter.hpp"
-#include "sim/actuator_parameters.hpp"
+#include "model/actuator_parameters.hpp"
 
 namespace pmg::bench {
 
@@ -48,7 +48,7 @@ struct Bench {
   double sample_rate_hz = 100.0;
   bool linear_hold = false;  ///< commands run straight between samples instead of being held
   /// What bench.yaml knows of drive and rotor; the rest neutral.
-  sim::ActuatorParameters known;
+  model::ActuatorParameters known;
   /// Names of known's parameters that bench.yaml leaves "unknown".
   std::vector<std::string> unknown;
   double kp_of_law = 1.0, kd_of_law = 0.0;  ///< of the cascade, where gains aren't a run's

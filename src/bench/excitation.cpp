@@ -165,6 +165,21 @@ const ExcitationTrajectory& Excitation::trajectory(const std::string& name) cons
   return *found;
 }
 
+ExcitationLimits excitation_limits(const model::Joint& joint, const ExcitationLimits& rate_and_seconds) {
+  const double nearer_rad = std::min(joint.stand_rad - joint.lower_rad, joint.upper_rad - joint.stand_rad);
+  const double reach_rad = std::min(0.5, 0.5 * nearer_rad);
+  ExcitationLimits limits = rate_and_seconds;
+  limits.lower_rad = joint.stand_rad - reach_rad;
+  limits.upper_rad = joint.stand_rad + reach_rad;
+  limits.speed_rad_s = joint.velocity_limit_rad_s / 3.0;
+  return limits;
+}
+
+std::vector<ExcitationGains> excitation_gains(const model::Joint& joint) {
+  const double kp = joint.kp_Nm_per_rad, kd = joint.kd_Nm_s_per_rad;
+  return {{kp, kd}, {0.5 * kp, kd}, {0.5 * kp, 0.5 * kd}};
+}
+
 Excitation make_excitation(const ExcitationLimits& limits, const std::vector<ExcitationGains>& gains, int repeats,
                            unsigned seed) {
   check(limits, gains, repeats);

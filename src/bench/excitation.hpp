@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "model/robot_model.hpp"
+
 namespace pmg::bench {
 
 struct ExcitationLimits {
@@ -18,6 +20,13 @@ struct ExcitationLimits {
 struct ExcitationGains {
   double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;
 };
+
+/// For one joint of a hanging robot: half of the way from the standing posture to the nearer end of the range, and no
+/// more than half a radian (the others hold still, and a limb that swings far meets them); a third of the joint's
+/// speed.
+ExcitationLimits excitation_limits(const model::Joint& joint, const ExcitationLimits& rate_and_seconds = {});
+/// The joint's own, half its kp, half of both: two kd tell Kd from damping.
+std::vector<ExcitationGains> excitation_gains(const model::Joint& joint);
 
 /// One command over time; begins and ends at rest at one angle, the same for all of an excitation.
 struct ExcitationTrajectory {

@@ -1,4 +1,4 @@
-// Who drives: one source at a time, for as long as its lease lasts, its command's age counted by the receiver's clock.
+// Decides who drives: one source at a time, while its lease lasts. The receiver's clock counts the age of its command.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace pmg::control {
 
-/// Operators' messages since the start, commands and requests alike, by what became of them. All but accepted are
-/// ignored.
+/// Counts of operators' messages since the start, commands and requests alike, by verdict. All but the accepted ones
+/// were ignored.
 struct IgnoredCommands {
   std::int64_t accepted = 0;
   std::int64_t other_source = 0;
@@ -31,25 +31,26 @@ class CommandIntake {
     kNoLease,  ///< lease not positive
   };
 
-  /// What becomes of a request.
+  /// The answer to a request.
   struct Judgement {
     Verdict verdict = Verdict::kTaken;
-    /// To be carried out; false for the repetition of a request that was, which is only acknowledged again. A stop that
-    /// isn't fresh (repeated, overtaken, late) is taken all the same: as a stop, not as a second wish for limp drives.
+    /// To be carried out. False for the repetition of a request that was carried out: it is only acknowledged again. A
+    /// stop that isn't fresh (repeated, overtaken, late) still stops, but doesn't ask for limp drives a second time.
     bool fresh = false;
   };
 
-  /// Longest lease that is granted: a crashed operator station blocks the others for no longer.
+  /// Longest lease that is granted. A crashed operator station blocks the others for no longer.
   static constexpr double kLongestLease_s = 2.0;
 
+  /// (command message, time) => (verdict). An accepted one becomes command().
   DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
 
-  /// Stopping is for everyone at any time; climbing and resetting for the driving source, or for anyone when none
-  /// drives.
+  /// (mode request, time) => (verdict). Anyone may stop at any time. Only the driving source may climb or reset; anyone
+  /// may when none drives.
   Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
 
-  /// Everybody was told to stop: climbs and resets that were received until now are overtaken by it, wherever they
-  /// still wait.
+  /// The stop line was pulled. The stop overtakes climbs and resets that were received until now, wherever they still
+  /// wait.
   void stop(std::int64_t now_ns) noexcept { stopped_ns_ = std::max(stopped_ns_, now_ns); }
 
   const IgnoredCommands& ignored() const noexcept { return ignored_; }

@@ -14,6 +14,8 @@ class ControlCycle {
  public:
   static constexpr std::int64_t kPeriod_ns = 10'000'000;
   static constexpr double kPeriod_s = static_cast<double>(kPeriod_ns) * 1e-9;
+  static constexpr int kBusCycles = static_cast<int>(kPeriod_ns / hal::BusCycle::kPeriod_ns);  ///< during one tick
+  static_assert(kBusCycles * hal::BusCycle::kPeriod_ns == kPeriod_ns);
 
   /// Keeps references to all of them.
   ControlCycle(Tick& tick, hal::BusLink& link, OperatorInbox& inbox, const io::Clock& clock);

@@ -85,6 +85,9 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/gco/prior_weight", tick.gco.prior_weight);
   visit("/gco/optimise_roll_pitch", tick.gco.optimise_roll_pitch);
   visit("/limiter/target_rate_factor", tick.limiter.target_rate_factor);
+  visit("/guard/hold_cycles", tick.guard.hold_cycles);
+  visit("/guard/max_kp_Nm_per_rad", tick.guard.max_kp_Nm_per_rad);
+  visit("/guard/max_kd_Nm_s_per_rad", tick.guard.max_kd_Nm_s_per_rad);
   visit("/entry/speed_rad_s", tick.entry.speed_rad_s);
   visit("/entry/shortest_s", tick.entry.shortest_s);
   visit("/entry/longest_s", tick.entry.longest_s);
@@ -148,6 +151,13 @@ LoadedControl load_control(const ControlSetup& setup) {
   loaded.bundle = std::move(bundle.sha256);
   loaded.files = std::move(bundle.files);
   return loaded;
+}
+
+void take_limits(const hal::BackendLimits& limits, TickOptions& options) {
+  options.guard = limits.guard;
+  FaultLimits& faults = options.supervisor.fault_limits;
+  faults.stale_state_s = limits.stale_state_s.value_or(faults.stale_state_s);
+  faults.overrun_ticks = limits.overrun_ticks.value_or(faults.overrun_ticks);
 }
 
 std::string told_bundle(const ControlSetup& setup) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "control/tick.hpp"
+#include "hal/backend.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
@@ -36,6 +37,9 @@ struct LoadedControl {
 
 /// Throws model::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);
+
+/// (limits of a backend, options) => the options of a tick whose commands go to that backend.
+void take_limits(const hal::BackendLimits& limits, TickOptions& options);
 
 /// For --version: the bundle that such a setup runs on, and what it is of. Throws as load_control does.
 std::string told_bundle(const ControlSetup& setup);

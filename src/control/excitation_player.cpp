@@ -6,8 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hal/command_guard.hpp"
-
 namespace pmg::control {
 
 namespace {
@@ -16,14 +14,13 @@ constexpr double kShortestApproach_s = 0.2;
 
 }  // namespace
 
-void check(const ExcitationPlan& plan, const model::RobotModel& robot) {
+void check(const ExcitationPlan& plan, const model::RobotModel& robot, const hal::GuardOptions& guard) {
   const auto expect = [](bool holds, const std::string& text) {
     if (!holds) throw std::invalid_argument("excitation: " + text);
   };
   expect(plan.joint >= 0 && plan.joint < robot.joint_index.size(), "no such joint");
   expect(!plan.runs.empty(), "no run; expected at least one");
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(plan.joint)];
-  const hal::GuardOptions guard;
   for (const ExcitationRun& run : plan.runs) {
     expect(!run.q_cmd_rad.empty(), "a run without commands");
     const auto [low, high] = std::minmax_element(run.q_cmd_rad.begin(), run.q_cmd_rad.end());
@@ -38,9 +35,9 @@ void check(const ExcitationPlan& plan, const model::RobotModel& robot) {
 }
 
 ExcitationPlayer::ExcitationPlayer(const ExcitationPlan& plan, const model::RobotModel& robot, const Told& rest,
-                                   double dt_s)
+                                   double dt_s, const hal::GuardOptions& guard)
     : plan_(plan), rest_(rest), told_(rest), dt_s_(dt_s) {
-  check(plan, robot);
+  check(plan, robot, guard);
   approach(0);
 }
 

@@ -1,9 +1,10 @@
-// One joint of a standing (hung up) robot is told what its bench wants, run after run, while the others hold: a
-// recording of single-joint response (paper III-C.1) by the very loop that walks.
+// Excites one joint of a hanging robot in mode Stand, run after run, while the other joints hold. The loop that walks
+// thus records a single-joint response (paper III-C.1).
 #pragma once
 
 #include <vector>
 
+#include "hal/command_guard.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::control {
@@ -20,15 +21,16 @@ struct ExcitationPlan {
   double settle_s = 1.0;        ///< at rest before a run is recorded
 };
 
-/// What a tick's command belongs to.
+/// The run and the sample that a tick's command belongs to.
 struct ExcitationProgress {
   int run = -1, sample = -1;  ///< -1: on the way between runs
   bool over = false;          ///< all runs were played, or the play was given up
-  bool given_up = false;      ///< the robot left Stand: it isn't taken up again
+  bool given_up = false;      ///< the robot left Stand; the player doesn't resume
 };
 
-/// Throws std::invalid_argument when a command leaves the joint's range, a gain is implausible, or there is no run.
-void check(const ExcitationPlan& plan, const model::RobotModel& robot);
+/// Throws std::invalid_argument when a command leaves the joint's range, a gain exceeds what the bus guard lets pass,
+/// or there is no run.
+void check(const ExcitationPlan& plan, const model::RobotModel& robot, const hal::GuardOptions& guard = {});
 
 class ExcitationPlayer {
  public:
@@ -37,14 +39,15 @@ class ExcitationPlayer {
   };
 
   /// rest: where the joint stands before and after, and with what gains. Throws as check().
-  ExcitationPlayer(const ExcitationPlan& plan, const model::RobotModel& robot, const Told& rest, double dt_s);
+  ExcitationPlayer(const ExcitationPlan& plan, const model::RobotModel& robot, const Told& rest, double dt_s,
+                   const hal::GuardOptions& guard = {});
 
   int joint() const noexcept { return plan_.joint; }
-  const Told& step() noexcept;  ///< one tick on; at rest when it is over
-  void give_up() noexcept;      ///< unless nothing has begun or all is over
+  const Told& step() noexcept;  ///< the command of the next tick; the rest posture when all is over
+  void give_up() noexcept;      ///< ends the play; no effect before its first step and after its end
   const ExcitationProgress& progress() const noexcept { return progress_; }
 
-  double duration_s() const;  ///< of everything, from the first step on
+  double duration_s() const;  ///< from the first step to the end
 
  private:
   enum class Phase { kApproach, kSettle, kPlay, kReturn, kOver };

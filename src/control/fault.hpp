@@ -1,4 +1,4 @@
-// Faults: what ends motion until the operator resets it, and how they are told. Limiting is not a fault (limiter.hpp).
+// Faults end motion until the operator resets them. Limiting is not a fault (limiter.hpp).
 // Reactions: docs/reference/safety.md.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace pmg::control {
 
-/// Of several in one tick the first one in this order is the cause.
+/// When one tick finds several faults, the first one in this order is the cause.
 enum class FaultCode : std::uint8_t {
   kNone = 0,
   kBusLost,
@@ -48,7 +48,7 @@ inline bool same_incident(const Fault& a, const Fault& b) noexcept {
 
 const char* to_string(FaultCode code) noexcept;
 const char* unit(FaultCode code) noexcept;    ///< of value and limit; empty when there are none
-const char* advice(FaultCode code) noexcept;  ///< one sentence for the operator: what to look at before the reset
+const char* advice(FaultCode code) noexcept;  ///< one sentence: the operator's check before the reset
 
 /// One line for people: "joint_limit: left_knee is at 2.612 rad, 0.112 rad beyond its range". Not for a real-time
 /// thread.

@@ -1,4 +1,4 @@
-// What is wrong at the start of a tick.
+// Finds faults at the start of a tick, before anything is computed.
 #pragma once
 
 #include <array>
@@ -24,11 +24,12 @@ struct FaultLimits {
   double torso_error_rad = 0.6;          ///< of the torso from its commanded pitch and roll
   int persist_ticks = 3;  ///< limit, velocity, torque and tilt must hold so long: one glitch of a sensor is no fault
   int overrun_ticks = 3;  ///< ticks that end late, or whose policy does, must follow each other so long
-  /// A host that stops both threads for a while may run the control thread first: it finds an old state once.
+  /// Ticks in a row with a stale state before it is a fault. A host that stops both threads for a while may run the
+  /// control thread first: that thread then finds an old state once.
   int stale_state_ticks = 2;
 };
 
-/// What a tick can know of faults before it computes anything.
+/// The inputs from which a tick judges faults before it computes anything.
 struct FaultEvidence {
   const model::RobotState& state;
   hal::BusStatus bus = hal::BusStatus::kOk;
@@ -37,7 +38,7 @@ struct FaultEvidence {
   bool policy_late = false;                           ///< because of its policy alone
   std::int64_t now_ns = 0;
   std::optional<RollPitchAim> torso =
-      std::nullopt;  ///< where the torso is to be; nothing while it need not be anywhere
+      std::nullopt;  ///< the commanded attitude of the torso; nullopt while none is commanded
 };
 
 class FaultDetector {
@@ -49,10 +50,10 @@ class FaultDetector {
 
   FaultDetector(const model::RobotModel& robot, const FaultLimits& limits);
 
-  /// One call a tick. The first fault in the order of FaultCode.
+  /// (evidence, scope) => (first fault in the order of FaultCode). Call it once a tick.
   std::optional<Fault> detect(const FaultEvidence& evidence, Scope scope) noexcept;
 
-  /// Forgets what has begun to persist.
+  /// Sets every count of ticks in a row back to zero.
   void reset() noexcept { held_ticks_.fill(0); }
 
  private:
@@ -64,7 +65,7 @@ class FaultDetector {
   Fault check_joints(FaultCode code, const model::RobotState& state) const noexcept;
   Fault check_tilt(const model::RobotState& state) const noexcept;
   Fault check_torso(const FaultEvidence& evidence) noexcept;
-  /// The fault if it was found, or found in so many ticks in a row.
+  /// The fault, if it was found in so many ticks in a row.
   Fault persisting(FaultCode code, const Fault& found, int ticks) noexcept;
 
   FaultLimits limits_;

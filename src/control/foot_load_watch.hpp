@@ -1,5 +1,5 @@
-// Whether the feet carry the robot or it hangs, from what a robot can measure: the torques of its legs, and
-// whether anything holds it against gravity.
+// Judges whether the feet carry the robot or the robot hangs. Inputs are the torques of its legs and the specific force
+// at its IMU.
 #pragma once
 
 #include "model/chain_kinematics.hpp"
@@ -10,26 +10,26 @@
 
 namespace pmg::control {
 
-/// Shares are of the robot's weight, of both feet together: a swinging leg's inertia loads one foot and unloads the
-/// other, and the sum knows less of it.
+/// A share is the sum of both feet's loads over the robot's weight. The inertia of a swinging leg loads one foot and
+/// unloads the other; their sum shows less of this disturbance.
 struct FootLoadOptions {
-  /// The estimate below which the feet carry nothing: a tenth of the weight, and what the inertia of legs that are
-  /// thrown about adds to it. With 0.10 Z1 that is lifted in mid-walk hangs after 0.42 s at the latest (20 robots),
-  /// with 0.25 after 0.21 s; pushes that throw it into the air come no nearer to it.
+  /// Below this share the feet carry nothing: a tenth of the weight, plus a margin for the inertia of moving legs.
+  /// Measured on 20 simulated robots that are lifted in mid-walk: with 0.10 the watch detects hanging after 0.42 s at
+  /// the latest, with 0.25 after 0.21 s. Pushes that throw Z1 into the air come no nearer to the limit.
   double lost_share = 0.25;
-  double lost_s = 0.10;       ///< for so long: the robot hangs
-  double found_share = 0.40;  ///< they carry more than this
-  double found_s = 0.05;      ///< for so long: it stands again
-  /// Specific force upwards of the IMU, of g, above which something holds the robot: below, it flies. Of pushes of
-  /// 50 N s that Z1 survives some throw it into the air for 0.15 s.
+  double lost_s = 0.10;       ///< below lost_share for so long: the robot hangs
+  double found_share = 0.40;  ///< above this share the feet carry the robot
+  double found_s = 0.05;      ///< above found_share for so long: the robot stands again
+  /// Upward specific force at the IMU, in g. Above it something holds the robot; below it the robot flies. Some pushes
+  /// of 50 N s that Z1 survives throw it into the air for 0.15 s.
   double held_share = 0.5;
   double filter_s = 0.02;  ///< time constant of the low-pass filter of the loads and of the specific force
-  /// A posture in which dry friction may falsify a foot's load by more than this tells nothing: a straight knee bears
-  /// weight without torque.
+  /// A posture is not judged when dry friction may falsify a foot's load by more than this share. Example: a straight
+  /// knee bears weight without torque.
   double blind_share = 0.25;
 };
 
-/// What the loads of the feet say.
+/// The verdict on the feet's loads.
 enum class Footing { kUnknown, kStands, kHangs };
 
 class FootLoadWatch {
@@ -37,16 +37,17 @@ class FootLoadWatch {
   /// Keeps no reference. Throws std::invalid_argument unless lost_share < found_share and times are above 0.
   FootLoadWatch(const model::RobotModel& robot, const FootLoadOptions& options, double dt_s);
 
-  /// Nothing is known until the feet were seen to carry the robot, or to carry nothing.
+  /// Begins anew: the footing is unknown until the loads pass one of the two limits.
   void start() noexcept;
 
-  /// One tick: what the state shows of the loads while this command was in force. A state that isn't finite and whole,
-  /// and a posture that tells nothing, change nothing. No heap.
+  /// (state, command in force) => (footing, shares), once a tick. A state that isn't finite and whole changes nothing,
+  /// nor does a posture that can't be judged. No heap.
   void update(const model::RobotState& state, const model::JointCommand& in_force) noexcept;
 
   Footing footing() const noexcept { return footing_; }
-  /// Filtered; of what the measured torques mean and what the torques mean that the command asks for, the pair with the
-  /// larger sum: torque readings that vanish must not take the ground from under a robot that stands.
+  /// Filtered load of each foot over the robot's weight. There are two estimates, from measured torques and from the
+  /// torques that the command asks for; this is the pair with the larger sum. So a robot that stands still counts as
+  /// standing when its torque readings vanish.
   const PerFoot<double>& share() const noexcept;
 
  private:

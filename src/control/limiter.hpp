@@ -1,4 +1,4 @@
-// The last stage before the drives: joint targets that the robot may be given. Limiting is not a fault; it is counted.
+// The last stage of a tick: limits the joint targets. Limiting is not a fault; it is counted.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct LimiterOptions {
   double target_rate_factor = 3.0;
 };
 
-/// How many joints were limited in a tick, and why.
+/// Number of joints that were limited in a tick, by reason.
 struct LimitReport {
   int position = 0;  ///< target outside the joint's range
   int rate = 0;      ///< target moved too fast
@@ -28,7 +28,7 @@ struct LimitReport {
 
 class Limiter {
  public:
-  /// kp, kd: what the drives are given [Nm/rad], [Nm s/rad].
+  /// kp, kd: the gains that the drives get [Nm/rad], [Nm s/rad].
   Limiter(const model::RobotModel& robot, const JointVector& kp, const JointVector& kd, double dt_s,
           const LimiterOptions& options);
 
@@ -36,11 +36,14 @@ class Limiter {
     kp_[joint] = kp_Nm_per_rad;
     kd_[joint] = kd_Nm_s_per_rad;
   }
-  void start_from(const JointVector& q) noexcept;  ///< the posture that targets move away from [rad]
+  void start_from(const JointVector& q) noexcept;  ///< the last tick's targets [rad]
 
-  /// Limits q_des in place: first its rate, then the torque that it asks for at this state, last its range, which
-  /// always holds. Between two of them that can't both hold (joint beyond its range, braking harder than the drive can)
-  /// range wins and the drive's own effort limit remains.
+  /// (state, q_des) => (limited q_des, report), in place and in this order:
+  /// rate:   |q_des - q_des of the last tick| <= target_rate_factor velocity_limit dt,
+  /// torque: |kp (q_des - q) - kd dq| <= effort_limit,
+  /// range:  lower <= q_des <= upper.
+  /// The range always holds. When torque and range contradict each other (the joint is beyond its range and the drive
+  /// can't brake that hard), the range wins and the drive's own effort limit remains.
   LimitReport apply(const model::RobotState& state, JointVector& q_des) noexcept;
 
  private:

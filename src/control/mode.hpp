@@ -23,6 +23,9 @@ constexpr const char* to_string(Mode mode) {
   return names[static_cast<std::size_t>(mode)];
 }
 
+/// The drives hold positions: Stand and Walk.
+constexpr bool upright(Mode mode) { return mode == Mode::kStand || mode == Mode::kWalk; }
+
 /// Who sends: a name and a number that differs at every start of that sender.
 struct Source {
   std::array<char, 24> name{};  ///< zero-terminated

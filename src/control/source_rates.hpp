@@ -1,4 +1,4 @@
-// How many messages one source of operators' messages is listened to: a flood of one takes no room from the others.
+// Limits the rate of each source of operators' messages, so that a flood from one takes no room from the others.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@ namespace pmg::control {
 /// Which messages share one allowance.
 enum class MessageKind : std::uint8_t { kCommand, kRequest, kStop };
 
-/// Sources by name, whatever their session: a flood that invents sessions stays one source. For one thread; no heap.
+/// Counts by name, not by session: a flood that invents sessions stays one source. For one thread; no heap.
 class SourceRates {
  public:
   static constexpr std::size_t kSources = 8;
-  /// A source that was silent so long makes room for another one.
+  /// A source that was silent for so long loses its place to another one.
   static constexpr std::int64_t kSilent_ns = 500'000'000;
 
-  /// Takes one message into account. False: this source has sent more than it may, or there are too many sources. Stops
-  /// of sources without a place share one allowance.
+  /// Takes one message into account. False: this source has sent too many, or there are too many sources. Sources
+  /// without a place share one allowance for stops.
   bool admit(const Source& source, MessageKind kind, std::int64_t now_ns) noexcept;
 
  private:

@@ -12,12 +12,12 @@ namespace pmg::control {
 struct SupervisorOptions {
   FaultLimits fault_limits;
   double stale_command_s = 0.2;  ///< an older driving command ends walking
-  double stop_within_s = 0.5;    ///< velocity is zero so long after, whatever the generator says
-  /// Ground-aware solutions held so many ticks in a row end walking: u' is then a second old.
+  double stop_within_s = 0.5;    ///< after this time velocity counts as zero, whatever the generator says
+  /// So many ticks in a row with a held ground-aware solution end walking: u' is then a second old.
   int gco_held_ticks = 100;
 };
 
-/// What a tick knows when modes are decided.
+/// The inputs from which a tick decides its mode.
 struct SupervisorInput {
   FaultEvidence evidence;
   double command_age_s = 0.0;
@@ -31,14 +31,14 @@ class Supervisor {
  public:
   Supervisor(const model::RobotModel& robot, const SupervisorOptions& options);
 
-  /// Remembers a request until update() has carried it out or refused it. A later request replaces it. A reset is
-  /// nothing but a reset: outside of Fault it changes no mode.
+  /// Remembers a request until update() has carried it out or refused it. A later request replaces it. Outside of Fault
+  /// a reset changes no mode.
   void request(const ModeRequest& request) noexcept;
 
-  /// Anyone's stop, whatever else this tick was asked for: Damping unless the mode is Passive or Fault.
+  /// A stop by anyone comes before every other request of this tick: Damping, unless the mode is Passive or Fault.
   void stop() noexcept { stop_wanted_ = true; }
 
-  /// Decides the mode of this tick: one step at most, upwards one mode at a time.
+  /// (requests, evidence) => (mode of this tick). It changes by one step at most, upwards one mode at a time.
   Mode update(const SupervisorInput& input) noexcept;
 
   /// Latches a fault found later in the tick than update().
@@ -46,7 +46,8 @@ class Supervisor {
 
   Mode mode() const noexcept { return mode_; }
   const Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
-  /// Of the user's command: everything while walking, posture only while coming to a stop, nothing otherwise.
+  /// (user's command) => (command for the generator): all channels in Walk, posture alone while the robot comes to a
+  /// stop, zero otherwise.
   Command admit(const Command& user) const noexcept;
 
  private:

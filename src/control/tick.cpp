@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "control/drive_gains.hpp"
+
 namespace pmg::control {
 
 namespace {
@@ -20,40 +22,10 @@ class Lap {
   std::int64_t start_ns_;
 };
 
-policy::DriveGains own_gains(const model::RobotModel& robot) {
-  const Eigen::Index n = robot.joint_index.size();
-  policy::DriveGains gains{JointVector(n), JointVector(n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    gains.kp_Nm_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kp_Nm_per_rad;
-    gains.kd_Nm_s_per_rad[i] = robot.joints[static_cast<std::size_t>(i)].kd_Nm_s_per_rad;
-  }
-  return gains;
-}
-
-/// The policy's gains, or robot.yaml's. The bus guard would clamp implausible ones in silence: they are refused here.
-policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::Policy& policy) {
-  const auto gains = policy.gains();
-  if (!gains) return own_gains(robot);
-  const auto plausible = [&](const JointVector& values, double largest) {
-    return values.size() == robot.joint_index.size() && (values.array() >= 0.0).all() &&
-           (values.array() <= largest).all();
-  };
-  const hal::GuardOptions guard;
-  if (!plausible(gains->kp_Nm_per_rad, guard.max_kp_Nm_per_rad) ||
-      !plausible(gains->kd_Nm_s_per_rad, guard.max_kd_Nm_s_per_rad)) {
-    throw std::invalid_argument("the policy's drive gains don't fit the robot; expected one of each for " +
-                                std::to_string(robot.joint_index.size()) +
-                                " joints, none negative, none above the bus guard's largest");
-  }
-  return *gains;
-}
-
 ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy::Policy& policy) {
   options.bound_rad = policy.action_bound_rad().value_or(options.bound_rad);
   return options;
 }
-
-bool drives(Mode mode) noexcept { return mode == Mode::kStand || mode == Mode::kWalk; }
 
 bool finite(const Command& command) noexcept {
   return std::ranges::all_of(command.u, [](double value) { return std::isfinite(value); });
@@ -77,7 +49,8 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     : stopwatch_(stopwatch),
       dt_s_(options.dt_s),
       policy_may_owe_ticks_(options.late_policy_ticks),
-      gains_(gains_in_force(robot, *policy)),
+      guard_(options.guard),
+      gains_(gains_in_force(robot, *policy, guard_)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
       motion_(robot, library, policy->variant(), options.generator, options.gco),
       policy_(std::move(policy)),
@@ -100,7 +73,8 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
   if (joint < 0 || joint >= target_.size()) throw std::invalid_argument("excitation: no such joint");
   excitation_.emplace(
       *options.excitation, robot,
-      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s);
+      ExcitationPlayer::Told{target_[joint], gains_.kp_Nm_per_rad[joint], gains_.kd_Nm_s_per_rad[joint]}, options.dt_s,
+      guard_);
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {
@@ -116,7 +90,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   const Mode mode = supervisor_.update(supervisor_input(input));
   result_.user = supervisor_.admit(intake_.command());
   if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
-  if (drives(mode)) {
+  if (upright(mode)) {
     Fault fault = drive(input.state);
     if (fault.code != FaultCode::kNone) {
       fault.stamp_ns = input.now_ns;
@@ -125,7 +99,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   }
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
-  if (!drives(result_.mode)) release(input.state);
+  if (!upright(result_.mode)) release(input.state);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
@@ -173,7 +147,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                         .gco_held_ticks = gco_held_ticks_,
                         .policy_waits = policy_waits()};
   // On its way from the posture in which it was found the torso may be anywhere.
-  if (drives(result_.mode) && entry_.done()) {
+  if (upright(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
     known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
   }
@@ -181,7 +155,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
 }
 
 void Tick::watch_feet(const model::RobotState& state) noexcept {
-  if (!feet_ || !drives(result_.mode)) return;
+  if (!feet_ || !upright(result_.mode)) return;
   result_.foot_load.reset();
   // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
   if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;

@@ -1,5 +1,5 @@
-// One control tick, 100 Hz: command -> supervisor -> generator -> GCO -> policy -> limiter -> drives. The same object
-// runs in lockstep with a simulation and in the robot's control thread.
+// One control tick, 100 Hz: command -> supervisor -> generator -> GCO -> policy -> limiter -> drives. The robot's
+// control thread and lockstep run the same object.
 #pragma once
 
 #include <array>
@@ -32,6 +32,7 @@ struct TickOptions {
   gco::Options gco;
   SupervisorOptions supervisor;
   LimiterOptions limiter;
+  hal::GuardOptions guard;  ///< of the bus that this tick's commands go to
   EntryRampOptions entry;
   FootLoadOptions foot_load;
   /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
@@ -40,7 +41,8 @@ struct TickOptions {
   ActionMonitorOptions action_monitor;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
-  int late_policy_ticks = 3;  ///< results in a row that the policy may owe: so long its last target is held
+  int late_policy_ticks = 3;  ///< after so many ticks in a row without a result of the policy: a fault; before, its
+                              ///< last target is held
 };
 
 /// The options that robot.yaml decides: command limits and scales; defaults for the rest.
@@ -73,7 +75,7 @@ struct TickResult {
   Command user;                   ///< the driving source's command as far as the mode admits it
   Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
   gco::Result optimised;          ///< likewise; its command is what the policy observes
-  ExcitationProgress excitation;  ///< what the command belongs to
+  ExcitationProgress excitation;  ///< the run and sample of the command
   bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
   bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
   /// The feet carry nothing (docs/reference/safety.md): the policy isn't run, the reference alone drives. Only in
@@ -81,13 +83,13 @@ struct TickResult {
   bool hanging = false;
   /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
   bool footing_unknown = false;
-  /// What each foot carries, of the robot's weight; nothing where no policy needs to know it, and before Stand.
+  /// Load of each foot over the robot's weight; nullopt before Stand, and with a policy that needs no ground.
   std::optional<PerFoot<double>> foot_load;
   LimitReport limited;
   IgnoredCommands ignored;                 ///< operators' messages since the start, by what became of them
   double command_age_s = 0.0;              ///< infinite before the first command
   Source driving;                          ///< empty when nobody drives
-  std::array<ModeAck, kMaxRequests> acks;  ///< one for each of this tick's requests
+  std::array<ModeAck, kMaxRequests> acks;  ///< answers: one for each of this tick's requests
   std::size_t ack_count = 0;
   std::int64_t late_ticks = 0;  ///< since the start, that ended behind their deadline
   StageTimes times;
@@ -100,9 +102,12 @@ class Tick {
   Tick(const model::RobotModel& robot, const ClipLibrary& library, std::unique_ptr<policy::Policy> policy,
        const io::Clock& stopwatch, const TickOptions& options);
 
-  /// No exception, no lock, no I/O; no heap but the policy's own.
+  /// (state, operators' messages, timing) => (joint command, mode, answers). No exception, no lock, no I/O; no heap but
+  /// the policy's own.
   const TickResult& step(const TickInput& input) noexcept;
   const TickResult& result() const noexcept { return result_; }
+  /// The bus takes its guard's options from here: the gains of this tick were checked against them.
+  const hal::GuardOptions& guard() const noexcept { return guard_; }
 
  private:
   void take_messages(const TickInput& input) noexcept;
@@ -114,7 +119,7 @@ class Tick {
   Footing footing() const noexcept;
   bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
   void begin_policy() noexcept;
-  /// Reference, ground-aware command, policy, limits. Code kNone, or what went wrong: then the command is not filled.
+  /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   Fault drive(const model::RobotState& state) noexcept;
   Fault make_reference() noexcept;
   void excite(model::JointCommand& command) noexcept;
@@ -124,6 +129,7 @@ class Tick {
   const io::Clock& stopwatch_;
   double dt_s_;
   int policy_may_owe_ticks_;
+  hal::GuardOptions guard_;
   policy::DriveGains gains_;
   JointVector brake_kd_;
   gco::MotionComposition motion_;

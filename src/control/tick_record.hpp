@@ -1,4 +1,4 @@
-// All of one tick, by value: what the control thread hands to the threads that log and publish.
+// One tick by value, inputs and result: the control thread hands it to the threads that log and publish.
 #pragma once
 
 #include <array>

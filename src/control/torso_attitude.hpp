@@ -1,4 +1,4 @@
-// How far the torso leans from where it was told to be, seen by the IMU through the joints between them.
+// The torso's deviation from its commanded attitude, from the IMU and the joints between IMU and torso.
 #pragma once
 
 #include "model/chain_kinematics.hpp"
@@ -17,8 +17,8 @@ class TorsoAttitude {
   /// Throws std::invalid_argument when no chain of the robot's joints leads from the IMU's link to the torso.
   explicit TorsoAttitude(const model::RobotModel& robot);
 
-  /// Angle between the torso's vertical and the aimed one [rad], whatever the heading. state is finite and whole. No
-  /// heap.
+  /// (state, commanded pitch and roll) => (angle between the torso's measured and commanded vertical [rad]):
+  /// acos(z_T . (Ry(pitch) Rx(roll))^T z), independent of the heading. state must be finite and whole. No heap.
   double error_rad(const model::RobotState& state, const RollPitchAim& aim) noexcept;
 
  private:

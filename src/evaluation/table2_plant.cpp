@@ -10,10 +10,10 @@
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
 #include "model/config_reader.hpp"
+#include "model/hanging_load.hpp"
 #include "sil/lockstep.hpp"
 #include "sil/sil_hal.hpp"
 #include "sil/simulated_robot.hpp"
-#include "sim/joint_load.hpp"
 #include "sim/sensor_noise.hpp"
 #include "zero/zero_calibration.hpp"
 #include "zero/zero_stances.hpp"
@@ -56,7 +56,7 @@ bench::Recording excitation(int number) {
 }
 
 std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::ActuatorParameters& truth,
-                                       const sim::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
+                                       const model::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
   sim::NormalSource noise(seed);
   calib::JointModel plant;
   plant.actuator = truth;
@@ -163,7 +163,7 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
   sim::ActuatorsByJoint found;
   for (const auto& [name, truth] : plant) {
     const int joint = robot.joint_index.at(name);
-    const sim::HangingLoad load = sim::hanging_load(robot, name);
+    const model::HangingLoad load = model::hanging_load(robot, name);
     std::vector<calib::FitParameter> unknowns;
     for (const char* parameter : {"drive.kp_scale", "drive.kd_scale", "transmission.armature_kg_m2",
                                   "friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}) {

@@ -49,7 +49,7 @@ void differentiate(const bench::Recording& r, double window_s, Motion& motion) {
 
 void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion) {
   const bench::Recording& r = run.recording;
-  const sim::ActuatorParameters::Drive& p = bench.known.drive;
+  const auto& p = bench.known.drive;
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     const bool enabled = r.enabled.empty() || r.enabled[k];
     if (!r.torque_Nm.empty()) {

@@ -104,7 +104,7 @@ void TorqueBalance::shape(const CommandShape& shape) {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const bench::BenchRun& run = (*source_)[i];
     const bench::Recording& r = run.recording;
-    const sim::ActuatorParameters::Drive& p = bench_->known.drive;
+    const auto& p = bench_->known.drive;
     const std::vector<double> command_rad = means(*bench_, r, shape.rate_limit_rad_s);
     double last_turn_s = -1e9, last_drive = 0.0;
     const auto delayed = [&](const std::vector<double>& values, std::size_t k) {

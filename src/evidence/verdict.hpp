@@ -20,7 +20,8 @@ struct Interval {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// One parameter of an effect. The name is one of sim::actuator_parameters, or load.inertia_scale, load.gravity_scale.
+/// One parameter of an effect. The name is one of model::actuator_parameters, or load.inertia_scale,
+/// load.gravity_scale.
 struct ParameterEstimate {
   std::string name;
   Interval estimate;

@@ -10,7 +10,7 @@
 
 namespace pmg::hal {
 
-/// What the bus tells the control thread in every cycle.
+/// The bus thread's message to the control thread, in every cycle.
 struct BusSample {
   model::RobotState state;  ///< of the last cycle in which the drives answered
   BusStatus status = BusStatus::kOk;
@@ -33,7 +33,8 @@ class BusCycle {
   BusCycle(Hal& hal, BusLink& link, const model::RobotModel& robot, const io::Clock& clock,
            const GuardOptions& options = {});
 
-  /// No exception, heap, lock or I/O but the exchange itself.
+  /// (newest ControlOutput, stop line) => (drives, BusSample): guard, exchange, stamp. No exception, heap, lock or I/O
+  /// but the exchange itself.
   void run() noexcept;
 
   const BusSample& sample() const noexcept { return sample_; }

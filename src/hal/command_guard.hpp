@@ -1,5 +1,5 @@
-// The last guard before the drives, in the bus thread: it trusts neither the control thread's numbers nor its being
-// alive.
+// The last guard before the drives, in the bus thread. It checks the control thread's numbers, and that the control
+// thread lives.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace pmg::hal {
 
-/// What the control thread hands to the bus: a command, and which interventions its author knew of.
+/// The control thread's message to the bus: a command, and the interventions that its tick knew of.
 struct ControlOutput {
   model::JointCommand joints;
   std::uint32_t stops_seen = 0;  ///< StopLine::pulls()
@@ -23,8 +23,9 @@ enum class TripCause : std::uint8_t {
 };
 
 struct GuardOptions {
-  /// Bus cycles that the last command is held without a new one: five control ticks. A standing humanoid of 0.75 m
-  /// tips by a fifth of its lean in that time; cycles and not time, so that a host that stops both threads is no fault.
+  /// Bus cycles that the last command is held without a new one: 25 cycles of 2 ms = five control ticks. In that time
+  /// the lean of a falling humanoid (an inverted pendulum of h = 0.75 m) grows by exp(0.05 s sqrt(g / h)) - 1 = 20 %.
+  /// Cycles and not time, so that a host that stops both threads is no fault.
   int hold_cycles = 25;
   double max_kp_Nm_per_rad = 2000.0, max_kd_Nm_s_per_rad = 100.0;  ///< plausible drive gains
 };
@@ -33,12 +34,16 @@ class CommandGuard {
  public:
   CommandGuard(const model::RobotModel& robot, const GuardOptions& options);
 
-  /// One bus cycle: fresh is the command that came since the last cycle, or null. Before the first command: no torque.
-  /// Afterwards the newest command, held for hold_cycles; then, or when it is not finite, or a stop is pulled that its
-  /// author had not seen, damping with robot.yaml's kd: until a command comes that knows of it. Targets are clamped to
-  /// the URDF's ranges, speeds and efforts.
+  /// (new command or null, pulls of the stop line) => (command for the drives), once a bus cycle.
+  /// - Before the first command: no torque.
+  /// - Then the newest command, for hold_cycles at most, clamped to the URDF's ranges, speeds and efforts and to the
+  ///   largest gains.
+  /// - Damping with robot.yaml's kd when the command is too old or not finite, or when its tick had not seen the last
+  /// pull
+  ///   of the stop line. It ends with a command whose tick knows of the intervention.
   const model::JointCommand& next(const ControlOutput* fresh, std::uint32_t stop_pulls) noexcept;
 
+  const GuardOptions& options() const noexcept { return options_; }
   std::uint32_t trips() const noexcept { return trips_; }
   TripCause cause() const noexcept { return cause_; }  ///< of the last trip
   bool damping() const noexcept { return damping_; }   ///< this cycle's command is the guard's own

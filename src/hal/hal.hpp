@@ -1,4 +1,4 @@
-// One interface for several backends. sil (MuJoCo) is the one that exists; can (SocketCAN) and ethercat are to come.
+// What the bus thread needs of a robot's drives. Backends (hal/backend.hpp) give it.
 #pragma once
 
 #include "model/robot_io.hpp"

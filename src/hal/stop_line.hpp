@@ -1,4 +1,4 @@
-// Anyone's stop: the bus brakes in its next cycle, without waiting for the control thread.
+// A stop by anyone: the bus brakes in its next cycle, without waiting for the control thread.
 #pragma once
 
 #include <atomic>
@@ -6,7 +6,7 @@
 
 namespace pmg::hal {
 
-/// Pulled by any thread, any number of times; the bus damps until a command comes whose author had seen every pull.
+/// Any thread may pull it, any number of times. The bus damps until a command comes whose tick had seen every pull.
 class StopLine {
  public:
   void pull() noexcept { pulls_.fetch_add(1, std::memory_order_release); }

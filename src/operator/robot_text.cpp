@@ -153,8 +153,8 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
     add("hottest", fmt::format("{:.0f} degC at {}", hot->temperature_degC, hot->joint));
   if (news.timing) add("timing", timing_text(news));
   if (news.timing)
-    add("lost",
-        fmt::format("ticks missed {}   ticks not logged {}", news.timing->missed_ticks, news.timing->dropped_records));
+    add("lost", fmt::format("ticks missed {}   ticks not logged {}   answers {}", news.timing->missed_ticks,
+                            news.timing->dropped_records, news.timing->dropped_acks));
   add("real-time", status.realtime ? "granted" : "NOT granted");
   if (news.link) add("messages", network_text(*news.link));
   if (news.info) {
@@ -201,7 +201,8 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
   if (news.timing) {
     json["timing"] = {{"wake_p50_us", news.wake_us.percentile(50)}, {"wake_p99_us", news.wake_us.percentile(99)},
                       {"tick_p50_us", news.tick_us.percentile(50)}, {"tick_p99_us", news.tick_us.percentile(99)},
-                      {"missed_ticks", news.timing->missed_ticks},  {"dropped_records", news.timing->dropped_records}};
+                      {"missed_ticks", news.timing->missed_ticks},  {"dropped_records", news.timing->dropped_records},
+                      {"dropped_acks", news.timing->dropped_acks}};
   }
   if (news.link) {
     const pmg_msgs::link_t& link = *news.link;

@@ -13,13 +13,13 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "runtime/run_info.hpp"
 #include "runtime/tick_messages.hpp"
+#include "sil/lockstep.hpp"
 
 namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kTickPeriod_s = 0.01;  // of the controller: control::ControlCycle
-constexpr int kBusCyclesPerTick = 5;
+constexpr double kTickPeriod_s = control::ControlCycle::kPeriod_s;
 constexpr double kShortest_s = 1.0;
 constexpr const char* kState = "STATE";
 constexpr const char* kCommand = "MOTOR_COMMAND";
@@ -191,7 +191,7 @@ RobotRecording play(sim::World& world, std::span<const model::JointCommand> comm
     tick.command = command;
     tick.command.bus_sample = tick.state.bus_sample;
     recording.ticks.push_back(tick);
-    for (int cycle = 0; cycle < kBusCyclesPerTick; ++cycle) world.step(tick.command);
+    sil::hold_for_one_tick(world, tick.command);
     if (world.diverged()) throw std::runtime_error(fmt::format("{}: the simulation diverged at {} s", name, tick.t_s));
     const std::size_t done = recording.ticks.size();
     if (progress && done % kTicksPerReport == 0 &&

@@ -48,7 +48,7 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Plays one command a tick on a simulated robot, five bus cycles of 2 ms each, and records it. Throws
+/// Plays one command a tick on a simulated robot and records it. Throws
 /// std::runtime_error when the simulation diverges.
 RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
                     const RobotProgress& progress = {});

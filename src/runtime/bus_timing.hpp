@@ -1,4 +1,4 @@
-// The bus cycles between two ticks, as TIMING tells them.
+// Times of the bus cycles between two ticks, for TIMING.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace pmg::runtime {
 
-/// Their number and their worst times.
+/// Number and worst times of these cycles.
 struct BusTiming {
   std::int32_t cycles = 0;
   std::int64_t wake_max_ns = 0, exchange_max_ns = 0;
   std::int64_t missed = 0;  ///< since the start
 
   void add(const control::CycleTiming& cycle) noexcept;
-  void start_anew() noexcept;  ///< all but missed
+  void start_anew() noexcept;  ///< sets everything but missed to zero
 };
 
 /// Takes the bus cycles out of the outbox, tick by tick. One reader.

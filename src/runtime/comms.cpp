@@ -128,7 +128,7 @@ void Comms::publish_newest() {
   fill(newest_, joint_count, motor_command_);
   link_.publish("MOTOR_COMMAND", motor_command_);
   // The bus cycles go to the recorder, whose TIMING has them.
-  fill(newest_, BusTiming{}, outbox_.dropped_records, timing_);
+  fill(newest_, BusTiming{}, outbox_.dropped(), timing_);
   link_.publish("TIMING", timing_);
 
   const control::Fault& fault = newest_.result.fault;

@@ -1,4 +1,4 @@
-// The controller on the network: hears operators, answers them, and tells what it does. Channels: msgs/.
+// The controller on the network: hears operators, answers them and publishes its state. Channels: msgs/.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@
 
 namespace pmg::runtime {
 
-/// For one ordinary thread, which calls step() again and again. Nothing here waits for a real-time thread, or makes one
-/// wait. A network that refuses what is published is counted and said once; it ends nothing.
+/// One ordinary thread calls step() again and again. Nothing here waits for a real-time thread, or makes one wait. When
+/// the network refuses messages, Comms counts them, warns once and goes on.
 class Comms {
  public:
   /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
@@ -41,17 +41,18 @@ class Comms {
   /// One line for the console when something is wrong for the first time. Called from step().
   std::function<void(const std::string&)> on_warning;
 
-  /// From now on HOIST is listened to, and HOIST_STATE told; without, both are counted as no_hoist. Keeps the pointer;
-  /// null: there is no hoist.
-  void work(HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
+  /// From now on HOIST is heard and HOIST_STATE published. Without a hoist (null) requests count as no_hoist. Keeps the
+  /// pointer.
+  void work(hal::HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
 
-  /// Before the controller speaks: who else is on this address? Returns the other robots' names after that many seconds
-  /// of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our name is heard:
-  /// one line with name, session, address and what to do. Operators' messages of this time are not taken.
+  /// Before the controller publishes anything: who else is on this address? Returns the other robots' names after that
+  /// many seconds of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our
+  /// name is heard: one line with name, session, address and what to do. Operators' messages of this time are not
+  /// taken.
   std::vector<std::string> listen_for_others(double seconds, const std::function<bool()>& interrupted = {});
 
-  /// Waits up to timeout_ms for operators, takes what they sent (a bounded number), and publishes: ACK for each answer,
-  /// the newest tick if there is one that was not published, FAULT when one latches, ROBOT_INFO and LINK once a second.
+  /// Waits up to timeout_ms for operators and takes a bounded number of their messages. Then publishes ACK for each
+  /// answer, the newest tick unless it was published, FAULT when one latches, and ROBOT_INFO and LINK once a second.
   void step(int timeout_ms);
 
   const GateCounts& gate_counts() const noexcept { return gate_.counts(); }

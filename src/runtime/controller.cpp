@@ -33,7 +33,7 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::T
                        const ControllerOptions& options)
     : options_(options),
       inbox_(link_.stop),
-      bus_cycle_(bus, link_, robot, clock_, options.guard),
+      bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_) {
   if (options.realtime) refused_ = lock_memory();
   bus_thread_ = std::make_unique<PeriodicThread>(scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
@@ -54,7 +54,7 @@ void Controller::run_bus(const control::CycleTiming& timing) noexcept {
   if (bus_cycle_.sample().status == hal::BusStatus::kOk) drives_answered_.store(true, std::memory_order_release);
   control::CycleTiming done = timing;
   done.done_ns = clock_.now_ns();
-  if (!outbox_.bus_cycles.push(done)) outbox_.dropped_bus_cycles.fetch_add(1, std::memory_order_relaxed);
+  outbox_.put(done);
 }
 
 void Controller::run_control(const control::CycleTiming& timing) noexcept {
@@ -62,10 +62,8 @@ void Controller::run_control(const control::CycleTiming& timing) noexcept {
   record_ = control_cycle_.record();
   record_.timing = timing;
   record_.timing.done_ns = clock_.now_ns();
-  if (!outbox_.records.push(record_)) outbox_.dropped_records.fetch_add(1, std::memory_order_relaxed);
+  outbox_.put(record_);
   const control::TickResult& result = record_.result;
-  for (std::size_t i = 0; i < result.ack_count; ++i) outbox_.acks.push(result.acks[i]);
-  outbox_.newest.put(record_);
   news_.put({.now_ns = record_.now_ns,
              .mode = result.mode,
              .hanging = result.hanging,

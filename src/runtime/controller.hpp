@@ -1,5 +1,5 @@
-// The robot's controller: bus and control in real-time threads, messages and log in ordinary ones, around the very
-// objects that lockstep runs in one thread.
+// The robot's controller: bus and control in real-time threads, messages and log in ordinary ones. Lockstep runs the
+// same objects in one thread.
 #pragma once
 
 #include <atomic>
@@ -26,13 +26,12 @@ struct ControllerOptions {
   /// The bus before the control tick: whatever the tick does, the drives are answered and the guard can act.
   ThreadSchedule bus{.name = "bus", .priority = 80};
   ThreadSchedule control{.name = "control", .priority = 70};
-  hal::GuardOptions guard{};
   double first_sample_within_s = 2.0;  ///< the drives must answer once before control starts
   double confirm_stop_within_s = 0.5;  ///< how long stop() waits for the control thread's damping
   double damp_s = 0.2;                 ///< how long stop() lets the drives damp before the threads end
 };
 
-/// What a console or a screen shows of a tick.
+/// The part of a tick that a console shows.
 struct ControllerNews {
   std::int64_t now_ns = 0;
   control::Mode mode = control::Mode::kPassive;
@@ -43,11 +42,12 @@ struct ControllerNews {
 
 class Controller {
  public:
-  /// What an ordinary thread does again and again. A throw ends the thread, damps, and is kept as failure().
+  /// One pass of an ordinary thread, which repeats it. An exception ends the thread and damps the robot; failure()
+  /// keeps its text.
   using Pass = std::function<void()>;
 
-  /// Keeps references. Makes the real-time threads, which wait for start(). Throws std::system_error when there are no
-  /// threads to be had.
+  /// Keeps references; the bus guard gets the tick's options. Makes the real-time threads, which wait for start().
+  /// Throws std::system_error when there are no threads to be had.
   Controller(const model::RobotModel& robot, hal::Hal& bus, control::Tick& tick, const ControllerOptions& options = {});
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
@@ -58,7 +58,7 @@ class Controller {
   }  ///< to be written by comms alone, and by others before start()
   control::ControllerOutbox& outbox() noexcept { return outbox_; }
   const control::ControllerOutbox& outbox() const noexcept { return outbox_; }
-  /// What the system refused of real-time scheduling, in words; known before start().
+  /// The real-time scheduling that the system refused, in words; known before start().
   const std::vector<std::string>& refused() const noexcept { return refused_; }
   pid_t bus_thread() const noexcept { return bus_thread_->id(); }
   pid_t control_thread() const noexcept { return control_thread_->id(); }

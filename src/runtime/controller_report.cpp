@@ -55,13 +55,14 @@ void add_delayed_line(const char* name, const CycleStatistics& statistics, std::
 }  // namespace
 
 nlohmann::ordered_json punctuality_json(const Controller& controller) {
-  const control::ControllerOutbox& outbox = controller.outbox();
+  const control::DroppedItems dropped = controller.outbox().dropped();
   return {{"realtime", controller.refused().empty()},
           {"refused", controller.refused()},
           {"control", thread_json(controller.control_statistics(), "tick_us")},
           {"bus", thread_json(controller.bus_statistics(), "exchange_us")},
-          {"dropped_records", outbox.dropped_records.load()},
-          {"dropped_bus_cycles", outbox.dropped_bus_cycles.load()}};
+          {"dropped_records", dropped.records},
+          {"dropped_bus_cycles", dropped.bus_cycles},
+          {"dropped_acks", dropped.acks}};
 }
 
 std::vector<std::string> punctuality_lines(const Controller& controller) {
@@ -69,8 +70,12 @@ std::vector<std::string> punctuality_lines(const Controller& controller) {
                                     thread_line("bus", controller.bus_statistics(), "exchange")};
   add_delayed_line("control", controller.control_statistics(), lines);
   add_delayed_line("bus", controller.bus_statistics(), lines);
-  if (const std::int64_t dropped = controller.outbox().dropped_records.load(); dropped > 0) {
-    lines.push_back(fmt::format("{} ticks are not in the log: the recorder did not keep up", dropped));
+  const control::DroppedItems dropped = controller.outbox().dropped();
+  if (dropped.records > 0) {
+    lines.push_back(fmt::format("{} ticks are not in the log: the recorder did not keep up", dropped.records));
+  }
+  if (dropped.acks > 0) {
+    lines.push_back(fmt::format("{} operators' requests were not answered: the network did not keep up", dropped.acks));
   }
   return lines;
 }

@@ -1,4 +1,4 @@
-// How punctual a periodic thread was: counted by the thread itself, in memory that doesn't grow.
+// Punctuality of a periodic thread: the thread counts it itself, in memory that doesn't grow.
 #pragma once
 
 #include <array>

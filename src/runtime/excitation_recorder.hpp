@@ -1,4 +1,4 @@
-// What an excited joint did, run by run, out of the ticks' records.
+// (records of ticks) => (the recorded runs of an excited joint).
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pmg::runtime {
 
-/// Columns of one run. q_cmd is what the drives were told from that moment on, limits included.
+/// Columns of one run. q_cmd is the commanded position from that moment on, limits included.
 struct RecordedRun {
   int run = -1;  ///< of the plan
   std::vector<double> t_s, q_cmd_rad, q_rad, dq_rad_s, torque_Nm, temp_C;
@@ -20,8 +20,8 @@ class ExcitationRecorder {
 
   void add(const control::TickRecord& record);
 
-  /// Runs that were recorded from their first to their last sample; one that was cut off, or that has a hole (a tick is
-  /// missing, the bus gave nothing new, the host stopped for more than 0.05 s), isn't among them.
+  /// Runs that were recorded from their first to their last sample without a hole. A hole is a missing tick, a tick
+  /// without a new bus sample, or a pause of the host of more than 0.05 s.
   const std::vector<RecordedRun>& complete() const { return complete_; }
   const control::ExcitationProgress& progress() const { return progress_; }
 

@@ -65,11 +65,12 @@ const FlightRecorder::Row& FlightRecorder::row(std::size_t age) const {
   return ring_[(next_ + ring_.size() - 1 - age) % ring_.size()];
 }
 
-void FlightRecorder::add(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
+void FlightRecorder::add(const control::TickRecord& record, const BusTiming& bus,
+                         const control::DroppedItems& dropped) {
   Row& row = ring_[next_];
   row.record = record;
   row.bus = bus;
-  row.dropped_records = dropped_records;
+  row.dropped = dropped;
   next_ = (next_ + 1) % ring_.size();
   held_ = std::min(held_ + 1, ring_.size());
   note_fault(record);
@@ -163,7 +164,7 @@ void FlightRecorder::write(const Incident& incident, const fs::path& file) const
     log.announce_fault(rows.front()->record.now_ns, incident.record);
     for (const Row* held : rows) {
       log.write(held->record);
-      log.write_timing(held->record, held->bus, held->dropped_records);
+      log.write_timing(held->record, held->bus, held->dropped);
     }
     writer.sync();
   } catch (const std::exception&) {
@@ -244,9 +245,8 @@ std::string FlightRecorder::text(const Incident& incident, const std::vector<con
   text += fmt::format("\nRecords      {}: {} ticks, from {:.2f} s before the fault to {:.2f} s after\n",
                       log.filename().string(), rows.size(), seconds(record.now_ns - rows.front()->record.now_ns),
                       seconds(rows.back()->record.now_ns - record.now_ns));
-  if (rows.back()->dropped_records > 0) {
-    text +=
-        fmt::format("             {} ticks were lost before they could be recorded\n", rows.back()->dropped_records);
+  if (const std::int64_t lost = rows.back()->dropped.records; lost > 0) {
+    text += fmt::format("             {} ticks were lost before they could be recorded\n", lost);
   }
   return text;
 }

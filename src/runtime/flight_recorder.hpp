@@ -1,5 +1,5 @@
-// The last seconds before a fault, kept in memory and written when one latches: a log that stands alone, and beside it
-// a page of text for the operator.
+// Keeps the last seconds in memory. When a fault latches, writes them as a log of its own, and beside it a page of text
+// for the operator.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 namespace pmg::runtime {
 
 struct FlightRecorderOptions {
-  double before_s = 30.0;  ///< of the records that are written, before the fault
+  double before_s = 30.0;  ///< span of the written records before the fault
   double after_s = 1.0;    ///< and after it
   int files = 16;          ///< pairs of log and text in the folder at most; older ones are removed
-  double retry_s = 1.0;    ///< after the disk refused one
+  double retry_s = 1.0;    ///< pause after the disk refused a pair
 };
 
-/// Memory for all records is taken when it is made: some 9 kB for each. Writes
+/// The constructor allocates the memory of all records, some 9 kB for each. Writes
 /// DIRECTORY/fault-<UTC time>-<code>.lcm and .txt; names sort by time. Not for a real-time thread, no thread of its
 /// own.
 class FlightRecorder {
@@ -34,11 +34,11 @@ class FlightRecorder {
   FlightRecorder(std::filesystem::path directory, const model::RobotModel& robot, const RunInfo& run,
                  double control_rate_Hz, const io::Clock& clock, const FlightRecorderOptions& options, Say say);
 
-  void add(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  void add(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped);
 
-  /// Writes what is due. What the disk refuses is kept, and tried again in a later pass.
+  /// Writes the incidents that are due. It keeps those that the disk refuses, and tries again in a later pass.
   void pass();
-  /// Writes everything that waits, complete or not, once more.
+  /// Tries once more to write every incident that waits, complete or not.
   void close();
 
   int written() const { return written_; }
@@ -48,7 +48,7 @@ class FlightRecorder {
   struct Row {
     control::TickRecord record;
     BusTiming bus;
-    std::int64_t dropped_records = 0;
+    control::DroppedItems dropped;
   };
   /// A fault that is not on the disk yet.
   struct Incident {

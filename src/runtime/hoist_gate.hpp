@@ -1,13 +1,13 @@
-// What the network may ask of a simulated robot's hoist (pmg_msgs::hoist_t), and what it is told of it.
+// Requests from the network for the robot's hoist (pmg_msgs::hoist_t), and the answers (pmg_msgs::hoist_state_t).
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "control/tick.hpp"
+#include "hal/hoist_line.hpp"
 #include "io/lcm_link.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
-#include "runtime/hoist_line.hpp"
 #include "runtime/operator_gate.hpp"
 
 namespace pmg::runtime {
@@ -17,25 +17,25 @@ class HoistGate {
  public:
   explicit HoistGate(std::string robot) : robot_(std::move(robot)) {}  ///< the controller's name
 
-  void work(HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
+  void work(hal::HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
   bool there() const noexcept { return line_ != nullptr; }
 
   void take(io::Bytes message);  ///< channel HOIST
   void see(const control::TickResult& result) noexcept {
-    if (line_ != nullptr) line_->see(result.mode, result.entering);
+    if (line_ != nullptr) line_->see(control::upright(result.mode), result.entering);
   }
 
-  /// The message for channel HOIST_STATE but for its stamp. True when there is something in it that wasn't before.
+  /// Fills the message for channel HOIST_STATE, all but its stamp. True when it says something new.
   bool fill(pmg_msgs::hoist_state_t& message);
 
-  /// Beside these, what is repeated or overtaken is ignored and not counted: it is acknowledged anew.
+  /// Requests that were ignored. Repeated and overtaken ones are not among them: they are acknowledged anew.
   const GateCounts& counts() const noexcept { return counts_; }
 
  private:
   bool overtaken(const std::string& source, std::int64_t session, std::int64_t sequence) const;
 
   std::string robot_;
-  HoistLine* line_ = nullptr;
+  hal::HoistLine* line_ = nullptr;
   GateCounts counts_;
   std::string source_;  // of the last request that was taken
   std::int64_t session_ = 0, sequence_ = 0;

@@ -1,5 +1,5 @@
-// What strangers on the network may put into the controller: whole messages of our version, for our robot, from a
-// source with a name, not too many. What else comes is counted and ignored; a stop gets through all of it.
+// (bytes from the network) => (operators' inbox). It lets pass whole messages of our version, for our robot, from a
+// source with a name, up to a rate. It counts and ignores all others. A stop passes even a flood.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct GateCounts {
 /// A name that fits Source and can be shown on a terminal: 1 to 23 printable ASCII characters.
 bool presentable(const std::string& name);
 
-/// The inbox's one writer. Finiteness, order, age, lease and who drives are for CommandIntake to judge.
+/// The inbox's one writer. CommandIntake judges finiteness, order, age, lease, and who drives.
 class OperatorGate {
  public:
   /// Keeps references. robot: the controller's name.

@@ -30,12 +30,12 @@ class PeriodicThread {
 
   /// First cycle at this time of the clock, then one a period. Once.
   void start(std::int64_t first_ns);
-  /// The cycle that runs is the last. Returns when the thread has ended; any number of times.
+  /// Ends the thread after the cycle that runs now. Returns when the thread has ended; may be called again.
   void stop() noexcept;
 
   const std::vector<std::string>& refused() const noexcept { return refused_; }
   pid_t id() const noexcept { return id_; }  ///< the kernel's
-  /// Complete when the thread has been stopped; not to be read before.
+  /// To be read only after the thread has been stopped.
   const CycleStatistics& statistics() const noexcept { return statistics_; }
 
  private:

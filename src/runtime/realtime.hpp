@@ -1,4 +1,4 @@
-// What a real-time process asks the system for, and in plain words what the system refuses.
+// Asks the system for real-time scheduling, and says in plain words what the system refuses.
 #pragma once
 
 #include <sys/types.h>
@@ -9,14 +9,14 @@
 
 namespace pmg::runtime {
 
-/// How one thread wants to run.
+/// The scheduling that one thread asks for.
 struct ThreadSchedule {
   std::string name;  ///< as the kernel shows it: at most 15 characters
   int priority = 0;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
   int cpu = -1;      ///< the one CPU that it may run on; -1: any
 };
 
-/// What the kernel says of a thread.
+/// The scheduling that a thread has, by the kernel's word.
 struct KernelSchedule {
   int policy = 0;         ///< SCHED_FIFO, SCHED_OTHER, ...
   int priority = 0;       ///< of SCHED_FIFO
@@ -26,7 +26,7 @@ struct KernelSchedule {
 /// Every function below returns what the system refused: a sentence each with what, why and how to grant it; empty when
 /// all was granted. A refusal is never fatal: the controller runs on, later than it should.
 
-/// No page of this process leaves memory from now on, those to come included: a page fault would cost milliseconds.
+/// Locks all pages of this process in memory, future ones included: a page fault would cost milliseconds.
 std::vector<std::string> lock_memory();
 
 /// Names and schedules the calling thread, and lets its timers fire without slack.

@@ -88,15 +88,21 @@ void Recorder::take_records() {
   // Bounded: a disk slower than the ticks must not keep this pass for ever.
   for (std::size_t taken = 0; taken < control::ControllerOutbox::kRecords && outbox_.records.pop(record_); ++taken) {
     bus_cycles_.take_until(record_.timing.woke_ns, bus_);
-    guarded([this] { flight_.add(record_, bus_, lost()); });
+    guarded([this] { flight_.add(record_, bus_, dropped()); });
     if (options_.log) log_record();
     bus_.start_anew();
     if (after_record) guarded([this] { after_record(record_); });
   }
 }
 
+control::DroppedItems Recorder::dropped() const {
+  control::DroppedItems dropped = outbox_.dropped();
+  dropped.records = lost();
+  return dropped;
+}
+
 void Recorder::note_queue_losses() {
-  const std::int64_t dropped = outbox_.dropped_records.load(std::memory_order_relaxed);
+  const std::int64_t dropped = outbox_.dropped().records;
   if (dropped == queue_lost_) return;
   say(fmt::format("log: the log's thread stood still for too long; {} ticks are missing in the log",
                   dropped - queue_lost_));
@@ -112,7 +118,7 @@ void Recorder::log_record() {
   ++unflushed_;
   try {
     log_->write(record_);
-    log_->write_timing(record_, bus_, lost());
+    log_->write_timing(record_, bus_, dropped());
     if (unflushed_ >= kRecordsAFlush) flush();
     begin_next_file_if_due();
   } catch (const std::exception& error) {

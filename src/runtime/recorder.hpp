@@ -1,4 +1,4 @@
-// What the real-time threads leave behind, on the disk: every tick in a rotated log, and the flight recorder.
+// (controller's outbox) => (files): every tick in a rotated log, and the flight recorder.
 #pragma once
 
 #include <cstdint>
@@ -22,20 +22,20 @@ namespace pmg::runtime {
 struct RecorderOptions {
   std::filesystem::path directory;      ///< made if absent
   bool log = true;                      ///< false: the flight recorder alone
-  std::int64_t file_bytes = 256 << 20;  ///< then the next file: some ten minutes of 31 joints
+  std::int64_t file_bytes = 256 << 20;  ///< size at which the next file begins: some ten minutes of 31 joints
   int files = 8;                        ///< log-NNNN.lcm in the folder at most, those of earlier runs included
-  std::int64_t spare_bytes = 64 << 20;  ///< after a refusal, nothing is written until the disk has as much room
-  double retry_s = 1.0;                 ///< after a refusal
+  std::int64_t spare_bytes = 64 << 20;  ///< room that the disk must have before writing resumes after a refusal
+  double retry_s = 1.0;                 ///< pause between two tries after a refusal
   double control_rate_Hz = 100.0;
   FlightRecorderOptions flight{};
 };
 
 /// One consumer thread. Takes every record of the outbox and writes DIRECTORY/log-NNNN.lcm, numbered on from what is
-/// there; each file begins with ROBOT_INFO and stands alone. Whatever the disk does, drain() returns, the control
-/// thread never waits, and what is lost is counted in TIMING.dropped_records.
+/// there; each file begins with ROBOT_INFO and stands alone. Whatever the disk does, drain() returns and the control
+/// thread never waits. TIMING.dropped_records counts lost ticks.
 class Recorder {
  public:
-  /// Sentences for people: what went wrong, and when it is well again. Called from the threads that call the recorder.
+  /// Sentences for people about a failure and its end. Called from the threads that call the recorder.
   using Say = std::function<void(const std::string&)>;
 
   /// Keeps references to outbox, robot and clock, which is the one that stamps the records. Throws std::runtime_error
@@ -49,9 +49,9 @@ class Recorder {
   /// Called with every record, in order, after it was logged; in drain().
   std::function<void(const control::TickRecord&)> after_record;
 
-  /// One pass: everything that waits goes to the disk and survives the end of this process. Every 20 ms or so.
+  /// One pass, every 20 ms or so: writes all waiting records so that they survive the end of this process.
   void drain() noexcept;
-  /// A simulation's truth, after the record that it belongs to; the log alone has it.
+  /// Writes a simulation's truth after the record that it belongs to; into the log, not the flight recorder.
   void write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted) noexcept;
   /// The last pass, after the real-time threads have ended. Once more does nothing.
   void close() noexcept;
@@ -64,6 +64,7 @@ class Recorder {
  private:
   void take_records();
   void note_queue_losses();
+  control::DroppedItems dropped() const;  // the disk's losses included
   void log_record();
   void flush();
   void begin_file(std::int64_t stamp_ns);

@@ -1,4 +1,4 @@
-// Who runs what: stamped into every log and told on the network (pmg_msgs::robot_info_t).
+// Identity of a run, in every log and on the network (pmg_msgs::robot_info_t): robot, policy, backend, files, options.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct RunInfo {
   std::string bundle{};                                      ///< SHA-256 over the files below
   std::vector<std::pair<std::string, std::string>> files{};  ///< path relative to the robot's folder, SHA-256
   bool realtime = false;                                     ///< every thread got the scheduling that it needs
-  std::vector<std::string> refused{};                        ///< what the system refused of real-time scheduling
+  std::vector<std::string> refused{};                        ///< the real-time scheduling that the system refused
 };
 
 /// Version of this software, for logs and --version.

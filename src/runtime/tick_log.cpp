@@ -61,8 +61,9 @@ void TickLog::write_fault_once(const control::TickRecord& record) {
   writer_->write("FAULT", record.now_ns, fault_);
 }
 
-void TickLog::write_timing(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records) {
-  fill(record, bus, dropped_records, timing_);
+void TickLog::write_timing(const control::TickRecord& record, const BusTiming& bus,
+                           const control::DroppedItems& dropped) {
+  fill(record, bus, dropped, timing_);
   writer_->write("TIMING", record.now_ns, timing_);
 }
 

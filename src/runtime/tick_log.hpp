@@ -31,7 +31,7 @@ class TickLog {
   void announce_fault(std::int64_t stamp_ns, const control::TickRecord& record);
 
   void write(const control::TickRecord& record);
-  void write_timing(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records);
+  void write_timing(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped);
   void write_step(const pmg_msgs::scenario_step_t& step);
   void write_truth(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted);
 

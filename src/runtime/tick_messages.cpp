@@ -186,7 +186,7 @@ void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
   for (const control::ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
 }
 
-void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records,
+void fill(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped,
           pmg_msgs::timing_t& message) {
   const control::CycleTiming& timing = record.timing;
   const control::StageTimes& times = record.result.times;
@@ -201,7 +201,9 @@ void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t 
   message.bus_wake_max_ns = bus.wake_max_ns;
   message.bus_exchange_max_ns = bus.exchange_max_ns;
   message.bus_missed_cycles = bus.missed;
-  message.dropped_records = dropped_records;
+  message.dropped_records = dropped.records;
+  message.dropped_bus_cycles = dropped.bus_cycles;
+  message.dropped_acks = dropped.acks;
 }
 
 void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,

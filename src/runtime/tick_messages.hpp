@@ -1,10 +1,10 @@
-// Between the controller's own types and LCM messages (msgs/): what the log writes and the network tells, and back for
-// a replay. Filling a message that was filled before allocates nothing, text of a fault apart. Not for a real-time
-// thread.
+// (the controller's types) => (LCM messages, msgs/) for log and network, and back for a replay. Filling a message that
+// was filled before allocates nothing, text of a fault apart. Not for a real-time thread.
 #pragma once
 
 #include <cstdint>
 
+#include "control/controller_outbox.hpp"
 #include "control/tick_record.hpp"
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
@@ -36,7 +36,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
           pmg_msgs::status_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::limited_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message);
-void fill(const control::TickRecord& record, const BusTiming& bus, std::int64_t dropped_records,
+void fill(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped,
           pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
 void fill(const control::TickRecord& record, const RunInfo& run, const model::RobotModel& robot,
@@ -46,7 +46,7 @@ void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mod
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
 void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
 
-/// The other way: the values as they are, unchecked; who hears strangers validates first.
+/// The other way: the values as they are. Unchecked: a caller that hears strangers validates first.
 control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns);
 control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns);
 /// False when the message's vectors don't have joint_count entries each.

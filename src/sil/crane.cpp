@@ -7,41 +7,41 @@ namespace pmg::sil {
 void Crane::step(const CraneView& view, double dt_s) noexcept {
   const bool down = view.stands && !view.stays_up;
   switch (state_) {
-    case runtime::CraneState::kFree:
+    case hal::CraneState::kFree:
       if (!view.stays_up) return;
       lift_m_ = std::min(view.torso_height_m, kLift_m);  // nothing pulls at first, wherever it lies
-      state_ = runtime::CraneState::kCatching;
+      state_ = hal::CraneState::kCatching;
       return;
-    case runtime::CraneState::kCatching:
+    case hal::CraneState::kCatching:
       engaged_ = std::min(engaged_ + dt_s / kCatch_s, 1.0);
       lift_m_ = std::min(lift_m_ + kRaise_m_s * dt_s, kLift_m);
-      if (engaged_ == 1.0) state_ = runtime::CraneState::kLifting;
+      if (engaged_ == 1.0) state_ = hal::CraneState::kLifting;
       return;
-    case runtime::CraneState::kLifting:
+    case hal::CraneState::kLifting:
       lift_m_ = std::min(lift_m_ + kRaise_m_s * dt_s, kLift_m);
-      if (lift_m_ == kLift_m) state_ = runtime::CraneState::kHolding;
+      if (lift_m_ == kLift_m) state_ = hal::CraneState::kHolding;
       return;
-    case runtime::CraneState::kHolding:
+    case hal::CraneState::kHolding:
       carried_s_ = 0.0;
-      if (down) state_ = runtime::CraneState::kLowering;
+      if (down) state_ = hal::CraneState::kLowering;
       return;
-    case runtime::CraneState::kLowering:
+    case hal::CraneState::kLowering:
       if (!down) {
-        state_ = runtime::CraneState::kLifting;
+        state_ = hal::CraneState::kLifting;
         return;
       }
       lower(view, dt_s);
-      if (carried_s_ >= kCarriedFor_s) state_ = runtime::CraneState::kLettingGo;
+      if (carried_s_ >= kCarriedFor_s) state_ = hal::CraneState::kLettingGo;
       return;
-    case runtime::CraneState::kLettingGo:
+    case hal::CraneState::kLettingGo:
       if (!down) {
         lift_m_ = std::max(lift_m_, std::min(view.torso_height_m, kLift_m));
-        state_ = runtime::CraneState::kCatching;
+        state_ = hal::CraneState::kCatching;
         return;
       }
       lower(view, dt_s);
       engaged_ = std::max(engaged_ - dt_s / kLetGo_s, 0.0);
-      if (engaged_ == 0.0) state_ = runtime::CraneState::kFree;
+      if (engaged_ == 0.0) state_ = hal::CraneState::kFree;
       return;
   }
 }

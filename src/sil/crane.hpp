@@ -1,12 +1,12 @@
-// Who works the hoist of a simulated robot: holds it while it is limp, sets it down once it stands, lets go when its
-// feet carry it, and takes it up again when asked to, wherever it lies.
+// Works the hoist of a simulated robot. The crane holds a limp robot, sets it down once it stands, lets go when its
+// feet carry it, and lifts it again on request, wherever it lies.
 #pragma once
 
-#include "runtime/hoist_line.hpp"
+#include "hal/hoist_line.hpp"
 
 namespace pmg::sil {
 
-/// What somebody beside the robot sees, and was told.
+/// The crane's inputs: a person beside the robot would see or hear them.
 struct CraneView {
   bool stands = false;          ///< the controller holds the standing posture, or walks; its ramp into it is over
   bool stays_up = false;        ///< somebody wants it to hang
@@ -28,15 +28,15 @@ class Crane {
 
   void step(const CraneView& view, double dt_s) noexcept;
 
-  runtime::CraneState state() const noexcept { return state_; }
+  hal::CraneState state() const noexcept { return state_; }
   double lift_m() const noexcept { return lift_m_; }    ///< of the anchor, as sim::World::set_hoist's
   double engaged() const noexcept { return engaged_; }  ///< likewise
-  bool carrying() const noexcept { return state_ != runtime::CraneState::kFree; }
+  bool carrying() const noexcept { return state_ != hal::CraneState::kFree; }
 
  private:
   void lower(const CraneView& view, double dt_s) noexcept;
 
-  runtime::CraneState state_ = runtime::CraneState::kHolding;
+  hal::CraneState state_ = hal::CraneState::kHolding;
   double lift_m_ = kLift_m, engaged_ = 1.0;
   double carried_s_ = 0.0;
 };

@@ -4,6 +4,10 @@
 
 namespace pmg::sil {
 
+void hold_for_one_tick(sim::World& world, const model::JointCommand& command) noexcept {
+  for (int cycle = 0; cycle < control::ControlCycle::kBusCycles; ++cycle) world.step(command);
+}
+
 Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick,
                    const Scenario& scenario, runtime::TickLog* log, const LockstepOptions& options)
     : plant_(plant),
@@ -12,7 +16,7 @@ Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, 
       log_(log),
       options_(options),
       inbox_(link_.stop),
-      bus_cycle_(bus, link_, robot, clock_),
+      bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_),
       player_(scenario),
       measure_(robot.standing_height_m) {
@@ -41,8 +45,7 @@ RunOutcome Lockstep::run() {
 }
 
 void Lockstep::advance() {
-  static_assert(control::ControlCycle::kPeriod_ns % hal::BusCycle::kPeriod_ns == 0);
-  for (std::int64_t step = 0; step < control::ControlCycle::kPeriod_ns / hal::BusCycle::kPeriod_ns; ++step) {
+  for (int cycle = 0; cycle < control::ControlCycle::kBusCycles; ++cycle) {
     clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
     bus_cycle_.run();
   }

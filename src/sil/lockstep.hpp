@@ -25,6 +25,9 @@ struct LockstepOptions {
   bool always_hoisted = false;      ///< the world began on the gantry and stays there
 };
 
+/// (world, command) => the world one control tick later: the drives hold this command for the bus cycles of a tick.
+void hold_for_one_tick(sim::World& world, const model::JointCommand& command) noexcept;
+
 class Lockstep {
  public:
   /// Keeps references to all of them. log may be null.

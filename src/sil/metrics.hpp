@@ -1,5 +1,4 @@
-// How well a simulated robot did what the user asked, from the simulation's truth: the metrics of summary.json
-// (docs/reference/file-formats.md).
+// (command, ground truth) => (tracking errors, fall): the metrics of summary.json (docs/reference/file-formats.md).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,7 @@
 
 namespace pmg::sil {
 
-/// Mean absolute errors against the user's command over all ticks that were followed.
+/// Mean absolute errors against the user's command over all judged ticks.
 struct TrackingSummary {
   double lin_vel_mae_m_s = 0.0;      ///< norm of the xy error in H, averaged over a gait period
   double lin_vel_raw_mae_m_s = 0.0;  ///< the same without the averaging

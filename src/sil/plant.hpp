@@ -1,4 +1,4 @@
-// What lockstep needs of a simulated world besides its bus: the truth for metrics, and the gantry.
+// The part of a simulated world that lockstep needs besides its bus: the truth for metrics, and the gantry.
 #pragma once
 
 #include "sim/world.hpp"

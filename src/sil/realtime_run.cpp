@@ -72,11 +72,11 @@ void RealtimeRun::record() {
 void RealtimeRun::record_tick() {
   const control::TickResult& result = record_.result;
   if (record_.drive_count > 0) asked_ = record_.drives[record_.drive_count - 1].command;
-  const TruthSample* truth = robot_.take_truth(record_.state.bus_sample);
+  const hal::TruthSample* truth = robot_.take_truth(record_.state.bus_sample);
   if (log_ != nullptr) {
     if (const std::size_t step = spoken_step_.load(); step > 0) scenario_log_->write(record_.now_ns, step);
     log_->write(record_);
-    log_->write_timing(record_, bus_, controller_.outbox().dropped_records.load());
+    log_->write_timing(record_, bus_, controller_.outbox().dropped());
     if (truth != nullptr) log_->write_truth(record_.now_ns, truth->truth, truth->hoisted);
   }
   if (!measuring_.load()) return;

@@ -27,7 +27,7 @@ class RealtimeRun {
 
   /// Called after every tick, in the recorder's thread.
   std::function<void(const RunProgress&)> after_tick;
-  /// What the operators' thread does again and again instead of playing the scenario, which then only names the run.
+  /// One pass of the operators' thread in place of the scenario, which then only names the run.
   std::function<void()> operators;
   /// Asked some fifty times a second: true ends the run and keeps what was done.
   std::function<bool()> interrupted;

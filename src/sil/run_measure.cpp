@@ -6,8 +6,6 @@ namespace pmg::sil {
 
 namespace {
 constexpr double kGaitPeriodBeforeWalking_s = 1.0;  // what averages run over until the generator has told a period
-
-bool holds(control::Mode mode) { return mode == control::Mode::kStand || mode == control::Mode::kWalk; }
 }  // namespace
 
 RunMeasure::RunMeasure(double standing_height_m)
@@ -25,7 +23,7 @@ void RunMeasure::add_reference(const control::TickResult& result) {
   if (result.mode == control::Mode::kFault && last_mode_ != control::Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 
-  if (holds(result.mode)) slip_.add(result.reference, result.optimised);
+  if (control::upright(result.mode)) slip_.add(result.reference, result.optimised);
   if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
 }
 
@@ -33,7 +31,7 @@ void RunMeasure::add_truth(const control::TickResult& result, const model::Groun
                            const Command& asked) {
   if (hoisted) sums_.hoisted_s += control::ControlCycle::kPeriod_s;
   // Before standing nobody asked for anything yet; a fault, in contrast, is held against the user's command to the end.
-  const bool judged = !hoisted && (holds(result.mode) || result.mode == control::Mode::kFault);
+  const bool judged = !hoisted && (control::upright(result.mode) || result.mode == control::Mode::kFault);
   if (judged) {
     metrics_.add(truth, result.mode == control::Mode::kStand ? Command{} : asked, gait_period_s_);
   } else {

@@ -1,4 +1,4 @@
-// What is measured of a simulated run, tick by tick; the same in lockstep and in real time.
+// (tick results, ground truth) => (outcome of a simulated run), in lockstep and in real time alike.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace pmg::sil {
 
-/// How a run ended and what was measured on the way.
+/// A run's end and its measures.
 struct RunOutcome {
   double duration_s = 0.0;  ///< simulated
   double hoisted_s = 0.0;
@@ -26,7 +26,7 @@ struct RunOutcome {
   gco::SlipSummary reference_slip;
 };
 
-/// What an observer sees after each tick.
+/// The state of a run after one tick.
 struct RunProgress {
   double time_s;
   double duration_s;

@@ -1,6 +1,7 @@
 #include "sil/scenario.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "model/config_reader.hpp"
 
@@ -28,6 +29,24 @@ double Scenario::duration_s() const { return steps.back().start_s + steps.back()
 const ScenarioStep& Scenario::at(double time_s) const {
   const auto after = std::ranges::upper_bound(steps, time_s, {}, &ScenarioStep::start_s);
   return after == steps.begin() ? steps.front() : *(after - 1);
+}
+
+Scenario bench_scenario(const std::string& joint, double excitation_s) {
+  constexpr double kEntry_s = 2.0, kDamping_s = 0.5;
+  ScenarioStep stand, damping;
+  stand.duration_s = damping.start_s = excitation_s + kEntry_s;
+  stand.text = "excite " + joint;
+  damping.duration_s = kDamping_s;
+  damping.text = "damping";
+  damping.mode = control::Mode::kDamping;
+  return {.name = "bench of " + joint, .steps = {stand, damping}};
+}
+
+Scenario endless_scenario() {
+  ScenarioStep step;
+  step.duration_s = std::numeric_limits<double>::infinity();
+  step.text = "operators drive";
+  return {.name = "operators", .steps = {step}};
 }
 
 Scenario load_scenario(const std::filesystem::path& file) {

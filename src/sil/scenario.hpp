@@ -1,4 +1,4 @@
-// A scripted operator: config/scenarios/*.yaml, what to ask of the controller and when.
+// A scripted operator: config/scenarios/*.yaml lists its commands and modes over time.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +34,11 @@ struct Scenario {
   double duration_s() const;
   const ScenarioStep& at(double time_s) const;  ///< the last step stays in force at and after the end
 };
+
+/// Stand for as long as a joint of this name is excited, then damping.
+Scenario bench_scenario(const std::string& joint, double excitation_s);
+/// Names a run that operators drive until it is ended.
+Scenario endless_scenario();
 
 /// Reads a scenario (docs/reference/file-formats.md). mode and the gantry's part hold on until a later step changes
 /// them; a command belongs to its step alone. Throws model::ConfigError with file, line and column.

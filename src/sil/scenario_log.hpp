@@ -15,7 +15,7 @@ class ScenarioLog {
   /// Keeps references to both.
   ScenarioLog(runtime::TickLog& log, const Scenario& scenario) : log_(log), scenario_(scenario) {}
 
-  /// Before the first tick of the step with this number, counted from 1; later does nothing.
+  /// Call it before every tick. Writes when the number of the step, counted from 1, has changed.
   void write(std::int64_t stamp_ns, std::size_t number);
 
  private:

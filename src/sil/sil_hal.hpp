@@ -6,8 +6,8 @@
 
 namespace pmg::sil {
 
-/// One exchange is one physics step, so a command computed from bus sample k acts during the step that ends in sample k
-/// + 1. A diverged simulation is a lost bus: the state stays that of the last good sample.
+/// (command, world) => (state one physics step later). So a command computed from bus sample k acts during the step
+/// that ends in sample k + 1. A diverged simulation counts as a lost bus: the state stays that of the last good sample.
 class SilHal final : public hal::Hal {
  public:
   explicit SilHal(sim::World& world) : world_(world) {}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/control_setup.hpp"
 #include "hal/bus_cycle.hpp"
 
 namespace pmg::sil {
@@ -22,10 +23,9 @@ sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry) {
   return options;
 }
 
-void expect_shared_host(control::TickOptions& options) {
-  options.supervisor.fault_limits.stale_state_s = 0.2;
-  options.supervisor.fault_limits.overrun_ticks = 20;
-}
+hal::BackendLimits limits_on_shared_host() { return {.guard = {}, .stale_state_s = 0.2, .overrun_ticks = 20}; }
+
+void expect_shared_host(control::TickOptions& options) { control::take_limits(limits_on_shared_host(), options); }
 
 SimulatedRobot::SimulatedRobot(sim::World& world, HoistedBy hoisted, bool keep_truth)
     : world_(world),
@@ -52,7 +52,7 @@ hal::BusStatus SimulatedRobot::exchange(const model::JointCommand& command, mode
   return status;
 }
 
-const TruthSample* SimulatedRobot::take_truth(std::uint64_t bus_sample) noexcept {
+const hal::TruthSample* SimulatedRobot::take_truth(std::uint64_t bus_sample) noexcept {
   while (taken_.bus_sample < bus_sample && truths_.pop(taken_)) {
   }
   return taken_.bus_sample == bus_sample ? &taken_ : nullptr;

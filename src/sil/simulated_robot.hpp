@@ -1,4 +1,4 @@
-// A simulated robot for the bus thread: what others want of it and from it crosses wait-free.
+// A simulated robot for the bus thread. Other threads reach it wait-free.
 #pragma once
 
 #include <array>
@@ -8,22 +8,15 @@
 #include <optional>
 
 #include "control/tick.hpp"
+#include "hal/backend.hpp"
 #include "io/mailbox.hpp"
 #include "pmg/types.hpp"
-#include "runtime/hoist_line.hpp"
 #include "sil/crane.hpp"
 #include "sil/hoist.hpp"
 #include "sil/sil_hal.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sil {
-
-/// What only the simulation knows of one bus cycle.
-struct TruthSample {
-  std::uint64_t bus_sample = 0;  ///< of the state that the controller got in the same cycle
-  model::GroundTruth truth;
-  bool hoisted = false;  ///< the gantry carries the robot
-};
 
 /// Who works the gantry.
 enum class HoistedBy {
@@ -50,7 +43,8 @@ sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry);
 /// For controllers whose robot is simulated by the same host in real time: a host that others share stops both for tens
 /// of milliseconds now and then, and the physics with them. Such a state is not stale before 0.2 s, nor are late ticks
 /// a fault; everything else is as on a robot.
-void expect_shared_host(control::TickOptions& options);
+hal::BackendLimits limits_on_shared_host();
+void expect_shared_host(control::TickOptions& options);  ///< takes these limits
 
 class SimulatedRobot final : public hal::Hal {
  public:
@@ -63,9 +57,9 @@ class SimulatedRobot final : public hal::Hal {
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override;
 
   void support(Support by) noexcept { support_.store(by, std::memory_order_relaxed); }  ///< by the gantry; any thread
-  runtime::HoistLine* hoist_line() noexcept { return hoisted_ == HoistedBy::kCrane ? &hoist_line_ : nullptr; }
+  hal::HoistLine* hoist_line() noexcept { return hoisted_ == HoistedBy::kCrane ? &hoist_line_ : nullptr; }
   /// The truth of this bus cycle or, when it was dropped, nothing; older ones are given up. One reader.
-  const TruthSample* take_truth(std::uint64_t bus_sample) noexcept;
+  const hal::TruthSample* take_truth(std::uint64_t bus_sample) noexcept;
   bool take(PoseSample& pose) noexcept { return poses_.take(pose); }  ///< one reader
   bool diverged() const noexcept { return diverged_.load(std::memory_order_acquire); }
 
@@ -82,14 +76,14 @@ class SimulatedRobot final : public hal::Hal {
   const double weight_N_;
   Hoist hoist_;
   Crane crane_;
-  runtime::HoistLine hoist_line_;
-  TruthSample truth_;  // the bus thread's
+  hal::HoistLine hoist_line_;
+  hal::TruthSample truth_;  // the bus thread's
   PoseSample pose_;
   std::int64_t cycles_ = 0;
   std::atomic<Support> support_{Support::kNone};
   std::atomic<bool> diverged_{false};
-  boost::lockfree::spsc_queue<TruthSample> truths_{kTruths};
-  TruthSample taken_;  // the reader's
+  boost::lockfree::spsc_queue<hal::TruthSample> truths_{kTruths};
+  hal::TruthSample taken_;  // the reader's
   io::Mailbox<PoseSample> poses_;
 };
 

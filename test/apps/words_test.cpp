@@ -168,6 +168,11 @@ TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {
   expect_line("pmg_controller --hal can",
               "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
   expect_line("pmg_controller --hal sli", "pmg_controller: --hal: 'sli' isn't known; did you mean sil?");
+  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("sil: hang the robot in a gantry"));
+  expect_line("pmg_controller --hal can --gantry",
+              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+  expect_line("pmg_controller --hal sil --seed many",
+              "pmg_controller: --seed: 'many' isn't a whole number of at least 0");
 }
 
 }  // namespace

@@ -36,6 +36,22 @@ class ExcitationFiles : public testing::Test {
                            ("excitation " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+TEST(Excitation, OfARobotsJointStaysWellWithinItsRangeAndHasTwoDampings) {
+  model::Joint joint;
+  joint.lower_rad = -0.2, joint.upper_rad = 2.0, joint.stand_rad = 0.4, joint.velocity_limit_rad_s = 9.0;
+  joint.kp_Nm_per_rad = 80.0, joint.kd_Nm_s_per_rad = 2.0;
+  const ExcitationLimits limits = excitation_limits(joint, kLimits);
+  EXPECT_DOUBLE_EQ(limits.lower_rad, 0.1) << "half of the way to the nearer end";
+  EXPECT_DOUBLE_EQ(limits.upper_rad, 0.7);
+  EXPECT_DOUBLE_EQ(limits.speed_rad_s, 3.0);
+  EXPECT_EQ(limits.rate_hz, kLimits.rate_hz);
+  joint.lower_rad = -3.0, joint.upper_rad = 3.0;
+  EXPECT_DOUBLE_EQ(excitation_limits(joint).upper_rad, 0.9) << "half a radian at most";
+  const std::vector<ExcitationGains> gains = excitation_gains(joint);
+  EXPECT_EQ(gains.front().kp_Nm_per_rad, 80.0);
+  EXPECT_NE(gains.front().kd_Nm_s_per_rad, gains.back().kd_Nm_s_per_rad);
+}
+
 TEST(Excitation, StaysWithinItsLimitsAndBeginsAndEndsAtRest) {
   const Excitation excitation = make_excitation(kLimits, kGains, 2, 1);
   ASSERT_EQ(excitation.trajectories.size(), 5U);

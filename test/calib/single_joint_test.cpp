@@ -7,7 +7,7 @@
 
 #include "calib/mujoco_joint.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "sim/joint_load.hpp"
+#include "model/hanging_load.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
@@ -138,7 +138,7 @@ TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
     model::RobotState state;
     for (int step = 0; step < 1000; ++step) world.step(command);  // comes to rest
 
-    const sim::HangingLoad load = sim::hanging_load(z1(), name);
+    const model::HangingLoad load = model::hanging_load(z1(), name);
     bench::Bench bench = test::pd_bench(true);
     bench.sample_rate_hz = 500.0;
     bench::BenchRun run;

@@ -166,6 +166,8 @@ TEST(Excitation, IsRefusedWhenTheJointMayNot) {
         with([](auto& p) { p.runs.clear(); }), with([](auto& p) { p.joint = 99; })}) {
     EXPECT_THROW(check(bad, robot), std::invalid_argument);
   }
+  EXPECT_THROW(check(plan(robot), robot, {.max_kp_Nm_per_rad = 50.0}), std::invalid_argument)
+      << "the guard in force would clamp them";
 }
 
 }  // namespace

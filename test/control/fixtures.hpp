@@ -17,7 +17,6 @@
 #include "model/leg_kinematics.hpp"
 #include "model/robot_model.hpp"
 #include "model/robots.hpp"
-#include "sil/plant.hpp"
 
 namespace pmg::test {
 
@@ -99,19 +98,6 @@ class IdealBus final : public hal::Hal {
  private:
   LoadedFeet feet_;
   model::RobotState state_;
-};
-
-/// A plant whose truth is whatever a test wants.
-class ScriptedPlant final : public sil::Plant {
- public:
-  model::GroundTruth truth() const noexcept override { return value; }
-  bool diverged() const noexcept override { return false; }
-  void set_hoist(double lift_m, double engaged) noexcept override {
-    lift = lift_m;
-    hold = engaged;
-  }
-  model::GroundTruth value;
-  double lift = 0.0, hold = 0.0;
 };
 
 /// Follows the reference until told to break.

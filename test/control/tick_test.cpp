@@ -210,6 +210,28 @@ TEST(Tick, RefusesGainsThatDoNotFitTheRobot) {
   expect_refusal(n, std::nan(""), 0.0);
 }
 
+TEST(Tick, GainsAreCheckedAgainstTheGuardInForce) {
+  const model::RobotModel& robot = test::z1();
+  const Eigen::Index n = robot.joint_index.size();
+  const auto make = [&](double kp, double max_kp) {
+    auto policy = std::make_unique<test::BreakablePolicy>();
+    policy->own_gains = policy::DriveGains{JointVector::Constant(n, kp), JointVector::Constant(n, 2.0)};
+    TickOptions options = tick_options(robot);
+    options.guard.max_kp_Nm_per_rad = max_kp;
+    io::SimulationClock clock;
+    return Tick(robot, test::clips(robot), std::move(policy), clock, options).guard().max_kp_Nm_per_rad;
+  };
+  EXPECT_EQ(make(90.0, 100.0), 100.0);
+  EXPECT_THROW(make(90.0, 80.0), std::invalid_argument) << "that guard would clamp them in silence";
+  EXPECT_EQ(make(2500.0, 3000.0), 3000.0) << "drives that take more than the default";
+  TickOptions weak = tick_options(robot);
+  weak.guard.max_kp_Nm_per_rad = 1.0;
+  const io::SimulationClock clock;
+  EXPECT_THROW(Tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock, weak),
+               std::invalid_argument)
+      << "robot.yaml's gains";
+}
+
 TEST(Tick, APolicyForgetsItsHistoryOnEveryEntryIntoStand) {
   test::DrivenTick driven(test::z1());
   driven.request.mode = Mode::kWalk;

@@ -90,7 +90,8 @@ int run(const Arguments& arguments) {
     const hidden::Score score = hidden::score(nlohmann::json::parse(stream));
     std::cout << fmt::format("{:3} {:8} planted {}; said {} ({:.1f} s)", seed, score.kind,
                              score.planted.empty() ? "nothing" : score.planted, score.said, score.seconds)
-              << '\n' << std::flush;
+              << '\n'
+              << std::flush;
   }
   return kOk;
 }

@@ -2,6 +2,7 @@
 
 Checks every CRC, reads once through the index and once straight through, and each message against its schema's types.
 """
+
 import json
 import sys
 
@@ -42,5 +43,6 @@ statistics = summary.statistics
 indexed = {summary.channels[i].topic: n for i, n in statistics.channel_message_counts.items()}
 assert indexed == {name: topic["count"] for name, topic in topics.items()}
 assert straight == statistics.message_count
-print(json.dumps({"topics": topics, "chunks": statistics.chunk_count, "start_ns": statistics.message_start_time,
-                  "end_ns": statistics.message_end_time}))
+print(
+    json.dumps({"topics": topics, "chunks": statistics.chunk_count, "start_ns": statistics.message_start_time, "end_ns": statistics.message_end_time})
+)

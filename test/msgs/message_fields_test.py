@@ -1,4 +1,5 @@
 """The members of a message are listed once, in its .lcm file: what message_fields.py makes of it, and what it refuses."""
+
 import pathlib
 import subprocess
 import sys
@@ -54,13 +55,18 @@ class MessageFields(unittest.TestCase):
 
     def test_a_length_is_known_as_one(self):
         members = self.members("  int32_t count;\n  double value[ count ];\n  int32_t other;")
-        self.assertEqual([(m.name, m.length, m.is_length) for m in members],
-                         [("count", "", True), ("value", "count", False), ("other", "", False)])
+        self.assertEqual([(m.name, m.length, m.is_length) for m in members], [("count", "", True), ("value", "count", False), ("other", "", False)])
 
     def test_names_of_elements_are_taken_only_when_there_are_as_many(self):
-        for comment, names in (("[left, right] foot", ["left", "right"]), ("[0, 1) each", []), ("[m/s]", []), ("[x, y, z]", []),
-                               ("[m/s] of [front, back]", ["front", "back"]), ("left, right", [])):
-            member, = self.members(f"  double value[2];  // {comment}")
+        for comment, names in (
+            ("[left, right] foot", ["left", "right"]),
+            ("[0, 1) each", []),
+            ("[m/s]", []),
+            ("[x, y, z]", []),
+            ("[m/s] of [front, back]", ["front", "back"]),
+            ("left, right", []),
+        ):
+            (member,) = self.members(f"  double value[2];  // {comment}")
             self.assertEqual(member.elements(), names, comment)
 
     def test_a_comment_may_hold_quotes(self):
@@ -69,8 +75,10 @@ class MessageFields(unittest.TestCase):
         self.assertIn(r'"\"none\": \\no policy"', out.read_text())
 
     def test_what_has_no_columns_is_refused_in_one_line(self):
-        for text, said in (("  double a[2][3];", ":5: a has 2 dimensions; expected one at most"),
-                           ("  int32_t n;\n  pmg_msgs.part_t part[n];", ":6: part is an array of messages; expected elements of a plain type")):
+        for text, said in (
+            ("  double a[2][3];", ":5: a has 2 dimensions; expected one at most"),
+            ("  int32_t n;\n  pmg_msgs.part_t part[n];", ":6: part is an array of messages; expected elements of a plain type"),
+        ):
             run, out = self.run_on(text)
             self.assertEqual((run.returncode, run.stderr.count("\n")), (2, 1), run.stderr)
             self.assertTrue(run.stderr.startswith("message_fields.py: "), run.stderr)

@@ -14,7 +14,7 @@ namespace pmg::ops {
 namespace {
 
 using control::Mode;
-using runtime::CraneState;
+using hal::CraneState;
 using testing::HasSubstr;
 
 constexpr double kStep_s = 0.01;
@@ -232,7 +232,7 @@ TEST_F(KeyboardTest, LettingGoBringsItToRestAndFreesItForOthers) {
 }
 
 TEST_F(KeyboardTest, OnAHoistItStandsIsSetDownAndOnlyThenWalks) {
-  runtime::HoistLine hoist;
+  hal::HoistLine hoist;
   robot_.comms.work(&hoist);
   run(0.3);
   driver_.press(Key::kForwards, false);
@@ -249,7 +249,7 @@ TEST_F(KeyboardTest, OnAHoistItStandsIsSetDownAndOnlyThenWalks) {
 }
 
 TEST_F(KeyboardTest, ALiftedRobotStaysUpUntilItIsSetDownOrStandsUpAnew) {
-  runtime::HoistLine hoist;
+  hal::HoistLine hoist;
   hoist.show(CraneState::kFree);
   robot_.comms.work(&hoist);
   walk();

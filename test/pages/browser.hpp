@@ -41,7 +41,8 @@ inline std::string document_in_browser(const std::string& browser, std::string h
   std::string document;
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   char buffer[65536];
-  for (std::size_t n = 0; pipe && (n = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;) document.append(buffer, n);
+  for (std::size_t n = 0; pipe && (n = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;)
+    document.append(buffer, n);
   fs::remove_all(folder);
   return document;
 }

@@ -31,6 +31,7 @@ class CommsTest : public testing::Test {
          {"ACK", "STATUS", "STATE", "REFERENCE", "MOTOR_COMMAND", "TIMING", "FAULT", "ROBOT_INFO", "LINK"}) {
       link_.subscribe(channel, [this, channel](io::Bytes) { ++heard_[channel]; });
     }
+    link_.subscribe("TIMING", [this](io::Bytes bytes) { timing_ = *io::decode_message<pmg_msgs::timing_t>(bytes); });
     link_.subscribe("ACK", [this](io::Bytes bytes) { ack_ = *io::decode_message<pmg_msgs::ack_t>(bytes); });
     link_.subscribe("LINK", [this](io::Bytes bytes) { counts_ = *io::decode_message<pmg_msgs::link_t>(bytes); });
     link_.subscribe("STATUS", [this](io::Bytes bytes) { status_ = *io::decode_message<pmg_msgs::status_t>(bytes); });
@@ -76,6 +77,7 @@ class CommsTest : public testing::Test {
   std::map<std::string, int> heard_;
   std::vector<std::string> warnings_;
   pmg_msgs::ack_t ack_;
+  pmg_msgs::timing_t timing_{};
   pmg_msgs::link_t counts_;
   pmg_msgs::status_t status_;
 };
@@ -107,6 +109,16 @@ TEST_F(CommsTest, EveryAnswerIsSent) {
   EXPECT_EQ(ack_.session, 5);
   EXPECT_EQ(ack_.sequence, 4);
   EXPECT_EQ(ack_.mode, pmg_msgs::mode_t::DAMPING);
+}
+
+TEST_F(CommsTest, AnswersThatFindTheQueueFullAreCountedAndTheCountIsPublished) {
+  constexpr std::size_t kQueue = 64, kTicks = kQueue / control::kMaxRequests + 1;
+  record_.result.ack_count = control::kMaxRequests;
+  for (std::size_t k = 0; k < kTicks; ++k) outbox_.put(record_);
+  record_.result.ack_count = 0;
+  tick();
+  EXPECT_EQ(heard_["ACK"], static_cast<int>(kQueue));
+  EXPECT_EQ(timing_.dropped_acks, static_cast<std::int64_t>(control::kMaxRequests));
 }
 
 TEST_F(CommsTest, AFaultIsToldOnceHoweverLongItIsLatched) {

@@ -73,7 +73,7 @@ TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
   NetworkOperator human(link);
   Recorder recorder(run.controller.outbox(), test::z1(), info, run.clock, {.directory = folder_}, [](const auto&) {});
   recorder.after_record = [&](const control::TickRecord& record) {
-    const sil::TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
+    const hal::TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
   };
   run.controller.start(

@@ -52,8 +52,8 @@ TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
   EXPECT_GT(run.bus.last_kd_sum, 0.0);
   EXPECT_EQ(modes.front(), control::Mode::kPassive);
   EXPECT_EQ(modes.back(), control::Mode::kDamping);
-  EXPECT_EQ(run.controller.outbox().dropped_records, 0);
-  EXPECT_EQ(run.controller.outbox().dropped_bus_cycles, 0);
+  EXPECT_EQ(run.controller.outbox().dropped().records, 0);
+  EXPECT_EQ(run.controller.outbox().dropped().bus_cycles, 0);
   EXPECT_EQ(bus_cycles, run.controller.bus_statistics().cycles());
   ASSERT_EQ(static_cast<std::int64_t>(indices.size()), run.controller.control_statistics().cycles());
   for (std::size_t i = 1; i < indices.size(); ++i) ASSERT_EQ(indices[i], indices[i - 1] + 1);
@@ -112,6 +112,18 @@ TEST(Controller, AThrowInAnOrdinaryThreadDampsAndIsTold) {
   EXPECT_TRUE(eventually([&] { return !run.controller.failure().empty(); }));
   EXPECT_EQ(run.controller.failure(), "thread recorder: no paper");
   EXPECT_TRUE(run.controller.stop());
+}
+
+TEST(Controller, TheBusGuardHasTheTicksOptions) {
+  const model::RobotModel& robot = test::z1();
+  const io::WallClock clock;
+  control::TickOptions options = control::tick_options(robot);
+  options.guard = {.hold_cycles = 7, .max_kp_Nm_per_rad = 500.0, .max_kd_Nm_s_per_rad = 50.0};
+  control::Tick tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock, options);
+  test::IdealBus bus(robot);
+  const Controller controller(robot, bus, tick, {.realtime = false});
+  EXPECT_EQ(controller.bus_cycle().guard().options().hold_cycles, 7);
+  EXPECT_EQ(controller.bus_cycle().guard().options().max_kp_Nm_per_rad, 500.0);
 }
 
 TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {

@@ -32,7 +32,7 @@ class RecordSource {
     for (int cycle = 4; cycle >= 0; --cycle) {
       const std::int64_t planned_ns = clock.now_ns() - 2'000'000 * (cycle + 1);
       const control::CycleTiming timing{planned_ns, planned_ns + 20'000 + 1000 * cycle, planned_ns + 150'000, missed};
-      if (!outbox.bus_cycles.push(timing)) ++outbox.dropped_bus_cycles;
+      outbox.put(timing);
     }
     const std::int64_t now_ns = clock.now_ns();
     ++record_.tick;
@@ -42,7 +42,7 @@ class RecordSource {
     record_.drives[0].received_ns = record_.requests[0].received_ns = now_ns;
     record_.request_count = record_.tick == 0 ? 1 : 0;
     record_.timing = {now_ns - 30'000, now_ns, now_ns + 250'000, 0};
-    if (!outbox.records.push(record_)) ++outbox.dropped_records;
+    outbox.put(record_);
   }
   void ticks(int count, control::ControllerOutbox& outbox) {
     for (int k = 0; k < count; ++k) tick(outbox);

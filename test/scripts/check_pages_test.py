@@ -1,4 +1,5 @@
 """scripts/check-pages on small pages: what is typed, in which order, and what makes it fail."""
+
 import pathlib
 import shutil
 import subprocess
@@ -26,8 +27,9 @@ class Pages(unittest.TestCase):
     def check(self, *blocks):
         """(exit code, all that it says) on a page of these fences."""
         (self.root / "page.md").write_text("\n\ntext\n\n".join(block if block.startswith("`") else f"```\n{block}\n```" for block in blocks) + "\n")
-        run = subprocess.run([self.root / "scripts/check-pages", "--here", "page.md"], text=True, timeout=120,
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        run = subprocess.run(
+            [self.root / "scripts/check-pages", "--here", "page.md"], text=True, timeout=120, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
         return run.returncode, run.stdout
 
     def expect(self, code, words, *blocks):
@@ -37,8 +39,13 @@ class Pages(unittest.TestCase):
         return said
 
     def test_commands_are_typed_in_the_pages_order_from_the_root_into_a_clean_folder(self):
-        self.expect(0, "4 commands of 1 pages", "test -f page.md && mkdir out\necho one > out/order",
-                    "echo two >> out/order", "test \"$(cat out/order | tr '\\n' ' ')\" = 'one two '")
+        self.expect(
+            0,
+            "4 commands of 1 pages",
+            "test -f page.md && mkdir out\necho one > out/order",
+            "echo two >> out/order",
+            "test \"$(cat out/order | tr '\\n' ' ')\" = 'one two '",
+        )
 
     def test_a_typing_error_fails(self):
         self.expect(1, "no such program", "build/release/bin/pmg_sill --robot z1")
@@ -71,13 +78,14 @@ class Pages(unittest.TestCase):
 
     def test_terminals_side_by_side_run_until_the_last_has_ended(self):
         waits = "mkfifo out/pipe; cat out/pipe"
-        self.expect(0, "3 commands", "mkdir out",
-                    "# (a terminal each)\nsh -c 'trap \"exit 130\" INT; echo up; while :; do sleep 0.1; done'\necho last")
+        self.expect(
+            0, "3 commands", "mkdir out", "# (a terminal each)\nsh -c 'trap \"exit 130\" INT; echo up; while :; do sleep 0.1; done'\necho last"
+        )
         self.expect(1, "expected 0 or 130", "mkdir out", "# (a terminal each)\nsh -c 'echo up; exit 1'\necho last")
         self.expect(1, "ended with 1", "mkdir out", f"# (a terminal each)\nsh -c 'echo up; {waits}'\nfalse")
 
     def test_no_window_opens_and_no_other_robot_is_heard(self):
-        self.expect(0, "1 commands", "test -z \"$DISPLAY\" && test -n \"$LCM_DEFAULT_URL\"")
+        self.expect(0, "1 commands", 'test -z "$DISPLAY" && test -n "$LCM_DEFAULT_URL"')
 
     def test_other_languages_are_shown_only(self):
         self.expect(0, "0 commands", "```yaml\nfalse: 1\n```", "```text\nfalse\n```")

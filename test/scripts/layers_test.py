@@ -1,4 +1,5 @@
 """Every room sees what docs/explanation/architecture.md lets it see: its includes and its CMake links hold to the table of that page."""
+
 import pathlib
 import re
 import unittest
@@ -84,9 +85,13 @@ class Layers(unittest.TestCase):
 
     def test_a_breach_is_found(self):
         tick = pathlib.Path("src/control/tick.cpp")
-        for line, used in (('#include "sim/world.hpp"', "src/sim"), ("#include <sim/world.hpp>", "src/sim"),
-                           ('  # include "sim/world.hpp"', "src/sim"), ('#include "../sim/world.hpp"', "../sim/world.hpp"),
-                           ('#include "nowhere/a.hpp"', "src/nowhere")):
+        for line, used in (
+            ('#include "sim/world.hpp"', "src/sim"),
+            ("#include <sim/world.hpp>", "src/sim"),
+            ('  # include "sim/world.hpp"', "src/sim"),
+            ('#include "../sim/world.hpp"', "../sim/world.hpp"),
+            ('#include "nowhere/a.hpp"', "src/nowhere"),
+        ):
             text = f'#include "control/fault.hpp"\n#include <vector>\n{line}\n'
             self.assertEqual(breaches("src/control", self.sees, {tick: text}), [f"src/control/tick.cpp uses {used}"])
         build = {pathlib.Path("src/model/CMakeLists.txt"): "pmg_add_room(model LINK pmg_core pmg_room_sil)"}

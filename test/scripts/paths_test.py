@@ -1,5 +1,6 @@
 """What the pages name is there: relative links with their anchors, images, paths and source files in code, builds. So is every page of
 docs/ that a source file names."""
+
 import pathlib
 import re
 import unittest
@@ -40,10 +41,12 @@ def wrong_names(page, text, source_names):
     links = [link for link in re.findall(r"\]\(([^)\s]+)\)", prose) if "://" not in link]
     code = " ".join(FENCE.findall(text) + re.findall(r"`([^`\n]+)`", prose))
     words = set(re.split(r"[\s=`'\"]+", code))
-    return sorted([link for link in links if not link_is_there(page, link)] +
-                  [word for word in words if SOURCE_NAME.fullmatch(word) and word not in source_names] +
-                  [word for word in words if PATH.fullmatch(word) and not path_is_there(page, word)] +
-                  [f"build/{name}" for name in re.findall(r"\bbuild/(\w+)/", text) if name not in BUILDS])
+    return sorted(
+        [link for link in links if not link_is_there(page, link)]
+        + [word for word in words if SOURCE_NAME.fullmatch(word) and word not in source_names]
+        + [word for word in words if PATH.fullmatch(word) and not path_is_there(page, word)]
+        + [f"build/{name}" for name in re.findall(r"\bbuild/(\w+)/", text) if name not in BUILDS]
+    )
 
 
 class Names(unittest.TestCase):
@@ -73,11 +76,25 @@ class Names(unittest.TestCase):
 
     def test_a_name_that_is_not_there_is_found(self):
         page = "docs/how-to/operation.md"
-        for text in ("[a](nowhere.md)", "[a](operation.md#nowhere)", "![a](../images/nowhere.png)", "`src/runtime/nowhere.*`",
-                     "`nowhere_test.cpp`", "```\npmg_sil --scenario config/scenarios/nowhere.yaml\n```", "`a=1 build/bin/pmg_sil`"):
+        for text in (
+            "[a](nowhere.md)",
+            "[a](operation.md#nowhere)",
+            "![a](../images/nowhere.png)",
+            "`src/runtime/nowhere.*`",
+            "`nowhere_test.cpp`",
+            "```\npmg_sil --scenario config/scenarios/nowhere.yaml\n```",
+            "`a=1 build/bin/pmg_sil`",
+        ):
             self.assertEqual(len(self.wrong(page, text)), 1, text)
-        for text in ("[a](operation.md#logs)", "`src/control/supervisor.*`", "`supervisor_test.cpp`", "`out/why/report.html`",
-                     "`runs/*.csv`", "`build/release/bin/pmg_sil`", "[a](https://example.org/nowhere.md)"):
+        for text in (
+            "[a](operation.md#logs)",
+            "`src/control/supervisor.*`",
+            "`supervisor_test.cpp`",
+            "`out/why/report.html`",
+            "`runs/*.csv`",
+            "`build/release/bin/pmg_sil`",
+            "[a](https://example.org/nowhere.md)",
+        ):
             self.assertEqual(self.wrong(page, text), [], text)
 
 

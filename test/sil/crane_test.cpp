@@ -14,7 +14,7 @@ namespace pmg::sil {
 namespace {
 
 constexpr double kStep_s = 0.002;
-using State = runtime::CraneState;
+using State = hal::CraneState;
 
 void raise_for(Crane& crane, const CraneView& view, double seconds) {
   for (double t_s = 0.0; t_s < seconds; t_s += kStep_s) crane.step(view, kStep_s);
@@ -98,20 +98,21 @@ TEST(Crane, ARobotThatIsToStayUpIsNotSetDown) {
 }
 
 TEST(HoistLine, StandingUpAnewEndsAWishToStayUp) {
-  runtime::HoistLine line;
-  line.see(control::Mode::kWalk, false);
+  hal::HoistLine line;
+  const auto see = [&](control::Mode mode, bool entering) { line.see(control::upright(mode), entering); };
+  see(control::Mode::kWalk, false);
   line.ask(true);
-  line.see(control::Mode::kWalk, false);
-  line.see(control::Mode::kStand, false);
+  see(control::Mode::kWalk, false);
+  see(control::Mode::kStand, false);
   EXPECT_TRUE(line.stays_up()) << "from Walk to Stand is no standing up";
-  line.see(control::Mode::kFault, false);
-  line.see(control::Mode::kDamping, false);
+  see(control::Mode::kFault, false);
+  see(control::Mode::kDamping, false);
   EXPECT_TRUE(line.stays_up());
   EXPECT_FALSE(line.stands());
-  line.see(control::Mode::kStand, true);
+  see(control::Mode::kStand, true);
   EXPECT_FALSE(line.stays_up());
   EXPECT_FALSE(line.stands()) << "the ramp";
-  line.see(control::Mode::kStand, false);
+  see(control::Mode::kStand, false);
   EXPECT_TRUE(line.stands());
 }
 
@@ -133,7 +134,7 @@ class HoistGateTest : public testing::Test {
     message.request = up ? hoist_t::LIFT : hoist_t::LOWER;
     return message;
   }
-  runtime::HoistLine line_;
+  hal::HoistLine line_;
   runtime::HoistGate gate_{"biped"};
 };
 

@@ -38,7 +38,7 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
     drive.command[kVx] = vx_m_s;
     inbox_.put(drive);
     cycle_->run(clock_.now_ns());
-    robot_.hoist_line()->see(result().mode, result().entering);
+    robot_.hoist_line()->see(control::upright(result().mode), result().entering);
     for (int k = 0; k < 5; ++k) {
       clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
       bus_->run();
@@ -68,8 +68,8 @@ class HoistedRobot : public testing::TestWithParam<std::uint64_t> {
   }
   void stand_on_its_own() {
     ask(control::Mode::kStand);
-    until([&] { return robot_.hoist_line()->state() == runtime::CraneState::kFree; }, 12.0);
-    ASSERT_EQ(robot_.hoist_line()->state(), runtime::CraneState::kFree);
+    until([&] { return robot_.hoist_line()->state() == hal::CraneState::kFree; }, 12.0);
+    ASSERT_EQ(robot_.hoist_line()->state(), hal::CraneState::kFree);
     run(1.0);
     ASSERT_EQ(result().mode, control::Mode::kStand) << describe(result().fault, loaded_.robot);
     EXPECT_LT(lean_rad(), 0.15);
@@ -108,7 +108,7 @@ TEST_P(HoistedRobot, AfterAFallItIsCaughtLiftedAndStandsAnew) {
   ASSERT_LT(world_.torso_height_m(), -0.3) << "it lies";
   fastest_joint_rad_s_ = 0.0;
   robot_.hoist_line()->ask(true);
-  until([&] { return robot_.hoist_line()->state() == runtime::CraneState::kHolding; }, 15.0);
+  until([&] { return robot_.hoist_line()->state() == hal::CraneState::kHolding; }, 15.0);
   run(2.0);
   EXPECT_GT(world_.torso_height_m(), 0.1);
   EXPECT_LT(lean_rad(), 0.1) << "upright";
@@ -125,10 +125,10 @@ TEST_P(HoistedRobot, LiftedInMidWalkAndSetDownItIsOnItsFeet) {
   robot_.hoist_line()->ask(true);
   run(1.0);  // meanwhile the driving source lets go
   ask(control::Mode::kStand);
-  until([&] { return robot_.hoist_line()->state() == runtime::CraneState::kHolding; }, 10.0);
+  until([&] { return robot_.hoist_line()->state() == hal::CraneState::kHolding; }, 10.0);
   ASSERT_EQ(result().mode, control::Mode::kStand) << describe(result().fault, loaded_.robot);
   robot_.hoist_line()->ask(false);
-  until([&] { return robot_.hoist_line()->state() == runtime::CraneState::kFree; }, 10.0);
+  until([&] { return robot_.hoist_line()->state() == hal::CraneState::kFree; }, 10.0);
   run(2.0);
   EXPECT_EQ(result().mode, control::Mode::kStand) << describe(result().fault, loaded_.robot);
   EXPECT_GT(world_.torso_height_m(), -0.1);

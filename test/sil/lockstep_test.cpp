@@ -12,6 +12,7 @@
 
 #include "control/fixtures.hpp"
 #include "io/log_reader.hpp"
+#include "sil/scripted_plant.hpp"
 #include "sil/sil_hal.hpp"
 #include "sil/summary.hpp"
 
@@ -63,6 +64,30 @@ class LockstepRun : public testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / ("pmg_lockstep_test_" + std::to_string(getpid()));
 };
+
+TEST_F(LockstepRun, HoldingACommandForATickTakesAsLongAsATick) {
+  sim::World world(test::biped(), {});
+  model::JointCommand command;
+  command.q = test::biped().q_stand();
+  command.dq = command.kp = command.kd = command.tau_ff = JointVector::Zero(test::biped().joint_index.size());
+  const double start_s = world.time_s();
+  hold_for_one_tick(world, command);
+  EXPECT_NEAR(world.time_s() - start_s, control::tick_options(test::biped()).dt_s, 1e-12) << "rounding of five sums";
+}
+
+TEST_F(LockstepRun, TheBusGuardHasTheTicksOptions) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  control::TickOptions options = control::tick_options(robot);
+  options.guard.hold_cycles = 2;  // fewer than a tick has
+  control::Tick tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock_, options);
+  const Scenario scenario = walk(0.5);
+  const RunOutcome outcome = Lockstep(robot, bus, plant, tick, scenario, nullptr, {}).run();
+  ASSERT_EQ(outcome.faults.size(), 1U);
+  EXPECT_EQ(outcome.faults[0].code, control::FaultCode::kControlFrozen);
+}
 
 TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
   const model::RobotModel& robot = test::z1();

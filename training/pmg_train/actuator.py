@@ -9,19 +9,46 @@ import torch
 
 # The neutral value of each parameter, by group and key of motor.yaml.
 NEUTRAL = {
-    "command.delay_s": 0.0, "command.rate_limit_rad_s": math.inf, "command.hold_s": 0.0,
-    "drive.kp_scale": 1.0, "drive.kd_scale": 1.0, "drive.limit": math.inf, "drive.dead_band_rad": 0.0,
-    "drive.torque_per_unit_Nm": 1.0, "drive.back_emf_s_per_rad": 0.0, "drive.supply_sag_per_Nm": 0.0,
-    "drive.brake_when_disabled": 0.0, "drive.stall_torque_Nm": math.inf, "drive.no_load_rad_s": math.inf,
-    "sensor.zero_offset_rad": 0.0, "sensor.hysteresis_rad": 0.0, "sensor.eccentricity_rad": 0.0, "sensor.eccentricity_phase_rad": 0.0,
-    "sensor.quantum_rad": 0.0, "sensor.lag_s": 0.0, "sensor.velocity_lag_s": 0.0,
-    "transmission.armature_kg_m2": 0.0, "transmission.stiffness_Nm_per_rad": math.inf,
-    "transmission.damping_Nm_s_per_rad": 0.0, "transmission.backlash_rad": 0.0,
-    "friction.viscous_Nm_s_per_rad": 0.0, "friction.coulomb_Nm": 0.0, "friction.stribeck_Nm": 0.0,
-    "friction.stribeck_rad_s": 0.1, "friction.load_driving": 0.0, "friction.load_backdriving": 0.0,
-    "friction.asymmetry": 0.0, "friction.presliding_rad": 1e-3,
-    "thermal.friction_per_K": 0.0, "thermal.torque_per_K": 0.0, "thermal.friction_per_Nm2_s": 0.0, "thermal.cooling_s": math.inf,
-    "ripple.amplitude_Nm": 0.0, "ripple.order": 1.0, "ripple.phase_rad": 0.0, "ripple.offset_Nm": 0.0,
+    "command.delay_s": 0.0,
+    "command.rate_limit_rad_s": math.inf,
+    "command.hold_s": 0.0,
+    "drive.kp_scale": 1.0,
+    "drive.kd_scale": 1.0,
+    "drive.limit": math.inf,
+    "drive.dead_band_rad": 0.0,
+    "drive.torque_per_unit_Nm": 1.0,
+    "drive.back_emf_s_per_rad": 0.0,
+    "drive.supply_sag_per_Nm": 0.0,
+    "drive.brake_when_disabled": 0.0,
+    "drive.stall_torque_Nm": math.inf,
+    "drive.no_load_rad_s": math.inf,
+    "sensor.zero_offset_rad": 0.0,
+    "sensor.hysteresis_rad": 0.0,
+    "sensor.eccentricity_rad": 0.0,
+    "sensor.eccentricity_phase_rad": 0.0,
+    "sensor.quantum_rad": 0.0,
+    "sensor.lag_s": 0.0,
+    "sensor.velocity_lag_s": 0.0,
+    "transmission.armature_kg_m2": 0.0,
+    "transmission.stiffness_Nm_per_rad": math.inf,
+    "transmission.damping_Nm_s_per_rad": 0.0,
+    "transmission.backlash_rad": 0.0,
+    "friction.viscous_Nm_s_per_rad": 0.0,
+    "friction.coulomb_Nm": 0.0,
+    "friction.stribeck_Nm": 0.0,
+    "friction.stribeck_rad_s": 0.1,
+    "friction.load_driving": 0.0,
+    "friction.load_backdriving": 0.0,
+    "friction.asymmetry": 0.0,
+    "friction.presliding_rad": 1e-3,
+    "thermal.friction_per_K": 0.0,
+    "thermal.torque_per_K": 0.0,
+    "thermal.friction_per_Nm2_s": 0.0,
+    "thermal.cooling_s": math.inf,
+    "ripple.amplitude_Nm": 0.0,
+    "ripple.order": 1.0,
+    "ripple.phase_rad": 0.0,
+    "ripple.offset_Nm": 0.0,
 }
 REFERENCE_TEMPERATURE_C = 25.0  # the parameters of friction and torque hold at this temperature
 
@@ -70,14 +97,42 @@ class ActuatorModel:
             put(state, reading)
         put(self.held_for, (self.p["command.hold_s"] - self.step_s).expand_as(q))
         put(self.rotor, q)
-        for state in (self.held_output, self.lagged_speed, self.bristle, self.load, self.rotor_speed, self.given_torque,
-                      self.given_slope, self.given_at, self.heat, self.driven):
+        for state in (
+            self.held_output,
+            self.lagged_speed,
+            self.bristle,
+            self.load,
+            self.rotor_speed,
+            self.given_torque,
+            self.given_slope,
+            self.given_at,
+            self.heat,
+            self.driven,
+        ):
             put(state, torch.zeros_like(q))
 
     def momentary(self) -> dict[str, torch.Tensor]:
         """The whole state, which changes from step to step."""
-        names = ("past", "told_before", "command", "held_for", "held_output", "lagged", "sensed_before", "lagged_speed", "sensor_at",
-                 "heat", "driven", "bristle", "load", "rotor", "rotor_speed", "given_torque", "given_slope", "given_at")
+        names = (
+            "past",
+            "told_before",
+            "command",
+            "held_for",
+            "held_output",
+            "lagged",
+            "sensed_before",
+            "lagged_speed",
+            "sensor_at",
+            "heat",
+            "driven",
+            "bristle",
+            "load",
+            "rotor",
+            "rotor_speed",
+            "given_torque",
+            "given_slope",
+            "given_at",
+        )
         return {name: getattr(self, name) for name in names}
 
     def reading(self, q: torch.Tensor) -> torch.Tensor:
@@ -92,8 +147,9 @@ class ActuatorModel:
         half = 0.5 * self.p["sensor.hysteresis_rad"]
         return torch.maximum(torch.minimum(self.sensor_at, q + half), q - half)
 
-    def step(self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True,
-             temperature_C=REFERENCE_TEMPERATURE_C) -> tuple[torch.Tensor, torch.Tensor]:
+    def step(
+        self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True, temperature_C=REFERENCE_TEMPERATURE_C
+    ) -> tuple[torch.Tensor, torch.Tensor]:
         """Torque [Nm] and its slope in the joint's speed [Nm s/rad] during the step that begins at (q, dq)."""
         p, h = self.p, self.step_s
         motor_speed, motor_angle = torch.where(self.elastic, self.rotor_speed, dq), torch.where(self.elastic, self.rotor, q)
@@ -119,9 +175,11 @@ class ActuatorModel:
     def _warm(self, temperature_C) -> tuple[torch.Tensor, torch.Tensor]:
         """The factors of friction and of torque per unit at this temperature and heat."""
         p, above = self.p, temperature_C - REFERENCE_TEMPERATURE_C
-        self.heat.add_(self.step_s * (self.driven ** 2 - self.heat / p["thermal.cooling_s"]))
-        return (torch.exp(p["thermal.friction_per_K"] * above + p["thermal.friction_per_Nm2_s"] * self.heat),
-                (1 + p["thermal.torque_per_K"] * above).clamp(min=0))
+        self.heat.add_(self.step_s * (self.driven**2 - self.heat / p["thermal.cooling_s"]))
+        return (
+            torch.exp(p["thermal.friction_per_K"] * above + p["thermal.friction_per_Nm2_s"] * self.heat),
+            (1 + p["thermal.torque_per_K"] * above).clamp(min=0),
+        )
 
     def _told(self, *now) -> torch.Tensor:
         """The delayed command, interpolated linearly between two steps."""
@@ -187,14 +245,13 @@ class ActuatorModel:
         available = torch.minimum(line.clamp(min=0), self.stall)
         too_much = self.torque_speed & (along * torque > available)
         on_slope = (available > 0) & (available < self.stall)
-        return (torch.where(too_much, along * available, torque),
-                torch.where(too_much, torch.where(on_slope, -self.stall / no_load, 0.0), slope))
+        return (torch.where(too_much, along * available, torque), torch.where(too_much, torch.where(on_slope, -self.stall / no_load, 0.0), slope))
 
     def _dry_friction(self, dq: torch.Tensor, factor: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
         bend = self.bristle + self.step_s * dq
         direction = torch.where(bend >= 0, 1.0, -1.0).to(bend.dtype)
-        most = p["friction.coulomb_Nm"] + p["friction.stribeck_Nm"] * torch.exp(-(dq / p["friction.stribeck_rad_s"]) ** 2)
+        most = p["friction.coulomb_Nm"] + p["friction.stribeck_Nm"] * torch.exp(-((dq / p["friction.stribeck_rad_s"]) ** 2))
         share = torch.where(self.load * direction > 0, p["friction.load_driving"], p["friction.load_backdriving"])
         most = (most + share * self.load.abs()) * factor * (1 + p["friction.asymmetry"] * direction)
         slides = bend.abs() >= p["friction.presliding_rad"]
@@ -220,5 +277,4 @@ class ActuatorModel:
         twist = rotor - q + self.step_s * relative
         wound = twist - torch.minimum(torch.maximum(twist, -half_play), half_play)
         grips = wound != 0
-        return (torch.where(grips, self.stiffness * wound + damping * relative, 0.0),
-                torch.where(grips, self.stiffness * self.step_s + damping, 0.0))
+        return (torch.where(grips, self.stiffness * wound + damping * relative, 0.0), torch.where(grips, self.stiffness * self.step_s + damping, 0.0))

@@ -18,8 +18,18 @@ from pmg_train.rotations import roll_pitch_yaw, rotate, rotate_back
 
 
 class Environment:
-    def __init__(self, mjcf: str, pool: ReferencePool, description: dict, fields: dict[str, slice], config: dict,
-                 ranges: dict, worlds: int, device: str, motors: dict[str, dict[str, float]] | None = None):
+    def __init__(
+        self,
+        mjcf: str,
+        pool: ReferencePool,
+        description: dict,
+        fields: dict[str, slice],
+        config: dict,
+        ranges: dict,
+        worlds: int,
+        device: str,
+        motors: dict[str, dict[str, float]] | None = None,
+    ):
         self.config, self.ranges, self.pool, self.n = config, ranges, pool, worlds
         self.tick_s = config["tick_s"]
         model = training_model(mjcf, description, config["gains"], config["physics"])
@@ -122,9 +132,15 @@ class Environment:
         r = torch.rand(n, 4, joints, device=device)
         some = (torch.rand(n, 2, 1, device=device) < upper["share"]) * (torch.rand(n, 2, joints, device=device) < 0.6)
         low, high = upper["frequency_Hz"]
-        sway = torch.stack([(2 * r[:, 0] - 1) * self.upper_amplitude * some[:, 0] * 0.8,
-                            r[:, 1] * self.upper_amplitude * some[:, 1],
-                            low + (high - low) * r[:, 2], 2 * math.pi * r[:, 3]], 1)
+        sway = torch.stack(
+            [
+                (2 * r[:, 0] - 1) * self.upper_amplitude * some[:, 0] * 0.8,
+                r[:, 1] * self.upper_amplitude * some[:, 1],
+                low + (high - low) * r[:, 2],
+                2 * math.pi * r[:, 3],
+            ],
+            1,
+        )
         q_ref = self._reference(row, sway, torch.zeros(n, device=device))
         q = q_ref + 0.03 * torch.randn(n, joints, device=device)
         quat = row[:, f["base_quat_H"]]
@@ -174,15 +190,36 @@ class Environment:
         low, high = self.ranges["kicks"]["every_s"]
         self.kick_in_s.uniform_(low, high)
 
-    MOMENTARY = ("stream", "tick", "row", "time_s", "kick_in_s", "action", "action_1", "action_2", "targets", "q_ref", "sway",
-                 "fresh", "history", "velocity", "asked", "wanted", "previous_dq", "previous_sole", "observation",
-                 "critic_observation")
+    MOMENTARY = (
+        "stream",
+        "tick",
+        "row",
+        "time_s",
+        "kick_in_s",
+        "action",
+        "action_1",
+        "action_2",
+        "targets",
+        "q_ref",
+        "sway",
+        "fresh",
+        "history",
+        "velocity",
+        "asked",
+        "wanted",
+        "previous_dq",
+        "previous_sole",
+        "observation",
+        "critic_observation",
+    )
     MOMENTARY_PHYSICS = ("qpos", "qvel", "warmstart")
 
     def _momentary(self) -> dict[str, torch.Tensor]:
-        return {name: getattr(self, name) for name in self.MOMENTARY} | {
-            name: getattr(self.worlds, name) for name in self.MOMENTARY_PHYSICS} | (
-            self.worlds.motors.momentary() if self.worlds.motors else {})
+        return (
+            {name: getattr(self, name) for name in self.MOMENTARY}
+            | {name: getattr(self.worlds, name) for name in self.MOMENTARY_PHYSICS}
+            | (self.worlds.motors.momentary() if self.worlds.motors else {})
+        )
 
     def state(self) -> dict[str, torch.Tensor]:
         """The whole state, which changes from tick to tick. References and robots follow from the seed."""
@@ -205,7 +242,7 @@ class Environment:
         self.action_1.copy_(self.action)
         self.action.copy_(action.clamp(-4, 4))
         target = self.q_ref.clone()
-        target[:, :self.actions] += self.action_scale * self.action
+        target[:, : self.actions] += self.action_scale * self.action
         # The drive controls its encoder's reading, as in the controller's simulation.
         target = torch.maximum(torch.minimum(target, self.upper), self.lower) - self.robots.encoder_offset
         self.targets.copy_(torch.cat([target[None], self.targets[:-1]], 0))
@@ -270,18 +307,31 @@ class Environment:
         self.previous_sole.copy_(sole)
         leg_q, leg_dq = q[:, :legs], dq[:, :legs]
         m = dict(
-            slow_error=self.velocity - self.asked, fast_error=now - optimised[:, :3],
-            attitude_error=attitude - command[:, 3:5], height_error=height - command[:, 5],
-            q_error=leg_q - self.q_ref[:, :legs], dq_error=leg_dq - self.get("dq_ref")[:, :legs],
-            strictness=self.strictness, leg_weight=self.leg_weight, leg_linear_weight=self.leg_linear_weight,
+            slow_error=self.velocity - self.asked,
+            fast_error=now - optimised[:, :3],
+            attitude_error=attitude - command[:, 3:5],
+            height_error=height - command[:, 5],
+            q_error=leg_q - self.q_ref[:, :legs],
+            dq_error=leg_dq - self.get("dq_ref")[:, :legs],
+            strictness=self.strictness,
+            leg_weight=self.leg_weight,
+            leg_linear_weight=self.leg_linear_weight,
             gain=self.row[:, self.fields["phase"]][:, 2],
-            touching=(torch.nan_to_num(w.sole_force) > 5.0).float(), contact=self.get("contact"),
-            sole_velocity=sole_velocity, sole_tilt=2 * (sole_quat[..., 1] ** 2 + sole_quat[..., 2] ** 2),
-            vertical_velocity=qvel[:, 2] - self.get("base_velocity_H")[:, 2], gyro=qvel[:, 3:6],
-            leg_torque=torch.nan_to_num(w.torque[:, :legs]), leg_effort=self.leg_effort, leg_dq=leg_dq,
-            leg_ddq=(leg_dq - self.previous_dq) / self.tick_s, action=self.action, action_1=self.action_1,
+            touching=(torch.nan_to_num(w.sole_force) > 5.0).float(),
+            contact=self.get("contact"),
+            sole_velocity=sole_velocity,
+            sole_tilt=2 * (sole_quat[..., 1] ** 2 + sole_quat[..., 2] ** 2),
+            vertical_velocity=qvel[:, 2] - self.get("base_velocity_H")[:, 2],
+            gyro=qvel[:, 3:6],
+            leg_torque=torch.nan_to_num(w.torque[:, :legs]),
+            leg_effort=self.leg_effort,
+            leg_dq=leg_dq,
+            leg_ddq=(leg_dq - self.previous_dq) / self.tick_s,
+            action=self.action,
+            action_1=self.action_1,
             action_2=self.action_2,
-            beyond_limits=(leg_q - self.upper[:legs] + 0.03).clamp(min=0) + (self.lower[:legs] + 0.03 - leg_q).clamp(min=0))
+            beyond_limits=(leg_q - self.upper[:legs] + 0.03).clamp(min=0) + (self.lower[:legs] + 0.03 - leg_q).clamp(min=0),
+        )
         self.previous_dq.copy_(leg_dq)
         upright = rotate_back(quat, self.up.expand(self.n, 3))[:, 2]
         fall = self.config["fall"]
@@ -292,14 +342,21 @@ class Environment:
     def _errors(self, m: dict, user: torch.Tensor, attitude: torch.Tensor, height: torch.Tensor) -> dict[str, torch.Tensor]:
         """Errors for the curves. Velocities, attitude and height are against the user's command; rewards use the admissible one."""
         slow, q_error = self.velocity - self.wanted, m["q_error"].abs()
-        errors = dict(velocity=slow[:, :2].norm(dim=1), yaw_rate=slow[:, 2].abs(),
-                      pitch=(attitude[:, 0] - user[:, 3]).abs(), roll=(attitude[:, 1] - user[:, 4]).abs(),
-                      height=(height - user[:, 5]).abs(), velocity_admissible=m["slow_error"][:, :2].norm(dim=1),
-                      yaw_rate_admissible=m["slow_error"][:, 2].abs(), joint=q_error.mean(1))
+        errors = dict(
+            velocity=slow[:, :2].norm(dim=1),
+            yaw_rate=slow[:, 2].abs(),
+            pitch=(attitude[:, 0] - user[:, 3]).abs(),
+            roll=(attitude[:, 1] - user[:, 4]).abs(),
+            height=(height - user[:, 5]).abs(),
+            velocity_admissible=m["slow_error"][:, :2].norm(dim=1),
+            yaw_rate_admissible=m["slow_error"][:, 2].abs(),
+            joint=q_error.mean(1),
+        )
         for kind in dict.fromkeys(self.leg_kinds):
             errors[kind] = torch.stack([q_error[:, i] for i, k in enumerate(self.leg_kinds) if k == kind]).mean(0)
-        return errors | dict(contact=(m["touching"] != m["contact"]).float().mean(1), torque=m["leg_torque"].abs().mean(1),
-                             action=self.action.abs().mean(1))
+        return errors | dict(
+            contact=(m["touching"] != m["contact"]).float().mean(1), torque=m["leg_torque"].abs().mean(1), action=self.action.abs().mean(1)
+        )
 
     # -------------------------------------------------------------------------------------------------- observation
 
@@ -309,8 +366,12 @@ class Environment:
         gyro, gravity, q, dq = true
         shown = w.motors.reading(q) if w.motors else q
         noisy = lambda x, size: x + size * (2 * torch.rand_like(x) - 1)
-        sensed = (noisy(gyro, noise["gyro_rad_s"]), noisy(gravity, noise["gravity_direction"]),
-                  noisy(shown + self.robots.encoder_offset, noise["q_rad"]), noisy(dq, noise["dq_rad_s"]))
+        sensed = (
+            noisy(gyro, noise["gyro_rad_s"]),
+            noisy(gravity, noise["gravity_direction"]),
+            noisy(shown + self.robots.encoder_offset, noise["q_rad"]),
+            noisy(dq, noise["dq_rad_s"]),
+        )
         given = (self.get("optimised"), self.get("command"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
         seen = self.layout.with_history(self.layout.now(*sensed, *given), *sensed, self.action, self.fresh)
         critic = torch.cat([self.layout.now(*true, *given), self._privileged()], 1)
@@ -323,10 +384,26 @@ class Environment:
         feet = w.xpos[:, self.foot_slice]
         relative = rotate_back(quat[:, None].expand(-1, 2, -1), feet - w.qpos[:, None, :3])
         torso_roll, torso_pitch, _ = roll_pitch_yaw(w.xquat[:, self.torso])
-        return torch.cat([velocity, w.qpos[:, 2:3], w.sole_force / 300, (w.sole_force > 5).float(), self.get("contact"),
-                          feet[..., 2], relative.flatten(1), self.velocity, self.asked, self.get("command"),
-                          torso_pitch[:, None], torso_roll[:, None], self.robots.privileged, self.action_1,
-                          w.torque[:, :self.actions] / self.leg_effort], 1)
+        return torch.cat(
+            [
+                velocity,
+                w.qpos[:, 2:3],
+                w.sole_force / 300,
+                (w.sole_force > 5).float(),
+                self.get("contact"),
+                feet[..., 2],
+                relative.flatten(1),
+                self.velocity,
+                self.asked,
+                self.get("command"),
+                torso_pitch[:, None],
+                torso_roll[:, None],
+                self.robots.privileged,
+                self.action_1,
+                w.torque[:, : self.actions] / self.leg_effort,
+            ],
+            1,
+        )
 
 
 def _amplitude(name: str, amplitude: dict) -> float:

@@ -63,12 +63,13 @@ class Conditions:
     payload_kg: float = 0.0
     gain_factor: float = 1.0
     delay_steps: int = 1  # of 2 ms
-    noise: float = 0.5    # share of training's noise
+    noise: float = 0.5  # share of training's noise
 
     @staticmethod
     def draw(random: np.random.Generator) -> "Conditions":
-        return Conditions(random.uniform(0.5, 1.1), random.uniform(-2, 2), random.uniform(0, 0.8),
-                          random.uniform(0.93, 1.07), int(random.integers(0, 8)), 0.5)
+        return Conditions(
+            random.uniform(0.5, 1.1), random.uniform(-2, 2), random.uniform(0, 0.8), random.uniform(0.93, 1.07), int(random.integers(0, 8)), 0.5
+        )
 
 
 class Simulation:
@@ -105,8 +106,7 @@ class Simulation:
         quat = d.qpos[3:7] + 0.0
         quat[1:] += self.c.noise * 0.015 * self.random.uniform(-1, 1, 3)
         quat /= np.linalg.norm(quat)
-        seen = batch.observe(noisy(d.qvel[3:6], 0.2), quat, noisy(d.qpos[7:], 0.01), noisy(d.qvel[6:], 0.75),
-                             self.last_action, self.first)
+        seen = batch.observe(noisy(d.qvel[3:6], 0.2), quat, noisy(d.qpos[7:], 0.01), noisy(d.qvel[6:], 0.75), self.last_action, self.first)
         self.first = False
         self.last_action = self.policy.act(seen)
         target = q_ref.copy()
@@ -197,8 +197,17 @@ def errors(record: Record) -> np.ndarray:
     e = np.stack([vx, vy, state[:, 2]], 1) - user[:, :3]
     slow = moving_average(e)
     attitude, height = state[:, 3:5] - user[:, 3:5], state[:, 5] - user[:, 5]
-    return np.stack([np.linalg.norm(slow[:, :2], axis=1), np.abs(slow[:, 2]), np.abs(attitude[:, 0]),
-                     np.abs(attitude[:, 1]), np.abs(height), np.linalg.norm(e[:, :2], axis=1)], 1)
+    return np.stack(
+        [
+            np.linalg.norm(slow[:, :2], axis=1),
+            np.abs(slow[:, 2]),
+            np.abs(attitude[:, 0]),
+            np.abs(attitude[:, 1]),
+            np.abs(height),
+            np.linalg.norm(e[:, :2], axis=1),
+        ],
+        1,
+    )
 
 
 def joint_table(record: Record, ticks: np.ndarray, names: list[str]) -> dict[str, dict]:
@@ -207,9 +216,13 @@ def joint_table(record: Record, ticks: np.ndarray, names: list[str]) -> dict[str
     for i, name in enumerate(names):
         q, wanted = (np.array(x)[ticks, i] for x in (record.joints, record.reference))
         moves = np.ptp(wanted) > 0.02
-        out[name] = dict(rms=float(np.sqrt(((q - wanted) ** 2).mean())), bias=float((q - wanted).mean()),
-                         range=float(np.ptp(q)), reference_range=float(np.ptp(wanted)),
-                         correlation=float(np.corrcoef(q, wanted)[0, 1]) if moves else float("nan"))
+        out[name] = dict(
+            rms=float(np.sqrt(((q - wanted) ** 2).mean())),
+            bias=float((q - wanted).mean()),
+            range=float(np.ptp(q)),
+            reference_range=float(np.ptp(wanted)),
+            correlation=float(np.corrcoef(q, wanted)[0, 1]) if moves else float("nan"),
+        )
     return out
 
 
@@ -219,17 +232,27 @@ def table(record: Record, scenario, names: list[str]) -> list[dict]:
     rows = []
     for index, (text, _, command) in enumerate(scenario):
         ticks = np.flatnonzero(step == index)
-        settled = ticks[round(SETTLE_S / TICK_S):]
+        settled = ticks[round(SETTLE_S / TICK_S) :]
         if len(settled) == 0:
             continue
         touching = force[settled] > 5
-        rows.append(dict(text=text, command=command.tolist(), lin_vel=e[settled, 0].mean(), yaw_vel=e[settled, 1].mean(),
-                         pitch=e[settled, 2].mean(), roll=e[settled, 3].mean(), height=e[settled, 4].mean(),
-                         mean_height=state[settled, 5].mean(), mean_yaw_rate=state[settled, 2].mean(),
-                         duty=touching.mean(0).tolist(), contact_match=float((touching == (contact[settled] > .5)).mean()),
-                         joint_rms=float(np.sqrt(((np.array(record.joints)[settled, :12]
-                                                   - np.array(record.reference)[settled, :12]) ** 2).mean())),
-                         joints=joint_table(record, settled, names)))
+        rows.append(
+            dict(
+                text=text,
+                command=command.tolist(),
+                lin_vel=e[settled, 0].mean(),
+                yaw_vel=e[settled, 1].mean(),
+                pitch=e[settled, 2].mean(),
+                roll=e[settled, 3].mean(),
+                height=e[settled, 4].mean(),
+                mean_height=state[settled, 5].mean(),
+                mean_yaw_rate=state[settled, 2].mean(),
+                duty=touching.mean(0).tolist(),
+                contact_match=float((touching == (contact[settled] > 0.5)).mean()),
+                joint_rms=float(np.sqrt(((np.array(record.joints)[settled, :12] - np.array(record.reference)[settled, :12]) ** 2).mean())),
+                joints=joint_table(record, settled, names),
+            )
+        )
     return rows
 
 
@@ -256,20 +279,35 @@ def main() -> int:
         record = run(policy, batch, a.mjcf, scenario, conditions, seed)
         mean = errors(record).mean(0)
         falls += record.fell_at_s is not None
-        result = dict(seed=seed, fell_at_s=record.fell_at_s, duration_s=len(record.user) * TICK_S, lin_vel=mean[0],
-                      yaw_vel=mean[1], pitch=mean[2], roll=mean[3], height=mean[4], lin_vel_raw=mean[5],
-                      torque_rms=float(np.sqrt((np.array(record.torque) ** 2).mean())),
-                      steps=table(record, scenario, policy.meta["action_joints"]))
+        result = dict(
+            seed=seed,
+            fell_at_s=record.fell_at_s,
+            duration_s=len(record.user) * TICK_S,
+            lin_vel=mean[0],
+            yaw_vel=mean[1],
+            pitch=mean[2],
+            roll=mean[3],
+            height=mean[4],
+            lin_vel_raw=mean[5],
+            torque_rms=float(np.sqrt((np.array(record.torque) ** 2).mean())),
+            steps=table(record, scenario, policy.meta["action_joints"]),
+        )
         runs.append(result)
-        print(f"seed {seed}: " + (f"fell at {record.fell_at_s:.1f} s in '{scenario[record.step[-1]][0]}'" if record.fell_at_s else "no fall")
-              + f"; lin {mean[0]:.3f} m/s yaw {mean[1]:.3f} rad/s pitch {mean[2]:.3f} roll {mean[3]:.3f} rad height {mean[4]:.4f} m "
-              f"(raw velocity {mean[5]:.3f}), torque rms {result['torque_rms']:.1f} Nm", flush=True)
+        print(
+            f"seed {seed}: "
+            + (f"fell at {record.fell_at_s:.1f} s in '{scenario[record.step[-1]][0]}'" if record.fell_at_s else "no fall")
+            + f"; lin {mean[0]:.3f} m/s yaw {mean[1]:.3f} rad/s pitch {mean[2]:.3f} roll {mean[3]:.3f} rad height {mean[4]:.4f} m "
+            f"(raw velocity {mean[5]:.3f}), torque rms {result['torque_rms']:.1f} Nm",
+            flush=True,
+        )
         if seed == 0:
             for row in result["steps"]:
-                print(f"  {row['text'][:28]:28s} lin {row['lin_vel']:.3f} yaw {row['yaw_vel']:.3f} pitch {row['pitch']:.3f} roll {row['roll']:.3f} "
-                      f"h {row['height']:.4f} | mean h {row['mean_height']:+.3f} duty {row['duty'][0]:.2f} {row['duty'][1]:.2f} "
-                      f"contact match {row['contact_match']:.2f} joint rms {row['joint_rms']:.3f} ankles "
-                      + " ".join(f"{j['rms']:.3f} (r {j['correlation']:.2f})" for n, j in row["joints"].items() if "ankle_pitch" in n))
+                print(
+                    f"  {row['text'][:28]:28s} lin {row['lin_vel']:.3f} yaw {row['yaw_vel']:.3f} pitch {row['pitch']:.3f} roll {row['roll']:.3f} "
+                    f"h {row['height']:.4f} | mean h {row['mean_height']:+.3f} duty {row['duty'][0]:.2f} {row['duty'][1]:.2f} "
+                    f"contact match {row['contact_match']:.2f} joint rms {row['joint_rms']:.3f} ankles "
+                    + " ".join(f"{j['rms']:.3f} (r {j['correlation']:.2f})" for n, j in row["joints"].items() if "ankle_pitch" in n)
+                )
             if a.motion:
                 np.save(a.motion, np.array(record.qpos))
     if a.json:

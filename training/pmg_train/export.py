@@ -39,9 +39,11 @@ def graph_of(actor: dict[str, torch.Tensor]) -> onnx.ModelProto:
     mean, variance = array("actor_norm.mean"), array("actor_norm.variance")
     scale = 1 / np.sqrt(variance + 1e-4)
     constants = {"mean": mean, "scale": scale, "low": np.array(-8.0), "high": np.array(8.0)}
-    nodes = [helper.make_node("Sub", ["observation", "mean"], ["centred"]),
-             helper.make_node("Mul", ["centred", "scale"], ["scaled"]),
-             helper.make_node("Clip", ["scaled", "low", "high"], ["h"])]
+    nodes = [
+        helper.make_node("Sub", ["observation", "mean"], ["centred"]),
+        helper.make_node("Mul", ["centred", "scale"], ["scaled"]),
+        helper.make_node("Clip", ["scaled", "low", "high"], ["h"]),
+    ]
     layers = sorted({int(k.split(".")[1]) for k in actor if k.startswith("actor.")})
     value = "h"
     for i, layer in enumerate(layers):
@@ -57,9 +59,12 @@ def graph_of(actor: dict[str, torch.Tensor]) -> onnx.ModelProto:
     initializers = [numpy_helper.from_array(v.astype(np.float32), k) for k, v in constants.items()]
     actions = constants[f"b{len(layers) - 1}"].shape[0]
     graph = helper.make_graph(
-        nodes, "pmg_policy",
+        nodes,
+        "pmg_policy",
         [helper.make_tensor_value_info("observation", TensorProto.FLOAT, [1, mean.shape[0]])],
-        [helper.make_tensor_value_info("action", TensorProto.FLOAT, [1, actions])], initializers)
+        [helper.make_tensor_value_info("action", TensorProto.FLOAT, [1, actions])],
+        initializers,
+    )
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="pmg_train")
     model.ir_version = IR_VERSION
     onnx.checker.check_model(model)
@@ -89,11 +94,19 @@ def metadata(checkpoint: dict, robot: Path) -> dict:
     kp, kd = policy_gains(description, config["gains"])
     names = [j["name"] for j in description["joints"]]
     return {
-        "format": 1, "robot": description["robot"], "variant": checkpoint["variant"],
-        "joints": names, "action_joints": description["action_joints"], "action_scale": config["action_scale"], "action_limit": ACTION_LIMIT,
-        "observation": description["observation"], "stand_rad": [j["stand_rad"] for j in description["joints"]],
-        "kp_Nm_per_rad": kp.tolist(), "kd_Nm_s_per_rad": kd.tolist(),
-        "policy_rate_Hz": round(1 / config["tick_s"]), "clip_library_sha256": clip_library_hash(robot),
+        "format": 1,
+        "robot": description["robot"],
+        "variant": checkpoint["variant"],
+        "joints": names,
+        "action_joints": description["action_joints"],
+        "action_scale": config["action_scale"],
+        "action_limit": ACTION_LIMIT,
+        "observation": description["observation"],
+        "stand_rad": [j["stand_rad"] for j in description["joints"]],
+        "kp_Nm_per_rad": kp.tolist(),
+        "kd_Nm_s_per_rad": kd.tolist(),
+        "policy_rate_Hz": round(1 / config["tick_s"]),
+        "clip_library_sha256": clip_library_hash(robot),
         "golden_tolerance": GOLDEN_TOLERANCE,
         "training": {k: checkpoint[k] for k in ("seed", "iteration", "steps", "learned_s")},
     }
@@ -120,8 +133,7 @@ def main() -> int:
     except (OSError, KeyError, ValueError) as error:
         print(f"export: {error}", file=sys.stderr)
         return 2
-    print(f"{a.out}: {meta['variant']}, {meta['observation']['size']} -> {len(meta['action_joints'])}, "
-          f"{meta['training']['steps'] / 1e6:.0f} M steps")
+    print(f"{a.out}: {meta['variant']}, {meta['observation']['size']} -> {len(meta['action_joints'])}, {meta['training']['steps'] / 1e6:.0f} M steps")
     return 0
 
 

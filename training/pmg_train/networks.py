@@ -30,7 +30,7 @@ class Normalizer(nn.Module):
     @torch.no_grad()
     def update(self, x: torch.Tensor) -> None:
         """With the samples of all processes, so that their networks stay equal."""
-        moments = torch.stack([x.mean(0), (x ** 2).mean(0)])
+        moments = torch.stack([x.mean(0), (x**2).mean(0)])
         if dist.is_initialized():
             dist.all_reduce(moments)
             moments /= dist.get_world_size()
@@ -39,7 +39,7 @@ class Normalizer(nn.Module):
         self.count += 1
         delta = mean - self.mean
         self.mean += share * delta
-        self.variance += share * ((square - mean ** 2).clamp(min=0) - self.variance) + share * (1 - share) * delta ** 2
+        self.variance += share * ((square - mean**2).clamp(min=0) - self.variance) + share * (1 - share) * delta**2
 
 
 class ActorCritic(nn.Module):

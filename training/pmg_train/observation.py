@@ -7,7 +7,7 @@ import torch
 
 from pmg_train.rotations import rotate_back
 
-AGES = (2, 4, 6)        # ages of the older frames [ticks]
+AGES = (2, 4, 6)  # ages of the older frames [ticks]
 VELOCITY_SCALE = 0.1
 
 
@@ -26,8 +26,21 @@ class Observation:
     def now(self, gyro, gravity, q, dq, command, user_command, phase, q_ref, dq_ref, last_action) -> torch.Tensor:
         """The terms of this tick. command: u', or a baseline's command; user_command: the admissible one; phase: gain sin,
         gain cos, gain; q_ref, dq_ref, q, dq of all joints [rad], [rad/s]."""
-        return torch.cat([gyro, gravity, command, user_command, phase, q_ref - self.stand, VELOCITY_SCALE * dq_ref[:, :self.actions],
-                          q - self.stand, VELOCITY_SCALE * dq, last_action], 1)
+        return torch.cat(
+            [
+                gyro,
+                gravity,
+                command,
+                user_command,
+                phase,
+                q_ref - self.stand,
+                VELOCITY_SCALE * dq_ref[:, : self.actions],
+                q - self.stand,
+                VELOCITY_SCALE * dq,
+                last_action,
+            ],
+            1,
+        )
 
     def with_history(self, now: torch.Tensor, gyro, gravity, q, dq, last_action, fresh: torch.Tensor) -> torch.Tensor:
         """The whole vector; stores this tick. fresh (worlds,): the first frame, which also replaces the older ones."""

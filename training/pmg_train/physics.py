@@ -16,9 +16,18 @@ BATCHED = ("geom_friction", "body_mass", "body_inertia", "body_ipos", "actuator_
 
 
 @wp.kernel
-def _sole_forces(contacts: wp.array(dtype=int), geom: wp.array(dtype=wp.vec2i), world: wp.array(dtype=int),
-                 dim: wp.array(dtype=int), address: wp.array2d(dtype=int), force: wp.array2d(dtype=float),
-                 capacity: int, left: int, right: int, out: wp.array2d(dtype=float)):
+def _sole_forces(
+    contacts: wp.array(dtype=int),
+    geom: wp.array(dtype=wp.vec2i),
+    world: wp.array(dtype=int),
+    dim: wp.array(dtype=int),
+    address: wp.array2d(dtype=int),
+    force: wp.array2d(dtype=float),
+    capacity: int,
+    left: int,
+    right: int,
+    out: wp.array2d(dtype=float),
+):
     c = wp.tid()
     if c >= wp.min(contacts[0], capacity):
         return
@@ -41,8 +50,16 @@ def _sole_forces(contacts: wp.array(dtype=int), geom: wp.array(dtype=wp.vec2i), 
 class Worlds:
     """`substeps` physics steps in each call. Positions and forces of bodies are those at the start of the last substep."""
 
-    def __init__(self, model: mujoco.MjModel, worlds: int, substeps: int, foot_links: list[str], limits: dict,
-                 device: str, motors: dict[str, dict[str, float]] | None = None):
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        worlds: int,
+        substeps: int,
+        foot_links: list[str],
+        limits: dict,
+        device: str,
+        motors: dict[str, dict[str, float]] | None = None,
+    ):
         """motors: the actuators of some joints, from a motor.yaml. These joints and all joints with dry friction have an actuator as in
         src/sim; the others are MuJoCo's position servos."""
         self.device = device
@@ -53,8 +70,7 @@ class Worlds:
         self.model = model
         with wp.ScopedDevice(device):
             self.m = mjw.put_model(model, batch_sizes=dict.fromkeys(BATCHED, worlds))
-            self.d = mjw.make_data(model, nworld=worlds, nconmax=limits["contacts_per_world"],
-                                   njmax=limits["constraints_per_world"])
+            self.d = mjw.make_data(model, nworld=worlds, nconmax=limits["contacts_per_world"], njmax=limits["constraints_per_world"])
         view = wp.to_torch
         self.qpos, self.qvel, self.warmstart = view(self.d.qpos), view(self.d.qvel), view(self.d.qacc_warmstart)
         self.xpos, self.xquat, self.torque = view(self.d.xpos), view(self.d.xquat), view(self.d.actuator_force)
@@ -120,6 +136,7 @@ class Worlds:
         def run() -> None:
             with wp.ScopedDevice(self.device):
                 part()
+
         return run
 
     def _recorded_by_warp(self, part):
@@ -146,9 +163,23 @@ class Worlds:
     def _measure_soles(self) -> None:
         self._sole_force_warp.zero_()
         contact = self.d.contact
-        wp.launch(_sole_forces, dim=self.d.naconmax, device=self.device,
-                  inputs=[self.d.nacon, contact.geom, contact.worldid, contact.dim, contact.efc_address,
-                          self.d.efc.force, self.d.naconmax, self._soles[0], self._soles[1], self._sole_force_warp])
+        wp.launch(
+            _sole_forces,
+            dim=self.d.naconmax,
+            device=self.device,
+            inputs=[
+                self.d.nacon,
+                contact.geom,
+                contact.worldid,
+                contact.dim,
+                contact.efc_address,
+                self.d.efc.force,
+                self.d.naconmax,
+                self._soles[0],
+                self._soles[1],
+                self._sole_force_warp,
+            ],
+        )
 
     def fullest(self) -> tuple[int, int]:
         """(most constraints of a world, contacts of all worlds) of the last step, for comparison with the allocated numbers."""

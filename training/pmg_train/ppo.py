@@ -61,12 +61,11 @@ class Ppo:
         for _ in range(c["epochs"]):
             order = torch.randperm(samples, device=action.device)
             for k in range(c["minibatches"]):
-                i = order[k * size:(k + 1) * size]
+                i = order[k * size : (k + 1) * size]
                 seen_i = seen[i]
                 mean, std = net.mean(seen_i), net.std()
                 with torch.no_grad():
-                    kl = (torch.log(std / old_std) + (old_std ** 2 + (old_mean[i] - mean) ** 2) / (2 * std ** 2)
-                          - 0.5).sum(1).mean()
+                    kl = (torch.log(std / old_std) + (old_std**2 + (old_mean[i] - mean) ** 2) / (2 * std**2) - 0.5).sum(1).mean()
                     self._adapt(kl)
                 ratio = torch.exp(log_probability(action[i], mean, std) - old_log[i])
                 gain = advantage[i]
@@ -120,5 +119,5 @@ class Ppo:
         self._average(together)
         at = 0
         for g in gradients:
-            g.copy_(together[at:at + g.numel()].view_as(g))
+            g.copy_(together[at : at + g.numel()].view_as(g))
             at += g.numel()

@@ -21,7 +21,7 @@ class ReferencePool:
             if not np.isfinite(chunk[:count]).all():
                 raise FloatingPointError("the generator gave a reference that is not finite")
             at = first * batch.streams
-            self.rows[at:at + count * batch.streams].copy_(torch.from_numpy(chunk[:count]).flatten(0, 1))
+            self.rows[at : at + count * batch.streams].copy_(torch.from_numpy(chunk[:count]).flatten(0, 1))
 
     def read(self, stream: torch.Tensor, tick: torch.Tensor) -> torch.Tensor:
         return self.rows.index_select(0, tick * self.streams + stream)

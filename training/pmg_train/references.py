@@ -16,11 +16,9 @@ class ReferenceBatch:
     library's own message.
     """
 
-    def __init__(self, library: str | Path, robot: str | Path, variant: str = "pmg", streams: int = 1, seed: int = 0,
-                 threads: int | None = None):
+    def __init__(self, library: str | Path, robot: str | Path, variant: str = "pmg", streams: int = 1, seed: int = 0, threads: int | None = None):
         self._lib = load(library)
-        self._handle = self._lib.pmg_batch_create(str(robot).encode(), variant.encode(), streams, seed,
-                                                  threads or os.cpu_count() or 1)
+        self._handle = self._lib.pmg_batch_create(str(robot).encode(), variant.encode(), streams, seed, threads or os.cpu_count() or 1)
         if not self._handle:
             raise RuntimeError(self._lib.pmg_batch_error().decode())
         self.streams = streams
@@ -59,6 +57,5 @@ class ReferenceBatch:
         arrays = [np.ascontiguousarray(a, np.float64) for a in (gyro, quat_wxyz, q, dq)]
         action = np.ascontiguousarray(last_action, np.float32)
         out = np.empty(self.description["observation"]["size"], np.float32)
-        self._lib.pmg_batch_observe(self._handle, int(first), *(a.ctypes.data for a in arrays), action.ctypes.data,
-                                    out.ctypes.data)
+        self._lib.pmg_batch_observe(self._handle, int(first), *(a.ctypes.data for a in arrays), action.ctypes.data, out.ctypes.data)
         return out

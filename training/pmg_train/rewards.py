@@ -23,7 +23,7 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     exponential("velocity_fast", (fast[:, :2] ** 2).sum(1))
     exponential("yaw_rate", slow[:, 2] ** 2)
     exponential("height", m["height_error"] ** 2)
-    exponential("attitude", (attitude ** 2).sum(1))
+    exponential("attitude", (attitude**2).sum(1))
     exponential("joint_position", (m["leg_weight"] * m["q_error"] ** 2).sum(1))
     exponential("joint_velocity", (m["leg_weight"] * m["dq_error"] ** 2).sum(1))
     # Steep where the exponential is flat. Bounded, so that a pushed robot may leave its reference.
@@ -44,16 +44,16 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     linear("rocking", (m["gyro"][:, :2] ** 2).sum(1))
     linear("yaw_jitter", fast[:, 2] ** 2)
     torque, dq = m["leg_torque"], m["leg_dq"]
-    linear("torque", (torque ** 2).sum(1))
+    linear("torque", (torque**2).sum(1))
     linear("power", (torque * dq).abs().sum(1))
     linear("acceleration", (m["leg_ddq"] ** 2).sum(1).clamp(max=1e7))
     a, a1, a2 = m["action"], m["action_1"], m["action_2"]
     linear("action_rate", action_unit * ((a - a1) ** 2).sum(1))
     linear("action_curvature", action_unit * ((a - 2 * a1 + a2) ** 2).sum(1))
-    linear("action_size", (a ** 2).sum(1))
+    linear("action_size", (a**2).sum(1))
     linear("limits", m["beyond_limits"].sum(1))
     linear("saturation", (torque.abs() / m["leg_effort"] - 0.9).clamp(min=0).sum(1))
-    linear("standing_motion", calm * standing * (dq ** 2).sum(1).clamp(max=20))
+    linear("standing_motion", calm * standing * (dq**2).sum(1).clamp(max=20))
     return terms
 
 

@@ -73,9 +73,16 @@ def training_model(mjcf: str | Path, description: dict, gains: dict, physics: di
             spec.delete(geom)
     for link in soles.values():
         left = link.startswith("left")
-        spec.body(link).add_geom(type=mujoco.mjtGeom.mjGEOM_CAPSULE, name=f"{link}_guard", size=[0.035, 0, 0],
-                                 fromto=[-0.03, 0, -0.015, 0.12, 0, -0.015], mass=0, condim=1,
-                                 contype=2 if left else 4, conaffinity=4 if left else 2)
+        spec.body(link).add_geom(
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            name=f"{link}_guard",
+            size=[0.035, 0, 0],
+            fromto=[-0.03, 0, -0.015, 0.12, 0, -0.015],
+            mass=0,
+            condim=1,
+            contype=2 if left else 4,
+            conaffinity=4 if left else 2,
+        )
     policy = {j["name"] for j in description["joints"] if j["policy"]}
     for joint in spec.joints:
         if joint.type == mujoco.mjtJoint.mjJNT_HINGE and joint.name not in policy:
@@ -87,6 +94,9 @@ def training_model(mjcf: str | Path, description: dict, gains: dict, physics: di
     spec.option.ls_iterations = physics["ls_iterations"]
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
-    spec.option.jacobian = {"auto": mujoco.mjtJacobian.mjJAC_AUTO, "dense": mujoco.mjtJacobian.mjJAC_DENSE,
-                            "sparse": mujoco.mjtJacobian.mjJAC_SPARSE}[physics["jacobian"]]
+    spec.option.jacobian = {
+        "auto": mujoco.mjtJacobian.mjJAC_AUTO,
+        "dense": mujoco.mjtJacobian.mjJAC_DENSE,
+        "sparse": mujoco.mjtJacobian.mjJAC_SPARSE,
+    }[physics["jacobian"]]
     return _check(spec.compile(), description)

@@ -23,6 +23,7 @@ JOINT_TERMS = ("q_ref", "dq_ref", "q", "dq", "last_action")
 @dataclass
 class Mirror:
     """mirrored[..., i] = sign[i] * x[..., index[i]]"""
+
     index: torch.Tensor
     sign: torch.Tensor
 

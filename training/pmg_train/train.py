@@ -75,8 +75,7 @@ class Training:
         self._start_device()
         torch.manual_seed(a.seed + 7919 * self.rank)
 
-        batch = ReferenceBatch(a.library, a.robot, a.variant, c["references"]["streams"],
-                               (a.seed + 7919 * self.rank) * 1_000_003, a.threads)
+        batch = ReferenceBatch(a.library, a.robot, a.variant, c["references"]["streams"], (a.seed + 7919 * self.rank) * 1_000_003, a.threads)
         self.description = batch.description
         pool = ReferencePool(batch, c["references"]["ticks"], self.device)
         self.log(f"references ready: {pool.streams} streams of {pool.ticks} ticks")
@@ -85,15 +84,13 @@ class Training:
         seen = self.env.observation.shape[1]
         if seen != batch.description["observation"]["size"]:
             raise ValueError(f"observation has {seen} numbers; the controller's has {batch.description['observation']['size']}")
-        self.network = ActorCritic(seen, self.env.critic_observation.shape[1], self.env.actions, ppo["hidden"],
-                                   ppo["initial_std"]).to(self.device)
+        self.network = ActorCritic(seen, self.env.critic_observation.shape[1], self.env.actions, ppo["hidden"], ppo["initial_std"]).to(self.device)
         if dist.is_initialized():
             for tensor in self.network.state_dict().values():
                 dist.broadcast(tensor, 0)
         mirrors = observation_mirror(batch.description, self.device), action_mirror(batch.description, self.device)
         self.ppo = Ppo(self.network, ppo, self.device, mirrors, c["symmetry"]["weight"])
-        self.rollout = Rollout(ppo["steps"], ppo["worlds"], seen, self.env.critic_observation.shape[1],
-                               self.env.actions, self.device)
+        self.rollout = Rollout(ppo["steps"], ppo["worlds"], seen, self.env.critic_observation.shape[1], self.env.actions, self.device)
         n, actions = ppo["worlds"], self.env.actions
         self.sample, self.sample_mean = torch.zeros(n, actions, device=self.device), torch.zeros(n, actions, device=self.device)
         self.sample_log, self.sample_value = torch.zeros(n, device=self.device), torch.zeros(n, device=self.device)
@@ -111,8 +108,11 @@ class Training:
         elif a.initial:
             self._start_from(a.initial)
         if self.rank == 0:
-            (a.out / "training.yaml").write_text(yaml.safe_dump(dict(
-                variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges, motors=self.motors), sort_keys=False))
+            (a.out / "training.yaml").write_text(
+                yaml.safe_dump(
+                    dict(variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges, motors=self.motors), sort_keys=False
+                )
+            )
             self.board = _tensorboard(a.out)
 
     def log(self, text: str) -> None:
@@ -157,8 +157,7 @@ class Training:
             self.sums += together
 
     def _names(self) -> list[str]:
-        return ([f"reward/{k}" for k in self.env.terms] + [f"error/{k}" for k in self.env.errors]
-                + ["falls", "timeouts", "reward"])
+        return [f"reward/{k}" for k in self.env.terms] + [f"error/{k}" for k in self.env.errors] + ["falls", "timeouts", "reward"]
 
     def _record(self) -> None:
         """Compiles everything. On a GPU the two torch halves of a tick become CUDA graphs, like the physics."""
@@ -212,9 +211,15 @@ class Training:
                 self.act()
                 env.worlds.step()
                 self.observe()
-                for target, value in ((r.action, self.sample), (r.mean, self.sample_mean),
-                                      (r.log_probability, self.sample_log), (r.value, self.sample_value),
-                                      (r.reward, env.reward), (r.done, env.done), (r.timeout, env.timeout)):
+                for target, value in (
+                    (r.action, self.sample),
+                    (r.mean, self.sample_mean),
+                    (r.log_probability, self.sample_log),
+                    (r.value, self.sample_value),
+                    (r.reward, env.reward),
+                    (r.done, env.done),
+                    (r.timeout, env.timeout),
+                ):
                     target[t].copy_(value)
             with torch.no_grad():
                 r.value[-1].copy_(self.network.value(env.critic_observation))
@@ -258,21 +263,30 @@ class Training:
         since = self.iteration - (self.curve[-1]["iteration"] if self.curve else 0)
         values = (self.sums / (self.config["ppo"]["steps"] * max(1, since))).tolist()
         self.sums.zero_()
-        row = dict(iteration=self.iteration, minutes=self.learned_s / 60, steps=self.steps,
-                   steps_per_s=self.steps / max(1e-9, self.learned_s), learning_rate=float(self.ppo.rate),
-                   std=float(self.network.std().detach().mean()), kl=float(info["kl"]), value_loss=float(info["value_loss"]),
-                   asymmetry=float(info["asymmetry"]))
+        row = dict(
+            iteration=self.iteration,
+            minutes=self.learned_s / 60,
+            steps=self.steps,
+            steps_per_s=self.steps / max(1e-9, self.learned_s),
+            learning_rate=float(self.ppo.rate),
+            std=float(self.network.std().detach().mean()),
+            kl=float(info["kl"]),
+            value_loss=float(info["value_loss"]),
+            asymmetry=float(info["asymmetry"]),
+        )
         row |= dict(zip(self._names(), values, strict=True))
         row["falls_per_minute"] = row.pop("falls") * 60 / self.env.tick_s
         self.curve.append(row)
         constraints, contacts = self.env.worlds.fullest() if self.iteration % 100 == 0 or len(self.curve) == 1 else (0, 0)
         e = lambda name: row[f"error/{name}"]
-        self.log(f"{self.iteration} {row['minutes']:.2f} min {self.steps / 1e6:.0f}M {row['steps_per_s'] / 1e3:.0f}k/s "
-                 f"reward {row['reward']:.4f} falls/min {row['falls_per_minute']:.2f} v {e('velocity'):.3f} yaw {e('yaw_rate'):.3f} "
-                 f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} ankle {e('ankle_pitch'):.3f} "
-                 f"contact {e('contact'):.3f} tau {e('torque'):.1f} a {e('action'):.2f} std {row['std']:.2f} kl {row['kl']:.4f} "
-                 f"lr {row['learning_rate']:.1e} vl {row['value_loss']:.3f} sides {row['asymmetry']:.3f} broken {e('broken'):.1e}"
-                 + (f" rows {constraints} contacts {contacts}" if constraints else ""))
+        self.log(
+            f"{self.iteration} {row['minutes']:.2f} min {self.steps / 1e6:.0f}M {row['steps_per_s'] / 1e3:.0f}k/s "
+            f"reward {row['reward']:.4f} falls/min {row['falls_per_minute']:.2f} v {e('velocity'):.3f} yaw {e('yaw_rate'):.3f} "
+            f"pitch {e('pitch'):.3f} roll {e('roll'):.3f} h {e('height'):.4f} q {e('joint'):.3f} ankle {e('ankle_pitch'):.3f} "
+            f"contact {e('contact'):.3f} tau {e('torque'):.1f} a {e('action'):.2f} std {row['std']:.2f} kl {row['kl']:.4f} "
+            f"lr {row['learning_rate']:.1e} vl {row['value_loss']:.3f} sides {row['asymmetry']:.3f} broken {e('broken'):.1e}"
+            + (f" rows {constraints} contacts {contacts}" if constraints else "")
+        )
         if self.rank == 0:
             with open(self.a.out / "curve.csv", "w", newline="") as file:
                 writer = csv.DictWriter(file, fieldnames=list(self.curve[-1]))
@@ -286,8 +300,16 @@ class Training:
     # ---------------------------------------------------------------------------------------------------- checkpoints
 
     def _meta(self) -> dict:
-        return dict(description=self.description, config=self.config, randomization=self.ranges, variant=self.a.variant,
-                    seed=self.a.seed, iteration=self.iteration, steps=self.steps, learned_s=self.learned_s)
+        return dict(
+            description=self.description,
+            config=self.config,
+            randomization=self.ranges,
+            variant=self.a.variant,
+            seed=self.a.seed,
+            iteration=self.iteration,
+            steps=self.steps,
+            learned_s=self.learned_s,
+        )
 
     def save_actor(self, path: Path) -> None:
         actor = {k: v.cpu() for k, v in self.network.state_dict().items() if k.startswith("actor")}
@@ -296,11 +318,22 @@ class Training:
     def save(self) -> None:
         """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation."""
         if self.rank == 0:
-            _write(dict(network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate,
-                        curve=self.curve, **self._meta()), self.a.out / "last.pt")
-        _write(dict(processes=self.ppo.world_size, iteration=self.iteration, worlds=self.env.state(), random=torch.get_rng_state(),
-                    random_device=torch.cuda.get_rng_state(self.device) if self.cuda else None),
-               self._worlds_file())
+            _write(
+                dict(
+                    network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate, curve=self.curve, **self._meta()
+                ),
+                self.a.out / "last.pt",
+            )
+        _write(
+            dict(
+                processes=self.ppo.world_size,
+                iteration=self.iteration,
+                worlds=self.env.state(),
+                random=torch.get_rng_state(),
+                random_device=torch.cuda.get_rng_state(self.device) if self.cuda else None,
+            ),
+            self._worlds_file(),
+        )
 
     def _worlds_file(self) -> Path:
         return self.a.out / ("worlds.pt" if self.rank == 0 else f"worlds_{self.rank}.pt")
@@ -321,8 +354,12 @@ class Training:
         self.curve = state["curve"]
         worlds = self._worlds_file()
         momentary = torch.load(worlds, map_location="cpu", weights_only=False) if worlds.exists() else None
-        exact = (momentary is not None and momentary["iteration"] == self.iteration
-                 and momentary.get("processes", 1) == self.ppo.world_size and self.env.restore(momentary["worlds"]))
+        exact = (
+            momentary is not None
+            and momentary["iteration"] == self.iteration
+            and momentary.get("processes", 1) == self.ppo.world_size
+            and self.env.restore(momentary["worlds"])
+        )
         if exact:
             torch.set_rng_state(momentary["random"])
             if self.cuda:
@@ -375,8 +412,15 @@ def main() -> int:
     if training.rank != 0:
         return 0
     speed = training.curve[-1]["steps_per_s"] if training.curve else 0.0
-    summary = dict(variant=a.variant, iterations=training.iteration, steps=training.steps, minutes=training.learned_s / 60,
-                   steps_per_s=speed, bare_steps_per_s=bare, share_of_bare=speed / bare)
+    summary = dict(
+        variant=a.variant,
+        iterations=training.iteration,
+        steps=training.steps,
+        minutes=training.learned_s / 60,
+        steps_per_s=speed,
+        bare_steps_per_s=bare,
+        share_of_bare=speed / bare,
+    )
     (a.out / "summary.json").write_text(json.dumps(summary, indent=1))
     training.log(f"{speed / 1e3:.0f}k/s with learning, {speed / bare:.2f} of bare stepping")
     return 0

@@ -28,12 +28,15 @@ def main(library: str, robot: Path, out: Path) -> None:
     config = load_config(Path(export.__file__).parent.parent / "config.yaml")
     generator = torch.Generator().manual_seed(1)
     size, actions = description["observation"]["size"], len(description["action_joints"])
-    actor = {"actor_norm.mean": torch.zeros(size), "actor_norm.variance": torch.ones(size),
-             "actor.0.weight": 0.02 * torch.randn(actions, size, generator=generator), "actor.0.bias": torch.zeros(actions)}
+    actor = {
+        "actor_norm.mean": torch.zeros(size),
+        "actor_norm.variance": torch.ones(size),
+        "actor.0.weight": 0.02 * torch.randn(actions, size, generator=generator),
+        "actor.0.bias": torch.zeros(actions),
+    }
     checkpoint = dict(description=description, config=config, variant="pmg", seed=1, iteration=0, steps=0, learned_s=0.0)
     model = export.graph_of(actor)
-    meta = export.metadata(checkpoint, robot) | {
-        "clip_library_sha256": "0" * 64, "training": {}, "golden": export.golden(model, actor)[:2]}
+    meta = export.metadata(checkpoint, robot) | {"clip_library_sha256": "0" * 64, "training": {}, "golden": export.golden(model, actor)[:2]}
     text = json.dumps(meta)
     entry = model.metadata_props.add()
     entry.key, entry.value = "pmg_policy", text.replace('"variant": "pmg"', '"variant": "pmg"' + " " * VARIANT_ROOM)

@@ -23,7 +23,7 @@ def test_a_delay_is_kept_to_the_microsecond(delay_s):
     # A step from 0 to 1, over the steps of the next ticks: the time that is missing is the delay, with half the steps' difference.
     missing_s = 0.0
     for tick in range(shares.shape[1]):
-        arrived = shares[:, :tick + 1].sum(1)
+        arrived = shares[:, : tick + 1].sum(1)
         missing_s += float((STEP_S * (1 - arrived)).sum())
     assert missing_s == pytest.approx(delay_s + 0.0015, abs=1e-6)
 

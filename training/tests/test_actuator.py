@@ -19,9 +19,18 @@ def run(model: ActuatorModel, dtype) -> tuple[torch.Tensor, torch.Tensor]:
     model.reset(everywhere(RECORD["steps"][0]["q_rad"]))
     torque, slope = [], []
     for s in RECORD["steps"]:
-        t, k = model.step(everywhere(s["q_des_rad"]), everywhere(s["kp"]), everywhere(s["kd"]), everywhere(s["q_rad"]),
-                          everywhere(s["dq_rad_s"]), s["dq_des_rad_s"], s["feed_forward"], s["supply"], s["enabled"],
-                          s["temperature_C"])
+        t, k = model.step(
+            everywhere(s["q_des_rad"]),
+            everywhere(s["kp"]),
+            everywhere(s["kd"]),
+            everywhere(s["q_rad"]),
+            everywhere(s["dq_rad_s"]),
+            s["dq_des_rad_s"],
+            s["feed_forward"],
+            s["supply"],
+            s["enabled"],
+            s["temperature_C"],
+        )
         torque.append(t.clone())
         slope.append(k.clone())
     return torch.stack(torque), torch.stack(slope)

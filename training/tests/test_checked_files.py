@@ -21,8 +21,7 @@ NO_KEY = "joints:\n  left_knee:\n    friction: {culomb_Nm: 1}\n"
 def test_a_motor_file_is_read_whole_or_refused(tmp_path):
     path = tmp_path / "motor.yaml"
     path.write_text("joints:\n  left_knee:\n    friction:\n      coulomb_Nm: 0.5\n    command: {delay_s: 0.004}\n  right_knee: {}\n")
-    assert read_motor_file(LIBRARY, ROBOT, path) == {
-        "left_knee": {"friction.coulomb_Nm": 0.5, "command.delay_s": 0.004}, "right_knee": {}}
+    assert read_motor_file(LIBRARY, ROBOT, path) == {"left_knee": {"friction.coulomb_Nm": 0.5, "command.delay_s": 0.004}, "right_knee": {}}
     path.write_text(NO_KEY)
     with pytest.raises(ValueError) as refused:
         read_motor_file(LIBRARY, ROBOT, path)
@@ -34,17 +33,43 @@ def test_the_committed_randomization_is_complete():
 
 
 @pytest.mark.skipif(not MJCF, reason="PMG_MJCF not set")
-@pytest.mark.parametrize("option, text, said", [
-    ("--motor", NO_KEY, ":3:16: joints.left_knee.friction.culomb_Nm: is unknown; did you mean coulomb_Nm?"),
-    ("--randomization", "friction: [1.2, 0.4]\n", ":1:11: friction: runs backwards; expected [lower, upper]"),
-])
+@pytest.mark.parametrize(
+    "option, text, said",
+    [
+        ("--motor", NO_KEY, ":3:16: joints.left_knee.friction.culomb_Nm: is unknown; did you mean coulomb_Nm?"),
+        ("--randomization", "friction: [1.2, 0.4]\n", ":1:11: friction: runs backwards; expected [lower, upper]"),
+    ],
+)
 def test_a_training_ends_with_that_line(tmp_path, option, text, said):
     path = tmp_path / "wrong.yaml"
     path.write_text(text)
-    given = [word for name, value in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY))
-             for word in (name, str(Path(value).resolve()))]
-    run = subprocess.run([sys.executable, "-m", "pmg_train.train", *given, option, str(path), "--out", str(tmp_path / "out"), "--worlds", "2",
-                          "--streams", "1", "--ticks", "10", "--threads", "1", "--device", "cpu", "--iterations", "1"],
-                         cwd=HERE, capture_output=True, text=True)
+    given = [word for name, value in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY)) for word in (name, str(Path(value).resolve()))]
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pmg_train.train",
+            *given,
+            option,
+            str(path),
+            "--out",
+            str(tmp_path / "out"),
+            "--worlds",
+            "2",
+            "--streams",
+            "1",
+            "--ticks",
+            "10",
+            "--threads",
+            "1",
+            "--device",
+            "cpu",
+            "--iterations",
+            "1",
+        ],
+        cwd=HERE,
+        capture_output=True,
+        text=True,
+    )
     assert run.returncode == 2
     assert run.stderr.splitlines()[-1] == f"train: {path}{said}"

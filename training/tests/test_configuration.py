@@ -33,15 +33,18 @@ def put(*keys_and_value):
     return change
 
 
-@pytest.mark.parametrize("change, said", [
-    (put("rewards", "velocty", 1.0), "rewards: unknown key velocty; expected velocity_slow, "),
-    (put("rewards", "height", 1.0), "rewards: height: 1.0; expected a map with the keys weight, s"),
-    (lambda c: c["ppo"].pop("gamma"), "ppo: gamma is missing"),
-    (put("ppo", "gamma", float("nan")), "ppo: gamma: nan; expected a finite number"),
-    (put("ppo", "gamma", True), "ppo: gamma: True; expected a finite number"),
-    (put("gains", "knee", [150]), "gains: .*; expected {name: .number, number., ...}"),
-    (put("physics", "jacobian", "thin"), "jacobian: thin; expected auto, dense or sparse"),
-])
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        (put("rewards", "velocty", 1.0), "rewards: unknown key velocty; expected velocity_slow, "),
+        (put("rewards", "height", 1.0), "rewards: height: 1.0; expected a map with the keys weight, s"),
+        (lambda c: c["ppo"].pop("gamma"), "ppo: gamma is missing"),
+        (put("ppo", "gamma", float("nan")), "ppo: gamma: nan; expected a finite number"),
+        (put("ppo", "gamma", True), "ppo: gamma: True; expected a finite number"),
+        (put("gains", "knee", [150]), "gains: .*; expected {name: .number, number., ...}"),
+        (put("physics", "jacobian", "thin"), "jacobian: thin; expected auto, dense or sparse"),
+    ],
+)
 def test_a_key_or_value_that_means_nothing_is_named(tmp_path, change, said):
     with pytest.raises(ValueError, match=f"config.yaml: (.*: )?{said}"):
         load_config(changed(tmp_path, change))

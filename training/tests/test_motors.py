@@ -45,7 +45,7 @@ def test_neutral_actuators_move_the_robot_as_plain_servos_do():
     names = [j["name"] for j in ReferenceBatch(LIBRARY, ROBOT).description["joints"]]
     plain, neutral = in_the_air(None), in_the_air({name: {} for name in names})
     assert (plain[:, 0] - plain[:, 1]).abs().max() > 1e-3  # the factors count
-    assert (plain - neutral).abs().max() < 1e-5            # the same in single precision
+    assert (plain - neutral).abs().max() < 1e-5  # the same in single precision
 
 
 @needs_robot

@@ -62,8 +62,9 @@ def test_observation_is_the_controllers(setting):
         expected = batch.observe(gyro, quat, q, dq, action, first=tick == 0)
         for term in terms:
             part = slice(term["offset"], term["offset"] + term["size"])
-            np.testing.assert_allclose(seen[part], expected[part], atol=TOLERANCE, rtol=0,
-                                       err_msg=f"{term['name']}, {term['age_ticks']} ticks old, tick {tick}")
+            np.testing.assert_allclose(
+                seen[part], expected[part], atol=TOLERANCE, rtol=0, err_msg=f"{term['name']}, {term['age_ticks']} ticks old, tick {tick}"
+            )
 
 
 def test_a_robot_enters_the_stream_where_the_reference_is(setting):

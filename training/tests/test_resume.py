@@ -20,13 +20,35 @@ def train(out: Path, processes: int, iterations: int, *more: str) -> dict:
     if processes > 1:
         # Tee of stdout: with no redirection, the default, torch 1.13 fails under Python 3.11.
         start += ["torch.distributed.run", "--standalone", "--nproc_per_node", str(processes), "--redirects", "1", "--tee", "1", "-m"]
-    given = [word for option, path in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY))
-             for word in (option, str(Path(path).resolve()))]
-    subprocess.run([*start, "pmg_train.train", *given,
-                    "--out", str(out), "--worlds", "8", "--streams", "4", "--ticks", "400", "--threads", "1", "--seed", "3",
-                    "--device", "cpu", "--iterations", str(iterations), *more],
-                   # Tiny tensors: more threads a process only wait for each other.
-                   cwd=HERE, check=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
+    given = [word for option, path in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY)) for word in (option, str(Path(path).resolve()))]
+    subprocess.run(
+        [
+            *start,
+            "pmg_train.train",
+            *given,
+            "--out",
+            str(out),
+            "--worlds",
+            "8",
+            "--streams",
+            "4",
+            "--ticks",
+            "400",
+            "--threads",
+            "1",
+            "--seed",
+            "3",
+            "--device",
+            "cpu",
+            "--iterations",
+            str(iterations),
+            *more,
+        ],
+        # Tiny tensors: more threads a process only wait for each other.
+        cwd=HERE,
+        check=True,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
     return torch.load(out / "last.pt", weights_only=False)
 
 

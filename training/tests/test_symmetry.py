@@ -26,8 +26,10 @@ def mirrored_quaternion(q: np.ndarray) -> np.ndarray:
 
 
 def test_mirroring_twice_is_identity(description):
-    for mirror, size in ((observation_mirror(description), description["observation"]["size"]),
-                         (action_mirror(description), len(description["action_joints"]))):
+    for mirror, size in (
+        (observation_mirror(description), description["observation"]["size"]),
+        (action_mirror(description), len(description["action_joints"])),
+    ):
         x = torch.randn(3, size, generator=torch.Generator().manual_seed(1))
         assert not torch.equal(mirror(x), x)
         assert torch.equal(mirror(mirror(x)), x)
@@ -58,8 +60,12 @@ def test_a_mirrored_command_gives_the_mirrored_references_half_a_cycle_later(des
     joints = joint_mirror(description, names)
     three = np.concatenate([other_phase - 1, other_phase, other_phase + 1])
     signs = lambda name: Mirror(torch.arange(len(SIGNS[name])), torch.tensor(list(SIGNS[name].values())))
-    for field, mirror, tolerance in (("q_ref", joints, 0.01), ("dq_ref", joints, 0.2), ("phase", signs("phase"), 0.01),
-                                     ("optimised", signs("command"), 0.02)):
+    for field, mirror, tolerance in (
+        ("q_ref", joints, 0.01),
+        ("dq_ref", joints, 0.2),
+        ("phase", signs("phase"), 0.01),
+        ("optimised", signs("command"), 0.02),
+    ):
         expected = mirror(torch.from_numpy(np.ascontiguousarray(rows[:, batch.fields[field]]))).numpy()
         found = others[:, batch.fields[field]]
         for i in range(found.shape[1]):
@@ -84,8 +90,14 @@ def test_the_controllers_observation_of_the_mirrored_robot_is_the_mirrored_obser
         batches[0].run(1, command[None, None])
         batches[1].run(1, command_mirrored(command)[None, None])
         seen = batches[0].observe(gyro, quat, q, dq, action, first=tick == 0)
-        seen_mirrored = batches[1].observe(gyro * [-1, 1, -1], mirrored_quaternion(quat), stand + through(joints, q - stand),
-                                           through(joints, dq), through(actions, action), first=tick == 0)
+        seen_mirrored = batches[1].observe(
+            gyro * [-1, 1, -1],
+            mirrored_quaternion(quat),
+            stand + through(joints, q - stand),
+            through(joints, dq),
+            through(actions, action),
+            first=tick == 0,
+        )
         # Reference joints are exactly symmetric, u' up to where the optimisation stops.
         np.testing.assert_allclose(seen_mirrored, through(observation_mirror(description), seen), atol=1e-4)
 

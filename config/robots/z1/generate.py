@@ -15,6 +15,7 @@ A segment that carries motors is split into several links so that mass, centre o
 zero posture stay exactly the table's: the main link is the segment minus its motors.
 The zero posture is upright, legs straight, arms hanging. Axes: x forward, y left, z up in every link.
 """
+
 import functools
 import math
 import operator
@@ -28,25 +29,25 @@ SCALE = STATURE_m / 1.741  # [L96] lengths are of a stature of 1.741 m
 # [L96] table 4, males: length [m] at 1.741 m, mass [fraction], centre of mass [fraction of the length from the first named
 # end], radii of gyration about the sagittal (x), transverse (y) and longitudinal axis [fractions of the length].
 TABLE = {
-    "head": (0.2033, 0.0694, 0.5976, (0.362, 0.376, 0.312)),       # vertex - mid-gonion
+    "head": (0.2033, 0.0694, 0.5976, (0.362, 0.376, 0.312)),  # vertex - mid-gonion
     "upper_trunk": (0.1707, 0.1596, 0.2999, (0.716, 0.454, 0.659)),  # suprasternale - xiphion
     "middle_trunk": (0.2155, 0.1633, 0.4502, (0.482, 0.383, 0.468)),  # xiphion - omphalion
     "lower_trunk": (0.1457, 0.1117, 0.6115, (0.615, 0.551, 0.587)),  # omphalion - mid-hip
     "upper_arm": (0.2817, 0.0271, 0.5772, (0.285, 0.269, 0.158)),  # shoulder - elbow
-    "forearm": (0.2689, 0.0162, 0.4574, (0.276, 0.265, 0.121)),    # elbow - wrist
-    "hand": (0.0862, 0.0061, 0.7900, (0.628, 0.513, 0.401)),       # wrist - third metacarpale
-    "thigh": (0.4222, 0.1416, 0.4095, (0.329, 0.329, 0.149)),      # hip - knee
-    "shank": (0.4340, 0.0433, 0.4459, (0.255, 0.249, 0.103)),      # knee - lateral malleolus
-    "foot": (0.2581, 0.0137, 0.4415, (0.257, 0.245, 0.124)),       # heel - toe tip
+    "forearm": (0.2689, 0.0162, 0.4574, (0.276, 0.265, 0.121)),  # elbow - wrist
+    "hand": (0.0862, 0.0061, 0.7900, (0.628, 0.513, 0.401)),  # wrist - third metacarpale
+    "thigh": (0.4222, 0.1416, 0.4095, (0.329, 0.329, 0.149)),  # hip - knee
+    "shank": (0.4340, 0.0433, 0.4459, (0.255, 0.249, 0.103)),  # knee - lateral malleolus
+    "foot": (0.2581, 0.0137, 0.4415, (0.257, 0.245, 0.124)),  # heel - toe tip
 }
 ANKLE_HEIGHT_m = 0.039 * STATURE_m  # [DC66]
-FOOT_LENGTH_m = 0.152 * STATURE_m   # [DC66]
-SHOULDER_Z_m = 0.818 * STATURE_m    # [DC66]
-FOOT_WIDTH_m = 0.090                # ASSUMPTION
-HEEL_TO_ANKLE_m = 0.069             # ASSUMPTION: 0.30 of the foot
-HIP_Y_m = 0.095                     # ASSUMPTION: half the distance of the hip joints
-SHOULDER_Y_m = 0.170                # ASSUMPTION: half the distance of the shoulder joints
-NECK_Z_m = 1.290                    # ASSUMPTION: head joints between suprasternale and mid-gonion
+FOOT_LENGTH_m = 0.152 * STATURE_m  # [DC66]
+SHOULDER_Z_m = 0.818 * STATURE_m  # [DC66]
+FOOT_WIDTH_m = 0.090  # ASSUMPTION
+HEEL_TO_ANKLE_m = 0.069  # ASSUMPTION: 0.30 of the foot
+HIP_Y_m = 0.095  # ASSUMPTION: half the distance of the hip joints
+SHOULDER_Y_m = 0.170  # ASSUMPTION: half the distance of the shoulder joints
+NECK_Z_m = 1.290  # ASSUMPTION: head joints between suprasternale and mid-gonion
 
 # ASSUMPTION: limits of each joint: lower, upper [rad] (left side), effort [Nm], speed [rad/s]. The ranges hold human gait
 # (hip -35..20, knee 0..65, ankle dorsiflexion 15, plantarflexion 30 degrees) and squats of 0.20 m (knee 1.6 rad, ankle
@@ -107,8 +108,7 @@ class Body:
     def about(self, point):
         d = [self.com[k] - point[k] for k in range(3)]
         dd = added(x * x for x in d)
-        return [[self.inertia[r][c] + self.mass * ((dd if r == c else 0.0) - d[r] * d[c]) for c in range(3)]
-                for r in range(3)]
+        return [[self.inertia[r][c] + self.mass * ((dd if r == c else 0.0) - d[r] * d[c]) for c in range(3)] for r in range(3)]
 
 
 def total(bodies):
@@ -149,12 +149,12 @@ def foot_segment():
 
 THIGH, SHANK = length("thigh"), length("shank")
 UPPER_ARM, FOREARM = length("upper_arm"), length("forearm")
-HIP_Z = ANKLE_HEIGHT_m + SHANK + THIGH            # mid-hip above the sole: the pelvis' origin
-WAIST = length("lower_trunk")                     # omphalion above mid-hip
+HIP_Z = ANKLE_HEIGHT_m + SHANK + THIGH  # mid-hip above the sole: the pelvis' origin
+WAIST = length("lower_trunk")  # omphalion above mid-hip
 CHEST = length("middle_trunk") + length("upper_trunk")  # suprasternale above omphalion
-SHOULDER = SHOULDER_Z_m - HIP_Z - WAIST           # above the waist joints
+SHOULDER = SHOULDER_Z_m - HIP_Z - WAIST  # above the waist joints
 NECK = NECK_Z_m - HIP_Z - WAIST
-TOP = STATURE_m - NECK_Z_m                        # vertex above the head joints
+TOP = STATURE_m - NECK_Z_m  # vertex above the head joints
 
 
 def motor(name, com=(0.0, 0.0, 0.0)):
@@ -248,20 +248,31 @@ def looks(side):
         + rounded_box((0, 0, 0.130), (0.145, 0.195, 0.04), 0.055, "shell")
         + rounded_box((0, 0, 0.215), (0.17, 0.24, 0.14), 0.065, "shell")
         + rounded_box((0, 0, 0.297), (0.14, 0.20, 0.026), 0.060, "shell")
-        + [box((0.087, 0, 0.250), (0.008, 0.09, 0.016), "accent"), cylinder((0.080, 0, 0.205), (0.092, 0, 0.205), 0.020, "graphite"),
-           cylinder((0.086, 0, 0.205), (0.0935, 0, 0.205), 0.013, "accent"), cylinder((0, 0, 0.31), (0, 0, NECK - 0.01), 0.035, "graphite")]
+        + [
+            box((0.087, 0, 0.250), (0.008, 0.09, 0.016), "accent"),
+            cylinder((0.080, 0, 0.205), (0.092, 0, 0.205), 0.020, "graphite"),
+            cylinder((0.086, 0, 0.205), (0.0935, 0, 0.205), 0.013, "accent"),
+            cylinder((0, 0, 0.31), (0, 0, NECK - 0.01), 0.035, "graphite"),
+        ]
         + rounded_box((-0.085, 0, 0.210), (0.05, 0.16, 0.13), 0.020, "graphite")
         + [hub(Y, 0.025, 0.036, "graphite", (0, s * (SHOULDER_Y_m - 0.045), SHOULDER)) for s in (1, -1)],
         "head_yaw_link": [hub(Z, 0.018, 0.040, "metal")],
-        "head": [hub(Y, 0.045, 0.026, "graphite"), sphere((0, 0, TOP - 0.085), 0.085, "shell"),
-                 cylinder((0, 0, 0.035), (0, 0, TOP - 0.085), 0.062, "shell"), sphere((0.018, 0, TOP - 0.135), 0.055, "shell"),
-                 cylinder((0.014, 0, TOP - 0.108), (0.014, 0, TOP - 0.062), 0.079, "visor")]
+        "head": [
+            hub(Y, 0.045, 0.026, "graphite"),
+            sphere((0, 0, TOP - 0.085), 0.085, "shell"),
+            cylinder((0, 0, 0.035), (0, 0, TOP - 0.085), 0.062, "shell"),
+            sphere((0.018, 0, TOP - 0.135), 0.055, "shell"),
+            cylinder((0.014, 0, TOP - 0.108), (0.014, 0, TOP - 0.062), 0.079, "visor"),
+        ]
         + [hub(Y, 0.012, 0.026, "accent", (-0.010, s * 0.078, TOP - 0.090)) for s in (1, -1)],
         "hip_pitch_link": [hub(Y, 0.032, 0.047, "metal")],
         "hip_roll_link": [hub(X, 0.052, 0.040, "graphite")],
         "hip_yaw_link": capsule((0, 0, -0.085), (0, 0, -THIGH + 0.075), 0.054, "shell")
-        + [cylinder((0, 0, -0.03), (0, 0, -0.09), 0.046, "graphite"), box((0, side * 0.050, -0.19), (0.03, 0.012, 0.13), "accent"),
-           cylinder((0, 0, -THIGH + 0.08), (0, 0, -THIGH + 0.02), 0.042, "graphite")],
+        + [
+            cylinder((0, 0, -0.03), (0, 0, -0.09), 0.046, "graphite"),
+            box((0, side * 0.050, -0.19), (0.03, 0.012, 0.13), "accent"),
+            cylinder((0, 0, -THIGH + 0.08), (0, 0, -THIGH + 0.02), 0.042, "graphite"),
+        ],
         "knee_link": [hub(Y, 0.047, 0.045, "metal"), hub(Y, 0.052, 0.028, "accent")]
         + capsule((-0.004, 0, -0.09), (-0.004, 0, -SHANK + 0.10), 0.044, "shell")
         + [cylinder((0, 0, -0.03), (0, 0, -0.10), 0.038, "graphite"), cylinder((0, 0, -0.20), (0, 0, -SHANK + 0.02), 0.030, "graphite")],
@@ -319,8 +330,11 @@ def vector(values):
 
 
 def geometry(kind, what, size, material, origin, rpy):
-    shape = {"box": lambda: f'<box size="{vector(size)}"/>', "sphere": lambda: f'<sphere radius="{number(size)}"/>',
-             "cylinder": lambda: f'<cylinder radius="{number(size[0])}" length="{number(size[1])}"/>'}[kind]()
+    shape = {
+        "box": lambda: f'<box size="{vector(size)}"/>',
+        "sphere": lambda: f'<sphere radius="{number(size)}"/>',
+        "cylinder": lambda: f'<cylinder radius="{number(size[0])}" length="{number(size[1])}"/>',
+    }[kind]()
     paint = f'<material name="{material}"/>' if material else ""
     return f'    <{what}><origin xyz="{vector(origin)}" rpy="{vector(rpy)}"/><geometry>{shape}</geometry>{paint}</{what}>'
 
@@ -330,9 +344,11 @@ def link(name, kind, side, links):
     visual, collision = looks(side)
     lines = [f'  <link name="{name}">']
     i = body.inertia
-    lines.append(f'    <inertial><origin xyz="{vector(body.com)}" rpy="0 0 0"/><mass value="{number(body.mass)}"/>'
-                 f'<inertia ixx="{number(i[0][0])}" ixy="{number(i[0][1])}" ixz="{number(i[0][2])}" '
-                 f'iyy="{number(i[1][1])}" iyz="{number(i[1][2])}" izz="{number(i[2][2])}"/></inertial>')
+    lines.append(
+        f'    <inertial><origin xyz="{vector(body.com)}" rpy="0 0 0"/><mass value="{number(body.mass)}"/>'
+        f'<inertia ixx="{number(i[0][0])}" ixy="{number(i[0][1])}" ixz="{number(i[0][2])}" '
+        f'iyy="{number(i[1][1])}" iyz="{number(i[1][2])}" izz="{number(i[2][2])}"/></inertial>'
+    )
     for shape, center, rpy, size, material in visual.get(kind, []):
         lines.append(geometry(shape, "visual", size, material, center, rpy))
     for shape, center, rpy, size, _ in collision.get(kind, []):
@@ -345,18 +361,24 @@ def joint(name, kind, side, parent, child, origin):
     if side < 0 and kind.endswith(("roll", "yaw")):
         lower, upper = -upper, -lower
     axis = AXIS.get(kind.rsplit("_", 1)[-1], AXIS["pitch"])
-    return [f'  <joint name="{name}" type="revolute">', f'    <parent link="{parent}"/><child link="{child}"/>',
-            f'    <origin xyz="{vector(origin)}" rpy="0 0 0"/><axis xyz="{vector(axis)}"/>',
-            f'    <limit lower="{number(lower)}" upper="{number(upper)}" effort="{number(effort)}" velocity="{number(speed)}"/>',
-            "  </joint>"]
+    return [
+        f'  <joint name="{name}" type="revolute">',
+        f'    <parent link="{parent}"/><child link="{child}"/>',
+        f'    <origin xyz="{vector(origin)}" rpy="0 0 0"/><axis xyz="{vector(axis)}"/>',
+        f'    <limit lower="{number(lower)}" upper="{number(upper)}" effort="{number(effort)}" velocity="{number(speed)}"/>',
+        "  </joint>",
+    ]
 
 
 def urdf():
     links = bodies()
     check(links)
-    lines = ['<?xml version="1.0"?>', "<!-- Written by generate.py: change that, not this. Masses and inertias after de Leva 1996"
-             " (J. Biomech. 29:1223-1230), males,", "     scaled to 1.50 m and 35 kg; sources and assumptions are in generate.py. -->",
-             '<robot name="z1">']
+    lines = [
+        '<?xml version="1.0"?>',
+        "<!-- Written by generate.py: change that, not this. Masses and inertias after de Leva 1996 (J. Biomech. 29:1223-1230), males,",
+        "     scaled to 1.50 m and 35 kg; sources and assumptions are in generate.py. -->",
+        '<robot name="z1">',
+    ]
     for name, rgba in MATERIALS.items():
         lines.append(f'  <material name="{name}"><color rgba="{vector(rgba)}"/></material>')
     lines += link("pelvis", "pelvis", 1, links)
@@ -388,8 +410,11 @@ def check(links):
         assert body.mass > 0 and all(m > 0 for m in minors), name
         trace = i[0][0] + i[1][1] + i[2][2]
         d = [[(0.5 * trace if r == c else 0.0) - i[r][c] for c in range(3)] for r in range(3)]  # density-weighted covariance
-        det = (d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0])
-               + d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]))
+        det = (
+            d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1])
+            - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0])
+            + d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0])
+        )
         assert d[0][0] > 0 and d[0][0] * d[1][1] > d[0][1] ** 2 and det > 0, f"{name}: no such body"
 
 

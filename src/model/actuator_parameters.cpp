@@ -1,4 +1,4 @@
-#include "sim/actuator_parameters.hpp"
+#include "model/actuator_parameters.hpp"
 
 #include <array>
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 #include "model/nearest_name.hpp"
 
-namespace pmg::sim {
+namespace pmg::model {
 
 namespace {
 
@@ -75,4 +75,4 @@ const ActuatorParameter& actuator_parameter(std::string_view name) {
                               model::expected_name(name, names));
 }
 
-}  // namespace pmg::sim
+}  // namespace pmg::model

@@ -1,12 +1,10 @@
-// Between whoever hears operators and a simulated robot's hoist: a handful of flags.
+// Flags between the thread that hears operators and a hoist that carries the robot.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 
-#include "control/mode.hpp"
-
-namespace pmg::runtime {
+namespace pmg::hal {
 
 /// What the hoist does; the numbers are those of pmg_msgs::hoist_state_t.
 enum class CraneState : std::uint8_t {
@@ -18,14 +16,14 @@ enum class CraneState : std::uint8_t {
   kLettingGo = 5,  ///< straps are loosened
 };
 
-/// Wait-free. One thread tells, the bus thread reads and shows.
+/// Wait-free. The operators' thread calls ask() and see(); the bus thread calls stays_up(), stands() and show().
 class HoistLine {
  public:
   /// Up, and stay there; or down as soon as the robot stands.
   void ask(bool up) noexcept { stays_up_.store(up, std::memory_order_relaxed); }
-  /// The controller's newest tick. Standing up anew ends a wish to stay up; entering: the ramp into Stand isn't over.
-  void see(control::Mode mode, bool entering) noexcept {
-    const bool upright = mode == control::Mode::kStand || mode == control::Mode::kWalk;
+  /// The controller's newest tick. upright: in Stand or Walk. entering: the ramp into Stand isn't over. Standing up
+  /// anew ends a wish to stay up.
+  void see(bool upright, bool entering) noexcept {
     if (upright && !upright_) ask(false);
     upright_ = upright;
     stands_.store(upright && !entering, std::memory_order_relaxed);
@@ -39,7 +37,7 @@ class HoistLine {
  private:
   std::atomic<bool> stays_up_{false}, stands_{false};
   std::atomic<CraneState> state_{CraneState::kHolding};
-  bool upright_ = false;  // the telling thread's
+  bool upright_ = false;  // the operators' thread's
 };
 
-}  // namespace pmg::runtime
+}  // namespace pmg::hal
