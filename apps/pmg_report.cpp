@@ -60,7 +60,7 @@ void tell(const Arguments& arguments, const std::vector<report::RunSeries>& runs
   std::cout << fmt::format("report in {}\n", arguments.out.string());
 }
 
-int report(const Arguments& arguments) {
+int write_report(const Arguments& arguments) {
   if (arguments.logs.size() > report::kMostRuns) {
     throw std::invalid_argument(
         fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), report::kMostRuns));
@@ -84,6 +84,6 @@ int main(int argc, char** argv) {
   app.add_flag("--json", arguments.json, "print the runs' figures on stdout as JSON instead of one line each");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM}, "drawing what was read until now");
-    return report(arguments);
+    return write_report(arguments);
   });
 }

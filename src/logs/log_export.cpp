@@ -80,7 +80,7 @@ class CsvFile {
       throw std::runtime_error(path_.string() +
                                ": the logs are of robots with different joints; name those of one run");
     std::string line = fmt::format("{:.6f}", row.time_s);
-    for (const Field& field : row.fields) line += "," + quoted(to_text(field.value));
+    for (const Field& field : row.fields) line.append(",").append(quoted(to_text(field.value)));
     file_ << line << '\n';
     if (!file_) throw std::runtime_error(path_.string() + ": can't be written");
   }
