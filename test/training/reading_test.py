@@ -22,9 +22,7 @@ from pmg_train.library import load  # noqa: E402
 
 def said_by_pmg_sil(*options, scenario=ROOT / "config/scenarios/stand.yaml"):
     """Its one line about the file, without the program's name."""
-    run = subprocess.run(
-        [BIN / "pmg_sil", "--policy", "none", "--scenario", scenario, *options], cwd=ROOT, capture_output=True, text=True
-    )
+    run = subprocess.run([BIN / "pmg_sil", "--policy", "none", "--scenario", scenario, *options], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 2, run.stderr
     assert run.stderr.startswith("pmg_sil: ") and run.stderr.count("\n") == 1, run.stderr
     return run.stderr.removeprefix("pmg_sil: ").rstrip("\n")
