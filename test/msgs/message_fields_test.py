@@ -15,12 +15,9 @@ import message_fields  # noqa: E402
 
 class MessageFields(unittest.TestCase):
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-
-    def enterContext(self, context):  # unittest has it from Python 3.11 on
-        value = context.__enter__()
-        self.addCleanup(context.__exit__, None, None, None)
-        return value
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
 
     def file(self, members, before="// Channel THING: a thing."):
         path = self.folder / "thing_t.lcm"

@@ -14,17 +14,15 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 ROBOT = ROOT / "config/robots/z1"
 sys.path.insert(0, str(ROOT / "training"))
-LIBRARY, BIN = sys.argv[1:3]
+LIBRARY, BIN = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 
 from pmg_train import checked_files  # noqa: E402
 from pmg_train.library import load  # noqa: E402
 
 
-def said_by_pmg_sil(*options):
+def said_by_pmg_sil(*options, scenario=ROOT / "config/scenarios/stand.yaml"):
     """Its one line about the file, without the program's name."""
-    run = subprocess.run(
-        [f"{BIN}/pmg_sil", "--policy", "none", "--scenario", ROOT / "config/scenarios/stand.yaml", *options], cwd=ROOT, capture_output=True, text=True
-    )
+    run = subprocess.run([BIN / "pmg_sil", "--policy", "none", "--scenario", scenario, *options], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 2, run.stderr
     assert run.stderr.startswith("pmg_sil: ") and run.stderr.count("\n") == 1, run.stderr
     return run.stderr.removeprefix("pmg_sil: ").rstrip("\n")
@@ -129,7 +127,7 @@ class Reading(unittest.TestCase):
         ):
             path = self.write("scenario.yaml", text)
             self.expect(
-                said, said_by_pmg_sil("--robot", ROBOT, "--out", self.folder, "--scenario", path), said_by_training(checked_files.read_scenario, path)
+                said, said_by_pmg_sil("--robot", ROBOT, "--out", self.folder, scenario=path), said_by_training(checked_files.read_scenario, path)
             )
 
     def test_a_missing_file_is_named(self):
