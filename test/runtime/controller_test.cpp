@@ -118,12 +118,12 @@ TEST(Controller, TheBusGuardHasTheTicksOptions) {
   const model::RobotModel& robot = test::z1();
   const io::WallClock clock;
   control::TickOptions options = control::tick_options(robot);
-  options.guard = {.hold_cycles = 7, .max_kp_Nm_per_rad = 500.0, .max_kd_Nm_s_per_rad = 50.0};
+  options.guard = {.hold_cycles = 7, .max_kp_Nm_per_rad = 1500.0, .max_kd_Nm_s_per_rad = 90.0};
   control::Tick tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock, options);
   test::IdealBus bus(robot);
   const Controller controller(robot, bus, tick, {.realtime = false});
   EXPECT_EQ(controller.bus_cycle().guard().options().hold_cycles, 7);
-  EXPECT_EQ(controller.bus_cycle().guard().options().max_kp_Nm_per_rad, 500.0);
+  EXPECT_EQ(controller.bus_cycle().guard().options().max_kp_Nm_per_rad, 1500.0);
 }
 
 TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
