@@ -17,11 +17,6 @@ class MessageFields(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
-    def enterContext(self, context):  # unittest has it from Python 3.11 on
-        value = context.__enter__()
-        self.addCleanup(context.__exit__, None, None, None)
-        return value
-
     def file(self, members, before="// Channel THING: a thing."):
         path = self.folder / "thing_t.lcm"
         path.write_text(f"package pmg_msgs;\n\n{before}\nstruct thing_t {{\n{members}\n}}\n")
