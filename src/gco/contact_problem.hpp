@@ -45,8 +45,9 @@ struct ContactTerms {
 
 /// Motion of a foot for given unknowns (paper eq. 13 and 14).
 template <typename T>
-struct FootMotion {                // NOLINT(cppcoreguidelines-pro-type-member-init): foot_motion() sets it, in the loop
-  Eigen::Matrix<T, 3, 1> lever_H;  ///< base origin to contact point [m]
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): foot_motion() sets all of it, within the loop
+struct FootMotion {
+  Eigen::Matrix<T, 3, 1> lever_H;     ///< base origin to contact point [m]
   Eigen::Matrix<T, 3, 1> velocity_H;  ///< v_f = v' + omega' x lever + leg velocity [m/s]
   T yaw_rate;                         ///< [rad/s]
 };

@@ -79,7 +79,8 @@ void bars(pages::Page& page, const Runs& runs, const std::vector<Joint>& joints)
   for (const Joint& joint : joints) errors.names.push_back(joint.name);
   torques.names = errors.names;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    pages::Bars::Set error{runs[i].name + suffix(runs, i), {}, palette(i).measured}, torque = error;
+    pages::Bars::Set error{runs[i].name + suffix(runs, i), {}, palette(i).measured};
+    pages::Bars::Set torque = error;
     for (const Joint& joint : joints) {
       const bool here = joint.place[i] != kAbsent;
       error.values.push_back(here ? joint.tracking[i].error_rms_rad : std::nan(""));

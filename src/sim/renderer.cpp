@@ -53,9 +53,8 @@ class GlContext {
       throw std::runtime_error("OSMesa gives no OpenGL context");
     }
   }
-  ~GlContext() {
-    OsMesa::get().destroy(context_);
-  }  // NOLINT(bugprone-exception-escape): get() throws at its first call only
+  // NOLINTNEXTLINE(bugprone-exception-escape): get() throws at its first call only
+  ~GlContext() { OsMesa::get().destroy(context_); }
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 

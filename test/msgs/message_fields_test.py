@@ -15,9 +15,7 @@ import message_fields  # noqa: E402
 
 class MessageFields(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def file(self, members, before="// Channel THING: a thing."):
         path = self.folder / "thing_t.lcm"
