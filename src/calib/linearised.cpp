@@ -31,12 +31,15 @@ Linearised linearise(const FitProblem& problem, const std::vector<double>& point
   }
   Linearised sum = nothing(problem.dimensions());
   Eigen::VectorXd block = Eigen::VectorXd::Zero(parameters);
+  const auto close_block = [&] {
+    sum.scatter += block * block.transpose();
+    ++sum.blocks;
+    block.setZero();
+  };
   double block_ends_s = recording.t_s.front() + kBlock_s;
   for (std::size_t k = 0; k < at.size(); ++k) {
-    if (recording.t_s[k] >= block_ends_s || k + 1 == at.size()) {
-      sum.scatter += block * block.transpose();
-      ++sum.blocks;
-      block.setZero();
+    if (recording.t_s[k] >= block_ends_s) {
+      close_block();
       block_ends_s += kBlock_s;
     }
     if (!recording.valid[k]) continue;
@@ -46,6 +49,7 @@ Linearised linearise(const FitProblem& problem, const std::vector<double>& point
     sum.gradient += part;
     block += part;
   }
+  close_block();
   return sum;
 }
 

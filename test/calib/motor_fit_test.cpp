@@ -125,6 +125,22 @@ TEST(Confidence, CoversTheTruth) {
   }
 }
 
+// Only the last sample of each run is off: without it the residuals would be 0, and so would the deviations.
+TEST(Confidence, CountsTheLastSampleOfEachRun) {
+  const calib::FitProblem exact = problem({}, 0.0, 2);
+  const bench::Bench bench = test::pd_bench(true);
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& joint : exact.runs()) {
+    bench::BenchRun run = joint.run();
+    run.recording.q_rad = joint.rollout(truth());
+    run.recording.q_rad.back() += 0.01;
+    runs.emplace_back(bench, std::move(run), joint.step_s());
+  }
+  calib::JointModel start = truth();
+  const calib::FitProblem off(exact.parameters(), start, runs);
+  for (const calib::Confidence& one : calib::confidence(off, off.point_of(start), 1)) EXPECT_GT(one.deviation, 0.0);
+}
+
 TEST(Confidence, SaysWhatTheRunsCantTell) {
   // Both runs have the same kd, and none a commanded speed.
   const calib::FitProblem joint = problem({"damping", "torque_speed"}, 1e-3, 2);
