@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, EveryMethod, testing::Values("bobyqa", "sbp
 TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   const calib::FitProblem joint = problem({}, 0.0, 2);
   int calls = 0;
-  const calib::Fit fit = calib::fit(joint, {.starts = 2}, [&](double, const std::string&) { return ++calls < 30; });
+  const calib::Fit fit = calib::fit(joint, {.starts = 2}, {.interrupted = [&] { return ++calls >= 30; }});
   EXPECT_TRUE(fit.interrupted);
   EXPECT_EQ(fit.point.size(), joint.dimensions());
   EXPECT_LT(fit.loss_rad2, joint.loss(joint.point_of(joint.start())));
