@@ -135,10 +135,11 @@ class CauseSearch {
     Priors with_rival = priors_;
     with_rival.widen(finding.or_instead.front());
     const Eigen::VectorXd difference = posterior_mean(all_, with) - posterior_mean(all_, with_rival);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      if (blocks_[b].rows.empty()) continue;
-      const auto support = static_cast<std::size_t>(blocks_[b].rows.front().support);
-      finding.apart[support] += difference.dot(sums_[b].information * difference);
+    for (const RobotBlock& block : blocks_) {
+      for (const RobotRow& row : block.rows) {
+        const double apart = residual(row, difference) - row.residual;
+        finding.apart[static_cast<std::size_t>(row.support)] += noise_.weight(row) * apart * apart;
+      }
     }
   }
 

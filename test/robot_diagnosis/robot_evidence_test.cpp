@@ -12,6 +12,49 @@
 namespace pmg::robot_diagnosis {
 namespace {
 
+constexpr int kStandingKind = 0, kHangingKind = 1, kKinds = 2;
+
+RobotParameterList two_payloads() {
+  using Kind = RobotParameter::Kind;
+  RobotParameterList list;
+  for (const char* link : {"pelvis", "torso"}) {
+    list.candidates.push_back({"payload", link, {static_cast<int>(list.parameters.size())}});
+    list.parameters.push_back(
+        {.kind = Kind::kTorsoMass, .link = link, .tolerance = 0.03, .wide = 3.0, .relevant = 0.25});
+  }
+  return list;
+}
+
+/// The first payload is 1 kg. Standing both act alike; hanging the second acts a little more or less than the first.
+std::vector<RobotBlock> blocks_that_begin_standing() {
+  constexpr double kNoise_Nm = 0.1, kApart_Nm_per_kg = 0.015;
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, kNoise_Nm);
+  std::vector<RobotBlock> blocks(6);
+  for (RobotBlock& block : blocks) {
+    for (int i = 0; i < 45; ++i) {
+      const bool standing = i < 5;
+      const double apart = standing ? 0.0 : i % 2 == 0 ? kApart_Nm_per_kg : -kApart_Nm_per_kg;
+      RobotRow row;
+      row.kind = standing ? kStandingKind : kHangingKind;
+      row.support = standing ? Support::kStanding : Support::kHanging;
+      row.coefficients = {{0, 1.0}, {1, 1.0 + apart}};
+      row.residual = -1.0 + noise(random);
+      block.rows.push_back(row);
+    }
+  }
+  return blocks;
+}
+
+TEST(RobotEvidence, RivalsPartWhereTheirRowsDifferNotWhereTheBlockBegins) {
+  const RobotEvidence found = weigh(blocks_that_begin_standing(), kKinds, two_payloads());
+  ASSERT_EQ(found.findings.size(), 1U);
+  const RobotFinding& payload = found.findings.front();
+  ASSERT_EQ(payload.or_instead.size(), 1U) << "the two can't be told apart";
+  EXPECT_GT(payload.apart[static_cast<std::size_t>(Support::kHanging)],
+            10.0 * payload.apart[static_cast<std::size_t>(Support::kStanding)]);
+}
+
 TEST(RobotDiagnosisOptions, EveryNumberIsListedWithItsReason) {
   const std::vector<evidence::Option> all = listed(RobotDiagnosisOptions{});
   EXPECT_EQ(all.size(), sizeof(RobotDiagnosisOptions) / sizeof(double));
