@@ -175,9 +175,6 @@ int diagnose(Arguments arguments) {
   if (found.next_excitation) {
     diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
   }
-  std::vector<bench::BenchRun> recorded;
-  for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());
-  runs.checks = evidence::signatures(bench, recorded);
   io::write_whole_file(arguments.out / "report.html",
                        diagnosis::diagnosis_report(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");

@@ -52,7 +52,7 @@ class JointDiagnosisRun {
     diagnosis_.noise_floor = noise_floor(bench_, fitted);
     diagnosis_.unit = bench_.rig == bench::Rig::kLinear ? "m" : "rad";
     checks_ = checks(fitted);
-    if (runs != nullptr) *runs = {fitted, scored, {}};
+    if (runs != nullptr) *runs = {fitted, scored, checks_};
     const effects::NestedFit all(fitted, options_.threads),
         fit(calib::spread(fitted, static_cast<std::size_t>(by_.searched_runs)), options_.threads);
     report(0.02, "fitting what the simulation has");

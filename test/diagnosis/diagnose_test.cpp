@@ -66,7 +66,9 @@ TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
   test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4));
   DiagnoseOptions options;
   options.model = known();
-  const Diagnosis found = diagnose(bench::read_bench(folder_), options);
+  DiagnosedRuns runs;
+  const Diagnosis found = diagnose(bench::read_bench(folder_), options, &runs);
+  EXPECT_FALSE(runs.checks.empty()) << "a report shows those that the diagnosis weighed";
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "quantisation");
   const evidence::Interval quantum_rad = found.causes.front().parameters.front().estimate;
