@@ -11,10 +11,9 @@ namespace pmg::gco {
 /// u' averaged over one gait period at a steady command, without the library's own inverse; at rest the command itself.
 Command mean_optimised_command(const model::RobotModel& robot, const ClipLibrary& library, const Command& command);
 
-/// The inverse on a grid over the robot's command range, pitch and roll 0. What the clips can't reach is left: where
-/// the velocities together ask for more than the generator gives, only their direction is corrected, and no correction
-/// leaves the command range or exceeds two fifths of half a channel's. Rest stays rest. Throws work::Interrupted where
-/// progress is over.
+/// The inverse on a grid over the robot's command range, with pitch and roll 0. Where the velocities together exceed
+/// the generator's reach, only their direction is corrected. No correction leaves the command range or exceeds 40 % of
+/// half the channel's range. At rest it is 0. Throws work::Interrupted where progress is over.
 CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLibrary& library,
                                     const work::Progress& progress = {});
 

@@ -1,5 +1,6 @@
 #include "generator/synthesis.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <mutex>
