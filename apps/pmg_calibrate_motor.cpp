@@ -10,11 +10,12 @@
 #include <thread>
 
 #include "calib/fit_results.hpp"
+#include "calib/joint_runs.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
+#include "shown_progress.hpp"
 #include "sim/motor_file.hpp"
 
 namespace {
@@ -127,30 +128,6 @@ calib::JointModel start_model(const Arguments& arguments, const bench::Bench& be
   return model;
 }
 
-std::vector<calib::SingleJoint> read(const bench::Bench& bench, const std::string& filter, double step_s,
-                                     apps::ProgressLine& progress) {
-  std::vector<calib::SingleJoint> joints;
-  for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filter), [&](double share) {
-         progress.show(share, "reading " + bench.folder.string());
-         return apps::interrupt_requested == 0;
-       })) {
-    joints.emplace_back(bench, std::move(run), step_s);
-  }
-  return joints;
-}
-
-/// Scoring what was fitted would say nothing.
-void expect_apart(const std::vector<calib::SingleJoint>& fitted, const std::vector<calib::SingleJoint>& scored) {
-  for (const calib::SingleJoint& score : scored) {
-    for (const calib::SingleJoint& fit : fitted) {
-      if (fit.run().file == score.run().file) {
-        throw std::invalid_argument(
-            fmt::format("{} is both in --fit and in --score; expected different runs", fit.run().file));
-      }
-    }
-  }
-}
-
 void write_results(const calib::FitResults& results, const calib::JointModel& before, const fs::path& out) {
   fs::create_directories(out);
   io::write_whole_file(out / "fit.svg", calib::fit_picture(results, before));
@@ -160,7 +137,7 @@ void write_results(const calib::FitResults& results, const calib::JointModel& be
   io::write_whole_file(out / "fit.json", calib::fit_json(results).dump(2) + "\n");
 }
 
-void tell(const calib::FitResults& results, const fs::path& out) {
+void print_summary(const calib::FitResults& results, const fs::path& out) {
   const std::string unit = calib::position_unit(*results.bench, true);
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
     const calib::FitParameter& p = results.problem->parameters()[i];
@@ -214,10 +191,11 @@ int calibrate(const Arguments& arguments) {
   std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
   calib::JointModel start = start_model(arguments, bench);
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
-  std::vector<calib::SingleJoint> fitted = read(bench, arguments.fit, step_s, progress), scored;
-  if (!arguments.score.empty()) scored = read(bench, arguments.score, step_s, progress);
+  const work::Progress reading = apps::shown(progress, "reading " + bench.folder.string());
+  std::vector<calib::SingleJoint> fitted = calib::read_joints(bench, arguments.fit, step_s, reading), scored;
+  if (!arguments.score.empty()) scored = calib::read_joints(bench, arguments.score, step_s, reading);
   if (apps::interrupt_requested != 0) return kInterrupted;  // nothing is found yet
-  expect_apart(fitted, scored);
+  calib::expect_apart(fitted, scored);
   calib::FitResults results;
   results.noise_floor = noise_floor(fitted, scored);
   std::vector<bench::BenchRun> runs;
@@ -235,10 +213,7 @@ int calibrate(const Arguments& arguments) {
   options.seed = arguments.seed;
 
   const auto begin = std::chrono::steady_clock::now();
-  results.fit = calib::fit(problem, options, [&](double share, const std::string& text) {
-    progress.show(share, text);
-    return apps::interrupt_requested == 0;
-  });
+  results.fit = calib::fit(problem, options, apps::shown(progress));
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.clear();
   results.confidence = calib::confidence(problem, results.fit.point, arguments.threads);
@@ -256,7 +231,7 @@ int calibrate(const Arguments& arguments) {
   if (arguments.json)
     std::cout << calib::fit_json(results).dump(2) << '\n';
   else
-    tell(results, arguments.out);
+    print_summary(results, arguments.out);
   if (results.fit.interrupted) return kInterrupted;
   return total(results.fitted.after).sum_of_squares_rad2 < total(results.fitted.before).sum_of_squares_rad2
              ? kOk

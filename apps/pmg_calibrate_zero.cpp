@@ -9,7 +9,7 @@
 #include "io/whole_file.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
+#include "shown_progress.hpp"
 #include "zero/zero_results.hpp"
 #include "zero/zero_stances.hpp"
 
@@ -90,15 +90,10 @@ int calibrate(const Arguments& arguments) {
   sim::ActuatorsByJoint known;
   if (!arguments.motor.empty()) known = sim::read_motor_file(arguments.motor, robot.joint_index);
   apps::ProgressLine progress;
-  const std::vector<zero::StillPose> poses = zero::read_still_poses(arguments.logs, robot, {}, [&](double share) {
-    progress.show(share, "reading logs");
-    return apps::interrupt_requested == 0;
-  });
+  const std::vector<zero::StillPose> poses =
+      zero::read_still_poses(arguments.logs, robot, {}, apps::shown(progress, "reading logs"));
   zero::ZeroResults results{.robot = &robot, .poses = &poses, .options = arguments.options, .found = {}};
-  results.found = zero::calibrate_zero(robot, poses, arguments.options, [&](int iteration) {
-    progress.show(fmt::format("iteration {}", iteration + 1));
-    return apps::interrupt_requested == 0;
-  });
+  results.found = zero::calibrate_zero(robot, poses, arguments.options, apps::shown(progress));
   results.interrupted = apps::interrupt_requested != 0;
   progress.clear();
   if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // nothing is found yet

@@ -27,7 +27,7 @@
 #include "option_checks.hpp"
 #include "pmg/blending.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
+#include "shown_progress.hpp"
 
 namespace {
 
@@ -56,8 +56,6 @@ void write_library(const std::filesystem::path& directory, const ClipLibrary& li
   posture("squat", kHeight);
 }
 
-struct Interrupted {};
-
 /// Throws model::ConfigError unless the directory, or the one that it would be made in, takes new files. Makes nothing.
 void require_writable(const std::filesystem::path& directory) {
   std::filesystem::path existing = std::filesystem::absolute(directory);
@@ -77,10 +75,7 @@ void write_inverse(const model::RobotModel& robot, const std::filesystem::path& 
   ClipLibrary library = model::load_clip_library(clips, robot);
   const auto named = std::ranges::find(kBlendNames, blend);
   if (named != kBlendNames.end()) library.blend = static_cast<Blend>(named - kBlendNames.begin());
-  const CommandInverse inverse = gco::make_command_inverse(robot, library, [&progress](double share) {
-    if (apps::interrupt_requested != 0) throw Interrupted{};
-    progress.show(fmt::format("inverting commands {:.0f} %", 100.0 * share));
-  });
+  const CommandInverse inverse = gco::make_command_inverse(robot, library, apps::shown(progress, "inverting commands"));
   progress.clear();
   model::write_command_inverse(clips, inverse);
   if (named != kBlendNames.end()) model::write_blend(clips, library.blend);
@@ -128,12 +123,7 @@ int synth(const std::string& robot_name, const std::filesystem::path& out, const
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   require_writable(out);  // now, not after a minute's work
   apps::ProgressLine progress;
-  const ClipLibrary library = generator::synthesize(robot, blend == "corners", [&progress](const std::string& clip) {
-    if (apps::interrupt_requested != 0) {
-      throw Interrupted{};
-    }
-    progress.show("making " + clip);
-  });
+  const ClipLibrary library = generator::synthesize(robot, blend == "corners", apps::shown(progress));
   progress.clear();
   const UnfinishedLibrary unfinished(out);
   write_library(unfinished.folder(), library, robot);
@@ -246,7 +236,7 @@ int walk(const WalkOptions& options) {
   double slip_m_s = 0.0, slip_p95_m_s = 0.0, slip_worst_m_s = 0.0, clamped = 0.0, cut = 0.0;
   const auto commands = gco::commands_over_the_box(robot, options.commands, options.seed, options.posture_share);
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (apps::interrupt_requested != 0) throw Interrupted{};
+    if (apps::interrupt_requested != 0) throw work::Interrupted();
     progress.show(fmt::format("walking {} of {}", i + 1, commands.size()));
     const gco::SteadyWalk one = gco::walk_steadily(robot, library, commands[i]);
     const auto n = static_cast<double>(commands.size());
@@ -353,7 +343,7 @@ int main(int argc, char** argv) {
       if (walk_command->parsed()) return walk(walking);
       if (invert_command->parsed()) return invert(robot, inverse_clips, blend);
       return synth_command->parsed() ? synth(robot, out, blend) : show(options);
-    } catch (const Interrupted&) {
+    } catch (const work::Interrupted&) {
       return 130;
     }
   });

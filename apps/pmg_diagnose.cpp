@@ -14,13 +14,12 @@
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/next_excitation_files.hpp"
 #include "diagnosis/report.hpp"
-#include "evidence/signature.hpp"
 #include "io/whole_file.hpp"
 #include "model/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
 #include "robot_diagnosis.hpp"
+#include "shown_progress.hpp"
 #include "sim/motor_file.hpp"
 
 namespace {
@@ -101,7 +100,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
   return lines;
 }
 
-void tell(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
+void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
   const std::string unit = calib::position_unit(bench, true);
   std::cout << "verdict: " << name(found.verdict) << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
@@ -132,22 +131,18 @@ void tell(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs
 
 int diagnose_robot(const Arguments& arguments) {
   apps::ProgressLine progress;
-  const auto showing = [&progress](const char* what) {
-    return [&progress, what](double share) {
-      progress.show(share, what);
-      return apps::interrupt_requested == 0;
-    };
-  };
-  if (!arguments.record.empty())
-    return apps::record_robot(arguments.robot, arguments.record, arguments.seed, showing("excitation")) ? kOk
-                                                                                                        : kInterrupted;
+  if (!arguments.record.empty()) {
+    const bool whole =
+        apps::record_robot(arguments.robot, arguments.record, arguments.seed, apps::shown(progress, "excitation"));
+    return whole ? kOk : kInterrupted;
+  }
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
   return apps::diagnose_robot_logs({.robot = arguments.robot,
                                     .logs = arguments.inputs,
                                     .out = arguments.out,
                                     .json = arguments.json,
-                                    .progress = showing("equations of motion")})
+                                    .progress = apps::shown(progress, "equations of motion")})
              ? kOk
              : kInterrupted;
 }
@@ -168,11 +163,7 @@ int diagnose(Arguments arguments) {
   if (arguments.joint.empty()) arguments.joint = bench.joint_name();
   const auto begin = std::chrono::steady_clock::now();
   diagnosis::DiagnosedRuns runs;
-  const diagnosis::Diagnosis found =
-      diagnosis::diagnose(bench, options, &runs, [&](double share, const std::string& text) {
-        progress.show(share, text);
-        return apps::interrupt_requested == 0;
-      });
+  const diagnosis::Diagnosis found = diagnosis::diagnose(bench, options, &runs, apps::shown(progress));
   progress.clear();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fs::create_directories(arguments.out);
@@ -184,16 +175,13 @@ int diagnose(Arguments arguments) {
   if (found.next_excitation) {
     diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
   }
-  std::vector<bench::BenchRun> recorded;
-  for (const calib::SingleJoint& joint : runs.fitted) recorded.push_back(joint.run());
-  const std::vector<evidence::Signature> checks = evidence::signatures(bench, recorded);
   io::write_whole_file(arguments.out / "report.html",
-                       diagnosis::diagnosis_report(bench, found, runs, checks, arguments.threads).html());
+                       diagnosis::diagnosis_report(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   if (arguments.json)
     std::cout << json.dump(2) << '\n';
   else
-    tell(found, bench, arguments.out, wall_s);
+    print_summary(found, bench, arguments.out, wall_s);
   return apps::interrupt_requested != 0 ? kInterrupted : kOk;
 }
 

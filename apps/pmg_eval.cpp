@@ -122,8 +122,8 @@ class Watch {
  public:
   explicit Watch(const Arguments& arguments) {
     supervision_.jobs = arguments.jobs;
-    supervision_.interrupted = [] { return apps::interrupt_requested != 0; };
-    supervision_.progress = [this](std::size_t done, std::size_t count) { show(done, count); };
+    supervision_.progress = {.told = [this](double share, std::string_view pieces) { show(share, pieces); },
+                             .interrupted = [] { return apps::interrupt_requested != 0; }};
   }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -131,12 +131,10 @@ class Watch {
   const evaluation::Supervision& supervision() const { return supervision_; }
 
  private:
-  void show(std::size_t done, std::size_t count) {
-    if (done == 0) return line_.show(0.0, fmt::format("0 of {}", count));
+  void show(double share, std::string_view pieces) {
+    if (share == 0.0) return line_.show(0.0, pieces);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const double left_s = elapsed.count() / static_cast<double>(done) * static_cast<double>(count - done);
-    line_.show(static_cast<double>(done) / static_cast<double>(count),
-               fmt::format("{} of {}, {:.0f} s left", done, count, left_s));
+    line_.show(share, fmt::format("{}, {:.0f} s left", pieces, elapsed.count() * (1.0 - share) / share));
   }
   evaluation::Supervision supervision_;
   apps::ProgressLine line_;

@@ -13,8 +13,8 @@
 #include "logs/replay.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
 #include "runtime/bench_session.hpp"
+#include "shown_progress.hpp"
 
 namespace {
 
@@ -109,10 +109,7 @@ int export_log(const Arguments& arguments) {
     throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
   apps::notice({SIGINT, SIGTERM}, "closing the files that were begun");
   apps::ProgressLine line;
-  const auto progress = [&line](double time_s) {
-    line.show(fmt::format("{:8.1f} s exported", time_s));
-    return apps::interrupt_requested == 0;
-  };
+  const work::Progress progress = apps::shown(line);
   const std::vector<fs::path> files = io::log_files(arguments.logs);
   const auto tell = [&](const fs::path& target, const logs::ExportReport& exported) {
     line.clear();
@@ -142,8 +139,7 @@ logs::ReplayReport replay_with_progress(const Arguments& arguments) {
   options.excitation = [&](const model::RobotModel& robot, const std::string& joint, const fs::path& logged) {
     return played_excitation(robot, joint, arguments.excitation.empty() ? logged : arguments.excitation);
   };
-  return logs::replay(io::log_files(arguments.logs), options,
-                      [&line](double time_s) { line.show(fmt::format("{:8.1f} s replayed", time_s)); });
+  return logs::replay(io::log_files(arguments.logs), options, apps::shown(line));
 }
 
 int replay(const Arguments& arguments) {

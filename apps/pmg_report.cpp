@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "program.hpp"
-#include "progress_line.hpp"
 #include "report/run_figures.hpp"
 #include "report/run_report.hpp"
+#include "shown_progress.hpp"
 
 namespace {
 
@@ -38,10 +38,7 @@ std::vector<report::RunSeries> read(const std::vector<fs::path>& logs) {
   std::vector<report::RunSeries> runs;
   apps::ProgressLine progress;
   for (const fs::path& log : logs) {
-    runs.push_back(report::read_run(log, [&](double share) {
-      progress.show(share, "reading " + log.string());
-      return apps::interrupt_requested == 0;
-    }));
+    runs.push_back(report::read_run(log, apps::shown(progress, "reading " + log.string())));
   }
   return runs;
 }

@@ -21,13 +21,13 @@ struct RobotDiagnosisArguments {
   std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
   std::filesystem::path out;
   bool json = false;
-  robot_diagnosis::RobotProgress progress{};
+  work::Progress progress{};
 };
 
 /// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm. False when progress ended it:
 /// what was recorded whole until then is kept, and stderr says what.
 inline bool record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed,
-                         const robot_diagnosis::RobotProgress& progress = {}) {
+                         const work::Progress& progress = {}) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
   const ClipLibrary clips = model::load_clip_library(robot.directory / "clips", robot);
   std::filesystem::create_directories(out);
@@ -42,7 +42,7 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
     robot_diagnosis::write_robot_log(
         robot_diagnosis::play(ground, robot_diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
         out / "standing.lcm");
-  } catch (const robot_diagnosis::Interrupted&) {
+  } catch (const work::Interrupted&) {
     std::cerr << "interrupted: " << kept << '\n';
     return false;
   }
@@ -58,7 +58,7 @@ inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   robot_diagnosis::RobotDiagnosis found;
   try {
     found = robot_diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
-  } catch (const robot_diagnosis::Interrupted&) {
+  } catch (const work::Interrupted&) {
     std::cerr << "interrupted: nothing was written\n";
     return false;
   }

@@ -81,6 +81,7 @@ nlohmann::ordered_json config_json(const SilArguments& arguments, const control:
   json["sensor_noise"] = {{"gyro_rad_s", sil::kGyroNoise_rad_s},
                           {"encoder_rad", sil::kEncoderNoise_rad},
                           {"orientation_rad", sil::kOrientationNoise_rad}};
+  json["drive_sampling_s"] = sim::WorldOptions{}.timestep_s;  // simulated drives read positions once a physics step
   return json;
 }
 

@@ -185,7 +185,7 @@ Bench read_bench(const std::filesystem::path& folder) {
   return bench;
 }
 
-std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const Progress& progress) const {
+std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const work::Progress& progress) const {
   const std::vector<bool> kept = filter.keeps(runs);
   std::vector<BenchRun> found;
   const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque};
@@ -193,7 +193,7 @@ std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const Progress& 
     if (!kept[row]) continue;
     found.push_back(describe(*this, row));
     found.back().recording = read_recording(folder / "runs" / found.back().file, format);
-    if (progress && !progress(static_cast<double>(row + 1) / static_cast<double>(kept.size()))) break;
+    if (!progress(static_cast<double>(row + 1) / static_cast<double>(kept.size()))) break;
   }
   if (found.empty()) {
     throw std::invalid_argument(fmt::format("{}: no run matches '{}' among {}; expected at least one",

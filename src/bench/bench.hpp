@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "bench/recording.hpp"
 #include "bench/row_filter.hpp"
 #include "model/actuator_parameters.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::bench {
 
@@ -56,10 +56,9 @@ struct Bench {
   std::vector<BenchLoad> loads;
   CsvTable runs;
 
-  /// Called with the share that is read; false ends the reading.
-  using Progress = std::function<bool(double share)>;
-  /// The rows that the filter keeps, read and checked. Throws model::ConfigError, std::invalid_argument when none is.
-  std::vector<BenchRun> read_runs(const RowFilter& filter, const Progress& progress = {}) const;
+  /// The rows that the filter keeps, read and checked; those read so far where progress is over. Throws
+  /// model::ConfigError, std::invalid_argument when none is.
+  std::vector<BenchRun> read_runs(const RowFilter& filter, const work::Progress& progress = {}) const;
   /// What motor.yaml calls the joint unless told otherwise: bench.yaml's joint, or the folder's name.
   std::string joint_name() const;
 };

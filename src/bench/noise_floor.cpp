@@ -7,6 +7,8 @@
 #include <random>
 #include <tuple>
 
+#include "fitting/statistics.hpp"
+
 namespace pmg::bench {
 
 namespace {
@@ -115,8 +117,7 @@ NoiseFloor noise_floor(const std::vector<const BenchRun*>& runs) {
 
 double sensor_noise_rad(const Recording& recording) {
   constexpr double kBinomials[] = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
-  constexpr double kVariance = 924.0;           // the sum of their squares
-  constexpr double kMedianOfNormal = 0.674490;  // of |x|, x standard normal
+  constexpr double kVariance = 924.0;  // the sum of their squares
   std::vector<double> differences;
   for (std::size_t k = 0; k + std::size(kBinomials) <= recording.q_rad.size(); ++k) {
     double sum = 0.0;
@@ -128,9 +129,7 @@ double sensor_noise_rad(const Recording& recording) {
     if (valid && sum != 0.0) differences.push_back(std::abs(sum));  // a quantised sensor at rest shows no noise
   }
   if (differences.empty()) return 0.0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / kMedianOfNormal / std::sqrt(kVariance);
+  return fitting::median(std::move(differences)) / fitting::kNormalMedianDeviation / std::sqrt(kVariance);
 }
 
 }  // namespace pmg::bench

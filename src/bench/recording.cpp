@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/csv_table.hpp"
+#include "fitting/statistics.hpp"
 
 namespace pmg::bench {
 
@@ -16,12 +17,6 @@ constexpr std::size_t kFewestSamples = 50;
 constexpr double kLongestGap_samples = 5.0;
 constexpr double kLargestAngle_rad = 100.0;  // sixteen turns: no bench's joint; degrees reach it at a quarter turn
 constexpr double kLargestPosition_m = 20.0;  // no bench's axis; millimetres reach it at two centimetres
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 void check_times(const CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
   const double step_s = 1.0 / sample_rate_hz;
@@ -34,7 +29,7 @@ void check_times(const CsvTable& table, const std::vector<double>& t_s, double s
       model::raise(table.place(k), "t_s", fmt::format("{} after {}", t_s[k], t_s[k - 1]), "times that increase");
     }
   }
-  const double usual_s = median(steps_s);
+  const double usual_s = fitting::median(steps_s);
   if (usual_s > 2.0 * step_s || usual_s < 0.5 * step_s) {
     model::raise({table.file.string()}, "t_s", fmt::format("steps of {:.4g}", usual_s),
                  fmt::format("seconds, {:.4g} apart as sample_rate_hz of bench.yaml says", step_s));
@@ -65,7 +60,7 @@ std::vector<bool> find_valid(const std::vector<double>& q_rad) {
   }
   std::vector<bool> valid(q_rad.size(), true);
   if (moves_rad.empty()) return valid;
-  const double far_rad = 20.0 * median(moves_rad);
+  const double far_rad = 20.0 * fitting::median(moves_rad);
   for (std::size_t k = 0; k < q_rad.size(); ++k) {
     const double before_rad = q_rad[k == 0 ? 1 : k - 1], after_rad = q_rad[k + 1 == q_rad.size() ? k - 1 : k + 1];
     const double there_rad = q_rad[k] - before_rad, back_rad = q_rad[k] - after_rad;
@@ -79,7 +74,7 @@ std::vector<bool> find_valid(const std::vector<double>& q_rad) {
 /// The host's readings of the bus voltage fail now and then (zero, or double); the run's median replaces those.
 void mend_bus(std::vector<double>& bus_V) {
   if (bus_V.empty()) return;
-  const double usual_V = median(bus_V);
+  const double usual_V = fitting::median(bus_V);
   for (double& value : bus_V) {
     if (value < 0.7 * usual_V || value > 1.3 * usual_V) value = usual_V;
   }

@@ -1,57 +1,60 @@
 #include "calib/fit_confidence.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "calib/linearised.hpp"
+#include "calib/rollout_residuals.hpp"
+#include "fitting/covariance.hpp"
 
 namespace pmg::calib {
 
 namespace {
 
-constexpr double kAlike = 0.98;       // correlation
-constexpr double kUnseen_rad = 1e-9;  // movement of the rollouts by a whole edge of the cube
+constexpr double kAlike = 0.98;  // correlation
 
-/// What a whole edge of the cube would be at the point's slope, in the parameter's unit.
-double edge(const FitProblem& problem, const std::vector<double>& point, std::size_t d) {
+fitting::LinearisedFit linearised(const FitProblem& problem, const Eigen::VectorXd& point, unsigned threads) {
+  const fitting::Problem squares = problem.least_squares(threads);
+  const fitting::Residuals at = squares.residuals(point);
+  fitting::LinearisedFit fit{.ranges = squares.coordinates, .coordinates = point};
+  fit.blocks = blocks(problem.runs()).normal_equations(at, fitting::jacobian(squares, point, at));
+  return fit;
+}
+
+/// d value / d coordinate of a parameter, in its unit: a whole edge of the cube at the point's slope.
+double unit_per_edge(const FitProblem& problem, const std::vector<double>& point, std::size_t d) {
+  constexpr double kStep = 1e-3;
+  std::vector<double> below = point, above = point;
+  below[d] = std::max(0.0, point[d] - kStep);
+  above[d] = std::min(1.0, point[d] + kStep);
   const std::string& name = problem.parameters()[d].name;
-  const Ends e = ends(point, d);
-  return (value(problem.model_at(e.above), name) - value(problem.model_at(e.below), name)) / e.apart;
+  return (value(problem.model_at(above), name) - value(problem.model_at(below), name)) / (above[d] - below[d]);
 }
 
 }  // namespace
 
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads) {
-  const auto count = static_cast<Eigen::Index>(problem.dimensions());
-  Linearised sum = linearise(problem, point, threads);
-  // What the fit took from the misses, the customary correction gives back.
-  const int spare = std::max(1, sum.blocks - static_cast<int>(count));
-  sum.scatter *= static_cast<double>(sum.blocks) / static_cast<double>(spare);
-  // A unit diagonal keeps parameters of any weight in reach of one another; the ridge stands for what can't be told
-  // apart.
-  const Eigen::VectorXd weight = sum.information.diagonal().cwiseSqrt().cwiseMax(kUnseen_rad);
-  const Eigen::MatrixXd scale = weight.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd ridge = 1e-9 * Eigen::MatrixXd::Identity(count, count);
-  const Eigen::MatrixXd inverse =
-      (scale * sum.information * scale + ridge).ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  const Eigen::MatrixXd covariance = scale * inverse * scale * sum.scatter * scale * inverse * scale;
-
+  const fitting::LinearisedFit fit = linearised(
+      problem, Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size())), threads);
+  const Eigen::MatrixXd information = fitting::information(fit);
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index d = 0; d < information.rows(); ++d) {
+    if (information(d, d) > fitting::kUnseen_rad2) seen.push_back(d);
+  }
+  const fitting::Covariance covariance = fitting::cluster_robust_covariance(fit, seen);
   std::vector<Confidence> found(problem.dimensions());
-  for (Eigen::Index d = 0; d < count; ++d) {
-    const auto index = static_cast<std::size_t>(d);
-    Confidence& confidence = found[index];
-    const bool unseen = sum.information(d, d) <= kUnseen_rad * kUnseen_rad;
-    confidence.deviation = unseen ? std::numeric_limits<double>::infinity()
-                                  : edge(problem, point, index) * std::sqrt(std::max(0.0, covariance(d, d)));
-    for (Eigen::Index other = 0; other < count; ++other) {
-      if (other == d || unseen) continue;
-      const double correlation = inverse(d, other) / std::sqrt(inverse(d, d) * inverse(other, other));
-      if (std::abs(correlation) < std::max(kAlike, std::abs(confidence.correlation))) continue;
-      confidence.correlation = correlation;
-      confidence.told_apart_badly = problem.parameters()[static_cast<std::size_t>(other)].name;
+  for (Confidence& one : found) one.deviation = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto d = static_cast<std::size_t>(seen[i]);
+    const auto row = static_cast<Eigen::Index>(i);
+    found[d].deviation = unit_per_edge(problem, point, d) * std::sqrt(std::max(0.0, covariance.robust(row, row)));
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+      const auto other = static_cast<Eigen::Index>(j);
+      if (j == i) continue;
+      const double correlation =
+          covariance.inverse(row, other) / std::sqrt(covariance.inverse(row, row) * covariance.inverse(other, other));
+      if (std::abs(correlation) < std::max(kAlike, std::abs(found[d].correlation))) continue;
+      found[d].correlation = correlation;
+      found[d].told_apart_badly = problem.parameters()[static_cast<std::size_t>(seen[j])].name;
     }
   }
   return found;

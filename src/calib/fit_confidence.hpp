@@ -15,9 +15,9 @@ struct Confidence {
   double correlation = 0.0;      ///< with that one
 };
 
-/// By linearising the rollouts at the point, in the order of the problem's parameters. Misses of one rollout hang
-/// together over time, so blocks of half a second count as one observation (a cluster-robust covariance). Two
-/// parameters whose estimates correlate by more than 0.98 are told apart badly.
+/// (problem, point) => (confidence of each parameter), from the rollouts' derivatives at the point: the square roots of
+/// fitting::cluster_robust_covariance's diagonal. Two parameters whose estimates correlate by more than 0.98 are told
+/// apart badly.
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads);
 
 }  // namespace pmg::calib

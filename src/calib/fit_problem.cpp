@@ -9,8 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib/parallel.hpp"
+#include "calib/joint_runs.hpp"
+#include "calib/rollout_residuals.hpp"
 #include "model/nearest_name.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::calib {
 
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kSenseless_rad2 = 1e6;  // a loss beyond all real ones
 constexpr double kBend = 5.0;            // of a range from 0: its first tenth of the cube is 1/230 of it
+constexpr double kDifference = 1e-3;     // of a coordinate, for derivatives
 constexpr const char* kInertia = "load.inertia_scale";
 constexpr const char* kGravity = "load.gravity_scale";
 
@@ -199,24 +202,20 @@ double FitProblem::loss(std::span<const double> point, unsigned threads) const {
   }
 }
 
-FitProblem FitProblem::thinned(std::size_t most_runs) const {
-  if (runs_.size() <= most_runs) return *this;
-  std::vector<SingleJoint> kept;
-  // Steps of the golden ratio: however the rows are ordered, no period of theirs is met.
-  std::vector<bool> taken(runs_.size(), false);
-  double position = 0.5;
-  while (kept.size() < most_runs) {
-    const auto index = static_cast<std::size_t>(position * static_cast<double>(runs_.size()));
-    if (!taken[index]) kept.push_back(runs_[index]);
-    taken[index] = true;
-    position = std::fmod(position + 0.6180339887498949, 1.0);
-  }
-  return {parameters_, start_, std::move(kept)};
+fitting::Problem FitProblem::least_squares(unsigned threads) const {
+  fitting::Problem problem;
+  problem.residuals = [this, threads](const Eigen::VectorXd& point) {
+    return residuals(model_at({point.data(), static_cast<std::size_t>(point.size())}), runs_, threads);
+  };
+  problem.coordinates.assign(dimensions(), {.lower = 0.0, .upper = 1.0, .step = kDifference});
+  return problem;
 }
+
+FitProblem FitProblem::thinned(std::size_t most_runs) const { return {parameters_, start_, spread(runs_, most_runs)}; }
 
 std::vector<RolloutError> errors(const JointModel& model, const std::vector<SingleJoint>& runs, unsigned threads) {
   std::vector<RolloutError> found(runs.size());
-  for_each_in_parallel(runs.size(), threads, [&](std::size_t i) { found[i] = runs[i].error(model); });
+  work::for_each_in_parallel(runs.size(), threads, [&](std::size_t i) { found[i] = runs[i].error(model); });
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
+#include "fitting/least_squares.hpp"
 
 namespace pmg::calib {
 
@@ -15,6 +16,7 @@ struct FitParameter {
   std::string name;  ///< an actuator's ("friction.coulomb_Nm"), or load.inertia_scale, load.gravity_scale
   std::string unit;
   double lower, upper;
+  bool operator==(const FitParameter&) const = default;
 };
 
 /// The rows of sim::actuator_parameters and of the load by name, with ranges for this rig. Throws std::invalid_argument
@@ -53,6 +55,9 @@ class FitProblem {
   /// L(eta) of the paper over the number of samples [rad^2], over all runs; a large number where the model makes no
   /// sense. The same whatever the number of threads.
   double loss(std::span<const double> point, unsigned threads = 1) const;
+
+  /// The same sum of squares for Gauss-Newton steps; coordinates are points. Keeps a reference to this.
+  fitting::Problem least_squares(unsigned threads) const;
 
   /// The same problem on fewer runs, spread evenly over the list.
   FitProblem thinned(std::size_t most_runs) const;

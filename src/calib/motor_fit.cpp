@@ -10,7 +10,7 @@
 #include <random>
 
 #include "calib/gauss_newton.hpp"
-#include "calib/parallel.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::calib {
 
@@ -37,18 +37,19 @@ std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t di
   return points;
 }
 
-class Fitting {
+/// Screening, searches from several starts, polish: one fit.
+class MotorFitRun {
  public:
-  Fitting(const FitProblem& problem, const FitOptions& options, const FitProgress& progress)
+  MotorFitRun(const FitProblem& problem, const FitOptions& options, const work::Progress& progress)
       : all_(problem), few_(problem.thinned(options.runs_while_searching)), options_(options), progress_(progress) {}
 
   Fit run() {
     std::vector<Found> starts = screen();
-    for_each_in_parallel(starts.size(), options_.threads, [&](std::size_t i) {
+    work::for_each_in_parallel(starts.size(), options_.threads, [&](std::size_t i) {
       starts[i] = search(options_.method, loss_of(few_, 1), starts[i].point,
                          limits(options_.method, 0.1, static_cast<unsigned>(i)), stopping());
-      tell(0.1 + 0.5 * static_cast<double>(++done_) / static_cast<double>(starts.size()),
-           fmt::format("start {} of {}", done_.load(), starts.size()));
+      report(0.1 + 0.5 * static_cast<double>(++done_) / static_cast<double>(starts.size()),
+             fmt::format("start {} of {}", done_.load(), starts.size()));
     });
     sort(starts);
     Fit fit;
@@ -69,9 +70,9 @@ class Fitting {
     points.push_back(all_.point_of(all_.start()));
     std::vector<Found> found(points.size());
     const Loss loss = loss_of(few_, 1);
-    for_each_in_parallel(points.size(), options_.threads, [&](std::size_t i) {
+    work::for_each_in_parallel(points.size(), options_.threads, [&](std::size_t i) {
       found[i] = {points[i], stopped_ ? 1e9 : loss(points[i]), 1};
-      if (i % 16 == 0) tell(0.1 * static_cast<double>(i) / static_cast<double>(points.size()), "looking for starts");
+      if (i % 16 == 0) report(0.1 * static_cast<double>(i) / static_cast<double>(points.size()), "looking for starts");
     });
     sort(found);
     found.resize(std::min<std::size_t>(found.size(), std::max(1U, options_.starts)));
@@ -117,9 +118,9 @@ class Fitting {
         SearchOptions finely = limits(method, 0.03, 0);
         finely.relative_tolerance = 1e-6;
         at = search(method, remembered, at.point, finely, stopping());
-        tell(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
-                       static_cast<double>(chosen.size()),
-             fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));
+        report(0.6 + 0.4 * (static_cast<double>(c) + (method == Method::kSbplx ? 1.0 : 0.5)) /
+                         static_cast<double>(chosen.size()),
+               fmt::format("polishing, {:.2f} mrad rms", 1e3 * std::sqrt(at.loss)));
       }
       if (at.loss < best.loss) best = at;
     }
@@ -171,19 +172,19 @@ class Fitting {
     };
   }
 
-  Interrupted stopping() {
-    return [this] {
-      tell(-1.0, "");
-      return stopped_.load();
-    };
+  /// For searches: asks whether to go on, tells nothing.
+  work::Progress stopping() {
+    return {.told = {}, .interrupted = [this] {
+              if (progress_.over()) stopped_ = true;
+              return stopped_.load();
+            }};
   }
 
-  /// Progress is told by one thread at a time; a negative share only asks whether to go on.
-  void tell(double share, const std::string& text) {
-    if (!progress_) return;
-    const std::lock_guard lock(telling_);
-    if (share >= 0.0) share_ = std::max(share_, share), text_ = text;
-    if (!progress_(share_, text_)) stopped_ = true;
+  /// One thread at a time; the share never falls.
+  void report(double share, const std::string& doing) {
+    const std::lock_guard lock(reporting_);
+    share_ = std::max(share_, share);
+    if (!progress_(share_, doing)) stopped_ = true;
   }
 
   static void sort(std::vector<Found>& found) {
@@ -193,10 +194,9 @@ class Fitting {
   const FitProblem& all_;
   const FitProblem few_;
   const FitOptions& options_;
-  const FitProgress& progress_;
-  std::mutex telling_;
+  const work::Progress& progress_;
+  std::mutex reporting_;
   double share_ = 0.0;
-  std::string text_;
   std::atomic<bool> stopped_{false};
   std::atomic<int> evaluations_{0};
   std::atomic<int> done_{0};
@@ -205,8 +205,8 @@ class Fitting {
 
 }  // namespace
 
-Fit fit(const FitProblem& problem, const FitOptions& options, const FitProgress& progress) {
-  return Fitting(problem, options, progress).run();
+Fit fit(const FitProblem& problem, const FitOptions& options, const work::Progress& progress) {
+  return MotorFitRun(problem, options, progress).run();
 }
 
 }  // namespace pmg::calib

@@ -1,12 +1,12 @@
 // The fit of a joint model to a bench: many starts on few runs, then the best of them on all runs.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "calib/fit_problem.hpp"
 #include "calib/optimizer.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::calib {
 
@@ -33,10 +33,8 @@ struct Fit {
   bool interrupted = false;     ///< the best until then
 };
 
-/// Called now and then with how far it is and what is done; false ends the fit.
-using FitProgress = std::function<bool(double share, const std::string& text)>;
-
-/// Same problem, options and seed: same result, whatever the number of threads.
-Fit fit(const FitProblem& problem, const FitOptions& options, const FitProgress& progress = {});
+/// Same problem, options and seed: same result, whatever the number of threads. Where progress is over: the best so
+/// far.
+Fit fit(const FitProblem& problem, const FitOptions& options, const work::Progress& progress = {});
 
 }  // namespace pmg::calib

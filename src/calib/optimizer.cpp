@@ -49,11 +49,11 @@ Method method_of(const std::string& name) {
 }
 
 Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
-             const Interrupted& interrupted) {
+             const work::Progress& progress) {
   Found best{start, loss(start), 1};
   const Loss watched = [&](const std::vector<double>& point) {
     // NLopt's C core lets no exception of ours through but its own.
-    if (interrupted && interrupted()) throw nlopt::forced_stop();
+    if (progress.over()) throw nlopt::forced_stop();
     const double value = loss(point);
     ++best.evaluations;
     if (value < best.loss) best.loss = value, best.point = point;

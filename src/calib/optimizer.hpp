@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "work/progress.hpp"
+
 namespace pmg::calib {
 
 enum class Method { kBobyqa, kSbplx, kCrs2, kCmaes };
@@ -26,12 +28,11 @@ struct Found {
 };
 
 using Loss = std::function<double(const std::vector<double>& point)>;
-using Interrupted = std::function<bool()>;
 
 /// From start; the best point seen, also when interrupted. NLopt's BOBYQA and SBPLX are local, CRS2 and pagmo's CMA-ES
 /// (the paper's) look everywhere. Same input, same result.
 Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
-             const Interrupted& interrupted = {});
+             const work::Progress& progress = {});
 
 /// CMA-ES alone, in a translation unit of its own: pagmo's templates take long to compile.
 Found search_cmaes(const Loss& loss, const std::vector<double>& start, const SearchOptions& options);

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/constants.hpp"
+
 namespace pmg::calib {
 
 namespace {
 
-constexpr double kSilStep_s = 0.002;
 constexpr double kLost_rad = 1e3;  // a rollout that gets here has diverged
 
 sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& run, std::size_t sample) {
@@ -51,7 +52,9 @@ double resting_reading_rad(const bench::Recording& r) {
 
 }  // namespace
 
-double simulation_step_s(const bench::Bench& bench) { return std::min(kSilStep_s, 0.25 / bench.sample_rate_hz); }
+double simulation_step_s(const bench::Bench& bench) {
+  return std::min(model::kBusPeriod_s, 0.25 / bench.sample_rate_hz);
+}
 
 SingleJoint::SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s)
     : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {

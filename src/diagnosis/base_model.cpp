@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "calib/motor_fit.hpp"
-#include "diagnosis/catalogue.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis {
 
@@ -11,67 +11,62 @@ namespace {
 
 struct Tolerance {
   const char* name;
-  double share;  ///< of the value
+  double JointDiagnosisOptions::*share;  ///< of the value
 };
 
-// What a careful bench engineer's numbers are good for: gains and scales to a few percent, friction and a rotor's
-// inertia, which change from day to day or come from a data sheet, to a tenth.
+using Options = JointDiagnosisOptions;
 constexpr Tolerance kTolerances[] = {
-    {"drive.kp_scale", 0.02},
-    {"drive.kd_scale", 0.03},
-    {"drive.torque_per_unit_Nm", 0.02},
-    {"drive.back_emf_s_per_rad", 0.03},
-    {"transmission.armature_kg_m2", 0.1},
-    {"friction.viscous_Nm_s_per_rad", 0.1},
-    {"friction.coulomb_Nm", 0.1},
-    {"friction.stribeck_Nm", 0.1},
-    {"friction.load_driving", 0.1},
-    {"friction.load_backdriving", 0.1},
-    {"command.delay_s", 0.1},
-    {"load.inertia_scale", 0.02},
-    {"load.gravity_scale", 0.02},
+    {"drive.kp_scale", &Options::gain_tolerance},
+    {"drive.kd_scale", &Options::damping_tolerance},
+    {"drive.torque_per_unit_Nm", &Options::gain_tolerance},
+    {"drive.back_emf_s_per_rad", &Options::damping_tolerance},
+    {"transmission.armature_kg_m2", &Options::friction_tolerance},
+    {"friction.viscous_Nm_s_per_rad", &Options::friction_tolerance},
+    {"friction.coulomb_Nm", &Options::friction_tolerance},
+    {"friction.stribeck_Nm", &Options::friction_tolerance},
+    {"friction.load_driving", &Options::friction_tolerance},
+    {"friction.load_backdriving", &Options::friction_tolerance},
+    {"command.delay_s", &Options::friction_tolerance},
+    {"load.inertia_scale", &Options::load_tolerance},
+    {"load.gravity_scale", &Options::load_tolerance},
 };
-
-constexpr double kDeviation = 0.5;  // of the tolerance: where a calibration's number lies within it
 
 }  // namespace
 
 BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
-                     const NestedFit& fit, unsigned threads) {
+                     const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads) {
   BaseModel base;
   base.model.actuator = given.value_or(bench.known);
   std::vector<std::string> free = given ? bench.unknown : calib::basic_parameters(bench);
   if (!given) {  // no joint is without
     for (const char* name : {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}) {
-      if (!contains(free, name)) free.emplace_back(name);
+      if (!effects::contains(free, name)) free.emplace_back(name);
     }
   }
   if (!given) {
     std::vector<calib::FitParameter> parameters;
     for (const std::string& name : free) parameters.push_back(calib::fit_parameter(name, bench));
-    calib::FitOptions options;
-    options.starts = 4;
-    options.runs_while_searching = 8;
-    options.threads = threads;
+    const calib::FitOptions search{.starts = 4, .runs_while_searching = 8, .threads = threads};
     const calib::FitProblem problem(parameters, base.model, fit.runs());
-    base.model = calib::fit(problem.thinned(12), options).model;
+    base.model = calib::fit(problem.thinned(12), search).model;
   }
-  base.scale = scale_of(bench, fit.runs(), base.model);
-  for (const std::string& name : free) base.unknowns.push_back(unknown(name, bench, base.scale));
-  for (const auto& [name, share] : kTolerances) {
-    if (contains(free, name)) continue;
+  base.scale = effects::scale_of(bench, fit.runs(), base.model);
+  for (const std::string& name : free) base.unknowns.push_back(effects::unknown(name, bench, base.scale));
+  for (const auto& [name, member] : kTolerances) {
+    const double share = options.*member;
+    if (effects::contains(free, name)) continue;
     const double value = calib::value(base.model, name);
     if (value == 0.0) continue;
-    Unknown u = unknown(name, bench, base.scale);
+    effects::Unknown u = effects::unknown(name, bench, base.scale);
     u.lower = value - share * std::abs(value);
     u.upper = value + share * std::abs(value);
     u.logarithmic = false;
     u.typical = std::abs(value);
     u.expected = value;
-    u.deviation = kDeviation * share * std::abs(value);
+    u.deviation = options.deviation_of_tolerance * share * std::abs(value);
     base.unknowns.push_back(u);
   }
-  const NestedModel fitted = fit.fit(base.model, base.unknowns, 20);
+  const effects::NestedModel fitted = fit.fit(base.model, base.unknowns, 20);
   base.model = fitted.model;
   return base;
 }

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "diagnosis/nested_fit.hpp"
+#include "diagnosis/options.hpp"
+#include "effects/nested_fit.hpp"
 
 namespace pmg::diagnosis {
 
@@ -13,12 +14,12 @@ namespace pmg::diagnosis {
 /// tolerance the numbers that a calibration or a data sheet knows.
 struct BaseModel {
   calib::JointModel model;
-  std::vector<Unknown> unknowns;
-  BenchScale scale;
+  std::vector<effects::Unknown> unknowns;
+  effects::BenchScale scale;
 };
 
 /// given: of motor.yaml; without it the paper's eta and what bench.yaml calls unknown are fitted from scratch.
 BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
-                     const NestedFit& fit, unsigned threads);
+                     const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads);
 
 }  // namespace pmg::diagnosis

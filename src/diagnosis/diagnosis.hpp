@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
+#include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 
 namespace pmg::diagnosis {
@@ -75,6 +76,7 @@ struct Diagnosis {
   std::string unit = "rad";
   calib::JointModel before, after;
   std::vector<std::string> base_parameters;  ///< fitted with and without effects
+  std::vector<evidence::Option> options;     ///< that it was decided by
 };
 
 }  // namespace pmg::diagnosis

@@ -75,6 +75,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   json["depends_on"] = diagnosis.depends_on;
   json["base_parameters"] = diagnosis.base_parameters;
   json["next_excitation"] = diagnosis.next_excitation ? excitation_json(*diagnosis.next_excitation) : Json(nullptr);
+  json["options"] = evidence::options_json(diagnosis.options);
   return json;
 }
 

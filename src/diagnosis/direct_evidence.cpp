@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/catalogue.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kCoarser = 1.5;       // than the step that is known; sensors halve or double theirs
-constexpr double kShareOfNoise = 0.5;  // of its deviation: a quarter of its square
-
 std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks,
-                                           const sim::ActuatorParameters& base, double noise_rms_rad) {
+                                           const sim::ActuatorParameters& base, double noise_rms_rad,
+                                           const JointDiagnosisOptions& options) {
   std::vector<MeasuredCause> found;
   for (const evidence::Signature& check : checks) {
     if (check.effect != "quantisation" || check.agreement != evidence::Agreement::kAgrees) continue;
     const double quantum_rad = check.value.value;
     const double rms_rad = quantum_rad / std::sqrt(12.0);  // of what rounding leaves
-    if (quantum_rad < kCoarser * base.sensor.quantum_rad || rms_rad < kShareOfNoise * noise_rms_rad) continue;
+    if (quantum_rad < options.coarser_quantum * base.sensor.quantum_rad ||
+        rms_rad < options.quantum_of_noise * noise_rms_rad)
+      continue;
     found.push_back({check.effect, "sensor.quantum_rad", check.value});
   }
   return found;
@@ -27,7 +27,7 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
 
 /// Checks see what a joint has, not what it has beyond its model.
 bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
-  const std::vector<std::string>& parameters = effect(name).parameters;
+  const std::vector<std::string>& parameters = effects::effect(name).parameters;
   return std::any_of(parameters.begin(), parameters.end(), [&](const std::string& parameter) {
     if (parameter.starts_with("load.")) return false;
     const sim::ActuatorParameter& p = sim::actuator_parameter(parameter);
@@ -53,7 +53,7 @@ std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& c
 std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks,
                                          const sim::ActuatorParameters& base) {
   std::vector<std::string> found;
-  for (const Effect& one : catalogue()) {
+  for (const effects::Effect& one : effects::catalogue()) {
     const bool refuted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
                          !some_check(checks, one.name, evidence::Agreement::kAgrees) && one.name != "load";
     if (refuted && !in_base(one.name, base)) found.push_back(one.name);
@@ -64,8 +64,9 @@ std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>&
 }  // namespace
 
 DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
-                               double noise_rms_rad) {
-  return {measured_causes(checks, base, noise_rms_rad), shown_effects(checks, base), refuted_effects(checks, base)};
+                               double noise_rms_rad, const JointDiagnosisOptions& options) {
+  return {measured_causes(checks, base, noise_rms_rad, options), shown_effects(checks, base),
+          refuted_effects(checks, base)};
 }
 
 }  // namespace pmg::diagnosis

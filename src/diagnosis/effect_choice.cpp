@@ -1,17 +1,8 @@
 // How EffectSearch chooses among its trials: one effect after the other, and back.
-#include "diagnosis/catalogue.hpp"
 #include "diagnosis/effect_search.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis {
-
-namespace {
-
-constexpr std::size_t kMostEffects = 6;
-constexpr double kEqual = 0.03;      // of the gain: such a difference doesn't choose
-constexpr double kClearly = 3.0;     // deviations that do
-constexpr double kUnfinished = 0.5;  // of what an effect explains, that a fit without it explains as well
-
-}  // namespace
 
 /// Of those that convince and are nearly equal, the one with the fewest parameters; a special case unless it is clearly
 /// worse. Null where none convinces.
@@ -25,23 +16,24 @@ const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
       best = trial.comparison.log_gain;
       continue;
     }
-    const bool special = contains(effect(chosen->effect).contains, trial.effect) &&
-                         compared(trial.extension, chosen->extension).deviations < kClearly;
-    if (trial.comparison.log_gain < (1.0 - kEqual) * best && !special) continue;
+    const bool special = effects::contains(effects::effect(chosen->effect).contains, trial.effect) &&
+                         compared(trial.extension, chosen->extension).deviations < options_.clearly_deviations;
+    if (trial.comparison.log_gain < (1.0 - options_.equal_gain) * best && !special) continue;
     if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
   }
   return chosen;
 }
 
-/// What came first may only have stood for what came later; and what came last for a fit that wasn't at its end, where
-/// one without it, begun from here, meets the runs by most of what it gained.
+/// (extension, the one before its newest effect) => (extension without superfluous effects). An earlier effect may be a
+/// proxy for a later one. And the newest effect may only have helped a fit that had not converged: then a fit without
+/// it, continued from here, regains more than half of its gain. Costs a fit for each effect.
 Extension EffectSearch::pruned(Extension current, const Extension& before) {
   for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e];
-    const bool newest = !contains(before.effects, name);
-    const Extension rest = measured(name) != nullptr ? current : without(current, name);
+    const bool newest = !effects::contains(before.effects, name);
+    const Extension rest = measured(name) != nullptr ? current : refit_without(current, name);
     const double regained = before.fitted.squares - rest.fitted.squares;
-    const bool unfinished = regained > kUnfinished * (before.fitted.squares - current.fitted.squares);
+    const bool unfinished = regained > options_.regained_share * (before.fitted.squares - current.fitted.squares);
     const bool judged = measured(name) == nullptr && (!newest || unfinished);
     if (!judged || objection(trial(rest, current, name)).empty()) {
       ++e;
@@ -52,13 +44,15 @@ Extension EffectSearch::pruned(Extension current, const Extension& before) {
   return current;
 }
 
-/// What came first may only be what was best before the others came: whatever now does better takes its place.
+/// (extension) => (extension in which each effect is the best of those that could take its place). The effect taken
+/// first was the best before the others were there. Costs a fit without each effect, and those of alternatives().
 Extension EffectSearch::exchanged(Extension current) {
   for (std::size_t e = 0; current.effects.size() > 1 && e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e++];
     if (measured(name) != nullptr) continue;
-    for (const Trial& other : alternatives(without(current, name), name)) {
-      if (compared(current, other.extension).deviations < kClearly || !objection(other).empty()) continue;
+    for (const Trial& other : alternatives(refit_without(current, name), name)) {
+      if (compared(current, other.extension).deviations < options_.clearly_deviations || !objection(other).empty())
+        continue;
       current = other.extension;
       e = 0;
       break;
@@ -69,7 +63,7 @@ Extension EffectSearch::exchanged(Extension current) {
 
 Extension EffectSearch::choose() {
   Extension current = with_measured();
-  for (std::size_t round = 0; round < kMostEffects && !stopped_; ++round) {
+  for (std::size_t round = 0; round < static_cast<std::size_t>(options_.most_effects) && !stopped_; ++round) {
     last_additions_ = additions(current);
     const Trial* next = chosen(last_additions_);
     if (next == nullptr) break;

@@ -7,21 +7,12 @@
 #include <limits>
 
 #include "calib/fit_problem.hpp"
-#include "diagnosis/catalogue.hpp"
-#include "diagnosis/start_screen.hpp"
+#include "effects/catalogue.hpp"
+#include "effects/start_screen.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
-
-constexpr std::size_t kFitted = 8;       // effects of a round that are worth a fit, by the linear look
-constexpr std::size_t kExchanged = 5;    // effects that may stand for another
-constexpr std::size_t kFinished = 3;     // and a fit to the end
-constexpr double kWorthFinishing = 0.4;  // of the best gain
-constexpr int kFewIterations = 4, kManyIterations = 15;
-// What convinces besides the limits: a mean over blocks of half a second that is three of its deviations off zero, and
-// more folds for it than against.
-constexpr double kDeviations = 3.0, kFoldsWon = 0.6;
 
 std::vector<std::string> with(std::vector<std::string> effects, const std::string& effect) {
   effects.push_back(effect);
@@ -35,31 +26,33 @@ std::vector<std::string> less(std::vector<std::string> effects, const std::strin
 
 }  // namespace
 
-EffectSearch::EffectSearch(const bench::Bench& bench, const NestedFit& fit, BaseModel base, SearchLimits limits,
-                           DirectEvidence evidence, SearchProgress progress)
+EffectSearch::EffectSearch(const bench::Bench& bench, const effects::NestedFit& fit, BaseModel base,
+                           SearchLimits limits, DirectEvidence evidence, const JointDiagnosisOptions& options,
+                           work::Progress progress)
     : bench_(bench),
       fit_(fit),
       base_(std::move(base)),
       limits_(limits),
       evidence_(std::move(evidence)),
+      options_(options),
       progress_(std::move(progress)),
-      compare_(fit, folds(fit), limits.noise_squares),
-      base_extension_(extend({}, base_.model, kManyIterations)) {}
+      compare_(fit.blocks(), folds(fit), limits.noise_squares),
+      base_extension_(extend({}, base_.model)) {}
 
 bool EffectSearch::going(const std::string& text) {
-  if (progress_ && !progress_(text)) stopped_ = true;
+  if (!progress_(work::kUnknownShare, text)) stopped_ = true;
   return !stopped_;
 }
 
 /// The base's, and the effects' over their whole range.
-std::vector<Unknown> EffectSearch::unknowns(const std::vector<std::string>& effects) const {
-  std::vector<Unknown> found = base_.unknowns;
+std::vector<effects::Unknown> EffectSearch::unknowns(const std::vector<std::string>& effects) const {
+  std::vector<effects::Unknown> found = base_.unknowns;
   for (const std::string& name : effects) {
-    for (const std::string& parameter : effect(name).parameters) {
-      if (is_jagged(parameter)) continue;
-      const Unknown full = unknown(parameter, bench_, base_.scale);
+    for (const std::string& parameter : effects::effect(name).parameters) {
+      if (effects::is_jagged(parameter)) continue;
+      const effects::Unknown full = effects::unknown(parameter, bench_, base_.scale);
       const auto there =
-          std::find_if(found.begin(), found.end(), [&](const Unknown& u) { return u.name == parameter; });
+          std::find_if(found.begin(), found.end(), [&](const effects::Unknown& u) { return u.name == parameter; });
       if (there == found.end())
         found.push_back(full);
       else
@@ -72,20 +65,19 @@ std::vector<Unknown> EffectSearch::unknowns(const std::vector<std::string>& effe
 /// Without the effect, but for parameters that the kept ones share.
 calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
                                       const std::vector<std::string>& kept) const {
-  for (const std::string& parameter : diagnosis::effect(effect).parameters) {
+  for (const std::string& parameter : effects::effect(effect).parameters) {
     const bool shared = std::any_of(kept.begin(), kept.end(), [&](const std::string& name) {
-      return contains(diagnosis::effect(name).parameters, parameter);
+      return effects::contains(effects::effect(name).parameters, parameter);
     });
     if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
   }
   return model;
 }
 
-Extension EffectSearch::extend(const std::vector<std::string>& effects, const calib::JointModel& start,
-                               int iterations) const {
-  Extension extension{effects, fit_.fit(start, unknowns(effects), iterations), {}};
+Extension EffectSearch::extend(const std::vector<std::string>& effects, const calib::JointModel& start) const {
+  Extension extension{effects, fit_.fit(start, unknowns(effects), static_cast<int>(options_.many_iterations)), {}};
   fit_.linearise(extension.fitted);
-  extension.held_out = held_out_squares(fit_, extension.fitted, compare_.folds());
+  extension.held_out = fit_.held_out_squares(extension.fitted, compare_.folds());
   return extension;
 }
 
@@ -96,9 +88,9 @@ const MeasuredCause* EffectSearch::measured(const std::string& effect) const {
   return found == all.end() ? nullptr : &*found;
 }
 
-bool EffectSearch::refuted(const std::string& effect) const { return contains(evidence_.refuted, effect); }
+bool EffectSearch::refuted(const std::string& effect) const { return effects::contains(evidence_.refuted, effect); }
 
-bool EffectSearch::shown(const std::string& effect) const { return contains(evidence_.shown, effect); }
+bool EffectSearch::shown(const std::string& effect) const { return effects::contains(evidence_.shown, effect); }
 
 Extension EffectSearch::with_measured() const {
   if (evidence_.measured.empty()) return base_extension_;
@@ -108,47 +100,48 @@ Extension EffectSearch::with_measured() const {
     calib::set(model, cause.parameter, cause.value.value);
     effects.push_back(cause.effect);
   }
-  return extend(effects, model, kManyIterations);
+  return extend(effects, model);
 }
 
-Extension EffectSearch::without(const Extension& extension, const std::string& effect) const {
+Extension EffectSearch::refit_without(const Extension& extension, const std::string& effect) const {
   const std::vector<std::string> kept = less(extension.effects, effect);
-  return extend(kept, reset(extension.fitted.model, effect, kept), kManyIterations);
+  return extend(kept, reset(extension.fitted.model, effect, kept));
 }
 
-Extension EffectSearch::settled(const Extension& extension) const {
-  const NestedModel& loose = extension.fitted;
-  const bool known =
-      std::any_of(loose.unknowns.begin(), loose.unknowns.end(), [](const Unknown& u) { return u.deviation > 0.0; });
+Extension EffectSearch::refit_with_priors(const Extension& extension) const {
+  const effects::NestedModel& loose = extension.fitted;
+  const bool known = std::any_of(loose.unknowns.begin(), loose.unknowns.end(),
+                                 [](const effects::Unknown& u) { return u.deviation > 0.0; });
   if (!known) return extension;
   // The misses of a block hang together: it is one observation, of which a calibration's number is another.
   const double weight = loose.squares / static_cast<double>(std::max<std::size_t>(1, loose.blocks.size()));
   calib::JointModel given = loose.model;
-  std::vector<Unknown> effects_only;
-  for (const Unknown& u : loose.unknowns) {
+  std::vector<effects::Unknown> effects_only;
+  for (const effects::Unknown& u : loose.unknowns) {
     if (u.deviation > 0.0)
       calib::set(given, u.name, u.expected);
     else
       effects_only.push_back(u);
   }
-  given = fit_.fit(given, effects_only, kManyIterations).model;
+  given = fit_.fit(given, effects_only, static_cast<int>(options_.many_iterations)).model;
   Extension best = extension;
   double least = std::numeric_limits<double>::infinity();
   for (const calib::JointModel& start : {given, loose.model}) {
-    NestedModel fitted = fit_.fit(start, loose.unknowns, kManyIterations, nullptr, weight);
+    effects::NestedModel fitted =
+        fit_.fit(start, loose.unknowns, static_cast<int>(options_.many_iterations), nullptr, weight);
     const double squares = fitted.squares + prior(fitted).squares;
     if (squares >= least) continue;
     least = squares;
     best.fitted = std::move(fitted);
   }
   fit_.linearise(best.fitted);
-  best.held_out = held_out_squares(fit_, best.fitted, compare_.folds());
+  best.held_out = fit_.held_out_squares(best.fitted, compare_.folds());
   return best;
 }
 
 Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {
   Trial found{effect, compare_(without.held_out, with.held_out), 0.0, with};
-  const double rest = without.held_out_squares() / fit_.samples() - limits_.healthy_squares;
+  const double rest = without.held_out_squares() / fit_.blocks().all_samples() - limits_.healthy_squares;
   found.share_of_rest = rest > 0.0 ? found.comparison.gain / rest : 0.0;
   if (limits_.healthy_squares <= limits_.noise_squares) {
     const double usual = usual_rest(without);
@@ -158,9 +151,11 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
 }
 
 std::string EffectSearch::objection(const Trial& trial) const {
-  const Comparison& c = trial.comparison;
+  const fitting::Comparison& c = trial.comparison;
   if (shown(trial.effect)) {  // half-second blocks hardly see what is one number a run
-    return c.log_gain > 0.0 && c.folds_won >= kFoldsWon ? "" : "runs left out are predicted no better with it";
+    return c.log_gain > 0.0 && c.folds_won >= options_.least_folds_won
+               ? ""
+               : "runs left out are predicted no better with it";
   }
   // What nobody calibrated before may leave single blocks that go another way altogether; the usual one counts.
   const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
@@ -168,11 +163,13 @@ std::string EffectSearch::objection(const Trial& trial) const {
   if (gain <= 0.0) return "runs left out are predicted no better with it";
   if (trial.share_of_rest <= 0.0) return "what is left is no more than models that are in order leave";
   const double amplitude = std::sqrt(gain);
-  const double beginning = std::max(0.0, base_extension_.held_out_squares() / fit_.samples() - limits_.noise_squares);
-  if (c.deviations < kDeviations) {
+  const double beginning =
+      std::max(0.0, base_extension_.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares);
+  if (c.deviations < options_.least_deviations) {
     return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
   }
-  if (c.folds_won < kFoldsWon) return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
+  if (c.folds_won < options_.least_folds_won)
+    return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
   if (amplitude < limits_.of_noise * std::sqrt(limits_.noise_squares))
     return "what it explains is small beside the noise";
   if (amplitude < limits_.of_beginning * std::sqrt(beginning)) return "what it explains is small beside what was wrong";
@@ -184,24 +181,24 @@ std::string EffectSearch::objection(const Trial& trial) const {
 }
 
 /// The effects that the extension doesn't have: looked at by the linearised fit, the most promising fitted.
-std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t most) {
+std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   struct Promising {
-    const Effect* effect;
-    std::vector<ScreenedStart> starts;
+    const effects::Effect* effect;
+    std::vector<effects::ScreenedStart> starts;
   };
-  const StartScreen screen(fit_, current.fitted);
+  const effects::StartScreen screen(fit_, current.fitted);
   std::vector<Promising> promising;
-  for (const Effect& one : catalogue()) {
-    if (contains(current.effects, one.name) || refuted(one.name)) continue;
+  for (const effects::Effect& one : effects::catalogue()) {
+    if (effects::contains(current.effects, one.name) || refuted(one.name)) continue;
     if (!going(fmt::format("looking at {}", one.title))) return {};
-    std::vector<ScreenedStart> starts = screen.best(one, base_.scale);
+    std::vector<effects::ScreenedStart> starts = screen.best(one, base_.scale);
     if (!starts.empty()) promising.push_back({&one, std::move(starts)});
   }
   std::stable_sort(promising.begin(), promising.end(), [this](const Promising& a, const Promising& b) {
     const bool a_shown = shown(a.effect->name), b_shown = shown(b.effect->name);
     return a_shown != b_shown ? a_shown : a.starts.front().squares < b.starts.front().squares;
   });
-  promising.resize(std::min(promising.size(), most));
+  promising.resize(std::min(promising.size(), static_cast<std::size_t>(most)));
   std::vector<Trial> trials;
   for (const Promising& p : promising) {
     if (!going(fmt::format("fitting {}", p.effect->title))) return {};
@@ -209,11 +206,12 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t mos
     Extension best;
     best.fitted.squares = std::numeric_limits<double>::infinity();
     for (std::size_t s = 0; s < std::min<std::size_t>(2, p.starts.size()); ++s) {
-      const NestedModel fitted = fit_.fit(p.starts[s].model, unknowns(effects), kFewIterations, &screen.slopes());
+      const effects::NestedModel fitted =
+          fit_.fit(p.starts[s].model, unknowns(effects), static_cast<int>(options_.few_iterations), &screen.jacobian());
       if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}};
     }
-    fit_.linearise(best.fitted, &screen.slopes());
-    best.held_out = held_out_squares(fit_, best.fitted, compare_.folds());
+    fit_.linearise(best.fitted, &screen.jacobian());
+    best.held_out = fit_.held_out_squares(best.fitted, compare_.folds());
     trials.push_back(trial(current, best, p.effect->name));
   }
   const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
@@ -224,36 +222,35 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, std::size_t mos
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });
   for (std::size_t t = 0; t < trials.size(); ++t) {
-    const bool worth =
-        t < kFinished && trials[t].comparison.log_gain >= kWorthFinishing * trials.front().comparison.log_gain;
+    const bool worth = t < static_cast<std::size_t>(options_.finished_effects) &&
+                       trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
     if (!worth && !shown(trials[t].effect) && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
-    if (!going(fmt::format("finishing {}", effect(trials[t].effect).title))) return {};
-    trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model, kManyIterations),
-                      trials[t].effect);
+    if (!going(fmt::format("finishing {}", effects::effect(trials[t].effect).title))) return {};
+    trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model), trials[t].effect);
   }
   std::stable_sort(trials.begin(), trials.end(), better);
   return trials;
 }
 
-std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, kFitted); }
+std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, options_.fitted_effects); }
 
 double EffectSearch::usual_rest(const Extension& extension) const {
   Eigen::VectorXd squares(static_cast<Eigen::Index>(extension.fitted.blocks.size()));
   for (Eigen::Index b = 0; b < squares.size(); ++b) {
     squares[b] = extension.fitted.blocks[static_cast<std::size_t>(b)].squares;
   }
-  return std::max(0.0, std::exp(compare_.score(squares)) - 2.0 * limits_.noise_squares);
+  return std::max(0.0, std::exp(compare_.mean_log_square(squares)) - 2.0 * limits_.noise_squares);
 }
 
-Comparison EffectSearch::compared(const Extension& first, const Extension& second) const {
+fitting::Comparison EffectSearch::compared(const Extension& first, const Extension& second) const {
   return compare_(first.held_out, second.held_out);
 }
 
 std::vector<Trial> EffectSearch::alternatives(const Extension& without, const std::string& effect) {
-  std::vector<Trial> trials = tried(without, kExchanged);
+  std::vector<Trial> trials = tried(without, options_.exchanged_effects);
   // What contains the effect as a special case explains as much; the simpler one stands.
   std::erase_if(trials, [&](const Trial& trial) {
-    return trial.effect == effect || contains(diagnosis::effect(trial.effect).contains, effect);
+    return trial.effect == effect || effects::contains(effects::effect(trial.effect).contains, effect);
   });
   return trials;
 }

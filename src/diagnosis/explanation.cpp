@@ -8,22 +8,17 @@
 #include <utility>
 
 #include "calib/fit_problem.hpp"
-#include "diagnosis/catalogue.hpp"
-#include "diagnosis/folds.hpp"
 #include "diagnosis/intervals.hpp"
 #include "diagnosis/separation.hpp"
+#include "effects/catalogue.hpp"
+#include "effects/folds.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-// Besides kApartDeviations: closer to what they would show were it the truth (1) than to showing nothing (0), on so
-// many blocks of half a second in which the two differ.
-constexpr double kApartShare = 0.5;
-constexpr int kFewestBlocksApart = 6;
-
 std::string in_its_place(const std::string& cause, const std::string& other, const SeenSeparation& apart) {
-  if (apart.blocks == 0) return fmt::format("{} in its place does nowhere anything else", other);
+  if (apart.blocks == 0) return fmt::format("{} gives indistinguishable rollouts on all runs", other);
   return fmt::format(
       "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
       "what is expected were {} the truth",
@@ -37,13 +32,13 @@ class Explaining {
         chosen_(chosen),
         from_(from),
         noise_squares_(std::pow(from.noise.rms_rad, 2)),
-        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_)) {}
+        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options)) {}
 
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;
     for (const std::string& name : chosen_.effects) {
-      const Extension rest = search_.without(chosen_, name);
-      const Comparison gain = search_.compared(rest, chosen_);
+      const Extension rest = search_.refit_without(chosen_, name);
+      const fitting::Comparison gain = search_.compared(rest, chosen_);
       causes.emplace_back(gain.log_gain, cause(name, rest, gain));
     }
     std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -53,11 +48,11 @@ class Explaining {
   }
 
  private:
-  Cause cause(const std::string& name, const Extension& rest, const Comparison& gain) {
+  Cause cause(const std::string& name, const Extension& rest, const fitting::Comparison& gain) {
     const MeasuredCause* measured = search_.measured(name);
     Cause cause;
     cause.effect = name;
-    for (const std::string& parameter : effect(name).parameters) {
+    for (const std::string& parameter : effects::effect(name).parameters) {
       cause.parameters.push_back(measured != nullptr && measured->parameter == parameter
                                      ? evidence::ParameterEstimate{parameter, measured->value, from_.unit}
                                      : estimate(parameter));
@@ -98,26 +93,27 @@ class Explaining {
 
   SeenSeparation seen(const Extension& other) const {
     return seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out, other.held_out,
-                           noise_squares_);
+                           noise_squares_, from_.options.visible_share);
   }
 
-  static bool is_rival(const Trial& other, const SeenSeparation& apart) {
-    for (const Unknown& u : other.extension.fitted.unknowns) {
+  bool is_rival(const Trial& other, const SeenSeparation& apart) const {
+    for (const effects::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
       if (stiffest) return false;  // a shaft as stiff as any bends nowhere
     }
-    return apart.blocks < kFewestBlocksApart || apart.deviations < kApartDeviations ||
-           apart.share_of_expected < kApartShare;
+    const JointDiagnosisOptions& o = from_.options;
+    return apart.blocks < o.fewest_apart_blocks || apart.deviations < o.apart_deviations ||
+           apart.share_of_expected < o.apart_share;
   }
 
   double judged_error(const calib::JointModel& model) const {
-    return from_.judged.absolutes_by_block(from_.judged.misses(model)).mean();
+    return from_.judged.blocks().absolutes(from_.judged.residuals(model)).mean();
   }
 
   evidence::ParameterEstimate estimate(const std::string& parameter) const {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
-      const Unknown& u = from_.fitted.unknowns[i];
+      const effects::Unknown& u = from_.fitted.unknowns[i];
       if (u.name == parameter) return {parameter, intervals_[i], u.unit};
     }
     const double value = calib::value(from_.fitted.model, parameter);
@@ -128,7 +124,7 @@ class Explaining {
     std::set<std::string> told(chosen_.effects.begin(), chosen_.effects.end());
     for (const Cause& cause : found_.causes) told.insert(cause.or_instead.begin(), cause.or_instead.end());
     const std::vector<Trial>& last = search_.last_additions();
-    for (const Effect& one : catalogue()) {
+    for (const effects::Effect& one : effects::catalogue()) {
       if (told.contains(one.name)) continue;
       const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
       found_.rejected.push_back({one.name, search_.refuted(one.name)

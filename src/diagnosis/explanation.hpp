@@ -11,16 +11,14 @@
 
 namespace pmg::diagnosis {
 
-/// Two effects explain alike unless blocks left out, where the two differ, prefer one by so many deviations.
-inline constexpr double kApartDeviations = 2.0;
-
 struct ExplainedFrom {
-  const NestedFit& searched;                       ///< the runs that the choice was made on
-  const NestedFit& all;                            ///< and all that were fitted
-  const NestedFit& judged;                         ///< those that errors are said of
-  const NestedModel& fitted;                       ///< the chosen effects, to all runs
+  const effects::NestedFit& searched;              ///< the runs that the choice was made on
+  const effects::NestedFit& all;                   ///< and all that were fitted
+  const effects::NestedFit& judged;                ///< those that errors are said of
+  const effects::NestedModel& fitted;              ///< the chosen effects, to all runs
   const std::vector<evidence::Signature>& checks;  ///< without a model
   const NoiseFloor& noise;
+  const JointDiagnosisOptions& options;
   double error_after = 0.0;  ///< of the judged runs, with all causes [unit]
   std::string unit;
 };

@@ -8,17 +8,15 @@
 #include <limits>
 #include <map>
 
-#include "calib/parallel.hpp"
 #include "diagnosis/excitation_candidates.hpp"
 #include "diagnosis/separation.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-constexpr std::size_t kMostRuns = 6;  // that differ
-constexpr int kTimes = 2, kMostTimes = 8, kMostRecordings = 24;
-constexpr double kEnough = 2.0;      // times what is wanted: what is found strays by one deviation of two
+constexpr int kTimes = 2, kMostTimes = 8;
 constexpr double kWorthARun = 0.01;  // of what all pairs together want
 
 bool are(const std::string& a, const std::string& b, const char* one, const char* other) {
@@ -49,7 +47,7 @@ class Campaign {
            const SeparationWanted& wanted, unsigned threads)
       : rivals_(rivals), wanted_(wanted), candidates_(excitation_candidates(bench, runs)), seen_(candidates_.size()) {
     for (std::size_t g = 0; g < rivals.size(); ++g) {
-      const std::vector<NestedModel>& models = rivals[g].models;
+      const std::vector<effects::NestedModel>& models = rivals[g].models;
       for (std::size_t t = 0; t < models.size(); ++t) {
         for (std::size_t o = 0; o < models.size(); ++o) {
           if (t == o) continue;
@@ -61,7 +59,7 @@ class Campaign {
         }
       }
     }
-    calib::for_each_in_parallel(candidates_.size(), threads, [&](std::size_t c) {
+    work::for_each_in_parallel(candidates_.size(), threads, [&](std::size_t c) {
       seen_[c] = look(bench, candidates_[c].run, runs.front().step_s());
     });
   }
@@ -71,12 +69,12 @@ class Campaign {
     std::map<std::size_t, int> chosen;
     const auto count = static_cast<double>(pairs_.size());
     double reached = total(nullptr);
-    for (int recorded = 0; recorded < kMostRecordings && reached < kEnough * count; recorded += kTimes) {
+    for (int recorded = 0; recorded < wanted_.most_recordings && reached < wanted_.enough * count; recorded += kTimes) {
       std::size_t best = 0;
       double most = -1.0;
       for (std::size_t c = 0; c < candidates_.size(); ++c) {
         const auto already = chosen.find(c);
-        if (already == chosen.end() ? chosen.size() >= kMostRuns : already->second >= kMostTimes) continue;
+        if (already == chosen.end() ? chosen.size() >= wanted_.most_runs : already->second >= kMostTimes) continue;
         const double there = total(&seen_[c]);
         if (there > most) most = there, best = c;
       }
@@ -114,40 +112,40 @@ class Campaign {
       const Separation& separation = pairs_[p].separation;
       const double deviations =
           further == nullptr ? separation.expected_deviations() : separation.expected_deviations_with((*further)[p]);
-      sum += std::min(kEnough, deviations / wanted_.deviations);
+      sum += std::min(wanted_.enough, deviations / wanted_.deviations);
     }
     return sum;
   }
 
   /// Rounded readings would hide what changes by less than a quantum, in the model's derivatives too. A sensor's
   /// quantum is a rival's matter only where they differ in it.
-  static std::vector<NestedModel> without_rounding(const Rivals& rivals) {
-    std::vector<NestedModel> models = rivals.models;
-    const auto quantum_rad = [](const NestedModel& m) { return m.model.actuator.sensor.quantum_rad; };
-    for (const NestedModel& model : models) {
+  static std::vector<effects::NestedModel> without_rounding(const Rivals& rivals) {
+    std::vector<effects::NestedModel> models = rivals.models;
+    const auto quantum_rad = [](const effects::NestedModel& m) { return m.model.actuator.sensor.quantum_rad; };
+    for (const effects::NestedModel& model : models) {
       if (quantum_rad(model) != quantum_rad(models.front())) return models;
     }
-    for (NestedModel& model : models) model.model.actuator.sensor.quantum_rad = 0.0;
+    for (effects::NestedModel& model : models) model.model.actuator.sensor.quantum_rad = 0.0;
     return models;
   }
 
   Seen look(const bench::Bench& bench, const bench::BenchRun& run, double step_s) const {
     Seen seen(pairs_.size());
     const calib::SingleJoint unseen(bench, run, step_s);
-    const NestedFit still({unseen}, 1);
+    const effects::NestedFit still({unseen}, 1);
     for (std::size_t g = 0; g < rivals_.size(); ++g) {
-      std::vector<NestedFit> played;
-      std::vector<Slopes> slopes;
-      const std::vector<NestedModel> models = without_rounding(rivals_[g]);
-      for (const NestedModel& model : models) {
+      std::vector<effects::NestedFit> played;
+      std::vector<effects::RolloutJacobian> slopes;
+      const std::vector<effects::NestedModel> models = without_rounding(rivals_[g]);
+      for (const effects::NestedModel& model : models) {
         bench::BenchRun as = run;
         as.recording.q_rad = unseen.rollout(model.model);
         played.emplace_back(std::vector{calib::SingleJoint(bench, std::move(as), step_s)}, 1U);
-        slopes.push_back(still.slopes(model, still.misses(model.model)));
+        slopes.push_back(still.jacobian(model, still.residuals(model.model)));
       }
       for (std::size_t p = 0; p < pairs_.size(); ++p) {
         if (pairs_[p].rivals != g) continue;
-        NestedModel other = models[pairs_[p].other];
+        effects::NestedModel other = models[pairs_[p].other];
         played[pairs_[p].truth].linearise(other, &slopes[pairs_[p].other]);
         for (int time = 0; time < kTimes; ++time) {
           seen[p].insert(seen[p].end(), other.blocks.begin(), other.blocks.end());

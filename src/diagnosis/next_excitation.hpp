@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
-#include "diagnosis/nested_fit.hpp"
+#include "effects/nested_fit.hpp"
 
 namespace pmg::diagnosis {
 
 /// Models that explain the runs equally well, fitted and linearised, and what they are called: a cause and what could
 /// stand in its place.
 struct Rivals {
-  std::vector<NestedModel> models;
+  std::vector<effects::NestedModel> models;
   std::vector<std::string> names;  ///< the models'
 };
 
@@ -21,6 +21,9 @@ struct Rivals {
 struct SeparationWanted {
   double deviations = 2.0;     ///< of the mean over blocks
   double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
+  double enough = 2.0;         ///< times `deviations`, to aim at
+  std::size_t most_runs = 6;   ///< that differ
+  int most_recordings = 24;
 };
 
 struct AskedFor {

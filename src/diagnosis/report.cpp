@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "calib/fit_results.hpp"
-#include "diagnosis/catalogue.hpp"
 #include "diagnosis/residual_pictures.hpp"
+#include "effects/catalogue.hpp"
 #include "pages/text.hpp"
 
 namespace pmg::diagnosis {
@@ -22,7 +22,7 @@ const std::vector<calib::SingleJoint>& shown_runs(const Diagnosis& diagnosis, co
 
 /// Names that other versions of the catalogue gave are shown as they are.
 std::string title(const std::string& name) {
-  for (const Effect& effect : catalogue()) {
+  for (const effects::Effect& effect : effects::catalogue()) {
     if (effect.name == name) return effect.title;
   }
   return name;
@@ -240,7 +240,7 @@ std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, 
 }
 
 pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
-                             const std::vector<evidence::Signature>& checks, unsigned threads) {
+                             unsigned threads) {
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));
@@ -252,7 +252,7 @@ pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnos
   show_causes(page, bench, diagnosis);
   if (diagnosis.next_excitation) show_next(page, *diagnosis.next_excitation);
   show_rejected(page, diagnosis.rejected);
-  show_checks(page, checks);
+  show_checks(page, runs.checks);
   return page;
 }
 

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "diagnosis/diagnose.hpp"
-#include "evidence/signature.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::diagnosis {
 
 /// Held-out runs are shown where there are any, else the fitted ones. threads: for the rollouts.
 pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
-                             const std::vector<evidence::Signature>& checks, unsigned threads = 1);
+                             unsigned threads = 1);
 
 /// The verdict as one line: "Coulomb friction, delay: 38.6 mrad before, 12.5 mrad after, on 80 held-out runs".
 std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs);

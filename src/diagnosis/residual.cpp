@@ -5,15 +5,15 @@
 #include <limits>
 #include <numeric>
 
-#include "calib/parallel.hpp"
 #include "evidence/motion.hpp"
+#include "fitting/statistics.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
 constexpr double kBlock_s = 0.5;  // a joint's motion forgets its disturbance within that
-constexpr double kNormal = 1.96;  // standard deviations to either end of a 95 % interval
 constexpr std::size_t kFewestBlocks = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -117,7 +117,8 @@ ResidualBin bin_mean(const ResidualSamples& samples, const std::vector<double>& 
   }
   const auto blocks = static_cast<double>(found.blocks);
   const double deviation_rad = found.blocks > 1 ? std::sqrt(squares * blocks / (blocks - 1.0)) / n : 0.0;
-  found.mean_rad = {mean_rad, mean_rad - kNormal * deviation_rad, mean_rad + kNormal * deviation_rad};
+  found.mean_rad = {mean_rad, mean_rad - fitting::kNormal95 * deviation_rad,
+                    mean_rad + fitting::kNormal95 * deviation_rad};
   return found;
 }
 
@@ -155,7 +156,7 @@ evidence::Interval explained_share(const ResidualSamples& samples, const std::ve
   const double mean = std::accumulate(gained.begin(), gained.end(), 0.0) / static_cast<double>(gained.size());
   for (const double g : gained) variance += (g - mean) * (g - mean);
   const double deviation = std::sqrt(variance) / squares;
-  return {share, share - kNormal * deviation, share + kNormal * deviation};
+  return {share, share - fitting::kNormal95 * deviation, share + fitting::kNormal95 * deviation};
 }
 
 }  // namespace
@@ -166,8 +167,8 @@ ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<ca
   for (const calib::SingleJoint& joint : runs) all += joint.run().recording.t_s.size();
   const std::size_t every = all / most + 1;
   std::vector<RunSamples> by_run(runs.size());
-  calib::for_each_in_parallel(runs.size(), threads,
-                              [&](std::size_t i) { by_run[i] = read(bench, runs[i], model, every); });
+  work::for_each_in_parallel(runs.size(), threads,
+                             [&](std::size_t i) { by_run[i] = read(bench, runs[i], model, every); });
   ResidualSamples samples;
   std::vector<double> values[std::size(kColumns)];
   for (std::size_t i = 0; i < by_run.size(); ++i) {

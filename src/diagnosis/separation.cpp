@@ -7,13 +7,14 @@ namespace pmg::diagnosis {
 
 namespace {
 
-double mean_square(const BlockNormal& block) { return block.squares / std::max(1.0, block.samples); }
+double mean_square(const fitting::NormalEquations& block) { return block.squares / std::max(1.0, block.samples); }
 
 /// The geometric mean over blocks.
-double usual_square(const NestedModel& model, double noise_squares) {
+double usual_square(const effects::NestedModel& model, double noise_squares) {
   if (model.blocks.empty()) return noise_squares;
   double sum = 0.0;
-  for (const BlockNormal& block : model.blocks) sum += std::log(mean_square(block) + 1e-3 * noise_squares + 1e-300);
+  for (const fitting::NormalEquations& block : model.blocks)
+    sum += std::log(mean_square(block) + 1e-3 * noise_squares + 1e-300);
   return std::exp(sum / static_cast<double>(model.blocks.size()));
 }
 
@@ -34,13 +35,13 @@ struct Sums {
 
 }  // namespace
 
-Separation::Separation(const NestedModel& truth, const NestedModel& other, double noise_squares)
+Separation::Separation(const effects::NestedModel& truth, const effects::NestedModel& other, double noise_squares)
     : other_(other),
       usual_squares_(usual_square(truth, noise_squares)),
       noise_squares_(noise_squares),
       information_(prior(other).information),
       gradient_(Eigen::VectorXd::Zero(other.coordinates.size())) {
-  for (const BlockNormal& block : other.blocks) information_ += block.information;
+  for (const fitting::NormalEquations& block : other.blocks) information_ += block.information;
   for (std::size_t b = 0; b < std::min(truth.blocks.size(), other.blocks.size()); ++b) {
     const double difference = std::log(mean_square(other.blocks[b]) + noise_squares + 1e-300) -
                               std::log(mean_square(truth.blocks[b]) + noise_squares + 1e-300);
@@ -51,17 +52,16 @@ Separation::Separation(const NestedModel& truth, const NestedModel& other, doubl
 
 double Separation::expected(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
                             const Blocks* further) const {
-  const Eigen::VectorXd step = other_.unknowns.empty()
-                                   ? Eigen::VectorXd()
-                                   : bounded_step(information, gradient, other_.unknowns, other_.coordinates, 1e-6);
+  const Eigen::VectorXd step =
+      other_.unknowns.empty() ? Eigen::VectorXd()
+                              : fitting::bounded_step(information, gradient, other_.ranges, other_.coordinates, 1e-6);
   Sums sums{old_blocks_, 0.0, old_squares_};
-  const auto add = [&](const BlockNormal& block) {
-    const double squares = block.squares + 2.0 * block.gradient.dot(step) + step.dot(block.information * step);
-    sums.add(std::max(0.0, squares) / std::max(1.0, block.samples), usual_squares_, noise_squares_);
+  const auto add = [&](const fitting::NormalEquations& block) {
+    sums.add(std::max(0.0, block.squares_after(step)) / std::max(1.0, block.samples), usual_squares_, noise_squares_);
   };
-  for (const BlockNormal& block : added_) add(block);
+  for (const fitting::NormalEquations& block : added_) add(block);
   if (further != nullptr) {
-    for (const BlockNormal& block : *further) add(block);
+    for (const fitting::NormalEquations& block : *further) add(block);
   }
   if (sums.blocks < 2.0) return 0.0;
   const double mean = sums.values / sums.blocks;
@@ -74,7 +74,7 @@ double Separation::expected_deviations() const { return expected(information_, g
 double Separation::expected_deviations_with(const Blocks& run) const {
   Eigen::MatrixXd information = information_;
   Eigen::VectorXd gradient = gradient_;
-  for (const BlockNormal& block : run) {
+  for (const fitting::NormalEquations& block : run) {
     information += block.information;
     gradient += block.gradient;
   }
@@ -82,30 +82,29 @@ double Separation::expected_deviations_with(const Blocks& run) const {
 }
 
 void Separation::add(const Blocks& run) {
-  for (const BlockNormal& block : run) {
+  for (const fitting::NormalEquations& block : run) {
     information_ += block.information;
     gradient_ += block.gradient;
   }
   added_.insert(added_.end(), run.begin(), run.end());
 }
 
-SeenSeparation seen_separation(const NestedFit& fit, const calib::JointModel& first, const calib::JointModel& other,
-                               const Eigen::VectorXd& first_held_out, const Eigen::VectorXd& other_held_out,
-                               double noise_squares) {
-  constexpr double kVisible = 0.25;  // half of the amplitude
-  Misses differences = fit.misses(first);
-  const Misses others = fit.misses(other);
+SeenSeparation seen_separation(const effects::NestedFit& fit, const calib::JointModel& first,
+                               const calib::JointModel& other, const Eigen::VectorXd& first_held_out,
+                               const Eigen::VectorXd& other_held_out, double noise_squares, double visible_share) {
+  fitting::Residuals differences = fit.residuals(first);
+  const fitting::Residuals others = fit.residuals(other);
   for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= others[i];
-  const std::vector<double> samples = fit.samples_by_block();
+  const std::vector<double> samples = fit.blocks().samples();
   const Eigen::ArrayXd count =
       Eigen::Map<const Eigen::ArrayXd>(samples.data(), static_cast<Eigen::Index>(samples.size())).max(1.0);
-  const Eigen::ArrayXd apart = fit.squares_by_block(differences).array() / count;
+  const Eigen::ArrayXd apart = fit.blocks().squares(differences).array() / count;
   const Eigen::ArrayXd one = first_held_out.array() / count + noise_squares + 1e-300;
   const Eigen::ArrayXd two = other_held_out.array() / count + noise_squares + 1e-300;
   const double floor = std::exp(one.log().mean());
   double sum = 0.0, squares = 0.0, expected = 0.0, blocks = 0.0;
   for (Eigen::Index b = 0; b < apart.size(); ++b) {
-    if (!(apart[b] > kVisible * (floor - noise_squares))) continue;
+    if (!(apart[b] > visible_share * (floor - noise_squares))) continue;
     const double value = std::log(two[b] / one[b]);
     blocks += 1.0;
     sum += value;

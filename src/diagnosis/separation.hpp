@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "diagnosis/nested_fit.hpp"
+#include "effects/nested_fit.hpp"
 
 namespace pmg::diagnosis {
 
@@ -15,10 +15,10 @@ namespace pmg::diagnosis {
 class Separation {
  public:
   /// Both linearised at the runs that there are. noise_squares: mean square that no model goes below [rad^2].
-  Separation(const NestedModel& truth, const NestedModel& other, double noise_squares);
+  Separation(const effects::NestedModel& truth, const effects::NestedModel& other, double noise_squares);
 
   /// The other model's misses of the true one's rollout over the blocks of one further run.
-  using Blocks = std::vector<BlockNormal>;
+  using Blocks = std::vector<fitting::NormalEquations>;
 
   /// Of a comparison by blocks (BlockComparison): its mean, in its standard deviations, with what was added.
   double expected_deviations() const;
@@ -28,7 +28,7 @@ class Separation {
  private:
   double expected(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient, const Blocks* further) const;
 
-  const NestedModel& other_;
+  const effects::NestedModel& other_;
   double usual_squares_, noise_squares_;
   double old_blocks_ = 0.0, old_squares_ = 0.0;  // of the differences of the logarithms
   Eigen::MatrixXd information_;
@@ -43,10 +43,11 @@ struct SeenSeparation {
   int blocks = 0;                  ///< in which they differ
 };
 
-/// Compares squares of blocks left out (folds.hpp) where the two models' rollouts differ by more than half of what the
-/// first misses by: elsewhere nothing is said of them, and form errors that both have would pass for a difference.
-SeenSeparation seen_separation(const NestedFit& fit, const calib::JointModel& first, const calib::JointModel& other,
-                               const Eigen::VectorXd& first_held_out, const Eigen::VectorXd& other_held_out,
-                               double noise_squares);
+/// Compares squares of blocks left out (folds.hpp) where the square of the difference of the two models' rollouts is
+/// more than visible_share of the first one's residual: elsewhere nothing is said of them, and form errors that both
+/// have would pass for a difference.
+SeenSeparation seen_separation(const effects::NestedFit& fit, const calib::JointModel& first,
+                               const calib::JointModel& other, const Eigen::VectorXd& first_held_out,
+                               const Eigen::VectorXd& other_held_out, double noise_squares, double visible_share);
 
 }  // namespace pmg::diagnosis

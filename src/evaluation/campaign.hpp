@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "evaluation/course.hpp"
-#include "evaluation/parallel.hpp"
 #include "evaluation/statistics.hpp"
+#include "evaluation/supervision.hpp"
 #include "evaluation/trial.hpp"
 #include "sim/variation.hpp"
 

@@ -7,11 +7,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "fitting/statistics.hpp"
+
 namespace pmg::evaluation {
 
 namespace {
-constexpr double kUpperTail = 0.975;               // of a two-sided 95 % interval
-constexpr double kNormalQuantile = 1.95996398454;  // at kUpperTail
+constexpr double kUpperTail = 0.975;  // of a two-sided 95 % interval
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
@@ -38,10 +39,10 @@ Estimate paired_difference(std::span<const double> a, std::span<const double> b)
 Estimate share_interval(std::int64_t successes, std::int64_t trials) {
   if (trials <= 0) return {kNaN, 0.0, 1.0};
   const auto n = static_cast<double>(trials);
-  const double share = static_cast<double>(successes) / n, z2 = kNormalQuantile * kNormalQuantile;
+  const double share = static_cast<double>(successes) / n, z2 = fitting::kNormal95 * fitting::kNormal95;
   const double center = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
   const double half_width =
-      kNormalQuantile * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
+      fitting::kNormal95 * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
   // With no or only successes the interval ends exactly at 0 or 1; rounding would miss it.
   return {share, successes == 0 ? 0.0 : center - half_width, successes == trials ? 1.0 : center + half_width};
 }

@@ -73,7 +73,7 @@ std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::Act
     // all be larger by one factor.
     const bool weighted = number == 1 || number == 2;
     run.load.inertia_kg_m2 = load.inertia_kg_m2 + (weighted ? kWeight_kg * kArm_m * kArm_m : 0.0);
-    run.load.gravity_Nm = load.gravity_Nm + (weighted ? 9.81 * kWeight_kg * kArm_m : 0.0);
+    run.load.gravity_Nm = load.gravity_Nm + (weighted ? kGravity_m_s2 * kWeight_kg * kArm_m : 0.0);
     run.recording = excitation(number);
     const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
     run.recording.q_rad = joint.rollout(plant);

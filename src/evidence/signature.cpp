@@ -34,14 +34,15 @@ void doubt_onset(std::vector<Signature>& checks) {
 
 }  // namespace
 
-std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                  const SignatureOptions& options) {
   std::vector<Signature> found;
   if (runs.empty()) return found;
   found.push_back(step_onset_check(bench, runs));
-  for (Signature& check : balance_checks(bench, runs)) found.push_back(std::move(check));
-  for (Signature& check : rest_checks(bench, runs)) found.push_back(std::move(check));
-  for (Signature& check : free_swing_checks(bench, runs)) found.push_back(std::move(check));
-  found.push_back(quantum_check(runs));
+  for (Signature& check : balance_checks(bench, runs, options)) found.push_back(std::move(check));
+  for (Signature& check : rest_checks(bench, runs, options)) found.push_back(std::move(check));
+  for (Signature& check : free_swing_checks(bench, runs, options)) found.push_back(std::move(check));
+  found.push_back(quantum_check(runs, options));
   doubt_onset(found);
   return found;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/bench.hpp"
+#include "evidence/signature_options.hpp"
 #include "evidence/verdict.hpp"
 
 namespace pmg::evidence {
@@ -31,6 +32,7 @@ struct Signature {
 /// One for each check; where the runs don't have what it takes, it says what is missing. Effects that don't show
 /// without a model have none, some have two. Friction and offsets that a check agrees with may well be in the model
 /// already.
-std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs);
+std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                  const SignatureOptions& options = {});
 
 }  // namespace pmg::evidence

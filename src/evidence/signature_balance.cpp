@@ -5,19 +5,12 @@
 #include <limits>
 #include <numbers>
 
-#include "evidence/command_shape.hpp"
 #include "evidence/signature_checks.hpp"
 
 namespace pmg::evidence {
 
 namespace {
 
-constexpr double kSure_t = 4.0;  // deviations: one in 10000 by chance; the shares guard against what isn't chance
-// Shares of the drive's rms that a term must make up. Sampling, and drives at their limit, leave up to 0.8 % in terms
-// that follow the direction, up to 0.9 % in those that follow the drive, where there is no such effect at all.
-constexpr double kFriction_share = 0.010, kConstant_share = 0.003, kDrive_share = 0.012;
-constexpr double kOwn = 0.1;  // of a term's rms that the others must not imitate
-constexpr int kFewestClusters = 15;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The balance's columns. Drive = load + rotor + friction: all at the joint, in the drive's unit.
@@ -36,18 +29,16 @@ Interval around(double value, double deviation) { return {value, value - 2.0 * d
 
 class BalanceChecks {
  public:
-  BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs)
-      : bench_(bench), balance_(bench, runs), shape_(find_shape(balance_)) {}
+  BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, const SignatureOptions& options)
+      : bench_(bench), options_(options), balance_(bench, runs) {}
 
   std::vector<Signature> all() {
-    if (balance_.shaped()) {
-      add_delay();
-      add_rate_limit();
-    }
+    const FoundShape shape = find_shape(balance_);
+    if (balance_.shaped()) found_ = command_shape_checks(shape, balance_.sample_s());
     columns_.emplace_back(balance_);
     drive_ = balance_.drive();
     const std::vector<int> clusters = balance_.clusters();
-    enough_ = !clusters.empty() && clusters.back() + 1 >= kFewestClusters;
+    enough_ = !clusters.empty() && clusters.back() + 1 >= options_.fewest_clusters;
     add_friction();
     add_offsets();
     add_drive();
@@ -76,12 +67,13 @@ class BalanceChecks {
                 const std::string& what, const std::string& unit, bool must_be_positive, double worth_share) {
     if (!enough_) return cannot_tell(effect, "too little motion was recorded");
     const TermEstimate e = regression(base).term(column);
-    if (!(e.own > kOwn)) return cannot_tell(effect, what + " can't be told from the rest in these recordings");
+    if (!(e.own > options_.own_share))
+      return cannot_tell(effect, what + " can't be told from the rest in these recordings");
     Signature s{effect, "balance of torques", Agreement::kCannotTell, around(e.coefficient, e.deviation), unit, ""};
-    const bool sure = must_be_positive ? e.t() > kSure_t : std::abs(e.t()) > kSure_t;
+    const bool sure = must_be_positive ? e.t() > options_.sure_deviations : std::abs(e.t()) > options_.sure_deviations;
     if (sure && e.share > worth_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (e.share_sure < 0.4 * worth_share) {
+    } else if (e.share_sure < options_.disagrees_share * worth_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("{}: {:.3g} {} (deviation {:.2g}), {:.2f} % of the drive", what, e.coefficient, unit,
@@ -89,46 +81,12 @@ class BalanceChecks {
     found_.push_back(s);
   }
 
-  void add_delay() {
-    if (!shape_.known) return cannot_tell("delay", "too little motion was recorded");
-    const Interval& d = shape_.delay_s;
-    // Half a sample: a command is held, and when within a sample it came is not recorded.
-    const double unsure_s = std::max(0.002, 0.5 * balance_.sample_s());
-    Signature s{"delay", "balance of torques", Agreement::kCannotTell, d, "s", ""};
-    if (d.low > unsure_s && shape_.delay_gain > 0.1) {
-      s.agreement = Agreement::kAgrees;
-    } else if (d.high < unsure_s) {
-      s.agreement = Agreement::kDisagrees;
-    }
-    s.sentence = fmt::format(
-        "torques balance best with the command {:.1f} ms late ({:.1f} to {:.1f}); that removes {:.0f} % of what "
-        "doesn't",
-        1e3 * d.value, 1e3 * d.low, 1e3 * d.high, 100.0 * std::max(0.0, shape_.delay_gain));
-    found_.push_back(s);
-  }
-
-  void add_rate_limit() {
-    if (!shape_.known) return cannot_tell("rate_limit", "too little motion was recorded");
-    const Interval& r = shape_.rate_limit_rad_s;
-    Signature s{"rate_limit", "balance of torques", Agreement::kCannotTell, r, "rad/s", ""};
-    if (shape_.rate_gain.low > 0.1) {
-      s.agreement = Agreement::kAgrees;
-    } else if (shape_.rate_gain.high < 0.05) {
-      s.agreement = Agreement::kDisagrees;
-    }
-    s.sentence = fmt::format(
-        "a command that moves at {:.3g} rad/s at most removes {:.0f} % ({:.0f} to {:.0f}) of what "
-        "doesn't balance",
-        r.value, 100.0 * shape_.rate_gain.value, 100.0 * shape_.rate_gain.low, 100.0 * shape_.rate_gain.high);
-    found_.push_back(s);
-  }
-
   void add_friction() {
     add_term("coulomb", {c().load, c().acceleration, c().speed, c().one, c().heavy}, c().direction,
-             "torque against the direction of motion, whatever the speed", drive_unit(), true, kFriction_share);
+             "torque against the direction of motion, whatever the speed", drive_unit(), true, options_.friction_share);
     if (position_pd()) {
       add_term("viscous", {c().load, c().acceleration, c().direction, c().one, c().heavy}, c().speed,
-               "torque against motion that grows with speed", "Nm s/rad", true, kFriction_share);
+               "torque against motion that grows with speed", "Nm s/rad", true, options_.friction_share);
     } else {
       cannot_tell("viscous", "the back-EMF of this drive looks the same");
     }
@@ -139,10 +97,10 @@ class BalanceChecks {
     });
     add_term("stribeck", {c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, slow,
              fmt::format("friction below {:.2g} rad/s beyond that above", slow_rad_s), drive_unit(), false,
-             kFriction_share);
+             options_.friction_share);
     if (pendulum()) {
       add_term("load_friction", {c().load, c().acceleration, c().speed, c().direction, c().one}, c().heavy,
-               "friction per torque of gravity", "", true, kFriction_share);
+               "friction per torque of gravity", "", true, options_.friction_share);
     } else {
       cannot_tell("load_friction", "no load hangs");
     }
@@ -155,12 +113,12 @@ class BalanceChecks {
     if (pendulum()) with_hanging.push_back(hanging);
     for (const char* effect : {"offset", "direction_friction"}) {
       add_term(effect, with_hanging, c().one, "torque that one direction needs more than the other", drive_unit(),
-               false, kConstant_share);
+               false, options_.constant_share);
     }
     base.push_back(c().one);
     if (pendulum()) {
       add_term("zero_offset", base, hanging, "gravity as if the joint stood elsewhere, by", "rad", false,
-               kConstant_share);
+               options_.constant_share);
     } else {
       cannot_tell("zero_offset", "no load hangs");
     }
@@ -172,7 +130,7 @@ class BalanceChecks {
     add_dead_band();
     if (pendulum()) {
       add_term("load", base, balance_.load_inertia_Nm(), "inertia of the load beyond what its weight says", "", false,
-               2.0 * kConstant_share);
+               2.0 * options_.constant_share);
     }
     add_supply_sag(base);
     const double fastest_rad_s = balance_.fastest_rad_s();
@@ -181,12 +139,12 @@ class BalanceChecks {
     });
     if (position_pd()) {
       add_term("torque_speed", base, hard_and_fast, "share of a driving torque that is missing at the highest speed",
-               "", true, kDrive_share);
+               "", true, options_.drive_share);
     }
     const Column turning =
         balance_.integral([](const BalancePoint& p) { return p.since_turn_s < 0.03 ? p.drive : 0.0; });
     add_term("backlash", base, turning, "share of the drive that is missing within 30 ms of its reversal", "", true,
-             kDrive_share);
+             options_.drive_share);
   }
 
   /// A source resistance in front of a bridge counts by the duty's square.
@@ -197,7 +155,7 @@ class BalanceChecks {
     const double full = bench_.known.drive.limit * bench_.supply_V;
     add_term("supply_sag", base,
              balance_.integral([full](const BalancePoint& p) { return std::pow(p.drive / full, 2) * p.load_Nm; }),
-             "drive that torques need beyond their share at full duty", "V/Nm", true, kDrive_share);
+             "drive that torques need beyond their share at full duty", "V/Nm", true, options_.drive_share);
   }
 
   /// Within the band the whole of the gain's output is missing: a share of 1 is what tells it from friction.
@@ -217,9 +175,11 @@ class BalanceChecks {
     Signature s{
         "dead_band", "balance of torques", Agreement::kCannotTell, {band_rad, band_rad / 1.35, band_rad * 1.35}, "rad",
         ""};
-    if (surest_t > kSure_t && std::abs(surest.coefficient - 1.0) < 0.4 && surest.share > kConstant_share) {
+    if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < 0.4 &&
+        surest.share > options_.constant_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (surest.coefficient + 2.0 * surest.deviation < 0.6 || largest_share < 0.4 * kConstant_share) {
+    } else if (surest.coefficient + 2.0 * surest.deviation < 0.6 ||
+               largest_share < options_.disagrees_share * options_.constant_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("of the output of errors below {:.2g} rad a share of {:.2g} (deviation {:.2g}) is missing",
@@ -231,12 +191,12 @@ class BalanceChecks {
     if (!position_pd()) return cannot_tell("gain", "the unit of this drive is fitted anyway");
     if (!enough_) return cannot_tell("gain", "too little motion was recorded");
     const TermEstimate e = regression({c().acceleration, c().speed, c().direction, c().one, c().heavy}).term(c().load);
-    if (!(e.own > kOwn) || !(e.coefficient > 0.1)) {
+    if (!(e.own > options_.own_share) || !(e.coefficient > 0.1)) {
       return cannot_tell("gain", "no load of known weight or inertia was moved");
     }
     const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
     Signature s{"gain", "balance of torques", Agreement::kCannotTell, around(gain, deviation), "", ""};
-    if (std::abs(gain - 1.0) > std::max(kSure_t * deviation, 0.05)) {
+    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, 0.05)) {
       s.agreement = Agreement::kAgrees;
     } else if (std::abs(gain - 1.0) + 2.0 * deviation < 0.05) {
       s.agreement = Agreement::kDisagrees;
@@ -263,7 +223,7 @@ class BalanceChecks {
                     balance_.integral([order](const BalancePoint& p) { return std::cos(order * p.q_rad); }));
       if (!(pair.own > 0.3)) continue;
       largest_missed = std::max(largest_missed, pair.share);
-      if (pair.t2 > best && pair.share > kFriction_share) best = pair.t2, at = order, strongest = pair;
+      if (pair.t2 > best && pair.share > options_.friction_share) best = pair.t2, at = order, strongest = pair;
     }
     const double amplitude = strongest.coefficients.norm();
     const double deviation = best > 0.0 ? amplitude / std::sqrt(best) : 0.0;
@@ -271,7 +231,7 @@ class BalanceChecks {
                 ""};
     if (best > bar) {
       s.agreement = Agreement::kAgrees;
-    } else if (largest_missed < 0.4 * kFriction_share) {
+    } else if (largest_missed < options_.disagrees_share * options_.friction_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = at == 0
@@ -301,9 +261,9 @@ class BalanceChecks {
                 around(e.coefficient, e.deviation),
                 by_friction ? std::string(drive_unit()) + "/K" : "1/K",
                 ""};
-    if (std::abs(e.t()) > kSure_t && e.share > kFriction_share) {
+    if (std::abs(e.t()) > options_.sure_deviations && e.share > options_.friction_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (std::max(friction.share_sure, load.share_sure) < 0.4 * kFriction_share) {
+    } else if (std::max(friction.share_sure, load.share_sure) < options_.disagrees_share * options_.friction_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence =
@@ -313,8 +273,8 @@ class BalanceChecks {
   }
 
   const bench::Bench& bench_;
+  const SignatureOptions& options_;
   TorqueBalance balance_;
-  FoundShape shape_;
   std::vector<Columns> columns_;
   Column drive_;
   bool enough_ = false;
@@ -323,8 +283,9 @@ class BalanceChecks {
 
 }  // namespace
 
-std::vector<Signature> balance_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
-  return BalanceChecks(bench, runs).all();
+std::vector<Signature> balance_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                      const SignatureOptions& options) {
+  return BalanceChecks(bench, runs, options).all();
 }
 
 }  // namespace pmg::evidence

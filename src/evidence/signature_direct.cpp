@@ -12,6 +12,7 @@
 #include "bench/noise_floor.hpp"
 #include "evidence/motion.hpp"
 #include "evidence/signature_checks.hpp"
+#include "fitting/statistics.hpp"
 
 namespace pmg::evidence {
 
@@ -19,14 +20,6 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr Interval kUnknown{kNoNumber, kNoNumber, kNoNumber};
-constexpr double kDirectSure_t = 4.0;  // deviations
-constexpr double kWorth_rad = 1e-3;    // of a dead band, or of what friction leaves at the lowest gain
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Of the median, from ranks (normal approximation of the binomial).
 Interval median_interval(std::vector<double> values) {
@@ -34,7 +27,7 @@ Interval median_interval(std::vector<double> values) {
   const auto n = static_cast<double>(values.size());
   const double reach = 0.98 * std::sqrt(n);
   const auto rank = [&](double place) { return values[static_cast<std::size_t>(std::clamp(place, 0.0, n - 1.0))]; };
-  return {median(values), rank(std::floor(0.5 * n - reach)), rank(std::ceil(0.5 * n + reach))};
+  return {fitting::median(values), rank(std::floor(0.5 * n - reach)), rank(std::ceil(0.5 * n + reach))};
 }
 
 /// When readings leave rest after the step at this sample, in seconds after it; nothing where the joint wasn't at rest
@@ -135,7 +128,8 @@ Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::B
 }
 
 /// |short_by| = a + b / kp: b is a torque, a an angle. Each rest comes from another direction and distance.
-std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                   const SignatureOptions& options) {
   Signature band{"dead_band",
                  "rest against gain",
                  Agreement::kCannotTell,
@@ -174,13 +168,14 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
                      {torque_Nm, torque_Nm - 2.0 * deviation_Nm, torque_Nm + 2.0 * deviation_Nm},
                      "Nm",
                      ""};
-  if (torque_Nm > kDirectSure_t * deviation_Nm && fit[1] > kWorth_rad) friction.agreement = Agreement::kAgrees;
+  if (torque_Nm > options.sure_deviations * deviation_Nm && fit[1] > options.rest_worth_rad)
+    friction.agreement = Agreement::kAgrees;
   friction.sentence = fmt::format(
       "joints at rest are short of their command by {:.2g} Nm on average (deviation {:.1g})", torque_Nm, deviation_Nm);
   band.value = {fit[0], fit[0] - 2.0 * deviation_rad, fit[0] + 2.0 * deviation_rad};
-  if (fit[0] > std::max(kWorth_rad, kDirectSure_t * deviation_rad)) {
+  if (fit[0] > std::max(options.rest_worth_rad, options.sure_deviations * deviation_rad)) {
     band.agreement = Agreement::kAgrees;
-  } else if (band.value.high < kWorth_rad) {
+  } else if (band.value.high < options.rest_worth_rad) {
     band.agreement = Agreement::kDisagrees;
   }
   band.sentence =
@@ -190,10 +185,8 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
 }
 
 /// The smallest step between different readings; a quantised sensor's readings are its multiples (plus an offset).
-Signature quantum_check(const std::vector<bench::BenchRun>& runs) {
-  constexpr std::size_t kFewest = 20;  // different readings
-  constexpr double kOff = 0.08;        // of a quantum: files round
-  constexpr double kCoarse_rad = 1e-4;
+Signature quantum_check(const std::vector<bench::BenchRun>& runs, const SignatureOptions& options) {
+  const auto fewest = static_cast<std::size_t>(options.quantum_fewest_readings);
   Signature s{"quantisation", "multiples of one number",   Agreement::kCannotTell, kUnknown,
               "rad",          "too few different readings"};
   std::set<double> readings;
@@ -203,26 +196,27 @@ Signature quantum_check(const std::vector<bench::BenchRun>& runs) {
       if (run.recording.valid[k]) readings.insert(run.recording.q_rad[k]), ++samples;
     }
   }
-  if (readings.size() < kFewest) return s;
+  if (readings.size() < fewest) return s;
   std::vector<double> steps_rad;
   for (auto it = std::next(readings.begin()); it != readings.end(); ++it) {
     if (*it - *std::prev(it) > 1e-7) steps_rad.push_back(*it - *std::prev(it));
   }
-  if (steps_rad.size() < kFewest) return s;
+  if (steps_rad.size() < fewest) return s;
   std::sort(steps_rad.begin(), steps_rad.end());
-  const double quantum_rad = median({steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(kFewest)});
+  const double quantum_rad =
+      fitting::median({steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(fewest)});
   std::size_t multiples = 0;
   Interval single{quantum_rad, quantum_rad, quantum_rad};  // files round each
   for (const double step_rad : steps_rad) {
     const double count = step_rad / quantum_rad;
-    if (std::abs(count - std::round(count)) >= kOff || count <= 0.5) continue;
+    if (std::abs(count - std::round(count)) >= options.quantum_rounding || count <= 0.5) continue;
     ++multiples;
     single.low = std::min(single.low, step_rad / std::round(count));
     single.high = std::max(single.high, step_rad / std::round(count));
   }
   const double share = static_cast<double>(multiples) / static_cast<double>(steps_rad.size());
   s.value = single;
-  if (share > 0.9 && quantum_rad > kCoarse_rad) {
+  if (share > 0.9 && quantum_rad > options.quantum_coarse_rad) {
     s.agreement = Agreement::kAgrees;
     s.sentence = fmt::format("{:.0f} % of the {} different readings are {:.3g} rad apart, or multiples of it",
                              100.0 * share, readings.size(), quantum_rad);
@@ -230,7 +224,7 @@ Signature quantum_check(const std::vector<bench::BenchRun>& runs) {
     s.agreement = Agreement::kDisagrees;
     s.value = kUnknown;
     s.sentence = fmt::format("{} samples have {} different readings, of no common step above {:g} rad", samples,
-                             readings.size(), kCoarse_rad);
+                             readings.size(), options.quantum_coarse_rad);
   }
   return s;
 }

@@ -11,21 +11,19 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kSwingSure_t = 4.0;   // deviations
-constexpr double kWorth_share = 0.03;  // of the weight that swings
-constexpr double kSwingOwn = 0.1;      // of a term's rms that the others must not imitate
-constexpr int kFewestSwings = 6;
-
 /// weight: torque of gravity; what friction leaves over is no measure of itself.
 Signature check(const std::string& effect, const ClusterRegression& regression, const Column& column,
-                const Column& weight, const std::string& what, const std::string& unit) {
+                const Column& weight, const std::string& what, const std::string& unit,
+                const SignatureOptions& options) {
   Signature s{effect, "free swing", Agreement::kCannotTell, {}, unit, ""};
   const TermEstimate e = regression.term(column);
   s.value = {e.coefficient, e.coefficient - 2.0 * e.deviation, e.coefficient + 2.0 * e.deviation};
   const double per_unit = column.norm() / std::max(1e-300, weight.norm());
   const double share = std::abs(e.coefficient) * per_unit;
-  if (e.own > kSwingOwn && e.t() > kSwingSure_t && share > kWorth_share) s.agreement = Agreement::kAgrees;
-  if (e.own > kSwingOwn && share + 2.0 * e.deviation * per_unit < 0.4 * kWorth_share)
+  if (e.own > options.own_share && e.t() > options.sure_deviations && share > options.swing_worth_share)
+    s.agreement = Agreement::kAgrees;
+  if (e.own > options.own_share &&
+      share + 2.0 * e.deviation * per_unit < options.disagrees_share * options.swing_worth_share)
     s.agreement = Agreement::kDisagrees;
   s.sentence = fmt::format("switched off, the swing loses {}: {:.3g} {} (deviation {:.2g}), {:.1f} % of its weight",
                            what, e.coefficient, unit, e.deviation, 100.0 * share);
@@ -34,21 +32,22 @@ Signature check(const std::string& effect, const ClusterRegression& regression, 
 
 }  // namespace
 
-std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                         const SignatureOptions& options) {
   if (bench.rig != bench::Rig::kPendulum) return {};
   const TorqueBalance balance(bench, runs, TorqueBalance::While::kOff);
   if (balance.windows() == 0) return {};
   const std::vector<int> clusters = balance.clusters();
-  if (clusters.back() + 1 < kFewestSwings) return {};
+  if (clusters.back() + 1 < options.swing_fewest_clusters) return {};
   // Nothing drives: what the load's weight and inertia leave is friction's and the rotor's.
   const Column weight = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
   const Column left = -(weight + balance.load_inertia_Nm());
   const Column direction = balance.integral([](const BalancePoint& p) { return p.direction; });
   const Column one = Column::Ones(direction.size());
   return {check("coulomb", {{balance.acceleration_rad_s2(), balance.speed_rad_s(), one}, left, clusters}, direction,
-                weight, "the same at any speed", "Nm"),
+                weight, "the same at any speed", "Nm", options),
           check("viscous", {{balance.acceleration_rad_s2(), direction, one}, left, clusters}, balance.speed_rad_s(),
-                weight, "more the faster it is", "Nm s/rad")};
+                weight, "more the faster it is", "Nm s/rad", options)};
 }
 
 }  // namespace pmg::evidence

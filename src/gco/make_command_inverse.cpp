@@ -127,7 +127,7 @@ Command mean_optimised_command(const model::RobotModel& robot, const ClipLibrary
 }
 
 CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLibrary& library,
-                                    const std::function<void(double)>& progress) {
+                                    const work::Progress& progress) {
   const auto axis = grid(robot);
   std::size_t nodes = 1;
   for (const std::vector<double>& values : axis) nodes *= values.size();
@@ -142,7 +142,7 @@ CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLi
     }
     const bool rest = command[kVx] == 0.0 && command[kVy] == 0.0 && command[kOmega] == 0.0;
     if (!rest) correction[i] = correction_at(robot, within_reach(robot, library.blend, command), measurement);
-    progress(static_cast<double>(i + 1) / static_cast<double>(nodes));
+    progress.go_on(static_cast<double>(i + 1) / static_cast<double>(nodes));
   }
   return {axis, correction};
 }

@@ -7,13 +7,13 @@
 
 #include "gco/ground_aware_command.hpp"
 #include "gco/motion_composition.hpp"
+#include "model/constants.hpp"
 #include "model/leg_kinematics.hpp"
 #include "pmg/generator.hpp"
 
 namespace pmg::gco {
 namespace {
 
-constexpr double kTick_s = 0.01;
 constexpr double kSettleWalk_s = 4.0;  // rate limits of commands and the held height have settled
 constexpr int kCycles = 4;             // in each, the ticks fall on other phases
 
@@ -62,19 +62,20 @@ SteadyWalk walk_steadily(const model::RobotModel& robot, const ClipLibrary& libr
   Generator generator(library, generator_options(robot));
   GroundAwareCommand ground(robot);
   Soles soles(robot);
-  for (double t = 0.0; t < kSettleWalk_s; t += kTick_s) ground.solve(generator.step(command, kTick_s));
+  for (double t = 0.0; t < kSettleWalk_s; t += model::kControlPeriod_s)
+    ground.solve(generator.step(command, model::kControlPeriod_s));
   SteadyWalk walk;
   walk.lowest_swing_m = walk.clearance_m = walk.foot_gap_m = 1.0;
   SlipStatistics statistics;
   const double rate_per_s = generator.reference().phase_rate_per_s;
   const double whole_cycles_s = rate_per_s > 0.0 ? kCycles / rate_per_s : 1.0;
-  for (double duration_s = 0.0; duration_s < whole_cycles_s; duration_s += kTick_s) {
-    const Reference& reference = generator.step(command, kTick_s);
+  for (double duration_s = 0.0; duration_s < whole_cycles_s; duration_s += model::kControlPeriod_s) {
+    const Reference& reference = generator.step(command, model::kControlPeriod_s);
     const Result& result = ground.solve(reference);
     statistics.add(reference, result);
     soles.measure(reference, result, walk);
     // The last tick counts only up to the end of the cycles.
-    const double dt_s = std::min(kTick_s, whole_cycles_s - duration_s);
+    const double dt_s = std::min(model::kControlPeriod_s, whole_cycles_s - duration_s);
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       walk.mean.u[channel] += result.command.u[channel] * dt_s / whole_cycles_s;
     }

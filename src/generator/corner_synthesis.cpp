@@ -2,12 +2,11 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
-#include <future>
 #include <optional>
 #include <utility>
 
 #include "pmg/corner_clips.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -126,7 +125,7 @@ std::vector<LegPose> legs_of(const Making& making, const DynamicClip& clip, doub
 }  // namespace
 
 std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& library, const SingleGaits& gaits,
-                                     const std::function<void(const std::string&)>& progress) {
+                                     const work::Progress& progress) {
   PerCorner<std::optional<DynamicClip>> clips;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
     const std::optional<DynamicClip>& positive = library.positive[channel];
@@ -152,7 +151,11 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
                                          {{{-1, 0, 1}}, {gaits.backward, gaits.turn}, 1.17},
                                          {{{0, 1, 1}}, {gaits.lateral, gaits.turn}, 1.10},
                                          {{{0, 1, -1}}, {gaits.lateral, turn_right}, 1.10}}};
-  const auto during = [&progress] { progress("combinations of two velocities"); };
+  const work::Progress during{.told =
+                                  [&](double share, std::string_view) {
+                                    if (progress.told) progress.told(share, "combinations of two velocities");
+                                  },
+                              .interrupted = progress.interrupted};
   const auto make = [&](const Wanted& want) {
     const UpperBody& a = want.pair.first.body;
     const UpperBody& b = want.pair.second.body;
@@ -164,10 +167,9 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
                                       legs_of(making, superposition.at(want.corner), body.pelvis_tilt_rad));
     return CornerClip{want.corner.sign, assemble(making, task, optimize_gait(making.legs, task, during).legs, body)};
   };
-  std::vector<std::future<CornerClip>> made;
-  for (const Wanted& want : wanted) made.push_back(std::async(std::launch::async, make, std::cref(want)));
-  std::vector<CornerClip> corners;
-  for (auto& one : made) corners.push_back(one.get());
+  std::vector<CornerClip> corners(wanted.size());
+  work::for_each_in_parallel(wanted.size(), static_cast<unsigned>(wanted.size()),
+                             [&](std::size_t i) { corners[i] = make(wanted[i]); });
   return corners;
 }
 

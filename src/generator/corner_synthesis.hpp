@@ -1,12 +1,12 @@
 // Clips of two velocities at once: the generator interpolates between these corners of the command box.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "generator/gait_parts.hpp"
 #include "pmg/clip.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::generator {
 
@@ -20,6 +20,6 @@ struct SingleGaits {
 ///   q = q_stand + n1 (1 - n2) d1 + (1 - n1) n2 d2 + n1 n2 d12.
 /// The unknown is d12. It shall keep the feet on the ground at amplitudes n1, n2 over the whole box.
 std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& library, const SingleGaits& gaits,
-                                     const std::function<void(const std::string&)>& progress);
+                                     const work::Progress& progress);
 
 }  // namespace pmg::generator

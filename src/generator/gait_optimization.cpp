@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <utility>
 #include <vector>
 
@@ -223,27 +222,17 @@ LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& tabl
   return out;
 }
 
-/// Ends the solver when progress throws; no exception passes through Ceres.
-class StopOnThrow : public ceres::IterationCallback {
+/// Tells after every iteration, and ends the solver where progress is over.
+class ProgressCallback : public ceres::IterationCallback {
  public:
-  explicit StopOnThrow(const std::function<void()>& progress) : progress_(progress) {}
+  explicit ProgressCallback(const work::Progress& progress) : progress_(progress) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    try {
-      if (progress_) progress_();
-    } catch (...) {
-      thrown_ = std::current_exception();
-      return ceres::SOLVER_ABORT;
-    }
-    return ceres::SOLVER_CONTINUE;
-  }
-  void rethrow() const {
-    if (thrown_) std::rethrow_exception(thrown_);
+    return progress_(work::kUnknownShare) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
   }
 
  private:
-  const std::function<void()>& progress_;
-  std::exception_ptr thrown_;
+  const work::Progress& progress_;
 };
 
 }  // namespace
@@ -324,12 +313,12 @@ PostureResiduals::PostureResiduals(const RobotLegs& legs, const GaitTask& task, 
       upper_(legs.upper[foot].array() - kLimitMargin_rad),
       limit_weight_(task.weights.limit / std::sqrt(static_cast<double>(kClipSamples))) {}
 
-GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const std::function<void()>& progress) {
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const work::Progress& progress) {
   KnotTable table(task.symmetric);
   start_from_reference(legs, task, table);
   std::vector<VelocityTarget> targets(task.scenarios.size());
   GaitSolution solution;
-  StopOnThrow stop(progress);
+  ProgressCallback stop(progress);
   for (int round = 0; round < kRounds; ++round) {
     ceres::Problem problem;
     add_residuals(legs, task, targets, table, problem);
@@ -342,7 +331,7 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const st
     options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
-    stop.rethrow();
+    if (progress.over()) throw work::Interrupted();
     solution.cost = summary.final_cost;
     solution.iterations += static_cast<int>(summary.iterations.size());
     solution.legs = sample_legs(legs, task.symmetric, table);

@@ -2,11 +2,10 @@
 // every gain at which the generator blends the clip with standing.
 #pragma once
 
-#include <functional>
-
 #include "generator/gait_task.hpp"
 #include "generator/leg_geometry.hpp"
 #include "pmg/types.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::generator {
 
@@ -28,8 +27,8 @@ struct GaitSolution {
 
 /// (legs, task) => (leg trajectory). The generator blends in joint space: q = q_stand + g (q_clip - q_stand) +
 /// addition. Unknowns are the knots of a periodic cubic spline of each leg joint's deviation from stand;
-/// gait_residuals.hpp has the residuals. Deterministic. progress is called after every iteration, many times a second,
-/// and may throw to stop.
-GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const std::function<void()>& progress = {});
+/// gait_residuals.hpp has the residuals. Deterministic. Reports progress after every iteration, many times a second;
+/// throws work::Interrupted where progress is over.
+GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const work::Progress& progress = {});
 
 }  // namespace pmg::generator

@@ -1,8 +1,8 @@
 #include "generator/synthesis.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
-#include <future>
 #include <mutex>
 #include <utility>
 
@@ -10,6 +10,7 @@
 #include "generator/gait_parts.hpp"
 #include "generator/gait_reference.hpp"
 #include "generator/static_clips.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -125,8 +126,7 @@ GaitTask turn_task(const Making& making) {
 
 }  // namespace
 
-ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
-                       const std::function<void(const std::string&)>& progress) {
+ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners, const work::Progress& progress) {
   const JointRoles roles = find_joint_roles(robot);
   Making making{robot, roles, robot_legs(robot, roles), {}};
   ClipLibrary library;
@@ -135,20 +135,25 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
   library.q_upper = robot.q_upper();
   library.mirror = robot.mirror;
 
-  progress("bend");
+  progress.go_on(work::kUnknownShare, "bend");
   making.posture[0] = make_bend(robot, roles, making.legs);
-  progress("lean");
+  progress.go_on(work::kUnknownShare, "lean");
   making.posture[1] = make_lean(robot, roles, making.legs);
-  progress("squat");
+  progress.go_on(work::kUnknownShare, "squat");
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 
   std::mutex one_at_a_time;  // several clips are made at the same time
-  const std::function<void(const std::string&)> tell = [&](const std::string& name) {
-    const std::lock_guard lock(one_at_a_time);
-    progress(name);
+  const work::Progress locked{.told =
+                                  [&](double share, std::string_view name) {
+                                    const std::lock_guard lock(one_at_a_time);
+                                    if (progress.told) progress.told(share, name);
+                                  },
+                              .interrupted = progress.interrupted};
+  const auto during = [&locked](const char* name) {
+    return work::Progress{.told = [&locked, name](double share, std::string_view) { locked.told(share, name); },
+                          .interrupted = locked.interrupted};
   };
-  const auto during = [&tell](const char* name) { return [&tell, name] { tell(name); }; };
   const auto make = [&](const char* name, const GaitTask& task, UpperBody body) {
     return MadeGait{task, optimize_gait(making.legs, task, during(name)).legs, std::move(body)};
   };
@@ -164,20 +169,25 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners,
       {0.53, 3.0, clip_addition(making, forward.legs, forward.task, 0.47, lateral_wanted.period_s)});
   turn_wanted.scenarios.push_back(
       {0.45, 4.0, clip_addition(making, forward.legs, forward.task, 0.55, turn_wanted.period_s)});
-  auto backward_made = std::async(std::launch::async, [&] {
-    return make("backward", backward_task(making, forward.legs, forward.task),
-                {.pelvis_tilt_rad = 3.0 * kRadPerDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kRadPerDegree});
-  });
-  auto lateral_made = std::async(
-      std::launch::async, [&] { return make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kRadPerDegree}); });
-  const MadeGait turn =
-      make("turn", turn_wanted, {.pelvis_tilt_rad = 2.0 * kRadPerDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
-  const MadeGait backward = backward_made.get(), lateral = lateral_made.get();
+  MadeGait backward, lateral, turn;
+  const std::array<std::function<void()>, 3> makings = {
+      [&] {
+        backward =
+            make("backward", backward_task(making, forward.legs, forward.task),
+                 {.pelvis_tilt_rad = 3.0 * kRadPerDegree, .arm_swing = 0.4, .torso_yaw_rad = 2.0 * kRadPerDegree});
+      },
+      [&] { lateral = make("lateral", lateral_wanted, {.pelvis_tilt_rad = 2.0 * kRadPerDegree}); },
+      [&] {
+        turn = make("turn", turn_wanted,
+                    {.pelvis_tilt_rad = 2.0 * kRadPerDegree, .arm_swing = 0.25, .gaze_yaw_rad = 0.12});
+      }};
+  work::for_each_in_parallel(makings.size(), static_cast<unsigned>(makings.size()),
+                             [&](std::size_t i) { makings[i](); });
   library.negative[kVx] = clip(backward);
   library.positive[kVy] = clip(lateral);
   library.positive[kOmega] = clip(turn);
 
-  if (with_corners) library.corners = make_corners(making, library, {forward, backward, lateral, turn}, tell);
+  if (with_corners) library.corners = make_corners(making, library, {forward, backward, lateral, turn}, locked);
   return library;
 }
 

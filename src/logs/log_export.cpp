@@ -34,7 +34,7 @@ struct Row {
 
 /// Reads every message of these files and calls write with it.
 template <typename Write>
-ExportReport for_each_message(const std::vector<fs::path>& files, const ExportProgress& progress, Write&& write) {
+ExportReport for_each_message(const std::vector<fs::path>& files, const work::Progress& progress, Write&& write) {
   ExportReport report;
   io::LogSeries events(files);
   std::optional<std::int64_t> first_ns;
@@ -46,7 +46,8 @@ ExportReport for_each_message(const std::vector<fs::path>& files, const ExportPr
     const io::LogReader& event = events.event();
     if (!first_ns) first_ns = event.stamp_ns();
     const double time_s = static_cast<double>(event.stamp_ns() - *first_ns) * 1e-9;
-    if (++count % kEventsAProgress == 0 && progress && !progress(time_s)) break;
+    if (++count % kEventsAProgress == 0 && !progress(work::kUnknownShare, fmt::format("{:8.1f} s exported", time_s)))
+      break;
     if (event.channel() == "ROBOT_INFO") info = event.decode<pmg_msgs::robot_info_t>();
     if (!read_fields(event.channel(), event.data(), info ? info->joint_names : nameless, fields)) {
       ++report.unknown;
@@ -143,7 +144,7 @@ ordered_json schema_json(const std::vector<Field>& fields) {
 
 }  // namespace
 
-ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& folder, const ExportProgress& progress) {
+ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& folder, const work::Progress& progress) {
   fs::create_directories(folder);
   std::map<std::string, CsvFile> tables;
   ExportReport report = for_each_message(files, progress, [&](const Row& row) {
@@ -156,7 +157,7 @@ ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& fold
   return report;
 }
 
-ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& file, const ExportProgress& progress) {
+ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& file, const work::Progress& progress) {
   io::McapWriter writer(file);
   std::map<std::string, io::McapWriter::Id> channels;
   ExportReport report = for_each_message(files, progress, [&](const Row& row) {

@@ -3,10 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "work/progress.hpp"
 
 namespace pmg::logs {
 
@@ -15,19 +16,16 @@ struct ExportReport {
   std::int64_t unknown = 0;                      ///< events that are left out: unknown channel or unknown bytes
 };
 
-/// Called from time to time; false ends the export and keeps the part so far.
-using ExportProgress = std::function<bool(double time_s)>;
-
 /// Writes FOLDER/CHANNEL.csv with one row for each message: time_s since the log's first event, then the fields of
 /// msgs/. An element of a vector has the name of its joint, foot, axis or command channel: "q_rad.left_knee". Makes the
-/// folder if it is absent. Throws std::runtime_error.
+/// folder if it is absent. Throws std::runtime_error. Where progress is over, it keeps the part so far.
 ExportReport export_csv(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder,
-                        const ExportProgress& progress = {});
+                        const work::Progress& progress = {});
 
 /// Writes one MCAP file of JSON messages with JSON schemas: one topic for each channel, vectors as objects ("q_rad":
 /// {"left_knee": ...}). Times are UTC if the log holds the wall clock of its start, else those of its own clock.
 /// Numbers that aren't finite are null. Throws std::runtime_error.
 ExportReport export_mcap(const std::vector<std::filesystem::path>& files, const std::filesystem::path& file,
-                         const ExportProgress& progress = {});
+                         const work::Progress& progress = {});
 
 }  // namespace pmg::logs

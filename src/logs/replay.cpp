@@ -49,8 +49,7 @@ double distance(const Field::Value& a, const Field::Value& b) {
 
 class Replay {
  public:
-  Replay(const ReplayOptions& options, const std::function<void(double)>& progress)
-      : options_(options), progress_(progress) {}
+  Replay(const ReplayOptions& options, const work::Progress& progress) : options_(options), progress_(progress) {}
 
   void take(const io::LogReader& event) {
     if (!first_ns_) first_ns_ = event.stamp_ns();
@@ -172,7 +171,8 @@ class Replay {
     has_state_ = false;
     ++report_.ticks;
     report_.duration_s = seconds(event);
-    if (progress_ && report_.ticks % kTicksAProgress == 0) progress_(report_.duration_s);
+    if (progress_.told && report_.ticks % kTicksAProgress == 0)
+      progress_.told(work::kUnknownShare, fmt::format("{:8.1f} s replayed", report_.duration_s));
   }
 
   void require_tick() const {
@@ -248,7 +248,7 @@ class Replay {
   }
 
   const ReplayOptions& options_;
-  const std::function<void(double)>& progress_;
+  const work::Progress& progress_;
   const io::SimulationClock stopwatch_;  // a replay measures no times
   control::LoadedControl loaded_;
   runtime::RunInfo run_;
@@ -276,8 +276,7 @@ double ReplayReport::largest_difference() const {
   return all;
 }
 
-ReplayReport replay(const std::vector<fs::path>& files, const ReplayOptions& options,
-                    const std::function<void(double)>& progress) {
+ReplayReport replay(const std::vector<fs::path>& files, const ReplayOptions& options, const work::Progress& progress) {
   io::LogSeries events(files);
   auto run = std::make_unique<Replay>(options, progress);  // records are large
   while (events.next()) run->take(events.event());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "control/excitation_player.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::logs {
 
@@ -56,6 +57,6 @@ struct ReplayReport {
 /// tick, ticks are missing, or robot, clips or policy can't be loaded. From time to time it calls progress with the
 /// replayed time.
 ReplayReport replay(const std::vector<std::filesystem::path>& files, const ReplayOptions& options,
-                    const std::function<void(double time_s)>& progress = {});
+                    const work::Progress& progress = {});
 
 }  // namespace pmg::logs

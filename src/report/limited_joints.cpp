@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-namespace pmg::report {
+#include "model/constants.hpp"
 
-namespace {
-constexpr double kTick_s = 0.01;
-}
+namespace pmg::report {
 
 double LimitedJoint::longest_s() const {
   double longest = 0.0;
@@ -39,10 +37,11 @@ void LimitedJoints::add(double t_s, const pmg_msgs::limited_t& message) {
     }
     ++known->any_ticks;
     auto& stretches = known->stretches;
-    if (!stretches.empty() && stretches.back().by == by && t_s - stretches.back().to_s < 0.5 * kTick_s) {
-      stretches.back().to_s = t_s + kTick_s;
+    if (!stretches.empty() && stretches.back().by == by &&
+        t_s - stretches.back().to_s < 0.5 * model::kControlPeriod_s) {
+      stretches.back().to_s = t_s + model::kControlPeriod_s;
     } else {
-      stretches.push_back({t_s, t_s + kTick_s, by});
+      stretches.push_back({t_s, t_s + model::kControlPeriod_s, by});
     }
   }
 }

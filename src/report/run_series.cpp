@@ -264,7 +264,7 @@ class Gathering {
 
 }  // namespace
 
-RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
+RunSeries read_run(const fs::path& log, const work::Progress& progress) {
   const std::vector<fs::path> files = io::log_files({log});
   double total_bytes = 0.0, read_bytes = 0.0;
   for (const fs::path& file : files) total_bytes += static_cast<double>(fs::file_size(file));
@@ -278,7 +278,7 @@ RunSeries read_run(const fs::path& log, const ReadingProgress& progress) {
     const io::LogReader& event = series.event();
     gathering.add(event);
     read_bytes += static_cast<double>(kEventHeader_bytes + event.channel().size() + event.data().size());
-    if (progress && events % kEventsPerCall == 0) interrupted = !progress(std::min(1.0, read_bytes / total_bytes));
+    if (events % kEventsPerCall == 0) interrupted = !progress(std::min(1.0, read_bytes / total_bytes));
   }
   RunSeries run = gathering.finish();
   if (series.cut_short()) {

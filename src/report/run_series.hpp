@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "pmg_msgs/robot_info_t.hpp"
 #include "report/limited_joints.hpp"
 #include "sil/metrics.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::report {
 
@@ -93,12 +93,9 @@ struct RunSeries {
   std::vector<std::string> problems;  ///< problems while reading, one sentence each
 };
 
-/// Called from time to time with the share of the bytes read; false ends the reading and keeps the part so far.
-using ReadingProgress = std::function<bool(double share)>;
-
 /// log: a .lcm file, or a run's folder with log.lcm or log-NNNN.lcm, which count as one log. If the log holds several
 /// runs, the last one is read. Wall times come from the log, or from a timing.csv beside it. Skips damaged parts.
-/// Throws std::runtime_error if it finds no part of a run.
-RunSeries read_run(const std::filesystem::path& log, const ReadingProgress& progress = {});
+/// Throws std::runtime_error if it finds no part of a run. Where progress is over, it keeps the part so far.
+RunSeries read_run(const std::filesystem::path& log, const work::Progress& progress = {});
 
 }  // namespace pmg::report

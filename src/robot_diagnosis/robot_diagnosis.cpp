@@ -13,18 +13,15 @@ namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kSample_s = 0.05, kBlock_s = 4.0;
-// Of squats and bends that take seconds: noise of accelerations is a fifth of what the hanging part's low-pass leaves.
-// Noise that is in an equation and in its coefficients alike looks like too little mass.
-constexpr double kStandingLowPass_s = 0.075;
-constexpr int kSettle = 4;  // samples to each side of a change of support that aren't believed
+constexpr double kSample_s = 0.05;
 
-/// A change of support takes its neighbours with it: landing, lifting and the first slip obey no equation here.
-std::vector<Support> settled(const std::vector<Support>& seen) {
+/// (support of each sample) => (the same, but loose for so many samples to each side of a change): landing, lifting and
+/// the first slip obey no equation here.
+std::vector<Support> without_transitions(const std::vector<Support>& seen, std::size_t settle) {
   std::vector<Support> result = seen;
   for (std::size_t i = 1; i < seen.size(); ++i) {
     if (seen[i] == seen[i - 1]) continue;
-    const std::size_t from = i > kSettle ? i - kSettle : 0, to = std::min(i + kSettle, seen.size());
+    const std::size_t from = i > settle ? i - settle : 0, to = std::min(i + settle, seen.size());
     for (std::size_t k = from; k < to; ++k) result[k] = Support::kLoose;
   }
   return result;
@@ -81,40 +78,48 @@ std::vector<Eigen::Vector3d> specific_forces(RobotEquations& equations, const Ro
     const model::RobotState &at = recording.ticks[k].state, &after = recording.ticks[k + 1].state;
     forces_I.push_back(supports[k] == Support::kStanding
                            ? specific_force_of_legs(equations, at, after, recording.period_s)
-                           : mean_of_readings(readings_I[k], readings_I[k + 1]));
+                           : mean_of_readings(readings_I[k], readings_I[k + 1],
+                                              recording.drive.acceleration_share(recording.period_s)));
   }
   return forces_I;
 }
 
-class Diagnosing {
+/// Samples, supports, equations, evidence, verdict: one diagnosis.
+class RobotDiagnosisRun {
  public:
-  Diagnosing(const model::RobotModel& robot, const RobotDiagnosisOptions& options, const RobotProgress& progress)
+  RobotDiagnosisRun(const model::RobotModel& robot, const RobotDiagnosisOptions& options,
+                    const work::Progress& progress)
       : robot_(robot),
         options_(options),
         progress_(progress),
         list_(robot_parameters(robot, options.tolerances)),
-        equations_(robot, list_) {}
+        equations_(robot, list_, options.support) {
+    result_.options = listed(options);
+  }
 
   RobotDiagnosis run(std::span<const RobotRecording> recordings) {
     const auto total = std::accumulate(recordings.begin(), recordings.end(), std::size_t{0},
                                        [](std::size_t n, const RobotRecording& r) { return n + r.ticks.size(); });
     for (const RobotRecording& recording : recordings) take(recording, static_cast<double>(total));
-    result_.ground = ground_friction(equations_, samples_, robot_.total_mass_kg * kGravity_m_s2);
-    tell(weigh(blocks_, equations_.kinds(), list_, options_.evidence));
+    result_.ground = ground_friction(equations_, samples_, robot_.total_mass_kg * kGravity_m_s2, options_.ground);
+    conclude(weigh(blocks_, equations_.kinds(), list_, options_.evidence));
     return std::move(result_);
   }
 
  private:
   void take(const RobotRecording& recording, double total_ticks) {
+    const std::string sampling = drive_sampling_text(recording.drive);
+    if (result_.drive_sampling.find(sampling) == std::string::npos)
+      result_.drive_sampling += (result_.drive_sampling.empty() ? "" : "; ") + sampling;
     const std::vector<RobotSample> crude = robot_samples(recording);
     std::vector<Support> seen;
     for (const RobotSample& sample : crude) seen.push_back(equations_.support(sample));
-    const std::vector<Support> supports = settled(seen);
+    const std::vector<Support> supports = without_transitions(seen, static_cast<std::size_t>(options_.settle_samples));
     const std::vector<Eigen::Vector3d> forces_I =
         specific_forces(equations_, recording, supports_of_ticks(recording, crude, supports));
     const std::vector<RobotSample> lively = robot_samples(recording, {.specific_force_I = forces_I}),
-                                   calm = robot_samples(
-                                       recording, {.low_pass_s = kStandingLowPass_s, .specific_force_I = forces_I});
+                                   calm = robot_samples(recording, {.low_pass_s = options_.standing_low_pass_s,
+                                                                    .specific_force_I = forces_I});
     for (std::size_t i = 0; i < supports.size(); ++i) {
       const Support support = supports[i];
       const std::vector<RobotSample>& samples = support == Support::kStanding ? calm : lively;
@@ -122,13 +127,13 @@ class Diagnosing {
        : support == Support::kStanding ? result_.coverage.standing_s
                                        : result_.coverage.other_s) += kSample_s;
       const double since_s = samples[i].t_s - samples.front().t_s;
-      if (i == 0 || std::floor(since_s / kBlock_s) > std::floor((since_s - kSample_s) / kBlock_s))
+      if (i == 0 || std::floor(since_s / options_.block_s) > std::floor((since_s - kSample_s) / options_.block_s))
         blocks_.push_back({fmt::format("{} from {:.1f} s", recording.name, samples[i].t_s), {}});
       if (support != Support::kLoose) {  // steps and slips shake the arms: no equations of smooth motion
         for (RobotRow& row : equations_.rows(samples[i], support)) blocks_.back().rows.push_back(std::move(row));
       }
       done_ticks_ += kSample_s / recording.period_s;
-      if (progress_ && i % 20 == 0 && !progress_(0.9 * std::min(done_ticks_ / total_ticks, 1.0))) throw Interrupted();
+      if (i % 20 == 0) progress_.go_on(0.9 * std::min(done_ticks_ / total_ticks, 1.0));
     }
     const std::vector<RobotSample> all =
         robot_samples(recording, {.ticks_per_sample = 1, .specific_force_I = forces_I});  // a slip is short
@@ -162,7 +167,7 @@ class Diagnosing {
     return cause;
   }
 
-  void tell(const RobotEvidence& evidence) {
+  void conclude(const RobotEvidence& evidence) {
     bool ambiguous = false;
     for (const RobotFinding& finding : evidence.findings) {
       result_.causes.push_back(cause(finding));
@@ -170,27 +175,25 @@ class Diagnosing {
     }
     result_.held_out_before = evidence.held_out_before;
     result_.held_out_after = evidence.held_out_after;
-    tell_unexplained(evidence);
+    add_unexplained(evidence);
     result_.verdict = ambiguous                     ? evidence::Verdict::kAmbiguous
                       : !result_.causes.empty()     ? evidence::Verdict::kFound
                       : !result_.depends_on.empty() ? evidence::Verdict::kUnexplained
                                                     : evidence::Verdict::kNone;
-    tell_others(evidence);
-    tell_not_seen(evidence);
+    add_others(evidence);
+    add_not_seen(evidence);
   }
 
   /// A hanging robot whose numbers are known leaves two things in its joints' equations: the shape of dry friction near
   /// standstill, and the noise of accelerations. A joint with a cause of its own is left out: a strong one bends the
   /// equations, which are linear in it.
-  void tell_unexplained(const RobotEvidence& evidence) {
-    constexpr double kOfFriction = 0.5;
-    constexpr double kAcceleration_rad_s2 = 0.4;  // five times that of a gyro with 0.01 rad/s, after the low-pass
+  void add_unexplained(const RobotEvidence& evidence) {
     const JointVector moved_kg_m2 = moved_inertia_kg_m2(robot_);
     for (int j = 0; j < robot_.joint_index.size(); ++j) {
       const std::string& joint = robot_.joint_index.name(j);
       const double left_Nm = evidence.left[static_cast<std::size_t>(equations_.kind_of_joint(Support::kHanging, j))];
-      const double usual_Nm =
-          kOfFriction * robot_.joints[static_cast<std::size_t>(j)].friction_Nm + kAcceleration_rad_s2 * moved_kg_m2[j];
+      const double usual_Nm = options_.remains_of_friction * robot_.joints[static_cast<std::size_t>(j)].friction_Nm +
+                              options_.remains_rad_s2 * moved_kg_m2[j];
       if (left_Nm <= usual_Nm ||
           std::ranges::any_of(result_.causes, [&](const RobotCause& cause) { return cause.place == joint; }))
         continue;
@@ -199,7 +202,7 @@ class Diagnosing {
     }
   }
 
-  void tell_others(const RobotEvidence& evidence) {
+  void add_others(const RobotEvidence& evidence) {
     constexpr std::size_t kMost = 8;
     std::vector<int> order(list_.candidates.size());
     std::iota(order.begin(), order.end(), 0);
@@ -216,7 +219,7 @@ class Diagnosing {
     }
   }
 
-  void tell_not_seen(const RobotEvidence& evidence) {
+  void add_not_seen(const RobotEvidence& evidence) {
     for (const RobotCandidate& candidate : list_.candidates) {
       const bool seen = std::ranges::all_of(candidate.parameters, [&](int k) {
         const auto i = static_cast<std::size_t>(k);
@@ -228,7 +231,7 @@ class Diagnosing {
 
   const model::RobotModel& robot_;
   const RobotDiagnosisOptions& options_;
-  const RobotProgress& progress_;
+  const work::Progress& progress_;
   const RobotParameterList list_;
   RobotEquations equations_;
   std::vector<RobotBlock> blocks_;
@@ -240,8 +243,8 @@ class Diagnosing {
 }  // namespace
 
 RobotDiagnosis diagnose_robot(const model::RobotModel& robot, std::span<const RobotRecording> recordings,
-                              const RobotDiagnosisOptions& options, const RobotProgress& progress) {
-  return Diagnosing(robot, options, progress).run(recordings);
+                              const RobotDiagnosisOptions& options, const work::Progress& progress) {
+  return RobotDiagnosisRun(robot, options, progress).run(recordings);
 }
 
 }  // namespace pmg::robot_diagnosis

@@ -9,14 +9,10 @@
 #include "evidence/verdict.hpp"
 #include "robot_diagnosis/robot_evidence.hpp"
 #include "robot_diagnosis/robot_ground.hpp"
+#include "robot_diagnosis/robot_options.hpp"
 #include "robot_diagnosis/robot_recording.hpp"
 
 namespace pmg::robot_diagnosis {
-
-struct RobotDiagnosisOptions {
-  RobotTolerances tolerances;
-  EvidenceOptions evidence;
-};
 
 struct RobotCause {
   std::string effect{}, place{};  ///< of RobotCandidate
@@ -40,11 +36,14 @@ struct RobotDiagnosis {
   double held_out_before = 0.0, held_out_after = 0.0;  ///< rms of left-out equations, in units of their noise
   std::vector<std::string> depends_on;                 ///< unexplained: equations with more than noise
   std::vector<RobotCause> others;                      ///< what came next, with its evidence, no parameters
+  std::string drive_sampling;                          ///< when the drives took positions, and what says so
+  std::vector<evidence::Option> options;               ///< that it was decided by
   std::vector<std::string> not_seen;  ///< "effect of place": no strength that matters would have shown in these logs
 };
 
-/// Throws std::runtime_error when the recordings hold nothing that can be used, Interrupted when progress says so.
+/// Throws std::runtime_error when the recordings hold nothing that can be used, work::Interrupted when progress is
+/// over.
 RobotDiagnosis diagnose_robot(const model::RobotModel& robot, std::span<const RobotRecording> recordings,
-                              const RobotDiagnosisOptions& options = {}, const RobotProgress& progress = {});
+                              const RobotDiagnosisOptions& options = {}, const work::Progress& progress = {});
 
 }  // namespace pmg::robot_diagnosis

@@ -17,12 +17,6 @@ namespace {
 constexpr int kBaseRows = 6, kTiltRows = 4, kHeightRows = 1, kGroundRows = kTiltRows + kHeightRows;
 constexpr double kAngleStep_rad = 1e-5, kMassStep_kg = 0.01, kLengthStep_m = 1e-4;
 
-// Shares of the robot's weight: a leg in the air shows what friction leaves, two on the ground carry about all of it.
-constexpr double kInTheAir = 0.12, kOnTheGround = 0.15, kLeastWeight = 0.7, kMostWeight = 1.4;
-constexpr double kStepping_m_s = 0.03;
-constexpr double kFlat_rad = 0.15;
-constexpr double kUpright = 0.7;  // cosine of the base's tilt: a robot that has fallen has its feet in the air too
-
 using Kind = RobotParameter::Kind;
 
 bool of_torque(Kind kind) {
@@ -58,8 +52,9 @@ Eigen::Matrix3d turned(const Eigen::Vector3d& rotation_rad) {
 
 }  // namespace
 
-RobotEquations::RobotEquations(const model::RobotModel& robot, const RobotParameterList& list)
-    : robot_(robot), list_(list), dynamics_(robot), joints_(robot.joint_index.size()) {
+RobotEquations::RobotEquations(const model::RobotModel& robot, const RobotParameterList& list,
+                               const SupportOptions& support)
+    : robot_(robot), list_(list), support_(support), dynamics_(robot), joints_(robot.joint_index.size()) {
   torso_ = dynamics_.body(robot.torso_link);
   in_leg_.assign(static_cast<std::size_t>(joints_), false);
   below_torso_ = in_leg_;
@@ -226,6 +221,7 @@ std::vector<RobotRow> RobotEquations::rows(const RobotSample& sample, Support su
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool of_joint = i < joints.size();
     rows[i].kind = kind_of_joint(support, of_joint ? joints[i] : joints_ + static_cast<int>(i - joints.size()));
+    rows[i].support = support;
     rows[i].residual = nominal[static_cast<Eigen::Index>(i)];
   }
   std::vector<double> all_still(rows.size(), 0.0);
@@ -275,65 +271,6 @@ void RobotEquations::add_column(int parameter, const Eigen::VectorXd& column, st
     const double value = column[static_cast<Eigen::Index>(i)];
     if (std::abs(value) > negligible) rows[i].coefficients.emplace_back(parameter, value);
   }
-}
-
-Eigen::Vector3d RobotEquations::accelerometer_share(const JointVector& q, const JointVector& torque_Nm) {
-  return robot_.imu.T_LI.linear().transpose() * dynamics_.imu_acceleration(q, torque_Nm);
-}
-
-Eigen::Vector3d RobotEquations::imu_velocity_on_resting_soles(const model::RobotState& state) {
-  const Eigen::Isometry3d& T_BI = robot_.imu.T_LI;
-  const Eigen::Vector3d omega_B = T_BI.linear() * state.gyro_rad_s;
-  GeneralizedVector speed = GeneralizedVector::Zero(6 + joints_);
-  speed.segment<3>(3) = omega_B;
-  speed.tail(joints_) = state.dq;
-  dynamics_.take_posture(state.q);
-  Eigen::Vector3d v_base_B = Eigen::Vector3d::Zero();  // makes both feet rest, on average
-  for (const Foot foot : {kLeft, kRight})
-    v_base_B -= 0.5 * (dynamics_.jacobian_of_link(foot_body_[foot]) * speed).head<3>();
-  return T_BI.linear().transpose() * (v_base_B + omega_B.cross(T_BI.translation()));
-}
-
-PerFoot<FootForce> RobotEquations::foot_forces(const RobotSample& sample) {
-  PerFoot<FootForce> forces;
-  if (!legs_of_six_) return forces;
-  const GeneralizedVector force = missing(sample, {});
-  const Eigen::Vector3d up_B = robot_.imu.T_LI.linear() * sample.up_I;
-  for (const Foot foot : {kLeft, kRight}) {
-    const Eigen::Vector3d on_foot_N = foot_wrench(force, foot).head<3>();
-    forces[foot].normal_N = on_foot_N.dot(up_B);
-    forces[foot].tangential_N = (on_foot_N - forces[foot].normal_N * up_B).norm();
-  }
-  return forces;
-}
-
-double RobotEquations::foot_separation_speed_m_s(const RobotSample& sample) {
-  missing(sample, {});
-  GeneralizedVector speed = GeneralizedVector::Zero(6 + joints_);
-  speed.segment<3>(3) = robot_.imu.T_LI.linear() * sample.omega_I;
-  speed.tail(joints_) = sample.dq;
-  const Eigen::Vector3d left = (dynamics_.jacobian_of_link(foot_body_[kLeft]) * speed).head<3>();
-  const Eigen::Vector3d right = (dynamics_.jacobian_of_link(foot_body_[kRight]) * speed).head<3>();
-  return (left - right).norm();
-}
-
-Support RobotEquations::support(const RobotSample& sample) {
-  if (!legs_of_six_) return Support::kLoose;
-  const Eigen::Vector3d up_B = robot_.imu.T_LI.linear() * sample.up_I;
-  if (up_B.z() < kUpright) return Support::kLoose;
-  const double weight_N = robot_.total_mass_kg * kGravity_m_s2;
-  const PerFoot<FootForce> forces = foot_forces(sample);
-  const auto most = [](const FootForce& f) { return std::max(std::abs(f.normal_N), f.tangential_N); };
-  if (std::max(most(forces[kLeft]), most(forces[kRight])) < kInTheAir * weight_N) return Support::kHanging;
-  const double sum_N = forces[kLeft].normal_N + forces[kRight].normal_N;
-  const bool loaded = std::min(forces[kLeft].normal_N, forces[kRight].normal_N) > kOnTheGround * weight_N &&
-                      sum_N > kLeastWeight * weight_N && sum_N < kMostWeight * weight_N;
-  if (!loaded || foot_separation_speed_m_s(sample) > kStepping_m_s) return Support::kLoose;
-  for (const Foot foot : {kLeft, kRight}) {
-    const Eigen::Vector3d up_F = dynamics_.rotation(foot_body_[foot]).transpose() * up_B;
-    if (up_F.head<2>().norm() > kFlat_rad) return Support::kLoose;
-  }
-  return Support::kStanding;
 }
 
 }  // namespace pmg::robot_diagnosis

@@ -2,36 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "model/robot_model.hpp"
 #include "robot_diagnosis/robot_dynamics.hpp"
+#include "robot_diagnosis/robot_options.hpp"
 #include "robot_diagnosis/robot_parameters.hpp"
+#include "robot_diagnosis/robot_row.hpp"
 #include "robot_diagnosis/robot_samples.hpp"
 
 namespace pmg::robot_diagnosis {
-
-/// What carries the robot, and with it which equations hold.
-enum class Support {
-  kHanging,   ///< by the torso, feet in the air: its wrench is got rid of, a row for every joint
-  kStanding,  ///< on both soles, at rest: their wrenches follow from the legs' torques, 6 rows for the whole robot
-  kLoose,     ///< anything else: rows of arms and head only
-};
-
-/// One equation: residual + sum of coefficient * parameter is 0 but for noise. Joint rows and the last three of the
-/// whole robot's in Nm, its first three in N, soles' tilt in rad, difference of the soles' heights in m.
-struct RobotRow {
-  int kind = 0;  ///< rows of a kind share a noise level
-  double residual = 0.0;
-  double friction_variance = 0.0;  ///< of dry friction near standstill, whose direction isn't known
-  double standstill = 0.0;         ///< that, as a share of what it is when nothing moves
-  std::vector<std::pair<int, double>> coefficients;
-  int own_gain = -1;       ///< which of the coefficients is that of the gain of the row's own joint,
-  double spring_Nm = 0.0;  ///< of which this is the negative, by the encoder
-};
 
 /// Forces on one foot, from its leg's torques.
 struct FootForce {
@@ -41,7 +22,7 @@ struct FootForce {
 class RobotEquations {
  public:
   /// Keeps references. Throws std::runtime_error when the IMU isn't on the base link.
-  RobotEquations(const model::RobotModel& robot, const RobotParameterList& list);
+  RobotEquations(const model::RobotModel& robot, const RobotParameterList& list, const SupportOptions& support = {});
 
   Support support(const RobotSample& sample);
   std::vector<RobotRow> rows(const RobotSample& sample, Support support);
@@ -82,6 +63,7 @@ class RobotEquations {
 
   const model::RobotModel& robot_;
   const RobotParameterList& list_;
+  const SupportOptions support_;
   RobotDynamics dynamics_;
   const int joints_;
   int torso_;

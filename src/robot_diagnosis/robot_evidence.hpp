@@ -6,24 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "robot_diagnosis/robot_equations.hpp"
+#include "robot_diagnosis/robot_options.hpp"
+#include "robot_diagnosis/robot_parameters.hpp"
+#include "robot_diagnosis/robot_row.hpp"
 
 namespace pmg::robot_diagnosis {
-
-/// Rows of one stretch of a recording; blocks are what folds leave out.
-struct RobotBlock {
-  std::string name;
-  std::vector<RobotRow> rows;
-};
-
-/// Sums of weighted squares: |r + A theta|^2 = squares - 2 right.theta + theta' matrix theta.
-struct NormalEquations {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right;
-  double squares = 0.0;
-  double rows = 0.0;  ///< as many as are independent
-  double chi_square(const Eigen::VectorXd& theta) const;
-};
 
 struct RobotFinding {
   int candidate = -1;                      ///< of the list
@@ -32,7 +19,7 @@ struct RobotFinding {
   int folds_better = 0, folds = 0;
   std::vector<int> or_instead{};  ///< candidates that explain as much, the best first
   /// By how much the strongest of these predicts other equations than this cause does, in squared noise, by Support.
-  std::array<double, 3> apart{};
+  std::array<double, kSupports> apart{};
 };
 
 struct RobotEvidence {
@@ -42,12 +29,6 @@ struct RobotEvidence {
   std::vector<double> detectable;  ///< per parameter: smallest value that would have shown (one of its kind alone)
   double held_out_before = 0.0, held_out_after = 0.0;  ///< rms over blocks left out, in units of the noise
   std::vector<double> left;  ///< per kind of row: rms of what remains with the findings, in the row's unit
-};
-
-struct EvidenceOptions {
-  double least_log_evidence = 12.0;  ///< of a cause; there are some two hundred candidates
-  double told_apart = 5.0;           ///< log evidence between two causes below which neither is preferred
-  int most_findings = 4;
 };
 
 /// Throws std::runtime_error when there are no rows.

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/constants.hpp"
 #include "pmg/posture.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::robot_diagnosis {
 
 namespace {
-
-constexpr double kTick_s = 0.01;
 
 model::JointCommand robot_gains(const model::RobotModel& robot) {
   const int n = robot.joint_index.size();
@@ -121,7 +120,7 @@ std::vector<model::JointCommand> hanging_excitation(const model::RobotModel& rob
   const std::vector<Swing> all = swings(robot);
   const model::JointCommand stand = robot_gains(robot);
   std::vector<model::JointCommand> commands;
-  for (double t_s = 0.0; t_s < 3.0 * kStretch_s; t_s += kTick_s) {
+  for (double t_s = 0.0; t_s < 3.0 * kStretch_s; t_s += model::kControlPeriod_s) {
     const auto stretch = static_cast<int>(t_s / kStretch_s);
     // Gains change within half a second, so that nothing jerks.
     const double half = smooth(2.0 * (t_s - kStretch_s)) - smooth(2.0 * (t_s - 2.0 * kStretch_s));
@@ -202,7 +201,7 @@ std::vector<model::JointCommand> standing_excitation(const model::RobotModel& ro
   };
   Waypoint from{0.0, 0.0, 0.0, 0.0};
   for (const Waypoint& to : kWaypoints) {
-    for (double t_s = 0.0; t_s < to.for_s; t_s += kTick_s) {
+    for (double t_s = 0.0; t_s < to.for_s; t_s += model::kControlPeriod_s) {
       const double s = smooth(t_s / to.for_s);
       add(from.pitch_rad + s * (to.pitch_rad - from.pitch_rad), from.roll_rad + s * (to.roll_rad - from.roll_rad),
           from.height_m + s * (to.height_m - from.height_m), 0.0);
@@ -210,7 +209,7 @@ std::vector<model::JointCommand> standing_excitation(const model::RobotModel& ro
     from = to;
   }
   // apart, wait, together, wait
-  for (double t_s = 0.0; t_s < 4.0 * kPush_s * kPushes; t_s += kTick_s) {
+  for (double t_s = 0.0; t_s < 4.0 * kPush_s * kPushes; t_s += model::kControlPeriod_s) {
     const double phase = std::fmod(t_s / kPush_s, 4.0);
     add(from.pitch_rad, from.roll_rad, from.height_m, std::clamp(std::min(phase, 3.0 - phase), 0.0, 1.0));
   }

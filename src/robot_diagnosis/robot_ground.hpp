@@ -15,6 +15,7 @@ struct GroundFriction {
 };
 
 /// Tangential over normal force of the feet, by their legs' torques, while their distance changes under load.
-GroundFriction ground_friction(RobotEquations& equations, std::span<const RobotSample> samples, double weight_N);
+GroundFriction ground_friction(RobotEquations& equations, std::span<const RobotSample> samples, double weight_N,
+                               const GroundOptions& options = {});
 
 }  // namespace pmg::robot_diagnosis

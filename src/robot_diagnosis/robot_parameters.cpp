@@ -15,9 +15,10 @@ namespace {
 
 using Kind = RobotParameter::Kind;
 
-class List {
+/// Adds the parameters link by link and joint by joint.
+class ParameterListBuilder {
  public:
-  List(const model::RobotModel& robot, const RobotTolerances& tolerances)
+  ParameterListBuilder(const model::RobotModel& robot, const RobotTolerances& tolerances)
       : robot_(robot), tolerances_(tolerances), moved_kg_m2_(moved_inertia_kg_m2(robot)) {}
 
   RobotParameterList build() {
@@ -133,7 +134,7 @@ JointVector moved_inertia_kg_m2(const model::RobotModel& robot) {
 }
 
 RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances) {
-  return List(robot, tolerances).build();
+  return ParameterListBuilder(robot, tolerances).build();
 }
 
 std::string name(const RobotParameter& parameter) {

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "io/log_series.hpp"
 #include "io/log_writer.hpp"
+#include "model/constants.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
@@ -19,7 +21,6 @@ namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kTickPeriod_s = control::ControlCycle::kPeriod_s;
 constexpr double kShortest_s = 1.0;
 constexpr const char* kState = "STATE";
 constexpr const char* kCommand = "MOTOR_COMMAND";
@@ -74,7 +75,9 @@ class LogTicks {
 
   void check_robot(const io::LogReader& event) {
     const auto info = event.decode<pmg_msgs::robot_info_t>();
-    if (!info || info->joint_names == robot_.joint_index.names()) return;
+    if (!info) return;
+    drive_ = drive_sampling(info->backend, info->options);
+    if (info->joint_names == robot_.joint_index.names()) return;
     fail(fmt::format("of the robot {} with {} joints; expected the joints of {}", info->model, info->joint_count,
                      robot_.name));
   }
@@ -102,16 +105,17 @@ class LogTicks {
       fail(fmt::format("a MOTOR_COMMAND with {} joints; expected {}", message->joint_count, robot_.joint_index.size()));
     if (!finite(tick.command)) fail(fmt::format("a MOTOR_COMMAND that isn't finite at {} s", tick.t_s));
     any_tick_ = true;
-    const bool follows =
-        !current_.ticks.empty() && std::abs(tick.t_s - current_.ticks.back().t_s - kTickPeriod_s) < 0.3 * kTickPeriod_s;
+    const bool follows = !current_.ticks.empty() && std::abs(tick.t_s - current_.ticks.back().t_s -
+                                                             model::kControlPeriod_s) < 0.3 * model::kControlPeriod_s;
     if (!follows) finish();
     current_.ticks.push_back(std::move(tick));
   }
 
   void finish() {
-    if (static_cast<double>(current_.ticks.size()) * kTickPeriod_s > kShortest_s) {
+    if (static_cast<double>(current_.ticks.size()) * model::kControlPeriod_s > kShortest_s) {
       current_.name = name_;
-      current_.period_s = kTickPeriod_s;
+      current_.period_s = model::kControlPeriod_s;
+      current_.drive = drive_;
       recordings_.push_back(std::move(current_));
     }
     current_ = {};
@@ -121,6 +125,7 @@ class LogTicks {
   std::string name_;
   io::LogSeries series_;
   std::optional<model::RobotState> state_;
+  DriveSampling drive_ = drive_sampling("unknown", "");
   RobotRecording current_;
   std::vector<RobotRecording> recordings_;
   bool any_tick_ = false;
@@ -143,6 +148,7 @@ void write_ticks(const RobotRecording& recording, const model::RobotModel& robot
   io::LogWriter writer(file);
   runtime::RunInfo run;
   run.robot = robot.name;
+  run.options = nlohmann::json{{"drive_sampling_s", recording.drive.step_s}}.dump();
   pmg_msgs::robot_info_t info;
   runtime::fill(run, robot, 1.0 / recording.period_s, 0, info);
   writer.write("ROBOT_INFO", 0, info);
@@ -180,9 +186,11 @@ void write_robot_log(const RobotRecording& recording, const model::RobotModel& r
 }
 
 RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
-                    const RobotProgress& progress) {
+                    const work::Progress& progress) {
   constexpr std::size_t kTicksPerReport = 100;
-  RobotRecording recording{.name = name, .period_s = kTickPeriod_s, .ticks = {}};
+  RobotRecording recording{.name = name,
+                           .period_s = model::kControlPeriod_s,
+                           .drive = {model::kBusPeriod_s, "the simulation that was recorded"}};
   recording.ticks.reserve(commands.size());
   for (const model::JointCommand& command : commands) {
     RobotTick tick;
@@ -194,9 +202,8 @@ RobotRecording play(sim::World& world, std::span<const model::JointCommand> comm
     sil::hold_for_one_tick(world, tick.command);
     if (world.diverged()) throw std::runtime_error(fmt::format("{}: the simulation diverged at {} s", name, tick.t_s));
     const std::size_t done = recording.ticks.size();
-    if (progress && done % kTicksPerReport == 0 &&
-        !progress(static_cast<double>(done) / static_cast<double>(commands.size())))
-      throw Interrupted();
+    if (done % kTicksPerReport == 0)
+      progress.go_on(static_cast<double>(done) / static_cast<double>(commands.size()), name);
   }
   return recording;
 }

@@ -4,15 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
-#include <functional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
+#include "robot_diagnosis/drive_sampling.hpp"
 #include "sim/world.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::robot_diagnosis {
 
@@ -27,7 +27,8 @@ struct RobotTick {
 struct RobotRecording {
   std::string name;  ///< of the log, short
   double period_s = 0.01;
-  std::vector<RobotTick> ticks;
+  DriveSampling drive{};
+  std::vector<RobotTick> ticks{};
 };
 
 /// The runs of these logs (files, or folders of runs), cut where ticks are missing. Stretches shorter than a second are
@@ -41,16 +42,9 @@ std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::p
 void write_robot_log(const RobotRecording& recording, const model::RobotModel& robot,
                      const std::filesystem::path& file);
 
-/// Called now and then with how far it is; false ends it: Interrupted is thrown.
-using RobotProgress = std::function<bool(double share)>;
-class Interrupted : public std::runtime_error {
- public:
-  Interrupted() : std::runtime_error("interrupted") {}
-};
-
 /// Plays one command a tick on a simulated robot and records it. Throws
-/// std::runtime_error when the simulation diverges.
+/// std::runtime_error when the simulation diverges, work::Interrupted when progress is over.
 RobotRecording play(sim::World& world, std::span<const model::JointCommand> commands, const std::string& name,
-                    const RobotProgress& progress = {});
+                    const work::Progress& progress = {});
 
 }  // namespace pmg::robot_diagnosis

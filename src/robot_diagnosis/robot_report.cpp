@@ -78,6 +78,8 @@ nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& d) {
   json["unit"] = "noise of the equations";
   json["depends_on"] = d.depends_on;
   json["not_seen"] = d.not_seen;
+  json["drive_sampling"] = d.drive_sampling;
+  json["options"] = evidence::options_json(d.options);
   const std::string next = next_excitation(d);
   json["next_excitation"] = next.empty() ? Json(nullptr) : Json(next);
   return json;
@@ -99,6 +101,7 @@ std::string robot_diagnosis_text(const RobotDiagnosis& d) {
       "{:.0f} s hanging, {:.0f} s standing, {:.0f} s of no use; left-out equations {:.2f} -> {:.2f} times "
       "their noise\n",
       d.coverage.hanging_s, d.coverage.standing_s, d.coverage.other_s, d.held_out_before, d.held_out_after);
+  text += d.drive_sampling + "\n";
   const std::string next = next_excitation(d);
   if (!next.empty()) text += next + "\n";
   return text;

@@ -12,20 +12,15 @@ constexpr double kDirectionLowPass_s = 0.025;
 constexpr int kMargin = 8;               // ticks at both ends of a recording without samples
 constexpr double kTurning_rad_s = 0.02;  // below it MuJoCo's dry friction isn't fully there
 
-/// A drive that the simulation steps every 2 ms takes the position at the beginning of each step: over a tick of 10 ms
-/// that is the mean of q at 0, 2, 4, 6, 8 ms, here of the cubic that has the positions and speeds of both ends: a stiff
-/// light joint gets to a new command within the tick. Accelerations read with a state belong to the 2 ms before it. A
-/// robot's own drives run faster: there both shares would be 0.5 and the speeds' 1/12.
-constexpr double kPositionShare = 0.4, kSpeedShare = 0.08, kForceShare = 0.6, kBusCycle_s = 0.002;
-
 struct TickMeans {
   RobotSample mean;
 
-  TickMeans(const RobotTick& before, const RobotTick& at, const RobotTick& after, double period_s) {
+  TickMeans(const RobotTick& before, const RobotTick& at, const RobotTick& after, double period_s,
+            const DriveSampling& drive) {
     const auto between = [](const auto& a, const auto& b, double share) { return (a + share * (b - a)).eval(); };
     mean.t_s = at.t_s + 0.5 * period_s;
-    mean.q =
-        between(at.state.q, after.state.q, kPositionShare) + kSpeedShare * period_s * (at.state.dq - after.state.dq);
+    mean.q = between(at.state.q, after.state.q, drive.position_share(period_s)) +
+             drive.speed_share(period_s) * period_s * (at.state.dq - after.state.dq);
     // Not the speeds that were read: a command that is held for a tick makes joints ring with the ticks, and a speed
     // read always at the same point of it is off by up to a tenth.
     mean.dq = (after.state.q - at.state.q) / period_s;
@@ -43,7 +38,8 @@ struct TickMeans {
     mean.direction = JointVector::Zero(mean.dq.size());
     mean.omega_I = between(at.state.gyro_rad_s, after.state.gyro_rad_s, 0.5);
     mean.alpha_I = (after.state.gyro_rad_s - at.state.gyro_rad_s) / period_s;
-    mean.specific_force_I = mean_of_readings(at.state.acceleration_m_s2, after.state.acceleration_m_s2);
+    mean.specific_force_I =
+        mean_of_readings(at.state.acceleration_m_s2, after.state.acceleration_m_s2, drive.acceleration_share(period_s));
     const auto up = [](const model::RobotState& s) {
       return (s.orientation_WI.conjugate() * Eigen::Vector3d::UnitZ()).eval();
     };
@@ -116,13 +112,13 @@ std::vector<JointVector> torque_ripple(const RobotRecording& recording) {
   if (ticks.empty()) return ripple;
   ripple.assign(ticks.size(), JointVector::Zero(ticks.front().state.q.size()));
   const auto mean_torque = [&](std::size_t k) {  // of the tick that begins at k
-    const RobotSample mean = TickMeans(ticks[k], ticks[k], ticks[k + 1], recording.period_s).mean;
+    const RobotSample mean = TickMeans(ticks[k], ticks[k], ticks[k + 1], recording.period_s, recording.drive).mean;
     return (mean.spring_Nm + mean.damper_Nm + mean.feed_forward_Nm).eval();
   };
   for (std::size_t k = 1; k + 1 < ticks.size(); ++k) {
     const model::JointCommand& command = ticks[k - 1].command;
     const model::RobotState& state = ticks[k].state;
-    const JointVector q = state.q - kBusCycle_s * state.dq;
+    const JointVector q = state.q - recording.drive.step_s * state.dq;
     const JointVector last =
         command.kp.cwiseProduct(command.q - q) + command.kd.cwiseProduct(command.dq - state.dq) + command.tau_ff;
     ripple[k] = last - 0.5 * (mean_torque(k - 1) + mean_torque(k));
@@ -130,8 +126,8 @@ std::vector<JointVector> torque_ripple(const RobotRecording& recording) {
   return ripple;
 }
 
-Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after) {
-  return at + kForceShare * (after - at);
+Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after, double share) {
+  return at + share * (after - at);
 }
 
 std::vector<RobotSample> robot_samples(const RobotRecording& recording, const SampleOptions& options) {
@@ -140,7 +136,7 @@ std::vector<RobotSample> robot_samples(const RobotRecording& recording, const Sa
   std::vector<TickMeans> means;
   means.reserve(ticks.size());
   for (std::size_t k = 1; k + 1 < ticks.size(); ++k)
-    means.emplace_back(ticks[k - 1], ticks[k], ticks[k + 1], recording.period_s);
+    means.emplace_back(ticks[k - 1], ticks[k], ticks[k + 1], recording.period_s, recording.drive);
   const auto forces_I = options.specific_force_I;
   for (std::size_t k = 1; k < forces_I.size() && k <= means.size(); ++k)
     means[k - 1].mean.specific_force_I = forces_I[k];

@@ -25,8 +25,9 @@ struct RobotSample {
 /// saw-toothed. How far each joint's torque at the reading of tick k lies from its trend [Nm]; 0 at both ends.
 std::vector<JointVector> torque_ripple(const RobotRecording& recording);
 
-/// Mean of what an accelerometer would show between two ticks, from its readings at both.
-Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after);
+/// Mean of what an accelerometer would show between two ticks, from its readings at both: at + share * (after - at),
+/// share: DriveSampling::acceleration_share.
+Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after, double share);
 
 struct SampleOptions {
   int ticks_per_sample = 5;   ///< 50 ms lose nothing that the low-pass lets through

@@ -9,6 +9,7 @@
 
 #include "model/config_error.hpp"
 #include "pages/text.hpp"
+#include "pmg/types.hpp"
 #include "sim/mjcf_geometry.hpp"
 #include "sim/world.hpp"
 
@@ -23,7 +24,7 @@ using pages::escape_markup;
 // the floor through its sole.
 constexpr const char* kScene = R"(
   <compiler angle="radian" inertiafromgeom="false" balanceinertia="false"/>
-  <option timestep="{timestep}" integrator="implicit" gravity="0 0 -9.81"/>
+  <option timestep="{timestep}" integrator="implicit" gravity="0 0 -{gravity}"/>
   <size njmax="600" nconmax="150"/>
   <statistic center="0 0 {look_height}" extent="{extent}"/>
   <visual>
@@ -64,9 +65,10 @@ class MjcfText {
 
   std::string build() {
     text_ = fmt::format("<mujoco model=\"{}\">", escape_markup(robot_.name));
-    text_ += fmt::format(
-        kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("friction", options_.floor_friction),
-        fmt::arg("look_height", robot_.standing_height_m), fmt::arg("extent", 2.0 * robot_.standing_height_m));
+    text_ +=
+        fmt::format(kScene, fmt::arg("timestep", options_.timestep_s), fmt::arg("gravity", kGravity_m_s2),
+                    fmt::arg("friction", options_.floor_friction), fmt::arg("look_height", robot_.standing_height_m),
+                    fmt::arg("extent", 2.0 * robot_.standing_height_m));
     text_ += "  <worldbody>\n";
     text_ += kFloor;
     write_body(*robot_.urdf->getRoot(), nullptr, "", 2);

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include "model/config_reader.hpp"
+#include "model/constants.hpp"
 #include "model/nearest_name.hpp"
 #include "sim/actuator_model.hpp"
 
 namespace pmg::sim {
 
 namespace {
-
-constexpr double kSilStep_s = 0.002;  // WorldOptions' step: read_motor_file checks actuators with it
 
 /// Reads the groups in the table's order, in which the keys of a group are neighbours.
 ActuatorParameters read_actuator(model::ConfigReader& joint) {
@@ -49,7 +48,7 @@ ActuatorsByJoint read_motor_file(const std::filesystem::path& file) {
     model::ConfigReader joint = joints.map(name);
     const ActuatorParameters parameters = read_actuator(joint);
     try {
-      ActuatorModel(parameters, kSilStep_s);
+      ActuatorModel(parameters, model::kBusPeriod_s);
     } catch (const std::invalid_argument& error) {
       joints.fail(name, error.what(), "an actuator that can be simulated");
     }

@@ -235,7 +235,7 @@ std::size_t ZeroCalibration::used() const {
 }
 
 ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector<StillPose>& poses,
-                               const ZeroOptions& options, const ZeroProgress& progress) {
+                               const ZeroOptions& options, const work::Progress& progress) {
   Alignment alignment(robot, poses, options);
   const Eigen::Index count = alignment.count();
   ZeroCalibration found;
@@ -245,7 +245,7 @@ ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector
   Shared shared = Shared::Zero();
   int calm = 0;
   for (int iteration = 0; iteration < options.most_iterations && calm < options.M; ++iteration) {
-    if (progress && !progress(iteration)) break;
+    if (!progress(work::kUnknownShare, fmt::format("iteration {}", iteration + 1))) break;
     if (std::ranges::count(aligned, true) == 0) {
       throw std::invalid_argument(fmt::format(
           "none of {} still poses is one of a robot that stands on both soles; expected logs of poses on level ground",

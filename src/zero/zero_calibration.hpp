@@ -2,11 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "model/sole_load.hpp"
+#include "work/progress.hpp"
 #include "zero/standing_constraint.hpp"
 #include "zero/zero_poses.hpp"
 
@@ -64,11 +64,8 @@ struct ZeroCalibration {
   std::size_t used() const;
 };
 
-/// Called with the iteration's number; false ends the work with what was found.
-using ZeroProgress = std::function<bool(int iteration)>;
-
 /// Throws std::invalid_argument when no pose is one of a robot that stands on both soles.
 ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector<StillPose>& poses,
-                               const ZeroOptions& options = {}, const ZeroProgress& progress = {});
+                               const ZeroOptions& options = {}, const work::Progress& progress = {});
 
 }  // namespace pmg::zero

@@ -129,10 +129,10 @@ void read_log(const fs::path& log, const model::RobotModel& robot, const Stillne
 }  // namespace
 
 std::vector<StillPose> read_still_poses(const std::vector<fs::path>& logs, const model::RobotModel& robot,
-                                        const StillnessOptions& options, const ReadingProgress& progress) {
+                                        const StillnessOptions& options, const work::Progress& progress) {
   std::vector<StillPose> poses;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    if (progress && !progress(static_cast<double>(i) / static_cast<double>(logs.size()))) break;
+    if (!progress(static_cast<double>(i) / static_cast<double>(logs.size()))) break;
     read_log(logs[i], robot, options, poses);
   }
   return poses;

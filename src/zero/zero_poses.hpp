@@ -3,11 +3,11 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "model/robot_model.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::zero {
 
@@ -27,12 +27,9 @@ struct StillnessOptions {
   double shortest_s = 0.8;           ///< of what remains
 };
 
-/// Called with the share that is read; false ends the reading.
-using ReadingProgress = std::function<bool(double share)>;
-
 /// Every still stretch of these logs (files or folders), each log by itself. Throws std::runtime_error when a log can't
 /// be read, has no state in it, or is of a robot with other joints.
 std::vector<StillPose> read_still_poses(const std::vector<std::filesystem::path>& logs, const model::RobotModel& robot,
-                                        const StillnessOptions& options = {}, const ReadingProgress& progress = {});
+                                        const StillnessOptions& options = {}, const work::Progress& progress = {});
 
 }  // namespace pmg::zero

@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, EveryMethod, testing::Values("bobyqa", "sbp
 TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   const calib::FitProblem joint = problem({}, 0.0, 2);
   int calls = 0;
-  const calib::Fit fit = calib::fit(joint, {.starts = 2}, [&](double, const std::string&) { return ++calls < 30; });
+  const calib::Fit fit = calib::fit(joint, {.starts = 2}, {.interrupted = [&] { return ++calls >= 30; }});
   EXPECT_TRUE(fit.interrupted);
   EXPECT_EQ(fit.point.size(), joint.dimensions());
   EXPECT_LT(fit.loss_rad2, joint.loss(joint.point_of(joint.start())));
@@ -123,6 +123,22 @@ TEST(Confidence, CoversTheTruth) {
     EXPECT_LT(confidence[i].deviation, 0.03 * expected) << name << ": a deviation that says nothing covers everything";
     EXPECT_EQ(confidence[i].told_apart_badly, "") << name;
   }
+}
+
+// Only the last sample of each run is off: without it the residuals would be 0, and so would the deviations.
+TEST(Confidence, CountsTheLastSampleOfEachRun) {
+  const calib::FitProblem exact = problem({}, 0.0, 2);
+  const bench::Bench bench = test::pd_bench(true);
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& joint : exact.runs()) {
+    bench::BenchRun run = joint.run();
+    run.recording.q_rad = joint.rollout(truth());
+    run.recording.q_rad.back() += 0.01;
+    runs.emplace_back(bench, std::move(run), joint.step_s());
+  }
+  calib::JointModel start = truth();
+  const calib::FitProblem off(exact.parameters(), start, runs);
+  for (const calib::Confidence& one : calib::confidence(off, off.point_of(start), 1)) EXPECT_GT(one.deviation, 0.0);
 }
 
 TEST(Confidence, SaysWhatTheRunsCantTell) {

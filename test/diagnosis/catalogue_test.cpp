@@ -1,4 +1,4 @@
-#include "diagnosis/catalogue.hpp"
+#include "effects/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,15 +9,15 @@ namespace {
 
 TEST(Catalogue, EveryParameterIsOneOfTheSimulation) {
   const bench::Bench bench;
-  for (const Effect& effect : catalogue()) {
+  for (const effects::Effect& effect : effects::catalogue()) {
     EXPECT_FALSE(effect.parameters.empty()) << effect.name;
     for (const std::string& parameter : effect.parameters) EXPECT_NO_THROW(calib::fit_parameter(parameter, bench));
   }
 }
 
 TEST(Catalogue, AnUnknownNameIsRefusedWithTheNamesThereAre) {
-  EXPECT_THROW(effect("frction"), std::invalid_argument);
-  EXPECT_EQ(effect("delay").parameters.front(), "command.delay_s");
+  EXPECT_THROW(effects::effect("frction"), std::invalid_argument);
+  EXPECT_EQ(effects::effect("delay").parameters.front(), "command.delay_s");
 }
 
 }  // namespace

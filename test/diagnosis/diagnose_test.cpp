@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/diagnosis_json.hpp"
@@ -65,7 +66,9 @@ TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
   test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4));
   DiagnoseOptions options;
   options.model = known();
-  const Diagnosis found = diagnose(bench::read_bench(folder_), options);
+  DiagnosedRuns runs;
+  const Diagnosis found = diagnose(bench::read_bench(folder_), options, &runs);
+  EXPECT_FALSE(runs.checks.empty()) << "a report shows those that the diagnosis weighed";
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "quantisation");
   const evidence::Interval quantum_rad = found.causes.front().parameters.front().estimate;
@@ -83,9 +86,32 @@ TEST_F(Diagnose, SaysInJsonWhatTheFormatAsksFor) {
   const auto& parameter = cause.at("parameters").at("friction.coulomb_Nm");
   for (const char* key : {"value", "low", "high", "unit"}) EXPECT_TRUE(parameter.contains(key)) << key;
   EXPECT_LT(cause.at("held_out_error_after"), cause.at("held_out_error_before"));
-  for (const char* key :
-       {"rejected", "noise_floor", "held_out_error_before", "held_out_error_after", "unit", "next_excitation"}) {
+  for (const char* key : {"rejected", "noise_floor", "held_out_error_before", "held_out_error_after", "unit",
+                          "next_excitation", "options"}) {
     EXPECT_TRUE(json.contains(key)) << key;
+  }
+}
+
+TEST_F(Diagnose, DecidesByItsOptions) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  truth.actuator.command.delay_s = 0.015;
+  test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4, 2e-4));
+  DiagnoseOptions options;
+  options.model = known();
+  options.decide_by.least_deviations = 1e9;
+  const Diagnosis found = diagnose(bench::read_bench(folder_), options);
+  EXPECT_TRUE(found.causes.empty()) << "no gain has so many deviations";
+  EXPECT_EQ(found.options.front().value, 1e9);
+}
+
+TEST(JointDiagnosisOptions, EveryNumberIsListedWithItsReason) {
+  const std::vector<evidence::Option> all = listed(JointDiagnosisOptions{});
+  EXPECT_EQ(all.size(), sizeof(JointDiagnosisOptions) / sizeof(double));
+  std::set<std::string> names;
+  for (const evidence::Option& option : all) {
+    EXPECT_TRUE(names.insert(option.name).second) << option.name;
+    EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
   }
 }
 

@@ -1,11 +1,11 @@
-#include "diagnosis/nested_fit.hpp"
+#include "effects/nested_fit.hpp"
 
 #include <gtest/gtest.h>
 
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "diagnosis/folds.hpp"
 #include "diagnosis/intervals.hpp"
+#include "effects/folds.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -19,10 +19,10 @@ calib::JointModel healthy() {
 
 struct Setting {
   bench::Bench bench = test::pd_bench(true);
-  NestedFit fit;
-  BenchScale scale;
+  effects::NestedFit fit;
+  effects::BenchScale scale;
   explicit Setting(const calib::JointModel& truth)
-      : fit(test::record(bench, truth, 4, 1e-4), 1), scale(scale_of(bench, fit.runs(), healthy())) {}
+      : fit(test::record(bench, truth, 4, 1e-4), 1), scale(effects::scale_of(bench, fit.runs(), healthy())) {}
 };
 
 TEST(NestedFit, FindsFrictionAndDelayWithinTheirIntervals) {
@@ -30,8 +30,10 @@ TEST(NestedFit, FindsFrictionAndDelayWithinTheirIntervals) {
   truth.actuator.friction.coulomb_Nm = 0.3;
   truth.actuator.command.delay_s = 0.012;
   const Setting s(truth);
-  NestedModel fitted = s.fit.fit(
-      healthy(), {unknown("friction.coulomb_Nm", s.bench, s.scale), unknown("command.delay_s", s.bench, s.scale)}, 20);
+  effects::NestedModel fitted = s.fit.fit(healthy(),
+                                          {effects::unknown("friction.coulomb_Nm", s.bench, s.scale),
+                                           effects::unknown("command.delay_s", s.bench, s.scale)},
+                                          20);
   s.fit.linearise(fitted);
   const std::vector<evidence::Interval> found = parameter_intervals(fitted, folds(s.fit), 1e-8);
   EXPECT_LT(found[0].low, 0.3);
@@ -44,13 +46,13 @@ TEST(NestedFit, FindsFrictionAndDelayWithinTheirIntervals) {
 TEST(NestedFit, NeverEndsWorseThanItsStart) {
   const Setting s(healthy());
   calib::JointModel start = healthy();
-  const double before = s.fit.squares(s.fit.misses(start));
+  const double before = fitting::sum_of_squares(s.fit.residuals(start));
   for (const char* name : {"friction.coulomb_Nm", "command.rate_limit_rad_s", "drive.kp_scale"}) {
     // Within the range of the unknown: an infinite rate limit begins at its end.
-    const Unknown u = unknown(name, s.bench, s.scale);
+    const effects::Unknown u = effects::unknown(name, s.bench, s.scale);
     calib::JointModel inside = start;
     calib::set(inside, name, u.value(u.coordinate(calib::value(start, name))));
-    EXPECT_LE(s.fit.fit(inside, {u}, 5).squares, s.fit.squares(s.fit.misses(inside))) << name;
+    EXPECT_LE(s.fit.fit(inside, {u}, 5).squares, fitting::sum_of_squares(s.fit.residuals(inside))) << name;
   }
   EXPECT_LE(s.fit.fit(start, {}, 5).squares, before);
 }
@@ -59,8 +61,8 @@ TEST(NestedFit, StepsStayInTheRangesAndTheOthersMakeUpForIt) {
   Eigen::Matrix2d information;
   information << 1.0, 0.5, 0.5, 1.0;
   const Eigen::Vector2d gradient(-3.0, 0.0), at(0.0, 0.0);
-  const Unknown u{"x", "", -1.0, 1.0, false, 1.0};
-  const Eigen::VectorXd step = bounded_step(information, gradient, {u, u}, at, 0.0);
+  const fitting::Coordinate x{.lower = -1.0, .upper = 1.0};
+  const Eigen::VectorXd step = fitting::bounded_step(information, gradient, {x, x}, at, 0.0);
   EXPECT_DOUBLE_EQ(step[0], 1.0);
   EXPECT_NEAR(step[1], -0.5, 1e-6);  // the optimum along the edge
 }
@@ -68,7 +70,7 @@ TEST(NestedFit, StepsStayInTheRangesAndTheOthersMakeUpForIt) {
 TEST(Folds, LeaveOutEachGainEachLoadAndEachTrajectory) {
   const Setting s(healthy());
   std::size_t gains = 0, loads = 0, trajectories = 0;
-  for (const Fold& fold : folds(s.fit)) {
+  for (const fitting::Fold& fold : folds(s.fit)) {
     gains += fold.name == "gain" ? 1 : 0;
     loads += fold.name == "load" ? 1 : 0;
     trajectories += fold.name == "trajectory" ? 1 : 0;
@@ -81,14 +83,14 @@ TEST(Folds, LeaveOutEachGainEachLoadAndEachTrajectory) {
 
 TEST(Folds, WhatOnlyFitsNoiseGainsNothingOnBlocksLeftOut) {
   const Setting s(healthy());
-  const std::vector<Fold> left_out = folds(s.fit);
-  NestedModel base = s.fit.fit(healthy(), {}, 1);
-  NestedModel extended = s.fit.fit(healthy(), {unknown("ripple.offset_Nm", s.bench, s.scale)}, 10);
+  const std::vector<fitting::Fold> left_out = folds(s.fit);
+  effects::NestedModel base = s.fit.fit(healthy(), {}, 1);
+  effects::NestedModel extended = s.fit.fit(healthy(), {effects::unknown("ripple.offset_Nm", s.bench, s.scale)}, 10);
   s.fit.linearise(base);
   s.fit.linearise(extended);
-  const BlockComparison compare(s.fit, left_out, 1e-8);
-  const Comparison found =
-      compare(held_out_squares(s.fit, base, left_out), held_out_squares(s.fit, extended, left_out));
+  const fitting::BlockComparison compare(s.fit.blocks(), left_out, 1e-8);
+  const fitting::Comparison found =
+      compare(s.fit.held_out_squares(base, left_out), s.fit.held_out_squares(extended, left_out));
   EXPECT_LT(found.deviations, 2.5);
   EXPECT_LT(found.log_gain, 0.02);
 }

@@ -10,8 +10,8 @@
 #include "bench/excitation.hpp"
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "diagnosis/folds.hpp"
 #include "diagnosis/next_excitation_files.hpp"
+#include "effects/folds.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -29,15 +29,19 @@ calib::JointModel healthy_joint() {
   return model;
 }
 
-NestedModel held(const calib::JointModel& model) { return {model, {}, {}, 0.0, {}, 0.0}; }
+effects::NestedModel held(const calib::JointModel& model) {
+  effects::NestedModel held;
+  held.model = model;
+  return held;
+}
 
-NestedModel with(const char* parameter, double value, calib::JointModel model = healthy_joint()) {
+effects::NestedModel with(const char* parameter, double value, calib::JointModel model = healthy_joint()) {
   calib::set(model, parameter, value);
   return held(model);
 }
 
 /// What is asked for to tell two models apart.
-AskedFor asked(const bench::Bench& bench, const NestedModel& one, const NestedModel& other,
+AskedFor asked(const bench::Bench& bench, const effects::NestedModel& one, const effects::NestedModel& other,
                const std::vector<std::string>& names = {"one", "other"}) {
   return next_excitation(bench, test::record(bench, one.model, 2), {{{one, other}, names}}, kWanted);
 }
@@ -70,10 +74,11 @@ TEST(NextExcitation, ZeroOffsetAndConstantTorquePartByGravity) {
 
 TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
   const bench::Bench bench = test::pd_bench(true);
-  NestedModel one = held(healthy_joint()), other = with("drive.kp_scale", 1.01);
+  effects::NestedModel one = held(healthy_joint()), other = with("drive.kp_scale", 1.01);
   const AskedFor fixed = asked(bench, one, other);
-  const NestedFit fit(test::record(bench, one.model, 2), 1);
-  const Unknown gain = unknown("drive.kp_scale", bench, scale_of(bench, fit.runs(), one.model));
+  const effects::NestedFit fit(test::record(bench, one.model, 2), 1);
+  const effects::Unknown gain =
+      effects::unknown("drive.kp_scale", bench, effects::scale_of(bench, fit.runs(), one.model));
   one.unknowns = other.unknowns = {gain};
   one.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.0));
   other.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.01));
@@ -113,21 +118,21 @@ std::vector<calib::SingleJoint> recorded(const bench::Bench& bench, const std::v
 // what comes out is at least what was expected.
 TEST(NextExcitation, PartsModelsAsSurelyAsItSays) {
   const bench::Bench bench = test::pd_bench(true);
-  const NestedModel one = with("command.delay_s", 0.003), other = with("sensor.lag_s", 0.003);
+  const effects::NestedModel one = with("command.delay_s", 0.003), other = with("sensor.lag_s", 0.003);
   const AskedFor found = asked(bench, one, other);
   ASSERT_TRUE(found.next);
   std::mt19937 random(7);
-  const NestedFit fit(recorded(bench, found.next->runs, one.model, random), 1);
-  const BlockComparison compare(fit, folds(fit), kWanted.noise_squares);
-  const Comparison apart =
-      compare(fit.squares_by_block(fit.misses(other.model)), fit.squares_by_block(fit.misses(one.model)));
+  const effects::NestedFit fit(recorded(bench, found.next->runs, one.model, random), 1);
+  const fitting::BlockComparison compare(fit.blocks(), folds(fit), kWanted.noise_squares);
+  const fitting::Comparison apart =
+      compare(fit.blocks().squares(fit.residuals(other.model)), fit.blocks().squares(fit.residuals(one.model)));
   EXPECT_GE(found.next->pairs.front().deviations, 2.0);
   EXPECT_GE(apart.deviations, 0.9 * found.next->pairs.front().deviations);
 }
 
 TEST(NextExcitation, StaysWithinTheCommandsThatWereRecorded) {
   const bench::Bench bench = test::pd_bench(true);
-  const NestedModel one = with("command.delay_s", 0.01), other = with("command.rate_limit_rad_s", 2.0);
+  const effects::NestedModel one = with("command.delay_s", 0.01), other = with("command.rate_limit_rad_s", 2.0);
   double most_rad = 0.0;
   for (const calib::SingleJoint& joint : test::record(bench, one.model, 2)) {
     for (const double q_rad : joint.run().recording.q_cmd_rad) most_rad = std::max(most_rad, std::abs(q_rad));
@@ -142,7 +147,7 @@ TEST(NextExcitation, StaysWithinTheCommandsThatWereRecorded) {
 
 TEST(NextExcitation, PartsTheRivalsOfEveryCause) {
   const bench::Bench bench = test::pd_bench(true);
-  const NestedModel model = held(healthy_joint());
+  const effects::NestedModel model = held(healthy_joint());
   const Rivals first{{model, with("command.delay_s", 0.01)}, {"a", "delay"}};
   const Rivals second{{model, with("sensor.zero_offset_rad", 0.02)}, {"b", "zero_offset"}};
   const AskedFor found = next_excitation(bench, test::record(bench, model.model, 2), {first, second}, kWanted);
@@ -153,7 +158,7 @@ TEST(NextExcitation, PartsTheRivalsOfEveryCause) {
 
 TEST(NextExcitation, IsWrittenAsWhatCanBePlayedAndAppended) {
   const fs::path folder = fs::temp_directory_path() / ("pmg_next_excitation_" + std::to_string(getpid()));
-  const NestedModel one = held(healthy_joint());
+  const effects::NestedModel one = held(healthy_joint());
   test::write_bench(folder / "bench", test::record(test::pd_bench(true), one.model, 2));
   const bench::Bench bench = bench::read_bench(folder / "bench");
   std::vector<calib::SingleJoint> runs;

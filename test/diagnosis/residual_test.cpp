@@ -108,8 +108,8 @@ TEST(Report, ShowsRunsCausesRejectedAndWhatToRecord) {
   run.t_s = {0.0, 1.0, 2.0};
   run.q_cmd_rad = {0.0, 0.5, 0.0};
   diagnosis.next_excitation = next;
-  const std::string html =
-      diagnosis_report(made.bench, diagnosis, runs, evidence::signatures(made.bench, made.runs)).html();
+  runs.checks = evidence::signatures(made.bench, made.runs);
+  const std::string html = diagnosis_report(made.bench, diagnosis, runs).html();
   for (const char* text : {"Coulomb friction or dead band", "record slow steps", "gains nothing", "friction.coulomb_Nm",
                            "wins &lt;all&gt; folds", "against velocity", "noise floor", "balance of torques"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;

@@ -102,9 +102,7 @@ TEST(Trial, AnInterruptedOneIsNotComplete) {
 TEST(Campaign, ASeedIsTheSameRobotForEveryCaseAndResultsDontDependOnJobs) {
   const std::vector<Case> cases = {{.name = "a", .candidate = without_policy(), .plants = varied()},
                                    {.name = "b", .candidate = without_policy(), .plants = varied()}};
-  const auto run = [&](int jobs) {
-    return run_campaign(cases, standing(0.6), 3, false, {.jobs = jobs, .progress = {}, .interrupted = {}});
-  };
+  const auto run = [&](int jobs) { return run_campaign(cases, standing(0.6), 3, false, {.jobs = jobs}); };
   const CampaignRuns alone = run(1), together = run(3);
   ASSERT_TRUE(alone.complete);
   for (std::size_t seed = 0; seed < 3; ++seed) {

@@ -1,5 +1,5 @@
 // One picture an effect for docs/reference/effects.md: the same joint without it and with it. To draw them anew:
-//   PMG_EFFECT_PICTURES=docs/images/effects build/release/bin/test_diagnosis_evidence --gtest_filter='EffectPictures.*'
+//   PMG_EFFECT_PICTURES=docs/images/effects build/release/bin/test_evidence --gtest_filter='EffectPictures.*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "calib/single_joint.hpp"
-#include "diagnosis/catalogue.hpp"
+#include "effects/catalogue.hpp"
 #include "pages/plot_picture.hpp"
 
 namespace pmg::evidence {
@@ -156,7 +156,7 @@ Pair simulate(const Demonstration& shown) {
 std::string picture(const std::string& name, const Demonstration& shown) {
   const Pair pair = simulate(shown);
   const pages::Plot upper{
-      .title = diagnosis::effect(name).title + ": position [rad]",
+      .title = effects::effect(name).title + ": position [rad]",
       .x_name = "time [s]",
       .lines =
           {{.name = "command", .x = pair.t_s, .y = pair.command_rad, .colour = pages::colour::kGrey, .stepped = true},
@@ -184,7 +184,7 @@ std::string picture(const std::string& name, const Demonstration& shown) {
 }
 
 TEST(EffectPictures, ShowEveryEffectOfTheCatalogue) {
-  for (const diagnosis::Effect& effect : diagnosis::catalogue()) {
+  for (const effects::Effect& effect : effects::catalogue()) {
     const auto shown = demonstrations().find(effect.name);
     ASSERT_NE(shown, demonstrations().end()) << effect.name << " has no picture";
     const Pair pair = simulate(shown->second);
@@ -200,7 +200,7 @@ TEST(EffectPictures, AreInTheDocumentation) {
   std::ifstream in(root / "docs/reference/effects.md");
   std::ostringstream text;
   text << in.rdbuf();
-  for (const diagnosis::Effect& effect : diagnosis::catalogue()) {
+  for (const effects::Effect& effect : effects::catalogue()) {
     EXPECT_NE(text.str().find("images/effects/" + effect.name + ".svg"), std::string::npos) << effect.name;
     EXPECT_TRUE(fs::exists(root / "docs/images/effects" / (effect.name + ".svg"))) << effect.name;
   }
@@ -210,7 +210,7 @@ TEST(EffectPictures, AreWrittenWhereAsked) {
   const char* folder = std::getenv("PMG_EFFECT_PICTURES");
   if (folder == nullptr) GTEST_SKIP() << "PMG_EFFECT_PICTURES names no folder";
   fs::create_directories(folder);
-  for (const diagnosis::Effect& effect : diagnosis::catalogue()) {
+  for (const effects::Effect& effect : effects::catalogue()) {
     std::ofstream out(fs::path(folder) / (effect.name + ".svg"), std::ios::binary);
     out << picture(effect.name, demonstrations().at(effect.name));
     EXPECT_TRUE(out.flush()) << effect.name;

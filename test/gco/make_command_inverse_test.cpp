@@ -85,7 +85,7 @@ TEST_F(CommandInverseOfZ1, LeavesRestAtRest) {
 
 TEST_F(CommandInverseOfZ1, IsWhatPmgClipsMakesOfTheClips) {
   ASSERT_FALSE(library_.inverse.empty());
-  const CommandInverse again = make_command_inverse(robot_, library_, [](double) {});
+  const CommandInverse again = make_command_inverse(robot_, library_);
   EXPECT_EQ(again.axis(), library_.inverse.axis());
   ASSERT_EQ(again.correction().size(), library_.inverse.correction().size());
   for (std::size_t i = 0; i < again.correction().size(); ++i) {

@@ -165,7 +165,7 @@ TEST_F(LogExport, UnknownChannelsAreLeftOutAndCounted) {
 }
 
 TEST_F(LogExport, InterruptedItKeepsWhatWasDone) {
-  const ExportReport report = export_mcap({log_}, folder_ / "part.mcap", [](double) { return false; });
+  const ExportReport report = export_mcap({log_}, folder_ / "part.mcap", {.interrupted = [] { return true; }});
   const std::int64_t kept = report.messages.at("STATE");
   EXPECT_GT(kept, 0);
   EXPECT_LT(kept, 260);

@@ -226,7 +226,10 @@ TEST_F(RunSeriesTest, TakesWallTimesFromTheTableBesideALockstepLog) {
 }
 
 TEST_F(RunSeriesTest, StopsWhenItIsToldTo) {
-  const RunSeries run = read_run(write({.ticks = 2000}), [](double share) { return share < 0.3; });
+  double read_share = 0.0;
+  const RunSeries run =
+      read_run(write({.ticks = 2000}), {.told = [&](double share, std::string_view) { read_share = share; },
+                                        .interrupted = [&] { return read_share >= 0.3; }});
   EXPECT_LT(run.duration_s, 15.0);
   EXPECT_GT(run.duration_s, 1.0);
   EXPECT_THAT(run.problems, Contains(HasSubstr("interrupted")));

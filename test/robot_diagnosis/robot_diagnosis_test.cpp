@@ -92,6 +92,7 @@ TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
   const std::vector<RobotRecording> read = read_robot_logs({file}, z1());
   ASSERT_EQ(read.size(), 1U);
   ASSERT_EQ(read.front().ticks.size(), recording.ticks.size());
+  EXPECT_EQ(read.front().drive.step_s, 0.002) << "of the simulated drives";
   for (std::size_t k = 0; k < recording.ticks.size(); ++k) {
     EXPECT_EQ(read.front().ticks[k].state.q, recording.ticks[k].state.q);
     EXPECT_EQ(read.front().ticks[k].command.kp, recording.ticks[k].command.kp);
@@ -102,10 +103,10 @@ TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
 TEST(RobotDiagnosis, AnInterruptedRecordingOrDiagnosisEndsAsInterrupted) {
   sim::World world(z1(), {});
   const std::vector<model::JointCommand> hold(150, standing_command(z1()));
-  const auto stop = [](double) { return false; };
-  EXPECT_THROW(play(world, hold, "stand", stop), Interrupted);
+  const work::Progress stop{.interrupted = [] { return true; }};
+  EXPECT_THROW(play(world, hold, "stand", stop), work::Interrupted);
   const std::vector<RobotRecording> recordings{play(world, hold, "stand")};
-  EXPECT_THROW(diagnose_robot(z1(), recordings, {}, stop), Interrupted);
+  EXPECT_THROW(diagnose_robot(z1(), recordings, {}, stop), work::Interrupted);
 }
 
 TEST(RobotDiagnosis, ALogOfAnotherRobotIsRefused) {

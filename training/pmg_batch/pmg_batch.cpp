@@ -1,19 +1,18 @@
 #include "pmg_batch.h"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "checked_files.hpp"
 #include "model/clip_library_file.hpp"
 #include "policy/observation.hpp"
 #include "reference_stream.hpp"
+#include "work/parallel.hpp"
 
 namespace {
 
@@ -102,15 +101,11 @@ struct pmg_batch {
     // Streams are handed out in small groups, so that no thread waits long for the slowest.
     constexpr std::size_t kGroup = 16;
     const std::size_t count = stream.size();
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t first = next.fetch_add(kGroup); first < count; first = next.fetch_add(kGroup)) {
-        for (std::size_t s = first; s < std::min(first + kGroup, count); ++s) run_stream(s, ticks, commands, out);
-      }
+    const auto step_group = [&](std::size_t group) {
+      for (std::size_t s = group * kGroup; s < std::min((group + 1) * kGroup, count); ++s)
+        run_stream(s, ticks, commands, out);
     };
-    std::vector<std::jthread> workers;
-    for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-    work();
+    pmg::work::for_each_in_parallel((count + kGroup - 1) / kGroup, static_cast<unsigned>(threads), step_group);
   }
 
   void run_stream(std::size_t s, std::size_t ticks, const float* commands, float* out) {

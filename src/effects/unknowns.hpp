@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/single_joint.hpp"
-#include "diagnosis/catalogue.hpp"
+#include "calib/fit_problem.hpp"
+#include "effects/catalogue.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 /// How strongly and how fast a bench was moved: the yardsticks for friction, limits and steps of differences.
 struct BenchScale {
@@ -23,17 +23,15 @@ struct BenchScale {
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                     const calib::JointModel& model);
 
-/// One parameter of a fit. Fits move it along its coordinate: the value, or its logarithm.
-struct Unknown {
-  std::string name, unit;
-  double lower = 0.0, upper = 1.0;
+/// A parameter of a fit. Fits move it along its coordinate: the value, or its logarithm.
+struct Unknown : calib::FitParameter {
   bool logarithmic = false;
   double typical = 1.0;                    ///< a change of it that matters
   double expected = 0.0, deviation = 0.0;  ///< what a calibration says of its coordinate; nothing where deviation is 0
 
   double coordinate(double value) const;
   double value(double coordinate) const;
-  double step() const;  ///< of a difference, along the coordinate
+  fitting::Coordinate range() const;  ///< its coordinate's
   bool operator==(const Unknown&) const = default;
 };
 
@@ -47,4 +45,4 @@ std::vector<std::vector<double>> starts(const Effect& effect, const calib::Joint
 /// Units that don't change by a fit of their neighbourhood: an order of cogging, the period of a loop.
 bool is_jagged(const std::string& parameter);
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

@@ -1,22 +1,15 @@
-#include "diagnosis/unknowns.hpp"
+#include "effects/unknowns.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
+#include "fitting/statistics.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 namespace {
 
 using calib::JointModel;
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 /// What the drive would put out at the recorded positions, by its law without any timing.
 double wished_torque_Nm(const bench::BenchRun& run, std::size_t k, double supply, const JointModel& model) {
@@ -80,11 +73,11 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
   double squares = 0.0;
   for (const double torque : torques) squares += torque * torque;
   scale.torque_Nm = std::max(1e-6, std::sqrt(squares / std::max(1.0, static_cast<double>(torques.size()))));
-  scale.torque_peak_Nm = std::max(scale.torque_Nm, quantile(torques, 0.99));
-  scale.speed_rad_s = std::max(1e-4, quantile(speeds, 0.98));
-  scale.inertia_kg_m2 = std::max(1e-7, quantile(inertias, 0.5));
-  scale.position_low_rad = quantile(positions, 0.01);
-  scale.position_high_rad = quantile(positions, 0.99);
+  scale.torque_peak_Nm = std::max(scale.torque_Nm, fitting::quantile(torques, 0.99));
+  scale.speed_rad_s = std::max(1e-4, fitting::quantile(speeds, 0.98));
+  scale.inertia_kg_m2 = std::max(1e-7, fitting::quantile(inertias, 0.5));
+  scale.position_low_rad = fitting::quantile(positions, 0.01);
+  scale.position_high_rad = fitting::quantile(positions, 0.99);
   scale.quantum_rad = quantum_of(runs);
   return scale;
 }
@@ -98,17 +91,18 @@ double Unknown::value(double coordinate) const {
   return std::clamp(logarithmic ? std::exp(coordinate) : coordinate, lower, upper);
 }
 
-// Wide enough that a joint which sticks a sample sooner or later doesn't pass for a slope.
-// A held command is late by whole steps of the simulation, and between them nothing would change.
-double Unknown::step() const {
-  constexpr double kDelayStep_s = 2.5e-3;
-  if (name == "command.delay_s") return kDelayStep_s;
-  return logarithmic ? 1e-2 : 5e-3 * typical;
+// Differences are wide enough that a joint which sticks a sample sooner or later doesn't pass for a slope. A held
+// command is late by whole steps of the simulation: a smaller difference of the delay changes nothing.
+fitting::Coordinate Unknown::range() const {
+  constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
+  const double step = name == "command.delay_s" ? kDelayStep_s
+                      : logarithmic             ? kLogarithmStep
+                                                : kShareOfTypical * typical;
+  return {coordinate(lower), coordinate(upper), step, expected, deviation};
 }
 
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
-  const calib::FitParameter range = calib::fit_parameter(name, bench);
-  Unknown u{name, range.unit, range.lower, range.upper, false, 1.0};
+  Unknown u{calib::fit_parameter(name, bench)};
   const double torque = scale.torque_Nm, speed = scale.speed_rad_s;
   if (u.unit.starts_with("Nm s")) {
     u.typical = torque / speed;
@@ -228,4 +222,4 @@ std::vector<std::vector<double>> starts(const Effect& effect, const JointModel& 
   return found;
 }
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

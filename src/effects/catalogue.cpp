@@ -1,11 +1,11 @@
-#include "diagnosis/catalogue.hpp"
+#include "effects/catalogue.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 namespace {
 
@@ -139,4 +139,4 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

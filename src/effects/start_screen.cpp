@@ -1,4 +1,4 @@
-#include "diagnosis/start_screen.hpp"
+#include "effects/start_screen.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "calib/fit_problem.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 namespace {
 
@@ -16,19 +16,23 @@ constexpr double kPi = 3.141592653589793;
 }  // namespace
 
 StartScreen::StartScreen(const NestedFit& fit, const NestedModel& current)
-    : fit_(fit), current_(current), misses_(fit.misses(current.model)), slopes_(fit.slopes(current, misses_)) {
+    : fit_(fit),
+      current_(current),
+      residuals_(fit.residuals(current.model)),
+      jacobian_(fit.jacobian(current, residuals_)) {
   const Eigen::Index count = current.coordinates.size();
   information_ = Eigen::MatrixXd::Zero(count, count);
-  for (const Eigen::MatrixXd& slope : slopes_.of_run) information_ += slope.transpose() * slope;
+  for (const Eigen::MatrixXd& slope : jacobian_.of_run) information_ += slope.transpose() * slope;
 }
 
 /// The unknowns that the effect doesn't set move to where their slopes say; squares as expected there.
-void StartScreen::follow(const Misses& misses, const Effect& effect, ScreenedStart& start) const {
-  start.squares = fit_.squares(misses);
+void StartScreen::follow(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const {
+  start.squares = fitting::sum_of_squares(residuals);
   if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(current_.coordinates.size());
-  for (std::size_t i = 0; i < misses.size(); ++i) gradient += slopes_.of_run[i].transpose() * misses[i];
-  const Eigen::VectorXd step = bounded_step(information_, gradient, current_.unknowns, current_.coordinates, 1e-3);
+  for (std::size_t i = 0; i < residuals.size(); ++i) gradient += jacobian_.of_run[i].transpose() * residuals[i];
+  const Eigen::VectorXd step =
+      fitting::bounded_step(information_, gradient, current_.ranges, current_.coordinates, 1e-3);
   start.squares = std::max(0.0, start.squares + 2.0 * gradient.dot(step) + step.dot(information_ * step));
   for (Eigen::Index i = 0; i < step.size(); ++i) {
     const Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
@@ -41,7 +45,7 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
                        std::vector<ScreenedStart>& into) const {
   ScreenedStart start{current_.model, 0.0};
   for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
-  const Misses there = fit_.misses(start.model);
+  const fitting::Residuals there = fit_.residuals(start.model);
   if (there.empty()) return;
   follow(there, effect, start);
   if (std::isfinite(start.squares)) into.push_back(start);
@@ -50,12 +54,12 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
 
 /// Along the straight line from the model without it, how much of it would be best? For effects of one number, and a
 /// load's two, in which rollouts are nearly linear.
-void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const Misses& there,
+void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
                              std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
   for (std::size_t i = 0; i < there.size(); ++i) {
-    const Eigen::VectorXd direction = there[i] - misses_[i];
-    along -= direction.dot(misses_[i]);
+    const Eigen::VectorXd direction = there[i] - residuals_[i];
+    along -= direction.dot(residuals_[i]);
     across += direction.squaredNorm();
   }
   if (!(across > 0.0)) return;
@@ -67,8 +71,8 @@ void StartScreen::look_along(const Effect& effect, const std::vector<double>& va
     if (!std::isfinite(from)) return;
     calib::set(scaled.model, effect.parameters[p], from + share * (values[p] - from));
   }
-  Misses moved = there;
-  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = misses_[i] + share * (there[i] - misses_[i]);
+  fitting::Residuals moved = there;
+  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = residuals_[i] + share * (there[i] - residuals_[i]);
   follow(moved, effect, scaled);
   if (std::isfinite(scaled.squares)) into.push_back(scaled);
 }
@@ -79,28 +83,28 @@ void StartScreen::look_at_wave(const Effect& effect, const std::string& amplitud
   ScreenedStart start{flat, 0.0};
   calib::set(start.model, amplitude, height);
   calib::set(start.model, phase, 0.0);
-  const Misses sine = fit_.misses(start.model);
+  const fitting::Residuals sine = fit_.residuals(start.model);
   calib::set(start.model, phase, 0.5 * kPi);
-  const Misses cosine = fit_.misses(start.model);
+  const fitting::Residuals cosine = fit_.residuals(start.model);
   if (sine.empty() || cosine.empty()) return;
   Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < sine.size(); ++i) {
-    const Eigen::VectorXd s = sine[i] - misses_[i], c = cosine[i] - misses_[i];
+    const Eigen::VectorXd s = sine[i] - residuals_[i], c = cosine[i] - residuals_[i];
     a(0, 0) += s.squaredNorm();
     a(0, 1) += s.dot(c);
     a(1, 1) += c.squaredNorm();
-    b[0] -= s.dot(misses_[i]);
-    b[1] -= c.dot(misses_[i]);
+    b[0] -= s.dot(residuals_[i]);
+    b[1] -= c.dot(residuals_[i]);
   }
   a(1, 0) = a(0, 1);
   const double determinant = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
   if (!(determinant > 1e-9 * a(0, 0) * a(1, 1))) return;
   const Eigen::Vector2d share((a(1, 1) * b[0] - a(0, 1) * b[1]) / determinant,
                               (-a(0, 1) * b[0] + a(0, 0) * b[1]) / determinant);
-  Misses moved = misses_;
+  fitting::Residuals moved = residuals_;
   for (std::size_t i = 0; i < sine.size(); ++i) {
-    moved[i] += share[0] * (sine[i] - misses_[i]) + share[1] * (cosine[i] - misses_[i]);
+    moved[i] += share[0] * (sine[i] - residuals_[i]) + share[1] * (cosine[i] - residuals_[i]);
   }
   calib::set(start.model, amplitude, height * std::min(share.norm(), 10.0));
   calib::set(start.model, phase, std::atan2(share[1], share[0]));
@@ -128,4 +132,4 @@ std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchSc
   return found;
 }
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

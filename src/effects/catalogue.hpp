@@ -8,7 +8,7 @@
 
 #include "bench/bench.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 /// One effect of one joint. What it does is in the parameters; neutral values of all of them are the model without it.
 struct Effect {
@@ -29,4 +29,4 @@ const Effect& effect(std::string_view name);
 /// Whether the name of an effect or a parameter is among these.
 bool contains(const std::vector<std::string>& names, const std::string& name);
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "diagnosis/nested_fit.hpp"
+#include "effects/nested_fit.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 /// A model with the effect in it, from which a fit is worth beginning.
 struct ScreenedStart {
@@ -21,21 +21,21 @@ class StartScreen {
   std::vector<ScreenedStart> best(const Effect& effect, const BenchScale& scale) const;
 
   /// At the current model.
-  const Slopes& slopes() const { return slopes_; }
+  const RolloutJacobian& jacobian() const { return jacobian_; }
 
  private:
   void look(const Effect& effect, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
-  void look_along(const Effect& effect, const std::vector<double>& values, const Misses& there,
+  void look_along(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
                   std::vector<ScreenedStart>& into) const;
   void look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
                     const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
-  void follow(const Misses& misses, const Effect& effect, ScreenedStart& start) const;
+  void follow(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const;
 
   const NestedFit& fit_;
   const NestedModel& current_;
-  Misses misses_;
-  Slopes slopes_;
+  fitting::Residuals residuals_;
+  RolloutJacobian jacobian_;
   Eigen::MatrixXd information_;
 };
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

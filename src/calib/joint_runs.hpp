@@ -1,0 +1,23 @@
+// Recorded runs made ready for simulation: read, chosen, kept apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/single_joint.hpp"
+#include "work/progress.hpp"
+
+namespace pmg::calib {
+
+/// (bench, rows of runs.csv as bench::RowFilter, step of the simulation [s]) => (runs). Throws as Bench::read_runs.
+std::vector<SingleJoint> read_joints(const bench::Bench& bench, const std::string& filter, double step_s,
+                                     const work::Progress& progress = {});
+
+/// (runs) => (at most so many of them), spread over the list by steps of the golden ratio: no period of its order is
+/// met.
+std::vector<SingleJoint> spread(const std::vector<SingleJoint>& runs, std::size_t most);
+
+/// Throws std::invalid_argument that names a run of both: a score of what was fitted says nothing.
+void expect_apart(const std::vector<SingleJoint>& fitted, const std::vector<SingleJoint>& scored);
+
+}  // namespace pmg::calib

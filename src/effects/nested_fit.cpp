@@ -1,0 +1,66 @@
+#include "effects/nested_fit.hpp"
+
+#include <algorithm>
+
+#include "calib/fit_problem.hpp"
+
+namespace pmg::effects {
+
+calib::JointModel model_at(const NestedModel& model, const Eigen::VectorXd& coordinates) {
+  calib::JointModel changed = model.model;
+  for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
+    const Unknown& u = model.unknowns[i];
+    calib::set(changed, u.name, u.value(coordinates[static_cast<Eigen::Index>(i)]));
+  }
+  return changed;
+}
+
+/// Keeps references to the model and to the known derivatives.
+fitting::Problem NestedFit::problem(const NestedModel& model, const RolloutJacobian* known) const {
+  fitting::Problem problem{
+      .residuals = [this, &model](const Eigen::VectorXd& x) { return residuals(model_at(model, x)); },
+      .coordinates = model.ranges,
+      .prior_weight = model.prior_weight};
+  if (known == nullptr) return problem;
+  problem.known = &known->of_run;
+  for (const Unknown& u : model.unknowns) {
+    const auto there = std::find(known->unknowns.begin(), known->unknowns.end(), u);
+    problem.known_column.push_back(there == known->unknowns.end() ? -1 : there - known->unknowns.begin());
+  }
+  return problem;
+}
+
+RolloutJacobian NestedFit::jacobian(const NestedModel& model, const fitting::Residuals& at_model) const {
+  return {model.unknowns, fitting::jacobian(problem(model), model.coordinates, at_model)};
+}
+
+void NestedFit::linearise(NestedModel& model, const RolloutJacobian* known) const {
+  const fitting::Residuals at_model = residuals(model.model);
+  model.blocks =
+      blocks_.normal_equations(at_model, fitting::jacobian(problem(model, known), model.coordinates, at_model));
+}
+
+NestedModel NestedFit::fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
+                           const RolloutJacobian* known, double prior_weight) const {
+  NestedModel found;
+  found.model = start;
+  found.unknowns = unknowns;
+  found.prior_weight = prior_weight;
+  found.coordinates.resize(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    found.ranges.push_back(unknowns[i].range());
+    found.coordinates[static_cast<Eigen::Index>(i)] = unknowns[i].coordinate(calib::value(start, unknowns[i].name));
+  }
+  const fitting::Minimum best =
+      fitting::gauss_newton(problem(found, known), found.coordinates, {.most_iterations = most_iterations});
+  found.coordinates = best.x;
+  found.squares = best.squares;
+  found.model = model_at(found, best.x);
+  return found;
+}
+
+Eigen::VectorXd NestedFit::held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const {
+  return fitting::held_out_squares(problem(model).residuals, blocks_, model, folds);
+}
+
+}  // namespace pmg::effects

@@ -1,0 +1,41 @@
+// The numbers that a robot's diagnosis decides by.
+#pragma once
+
+#include <vector>
+
+#include "evidence/option.hpp"
+#include "robot_diagnosis/robot_parameters.hpp"
+
+namespace pmg::robot_diagnosis {
+
+/// What carries the robot; forces as shares of its weight.
+struct SupportOptions {
+  double most_in_the_air = 0.12, least_on_the_ground = 0.15, least_weight = 0.7, most_weight = 1.4;
+  double stepping_m_s = 0.03, flat_rad = 0.15, least_upright = 0.7;
+};
+
+/// When a sole has slipped, and how well the ground's friction is known then.
+struct GroundOptions {
+  double slipping_m_s = 0.24, sticking_m_s = 0.08, quantile_of_slipping = 0.75, least_load = 0.25;
+  double most_weight = 1.4, fewest_samples = 8.0, systematic = 0.03;
+};
+
+/// Which causes are named.
+struct EvidenceOptions {
+  double least_log_evidence = 12.0, told_apart = 5.0, most_findings = 4.0;
+};
+
+/// listed() has units, reasons, and what each was set on.
+struct RobotDiagnosisOptions {
+  RobotTolerances tolerances;
+  EvidenceOptions evidence;
+  SupportOptions support;
+  GroundOptions ground;
+  double block_s = 4.0, standing_low_pass_s = 0.075, settle_samples = 4.0;
+  double remains_of_friction = 0.5, remains_rad_s2 = 0.4;
+};
+
+/// Every number of the struct and of those in it, as "ground.slipping_m_s".
+std::vector<evidence::Option> listed(const RobotDiagnosisOptions& options);
+
+}  // namespace pmg::robot_diagnosis
