@@ -89,7 +89,7 @@ TEST_F(TickMessages, NoFieldOfAMessageIsForgotten) {
   EXPECT_EQ(untouched<status_t>([&](auto& m) { fill(record, run_, robot_, m); }), none);
   EXPECT_EQ(untouched<limited_t>([&](auto& m) { fill(record, m); }), none);
   EXPECT_EQ(untouched<tick_input_t>([&](auto& m) { fill(record, m); }), none);
-  EXPECT_EQ(untouched<timing_t>([&](auto& m) { fill(record, BusTiming{}, 0, m); }), robot);
+  EXPECT_EQ(untouched<timing_t>([&](auto& m) { fill(record, BusTiming{}, control::DroppedItems{}, m); }), robot);
   EXPECT_EQ(untouched<fault_t>([&](auto& m) { fill(record, run_, robot_, m); }), none);
   EXPECT_EQ(untouched<command_t>([&](auto& m) { fill(record.drives[0], run_, m); }), none);
   EXPECT_EQ(untouched<mode_t>([&](auto& m) { fill(record.requests[0], run_, m); }), none);
