@@ -183,7 +183,7 @@ std::string EffectSearch::objection(const Trial& trial) const {
 /// The effects that the extension doesn't have: looked at by the linearised fit, the most promising fitted.
 std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   struct Promising {
-    const effects::Effect* effect;
+    const effects::Effect* effect = nullptr;
     std::vector<effects::ScreenedStart> starts;
   };
   const effects::StartScreen screen(fit_, current.fitted);

@@ -107,7 +107,10 @@ struct ActuatorParameter {
   double& (*in)(ActuatorParameters&);
   std::string_view group() const { return name.substr(0, name.find('.')); }
   std::string_view key() const { return name.substr(name.find('.') + 1); }
-  double value(const ActuatorParameters& parameters) const { return in(const_cast<ActuatorParameters&>(parameters)); }
+  double value(const ActuatorParameters& parameters) const {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): one accessor reads and writes; here it reads
+    return in(const_cast<ActuatorParameters&>(parameters));
+  }
 };
 
 /// All parameters, in the order of motor.yaml. A further effect is a group above and its rows here.
