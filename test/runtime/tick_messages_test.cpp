@@ -92,7 +92,7 @@ TEST_F(TickMessages, NoFieldOfAMessageIsForgotten) {
   EXPECT_EQ(untouched<timing_t>([&](auto& m) { fill(record, BusTiming{}, control::DroppedItems{}, m); }), robot);
   EXPECT_EQ(untouched<fault_t>([&](auto& m) { fill(record, run_, robot_, m); }), none);
   EXPECT_EQ(untouched<command_t>([&](auto& m) { fill(record.drives[0], run_, m); }), none);
-  EXPECT_EQ(untouched<mode_t>([&](auto& m) { fill(record.requests[0], run_, m); }), none);
+  EXPECT_EQ(untouched<pmg_msgs::mode_t>([&](auto& m) { fill(record.requests[0], run_, m); }), none);
   EXPECT_EQ(untouched<ack_t>([&](auto& m) { fill(control::ModeAck{}, run_, 7, m); }), none);
   EXPECT_EQ(untouched<ground_truth_t>([&](auto& m) { fill(7, model::GroundTruth{}, false, m); }), none);
 }
