@@ -80,6 +80,7 @@ TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
   const effects::Unknown gain =
       effects::unknown("drive.kp_scale", bench, effects::scale_of(bench, fit.runs(), one.model));
   one.unknowns = other.unknowns = {gain};
+  one.ranges = other.ranges = {gain.range()};
   one.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.0));
   other.coordinates = Eigen::VectorXd::Constant(1, gain.coordinate(1.01));
   const AskedFor freed = asked(bench, one, other);
