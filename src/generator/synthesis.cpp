@@ -135,11 +135,11 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners, const 
   library.q_upper = robot.q_upper();
   library.mirror = robot.mirror;
 
-  progress.go_on(work::kUnknownShare, "bend");
+  progress.go_on(work::kUnknownShare, "making bend");
   making.posture[0] = make_bend(robot, roles, making.legs);
-  progress.go_on(work::kUnknownShare, "lean");
+  progress.go_on(work::kUnknownShare, "making lean");
   making.posture[1] = make_lean(robot, roles, making.legs);
-  progress.go_on(work::kUnknownShare, "squat");
+  progress.go_on(work::kUnknownShare, "making squat");
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 
@@ -151,8 +151,9 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners, const 
                                   },
                               .interrupted = progress.interrupted};
   const auto during = [&locked](const char* name) {
-    return work::Progress{.told = [&locked, name](double share, std::string_view) { locked.told(share, name); },
-                          .interrupted = locked.interrupted};
+    return work::Progress{
+        .told = [&locked, name](double share, std::string_view) { locked.told(share, "making " + std::string(name)); },
+        .interrupted = locked.interrupted};
   };
   const auto make = [&](const char* name, const GaitTask& task, UpperBody body) {
     return MadeGait{task, optimize_gait(making.legs, task, during(name)).legs, std::move(body)};
