@@ -208,6 +208,7 @@ fitting::Problem FitProblem::least_squares(unsigned threads) const {
     return residuals(model_at({point.data(), static_cast<std::size_t>(point.size())}), runs_, threads);
   };
   problem.coordinates.assign(dimensions(), {.lower = 0.0, .upper = 1.0, .step = kDifference});
+  problem.differences = fitting::Differences::kCentral;
   return problem;
 }
 

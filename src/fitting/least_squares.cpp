@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pmg::fitting {
 
@@ -21,6 +22,15 @@ Coordinates within_reach(const Coordinates& coordinates, const Eigen::VectorXd& 
     near[i].upper = std::min(near[i].upper, place + reach);
   }
   return near;
+}
+
+/// Between which two places a coordinate's difference is taken; for a forward difference the first is x itself.
+std::pair<double, double> ends(const Coordinate& c, double x, Differences differences) {
+  if (differences == Differences::kCentral) return {std::max(c.lower, x - c.step), std::min(c.upper, x + c.step)};
+  double step = c.step;
+  if (x + step > c.upper) step = -step;
+  if (x + step < c.lower) step = 0.5 * (c.upper - c.lower);
+  return {x, x + step};
 }
 
 }  // namespace
@@ -42,15 +52,15 @@ Jacobian jacobian(const Problem& problem, const Eigen::VectorXd& x, const Residu
         found[run].col(i) = (*problem.known)[run].col(problem.known_column[index]);
       continue;
     }
-    const auto& [lower, upper, usual_step, expected, deviation] = problem.coordinates[index];
-    Eigen::VectorXd moved = x;
-    double step = usual_step;
-    if (moved[i] + step > upper) step = -step;
-    if (moved[i] + step < lower) step = 0.5 * (upper - lower);
-    moved[i] += step;
-    const Residuals there = problem.residuals(moved);
-    if (there.empty()) continue;
-    for (std::size_t run = 0; run < at_x.size(); ++run) found[run].col(i) = (there[run] - at_x[run]) / step;
+    const auto [from, to] = ends(problem.coordinates[index], x[i], problem.differences);
+    const auto residuals_at = [&](double place) {
+      Eigen::VectorXd moved = x;
+      moved[i] = place;
+      return place == x[i] ? at_x : problem.residuals(moved);
+    };
+    const Residuals above = residuals_at(to), below = residuals_at(from);
+    if (above.empty() || below.empty()) continue;
+    for (std::size_t run = 0; run < at_x.size(); ++run) found[run].col(i) = (above[run] - below[run]) / (to - from);
   }
   return found;
 }

@@ -30,19 +30,26 @@ using ResidualFunction = std::function<Residuals(const Eigen::VectorXd& x)>;
 /// Sum of all squares [rad^2]; infinite where the residuals are empty or not finite.
 double sum_of_squares(const Residuals& residuals);
 
+/// How a Jacobian's column is computed. Forward differences cost one rollout of every run, central ones two: their
+/// error is of second order, which dry friction's kinks need in a fit whose parameters are to be right within a per
+/// cent.
+enum class Differences { kForward, kCentral };
+
 /// What a fit minimises: |r(x)|^2 + prior_weight * sum(((x_i - expected_i) / deviation_i)^2) within lower <= x <=
 /// upper.
 struct Problem {
   ResidualFunction residuals;
   Coordinates coordinates;
   double prior_weight = 0.0;  ///< in squares of residuals [rad^2]
+  Differences differences = Differences::kForward;
   /// Columns of a Jacobian computed nearby, used here as they are: a first look then costs the other columns alone.
   const Jacobian* known = nullptr;
   std::vector<Eigen::Index> known_column = {};  ///< of each coordinate in known; -1: none. Used where known is set.
 };
 
-/// (problem, x, r(x)) => (Jacobian): column i = (r(x + h e_i) - r(x)) / h, h = step_i to the side that has room. A
-/// column is 0 where the simulation refuses x + h e_i. Costs a rollout of every run for each column that isn't known.
+/// (problem, x, r(x)) => (Jacobian): column i = (r(x + h e_i) - r(x)) / h, h = step_i to the side that has room; or
+/// (r(x + h e_i) - r(x - h e_i)) / (2 h), each side cut at its bound. A column is 0 where the simulation refuses a
+/// side. Costs one or two rollouts of every run for each column that isn't known.
 Jacobian jacobian(const Problem& problem, const Eigen::VectorXd& x, const Residuals& at_x);
 
 /// Sums over rows r_k of a linearised problem, J_k their derivatives: |r + J d|^2 = squares + 2 gradient.d +

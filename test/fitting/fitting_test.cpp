@@ -52,6 +52,25 @@ struct Lines {
 
 const Coordinates kWide(2, {.lower = -10.0, .upper = 10.0});
 
+/// r(x) = x^2, whose slope at x is 2 x.
+Problem squared(Differences differences, double lower) {
+  return {.residuals = [](const Eigen::VectorXd& x) { return Residuals{Eigen::VectorXd::Constant(1, x[0] * x[0])}; },
+          .coordinates = {{.lower = lower, .upper = 10.0, .step = 0.1}},
+          .differences = differences};
+}
+
+double slope(const Problem& problem, double x) {
+  const Eigen::VectorXd place = Eigen::VectorXd::Constant(1, x);
+  return jacobian(problem, place, problem.residuals(place)).front()(0, 0);
+}
+
+TEST(Jacobian, CentralDifferencesAreRightToSecondOrderAndStayWithinTheRange) {
+  constexpr double kRounding = 1e-12;
+  EXPECT_NEAR(slope(squared(Differences::kCentral, 0.0), 2.0), 4.0, kRounding);
+  EXPECT_NEAR(slope(squared(Differences::kForward, 0.0), 2.0), 4.1, kRounding) << "2 x + step";
+  EXPECT_NEAR(slope(squared(Differences::kCentral, 2.0), 2.0), 4.1, kRounding) << "at its bound, one side is left";
+}
+
 TEST(GaussNewton, FindsTheLeastSquaresOfALine) {
   const Lines lines(2, 200, 1.5, -0.4, 0.0, 1);
   const Minimum found = gauss_newton(lines.problem(kWide), Eigen::Vector2d(8.0, 8.0));
