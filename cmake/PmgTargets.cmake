@@ -42,19 +42,20 @@ function(pmg_add_room name)
   target_link_libraries(pmg_room_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
 endfunction()
 
+# The sources of programs and tests only parse, compose and compare: they are hardly optimised. The rooms that they call are.
+if(CMAKE_BUILD_TYPE STREQUAL Release)
+  set(PMG_QUICK_OPTIONS -O1)
+endif()
+
 # pmg_add_app(NAME SOURCES... LINK targets...): the executable bin/NAME from apps/NAME.cpp and these. The target `programs` builds all of these.
 add_custom_target(programs)
 function(pmg_add_app name)
   cmake_parse_arguments(APP "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${name}.cpp ${APP_SOURCES})
   target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
+  target_compile_options(${name} PRIVATE ${PMG_QUICK_OPTIONS})
   add_dependencies(programs ${name})
 endfunction()
-
-# Tests are compiled about as often as they run, so they are hardly optimised; the code under test is.
-if(CMAKE_BUILD_TYPE STREQUAL Release)
-  set(PMG_TEST_OPTIONS -O1)
-endif()
 
 # pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry per TEST, run from the source root.
 function(pmg_add_test name)
@@ -62,7 +63,7 @@ function(pmg_add_test name)
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/test)
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
-  target_compile_options(test_${name} PRIVATE ${PMG_TEST_OPTIONS})
+  target_compile_options(test_${name} PRIVATE ${PMG_QUICK_OPTIONS})
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300
