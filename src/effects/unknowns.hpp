@@ -42,8 +42,8 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
 std::vector<std::vector<double>> starts(const Effect& effect, const calib::JointModel& current,
                                         const BenchScale& scale);
 
-/// True for parameters in which rollouts are piecewise constant or kinked, so that Gauss-Newton steps cannot improve
-/// them: the period of a sample-and-hold and a sensor's quantum.
+/// True for parameters that a fit keeps at their start value, because rollouts are not smooth in them: the period of a
+/// sample-and-hold and a sensor's quantum.
 bool is_jagged(const std::string& parameter);
 
 }  // namespace pmg::effects
