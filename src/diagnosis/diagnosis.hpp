@@ -1,4 +1,5 @@
-// Result of a bench's diagnosis: the verdict, the causes of the simulation's error, and the error with and without them.
+// Result of a bench's diagnosis: the verdict, the causes of the simulation's error, and the error with and without
+// them.
 #pragma once
 
 #include <optional>
@@ -11,8 +12,8 @@
 
 namespace pmg::diagnosis {
 
-/// An effect that the model lacked. Errors are mean absolute errors of open-loop rollouts over the held-out runs [rad; m
-/// on a linear axis]: of the model without this effect, refitted, and of the whole model.
+/// An effect that the model lacked. Errors are mean absolute errors of open-loop rollouts over the held-out runs [rad;
+/// m on a linear axis]: of the model without this effect, refitted, and of the whole model.
 struct Cause {
   std::string effect;  ///< of the catalogue
   std::vector<evidence::ParameterEstimate> parameters;
@@ -68,7 +69,8 @@ struct Diagnosis {
   evidence::Interval held_out_before, held_out_after;
   bool held_out = false;               ///< true if runs were held out; else the two errors above are from folds
   double share_of_way_to_floor = 0.0;  ///< (before - after) / (before - floor)
-  /// rms residual of the fitted runs (geometric mean over half-second blocks) over the rms noise: 1 if only noise is left.
+  /// rms residual of the fitted runs (geometric mean over half-second blocks) over the rms noise: 1 if only noise is
+  /// left.
   double before_over_noise = 1.0, after_over_noise = 1.0;
   std::vector<std::string> depends_on;  ///< quantities that the remaining residual depends on: velocity, position, ...
   std::optional<NextExcitation> next_excitation;

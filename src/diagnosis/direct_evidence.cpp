@@ -25,7 +25,8 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
   return found;
 }
 
-/// True if the base model already contains the effect. A check detects an effect of the joint, not what the model lacks.
+/// True if the base model already contains the effect. A check detects an effect of the joint, not what the model
+/// lacks.
 bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
   const std::vector<std::string>& parameters = effects::effect(name).parameters;
   return std::any_of(parameters.begin(), parameters.end(), [&](const std::string& parameter) {

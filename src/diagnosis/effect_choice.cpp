@@ -4,8 +4,8 @@
 
 namespace pmg::diagnosis {
 
-/// (trials, best first) => (the convincing trial with the fewest parameters among the nearly equal ones; null if none is
-/// convincing). A special case wins over the effect that contains it unless it is clearly worse.
+/// (trials, best first) => (the convincing trial with the fewest parameters among the nearly equal ones; null if none
+/// is convincing). A special case wins over the effect that contains it unless it is clearly worse.
 const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
   const Trial* chosen = nullptr;
   double best = 0.0;

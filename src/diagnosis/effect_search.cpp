@@ -180,7 +180,8 @@ std::string EffectSearch::objection(const Trial& trial) const {
   return "";
 }
 
-/// (extension) => (trials of the effects that it lacks): screened by the linearised fit, the most promising ones fitted.
+/// (extension) => (trials of the effects that it lacks): screened by the linearised fit, the most promising ones
+/// fitted.
 std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   struct Promising {
     const effects::Effect* effect = nullptr;
@@ -216,8 +217,8 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   }
   const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
   std::stable_sort(trials.begin(), trials.end(), better);
-  // After few iterations a fit may still lie in a valley (load friction as a proxy for Coulomb friction). So the fit with
-  // the lowest squares is always finished, whatever its folds say so far.
+  // After few iterations a fit may still lie in a valley (load friction as a proxy for Coulomb friction). So the fit
+  // with the lowest squares is always finished, whatever its folds say so far.
   const auto closest = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });

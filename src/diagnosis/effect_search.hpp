@@ -33,8 +33,8 @@ struct SearchLimits {
   double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
   /// Mean square that a correct model may leave [rad^2]. The search stops below it.
   double healthy_squares = 0.0;
-  /// Lower limits: an effect's amplitude as a share of the noise, and of the initial residual; its gain as a share of the
-  /// residual above a correct model's.
+  /// Lower limits: an effect's amplitude as a share of the noise, and of the initial residual; its gain as a share of
+  /// the residual above a correct model's.
   double of_noise, of_beginning, of_rest;
 };
 

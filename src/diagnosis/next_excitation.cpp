@@ -117,8 +117,8 @@ class Campaign {
     return sum;
   }
 
-  /// Rounding hides changes below a quantum, also in the Jacobian. So the quantum is set to 0 unless the rivals differ in
-  /// it.
+  /// Rounding hides changes below a quantum, also in the Jacobian. So the quantum is set to 0 unless the rivals differ
+  /// in it.
   static std::vector<effects::NestedModel> without_rounding(const Rivals& rivals) {
     std::vector<effects::NestedModel> models = rivals.models;
     const auto quantum_rad = [](const effects::NestedModel& m) { return m.model.actuator.sensor.quantum_rad; };

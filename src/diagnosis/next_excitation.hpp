@@ -31,8 +31,8 @@ struct AskedFor {
 };
 
 /// (bench, runs, rivals, wanted separation) => (campaign). A greedy choice: each recording is the candidate
-/// (excitation_candidates.hpp) that raises the expected separation most, summed over all pairs, with either of a pair as
-/// the truth and each capped at its target. It ends when all pairs reach the target, when no candidate helps, or at
+/// (excitation_candidates.hpp) that raises the expected separation most, summed over all pairs, with either of a pair
+/// as the truth and each capped at its target. It ends when all pairs reach the target, when no candidate helps, or at
 /// six runs or 24 recordings. The target is twice the wanted deviations, because the measured value scatters by one
 /// deviation. Direction-dependent friction and a constant torque are the same if the friction is constant: such a pair
 /// is reported in same_here and gets no runs.

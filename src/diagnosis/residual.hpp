@@ -16,8 +16,8 @@ struct Circumstance {
   std::vector<double> values;
 };
 
-/// Valid samples of all runs, concatenated. Samples of one block (half a second of one run) are correlated: a block counts
-/// as one observation.
+/// Valid samples of all runs, concatenated. Samples of one block (half a second of one run) are correlated: a block
+/// counts as one observation.
 struct ResidualSamples {
   std::vector<double> residual_rad;
   std::vector<std::size_t> run, block;  ///< of each sample; blocks are numbered over all runs
@@ -49,9 +49,9 @@ struct Dependence {
 /// (samples) => (dependences, the strongest first). Leaves out bins with samples from fewer than three blocks.
 std::vector<Dependence> dependences(const ResidualSamples& samples, std::size_t bins = 16);
 
-/// Power spectral densities of residual and command, and their coherence (0..1, the share of the residual that is linear
-/// in the command), by Welch's method (P. D. Welch, IEEE Trans. Audio Electroacoust. 15:70, 1967) with Hann windows that
-/// overlap by half.
+/// Power spectral densities of residual and command, and their coherence (0..1, the share of the residual that is
+/// linear in the command), by Welch's method (P. D. Welch, IEEE Trans. Audio Electroacoust. 15:70, 1967) with Hann
+/// windows that overlap by half.
 struct ResidualSpectrum {
   std::vector<double> frequency_Hz;
   std::vector<double> residual_rad2_per_Hz, command_rad2_per_Hz;  ///< one-sided power spectral densities

@@ -12,8 +12,8 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-/// Fourier transform of one Hann window without its mean, up to half the sampling rate. Direct sums of n^2 / 2 terms are
-/// fast enough: windows have a few hundred samples.
+/// Fourier transform of one Hann window without its mean, up to half the sampling rate. Direct sums of n^2 / 2 terms
+/// are fast enough: windows have a few hundred samples.
 Spectrum windowed_transform(const std::vector<double>& values, std::size_t first, std::size_t count) {
   std::vector<double> window(count);
   double mean = 0.0;

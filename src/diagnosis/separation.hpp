@@ -8,11 +8,10 @@
 namespace pmg::diagnosis {
 
 /// Expected separation if one model is the truth: the mean over blocks of log(other's mean square / truth's), over its
-/// standard error. The other model is refitted, along its linearisation, to the recorded runs and the further ones. With
-/// d the rms difference of both models over a block, rest the truth's rms residual (geometric mean over blocks) and
-/// floor = rest^2 + noise^2, a further block adds log(1 + d^2 / floor), with the standard deviation
-/// 2 rest d / (floor + d^2), as if its residuals were fully correlated. A recorded block adds a mean of 0 and its own
-/// scatter.
+/// standard error. The other model is refitted, along its linearisation, to the recorded runs and the further ones.
+/// With d the rms difference of both models over a block, rest the truth's rms residual (geometric mean over blocks)
+/// and floor = rest^2 + noise^2, a further block adds log(1 + d^2 / floor), with the standard deviation 2 rest d /
+/// (floor + d^2), as if its residuals were fully correlated. A recorded block adds a mean of 0 and its own scatter.
 class Separation {
  public:
   /// Both linearised at the recorded runs. noise_squares: mean square that no model goes below [rad^2].

@@ -41,8 +41,8 @@ class NestedFit {
   /// One rollout of every run for each unknown.
   RolloutJacobian jacobian(const NestedModel& model, const fitting::Residuals& at_model) const;
 
-  /// Gauss-Newton from the start's values; the result is never worse than the start. Each iteration costs one rollout of
-  /// every run for each unknown, and one to six more.
+  /// Gauss-Newton from the start's values; the result is never worse than the start. Each iteration costs one rollout
+  /// of every run for each unknown, and one to six more.
   NestedModel fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
                   const RolloutJacobian* known = nullptr, double prior_weight = 0.0) const;
   /// Fills the model's blocks, at the cost of jacobian().

@@ -11,7 +11,8 @@ namespace {
 
 using calib::JointModel;
 
-/// Nominal drive torque at a recorded position, kp e clamped to the drive's limit, without delays; or the recorded torque.
+/// Nominal drive torque at a recorded position, kp e clamped to the drive's limit, without delays; or the recorded
+/// torque.
 double wished_torque_Nm(const bench::BenchRun& run, std::size_t k, double supply, const JointModel& model) {
   const auto& drive = model.actuator.drive;
   const bench::Recording& r = run.recording;

@@ -16,7 +16,7 @@ struct BenchScale {
   double speed_rad_s = 1.0;     ///< 98 % quantile of the recorded speeds
   double inertia_kg_m2 = 0.01;  ///< median over runs of load and rotor inertia
   double position_low_rad = 0.0, position_high_rad = 0.0;  ///< 1 % and 99 % quantiles
-  double quantum_rad = 0.0;  ///< all readings are multiples of it; 0 for a fine sensor
+  double quantum_rad = 0.0;                                ///< all readings are multiples of it; 0 for a fine sensor
   bool bus_recorded = false;
 };
 
@@ -26,8 +26,9 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
 /// A free parameter. A fit moves its coordinate: the value, or its natural logarithm.
 struct Unknown : calib::FitParameter {
   bool logarithmic = false;
-  double typical = 1.0;                    ///< a change of the value that matters
-  double expected = 0.0, deviation = 0.0;  ///< normal prior of the coordinate, from a calibration; none if deviation is 0
+  double typical = 1.0;  ///< a change of the value that matters
+  double expected = 0.0,
+         deviation = 0.0;  ///< normal prior of the coordinate, from a calibration; none if deviation is 0
 
   double coordinate(double value) const;
   double value(double coordinate) const;

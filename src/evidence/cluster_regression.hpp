@@ -10,7 +10,8 @@ namespace pmg::evidence {
 /// y without the term.
 struct TermEstimate {
   /// b = u.r / u.u, and its cluster-robust standard deviation sqrt(n / (n - p - 1) * sum over the n clusters of
-  /// (sum of u_i e_i)^2) / u.u, with e = r - b u and p other columns (K.-Y. Liang, S. L. Zeger, Biometrika 73:13, 1986).
+  /// (sum of u_i e_i)^2) / u.u, with e = r - b u and p other columns (K.-Y. Liang, S. L. Zeger, Biometrika 73:13,
+  /// 1986).
   double coefficient = 0.0, deviation = 0.0;
   double t() const { return deviation > 0.0 ? coefficient / deviation : 0.0; }
   double share = 0.0;       ///< |b| rms(u) / rms(y)

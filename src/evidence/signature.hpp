@@ -29,9 +29,9 @@ struct Signature {
   std::string sentence;  ///< for people, with the numbers
 };
 
-/// (bench, runs) => (one result per check). Where the runs cannot answer a check, its sentence says what is missing. Some
-/// effects have two checks; effects that need a model have none. A check detects everything that the joint has, also
-/// the friction and the offsets that the model already contains.
+/// (bench, runs) => (one result per check). Where the runs cannot answer a check, its sentence says what is missing.
+/// Some effects have two checks; effects that need a model have none. A check detects everything that the joint has,
+/// also the friction and the offsets that the model already contains.
 std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                   const SignatureOptions& options = {});
 

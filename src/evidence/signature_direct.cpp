@@ -31,7 +31,8 @@ Interval median_interval(std::vector<double> values) {
 }
 
 /// Time from the step at this sample to the onset of motion; empty if the joint was not at rest or hardly moves. With
-/// constant acceleration from rest, sqrt(q - q_rest) is proportional to t - t_onset: t_onset is the root of a fitted line.
+/// constant acceleration from rest, sqrt(q - q_rest) is proportional to t - t_onset: t_onset is the root of a fitted
+/// line.
 std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad) {
   constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // the last two: fitted part, as shares of the step
   const double size_rad = std::abs(r.q_cmd_rad[step] - r.q_cmd_rad[step - 1]);
@@ -185,7 +186,8 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
   return {band, friction};
 }
 
-/// Quantum: median of the smallest steps between distinct readings. All steps of a quantised sensor are multiples of it.
+/// Quantum: median of the smallest steps between distinct readings. All steps of a quantised sensor are multiples of
+/// it.
 Signature quantum_check(const std::vector<bench::BenchRun>& runs, const SignatureOptions& options) {
   const auto fewest = static_cast<std::size_t>(options.quantum_fewest_readings);
   Signature s{"quantisation", "multiples of one number",   Agreement::kCannotTell, kUnknown,

@@ -19,8 +19,8 @@ struct Covariance {
 };
 
 /// (fit, coordinates) => (covariances), cluster-robust (K.-Y. Liang, S. L. Zeger, Biometrika 73:13, 1986; blocks are
-/// the clusters): B = n / (n - p) * sum over the n blocks of (J^T r)(J^T r)^T for p coordinates, plus prior_weight times
-/// the prior's information.
+/// the clusters): B = n / (n - p) * sum over the n blocks of (J^T r)(J^T r)^T for p coordinates, plus prior_weight
+/// times the prior's information.
 Covariance cluster_robust_covariance(const LinearisedFit& fit, std::vector<Eigen::Index> of);
 
 /// Sum of the blocks' information and the prior's.

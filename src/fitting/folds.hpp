@@ -31,8 +31,8 @@ struct Fold {
 std::vector<Eigen::VectorXd> steps_without(const LinearisedFit& fit, const std::vector<Fold>& folds);
 
 /// (fit, folds) => (squares of each block by fits without its fold [rad^2], averaged over the kinds of folds): rollouts
-/// at x + s step_without, s = 1, 0.3, 0.09, with the first s that lowers the objective without the fold; x if none does.
-/// Costs one to three rollouts of all runs for each fold.
+/// at x + s step_without, s = 1, 0.3, 0.09, with the first s that lowers the objective without the fold; x if none
+/// does. Costs one to three rollouts of all runs for each fold.
 Eigen::VectorXd held_out_squares(const ResidualFunction& residuals, const Blocks& blocks, const LinearisedFit& fit,
                                  const std::vector<Fold>& folds);
 

@@ -67,8 +67,8 @@ struct NormalEquations {
 NormalEquations prior(const Coordinates& coordinates, const Eigen::VectorXd& x, double weight);
 
 /// The step d from x that minimises d^T A d / 2 + g^T d within the bounds, A = information + damping * its diagonal
-/// (Marquardt's scaling). Active set: the coordinate that leaves its range furthest is fixed at its bound, and the others
-/// are solved again, until all are inside.
+/// (Marquardt's scaling). Active set: the coordinate that leaves its range furthest is fixed at its bound, and the
+/// others are solved again, until all are inside.
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
                              const Coordinates& coordinates, const Eigen::VectorXd& x, double damping);
 

@@ -18,7 +18,8 @@ class Interrupted : public std::runtime_error {
 
 /// Each function may be empty: then nothing is reported, or nothing interrupts.
 struct Progress {
-  /// share: part of the work done, 0 to 1, or kUnknownShare; doing: the present step in words, or "". One call at a time.
+  /// share: part of the work done, 0 to 1, or kUnknownShare; doing: the present step in words, or "". One call at a
+  /// time.
   std::function<void(double share, std::string_view doing)> told{};
   /// True: end the work and keep the partial result. Called from any thread, at any time.
   std::function<bool()> interrupted{};
