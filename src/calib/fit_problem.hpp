@@ -23,8 +23,8 @@ struct FitParameter {
 /// std::invalid_argument that lists the names.
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench);
 
-/// (word of the command line: damping, friction, delay, rate_limit, ..., or a parameter's own name) => (parameter names).
-/// Throws std::invalid_argument that lists the words.
+/// (word of the command line: damping, friction, delay, rate_limit, ..., or a parameter's own name) => (parameter
+/// names). Throws std::invalid_argument that lists the words.
 std::vector<std::string> effect_parameters(const std::string& word);
 std::vector<std::string> effect_words();
 
@@ -34,8 +34,8 @@ std::vector<std::string> basic_parameters(const bench::Bench& bench);
 double value(const JointModel& model, const std::string& name);
 void set(JointModel& model, const std::string& name, double value);
 
-/// A search moves in the unit cube. A parameter's scale is logarithmic if its range spans decades above 0, exponential if
-/// the range starts at 0, else linear: a step then matters equally for a small servo and for a knee's drive.
+/// A search moves in the unit cube. A parameter's scale is logarithmic if its range spans decades above 0, exponential
+/// if the range starts at 0, else linear: a step then matters equally for a small servo and for a knee's drive.
 class FitProblem {
  public:
   /// start: the model with its known parameters. Throws std::invalid_argument without parameters or runs.

@@ -36,10 +36,10 @@ struct FitResults {
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };
 
-/// Moves the parameters that inverse dynamics determines from the unknowns into the start model: rollouts cannot separate
-/// inertia from a lag of the drive's velocity, the recorded drive can. If no unknown is left, that lag becomes one. A
-/// negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then nothing is
-/// taken, rollouts fit all parameters, and the result is false.
+/// Moves the parameters that inverse dynamics determines from the unknowns into the start model: rollouts cannot
+/// separate inertia from a lag of the drive's velocity, the recorded drive can. If no unknown is left, that lag becomes
+/// one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then
+/// nothing is taken, rollouts fit all parameters, and the result is false.
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns);
 
@@ -47,7 +47,8 @@ Assessment assess(const std::string& filter, const std::vector<SingleJoint>& run
                   const JointModel& after, unsigned threads);
 
 nlohmann::ordered_json fit_json(const FitResults& results);
-/// A typical run as an SVG picture: command, measured and simulated position before and after the fit, and the residual.
+/// A typical run as an SVG picture: command, measured and simulated position before and after the fit, and the
+/// residual.
 std::string fit_picture(const FitResults& results, const JointModel& before);
 pages::Page fit_report(const FitResults& results);
 std::vector<std::string> motor_remarks(const FitResults& results);

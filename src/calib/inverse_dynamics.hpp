@@ -11,8 +11,8 @@ namespace pmg::calib {
 
 /// torque_per_unit drive - load = armature ddq + viscous dq + coulomb(sign dq): the classic identification of rigid
 /// drives (A. Janot, P.-O. Vandanjon, M. Gautier, "A Generic Instrumental Variable Approach for Industrial Robot
-/// Identification", IEEE TCST 2014, with plain least squares). It needs no simulation, so the drive's timing cannot bias
-/// it, but the drive's output must have been recorded.
+/// Identification", IEEE TCST 2014, with plain least squares). It needs no simulation, so the drive's timing cannot
+/// bias it, but the drive's output must have been recorded.
 struct InverseDynamics {
   struct Estimate {
     double value = 0.0, deviation = 0.0;  ///< one standard deviation, the residual taken as white noise
@@ -20,8 +20,7 @@ struct InverseDynamics {
   Estimate armature_kg_m2;
   Estimate viscous_Nm_s_per_rad;
   Estimate coulomb_Nm;  ///< the mean of both directions
-  Estimate
-      offset_Nm;  ///< forward torque, as ActuatorParameters::Ripple's: half of backward minus forward friction
+  Estimate offset_Nm;   ///< forward torque, as ActuatorParameters::Ripple's: half of backward minus forward friction
   double residual_Nm = 0.0;  ///< root mean square
   double unresolved = 0.0;   ///< rms of the drive about the windows' cubics, over the drive's standard deviation
   double sample_rate_hz = 0.0;
@@ -43,9 +42,9 @@ std::vector<ImpossibleEstimate> impossible_estimates(const InverseDynamics& foun
 /// A sentence or two on the likely reason of negative estimates; empty if there are none.
 std::string meaning_of_negative(const InverseDynamics& found);
 
-/// (bench, runs) => (estimates). Positions are differentiated by cubics over window_s to either side, which add no phase;
-/// torques are smoothed alike. Empty without recorded drive_V or torque, with an unknown torque_per_unit, or with fewer
-/// than 100 moving windows.
+/// (bench, runs) => (estimates). Positions are differentiated by cubics over window_s to either side, which add no
+/// phase; torques are smoothed alike. Empty without recorded drive_V or torque, with an unknown torque_per_unit, or
+/// with fewer than 100 moving windows.
 std::optional<InverseDynamics> inverse_dynamics(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                                 double window_s = 0.004);
 

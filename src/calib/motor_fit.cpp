@@ -95,8 +95,8 @@ class MotorFitRun {
     return chosen;
   }
 
-  /// Fits the candidates to all runs: BOBYQA, which models the loss by parabolas, then SBPLX, which tolerates kinks. Never
-  /// worse than the start model.
+  /// Fits the candidates to all runs: BOBYQA, which models the loss by parabolas, then SBPLX, which tolerates kinks.
+  /// Never worse than the start model.
   void polish(Fit& fit) {
     const std::vector<Found> chosen = candidates(fit.starts);
     std::vector<double> history;
@@ -129,8 +129,8 @@ class MotorFitRun {
     fit.history = history;
   }
 
-  /// Line search over a common factor on all torques. A load that is light relative to the rotor hardly determines it, and
-  /// dry friction makes local minima along this valley, in which every search stops.
+  /// Line search over a common factor on all torques. A load that is light relative to the rotor hardly determines it,
+  /// and dry friction makes local minima along this valley, in which every search stops.
   std::vector<double> rescaled(const std::vector<double>& point, const Loss& loss) {
     constexpr int kLooks = 8;      // to either side
     constexpr double kMost = 4.0;  // up or down

@@ -33,8 +33,8 @@ struct Fit {
   bool interrupted = false;     ///< true: the result is the best one so far
 };
 
-/// (problem, options) => (fit). The same problem, options and seed give the same result with any number of threads. After
-/// an interruption: the best so far.
+/// (problem, options) => (fit). The same problem, options and seed give the same result with any number of threads.
+/// After an interruption: the best so far.
 Fit fit(const FitProblem& problem, const FitOptions& options, const work::Progress& progress = {});
 
 }  // namespace pmg::calib

@@ -29,8 +29,8 @@ struct Found {
 
 using Loss = std::function<double(const std::vector<double>& point)>;
 
-/// (loss, start) => (best point evaluated, also after an interruption). NLopt's BOBYQA and SBPLX are local searches, CRS2
-/// and pagmo's CMA-ES (the paper's) global ones. Same input, same result.
+/// (loss, start) => (best point evaluated, also after an interruption). NLopt's BOBYQA and SBPLX are local searches,
+/// CRS2 and pagmo's CMA-ES (the paper's) global ones. Same input, same result.
 Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
              const work::Progress& progress = {});
 

@@ -31,7 +31,8 @@ sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& ru
 }
 
 /// Resting position before the command first changes: the mean reading, or the first one if the readings drift by more
-/// than three deviations of their noise. The error of a single noisy reading would preload friction by gain times noise.
+/// than three deviations of their noise. The error of a single noisy reading would preload friction by gain times
+/// noise.
 double resting_reading_rad(const bench::Recording& r) {
   std::size_t count = 0;
   while (count < r.q_rad.size() && r.valid[count] && r.q_cmd_rad[count] == r.q_cmd_rad.front()) ++count;

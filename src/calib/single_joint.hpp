@@ -30,8 +30,8 @@ class SingleJoint {
  public:
   SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s);
 
-  /// (model) => (simulated reading at each sample of the recording [rad]). Open loop, from rest at the recording's first
-  /// position. There dry friction balances gravity minus drive torque, up to its limit.
+  /// (model) => (simulated reading at each sample of the recording [rad]). Open loop, from rest at the recording's
+  /// first position. There dry friction balances gravity minus drive torque, up to its limit.
   std::vector<double> rollout(const JointModel& model) const;
 
   RolloutError error(const JointModel& model) const;
@@ -61,8 +61,8 @@ class SingleJoint {
   std::vector<Place> place_of_sample_;
 };
 
-/// Simulation step for a bench: the SIL's 2 ms, or less for a faster recording. Implicit damping acts like an additional
-/// inertia of step times damping, and a fit would subtract that from the rotor's inertia.
+/// Simulation step for a bench: the SIL's 2 ms, or less for a faster recording. Implicit damping acts like an
+/// additional inertia of step times damping, and a fit would subtract that from the rotor's inertia.
 double simulation_step_s(const bench::Bench& bench);
 
 }  // namespace pmg::calib

@@ -16,15 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kCommandStep_m = 0.001;    // of the height command from one stance to the next
-constexpr double kMove_s = 2.0;             // from one stance to the next, feet in the air
-constexpr double kLift_s = 4.5;             // tighten the rope, lift, move
-constexpr double kHold_s = 7.0;             // 3.5 s down, settling, and three seconds of averaging
-constexpr double kLegMargin_rad = 0.18;     // zero points may be 0.1 off, and legs yield
-constexpr double kLimitMargin_rad = 0.05;   // of the other joints; the generator keeps 0.035
-constexpr std::size_t kFewestStances = 10;  // 5 equations each, 12 joints and a few unknowns besides
-constexpr double kSoftKp_Nm_per_rad =
-    15.0;                             // 3 Nm, a tenth of the joint's torque, turn a sole that is 0.2 rad off
+constexpr double kCommandStep_m = 0.001;     // of the height command from one stance to the next
+constexpr double kMove_s = 2.0;              // from one stance to the next, feet in the air
+constexpr double kLift_s = 4.5;              // tighten the rope, lift, move
+constexpr double kHold_s = 7.0;              // 3.5 s down, settling, and three seconds of averaging
+constexpr double kLegMargin_rad = 0.18;      // zero points may be 0.1 off, and legs yield
+constexpr double kLimitMargin_rad = 0.05;    // of the other joints; the generator keeps 0.035
+constexpr std::size_t kFewestStances = 10;   // 5 equations each, 12 joints and a few unknowns besides
+constexpr double kSoftKp_Nm_per_rad = 15.0;  // 3 Nm, a tenth of the joint's torque, turn a sole that is 0.2 rad off
 constexpr double kYieldingLeg = 0.5;  // share of the gains: legs that offsets make unequal still share the weight
 constexpr double kSoftKd_Nm_s_per_rad = 1.0;
 

@@ -22,8 +22,8 @@ struct ZeroStance {
   PerFoot<SolePlace> soles;
 };
 
-/// Strides, squats, straddles, tilted pelvis. The legs differ on purpose: with equal legs, an offset of the hips and the
-/// opposite offset of the ankles only move the pelvis, which neither IMU nor ground can observe.
+/// Strides, squats, straddles, tilted pelvis. The legs differ on purpose: with equal legs, an offset of the hips and
+/// the opposite offset of the ankles only move the pelvis, which neither IMU nor ground can observe.
 std::vector<ZeroStance> zero_stances();
 
 /// (stance, robot) => (angles of all joints [rad]; unused joints as in the standing posture). Throws
@@ -36,9 +36,9 @@ std::vector<ZeroStance> reachable_stances(const model::RobotModel& robot);
 /// The last two joints of each leg, which turn its sole. Their gains are low, so that soles lie flat despite offsets.
 std::vector<int> sole_joints(const model::RobotModel& robot);
 
-/// Writes a robot folder for pmg_sil and pmg_controller in which the height command selects the stance and the sole joints
-/// are soft, and scenario.yaml, in which the gantry sets the robot down in each stance. Throws std::invalid_argument, or
-/// the errors of writing files.
+/// Writes a robot folder for pmg_sil and pmg_controller in which the height command selects the stance and the sole
+/// joints are soft, and scenario.yaml, in which the gantry sets the robot down in each stance. Throws
+/// std::invalid_argument, or the errors of writing files.
 void write_zero_rig(const model::RobotModel& robot, const std::filesystem::path& out);
 
 }  // namespace pmg::zero
