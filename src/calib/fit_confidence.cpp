@@ -20,7 +20,7 @@ fitting::LinearisedFit linearised(const FitProblem& problem, const Eigen::Vector
   return fit;
 }
 
-/// d value / d coordinate of a parameter, in its unit: a whole edge of the cube at the point's slope.
+/// d value / d coordinate of a parameter at the point [its unit per edge of the cube].
 double unit_per_edge(const FitProblem& problem, const std::vector<double>& point, std::size_t d) {
   constexpr double kStep = 1e-3;
   std::vector<double> below = point, above = point;

@@ -18,9 +18,9 @@ namespace pmg::calib {
 
 namespace {
 
-constexpr double kSenseless_rad2 = 1e6;  // a loss beyond all real ones
-constexpr double kBend = 5.0;            // of a range from 0: its first tenth of the cube is 1/230 of it
-constexpr double kDifference = 1e-3;     // of a coordinate, for derivatives
+constexpr double kSenseless_rad2 = 1e6;  // loss of an invalid model, above all real ones
+constexpr double kBend = 5.0;            // exponent of a range from 0: the first tenth of the edge covers 1/230 of it
+constexpr double kDifference = 1e-3;     // finite difference of a coordinate
 constexpr const char* kInertia = "load.inertia_scale";
 constexpr const char* kGravity = "load.gravity_scale";
 
@@ -83,7 +83,7 @@ double to_unit(const FitParameter& p, double value) {
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
   if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
   const sim::ActuatorParameter& p = sim::actuator_parameter(name);
-  // A firmware's number per radian of error, to a duty of 1.
+  // A servo firmware's gain: its unit per radian of error, at a duty of 1.
   if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
   // A linear axis moves kilograms by hundreds of newtons.
   const bool linear = bench.rig == bench::Rig::kLinear;
@@ -125,7 +125,7 @@ std::vector<std::string> basic_parameters(const bench::Bench& bench) {
     case bench::DriveLaw::kPositionPd:
       names = {"drive.kp_scale", "drive.kd_scale"};
       break;
-    case bench::DriveLaw::kServoVoltage:  // its damping is the motor's own
+    case bench::DriveLaw::kServoVoltage:  // its damping is the motor's back-EMF
       names = {"drive.torque_per_unit_Nm", "drive.back_emf_s_per_rad"};
       break;
     case bench::DriveLaw::kCascadePd:
@@ -183,7 +183,7 @@ std::vector<double> FitProblem::with_torques_scaled(std::span<const double> poin
   const auto fitted = [&](const char* name) {
     return std::any_of(parameters_.begin(), parameters_.end(), [&](const FitParameter& p) { return p.name == name; });
   };
-  const bool gains_are_torques = !fitted("drive.torque_per_unit_Nm");  // a voltage servo's are its firmware's numbers
+  const bool gains_are_torques = !fitted("drive.torque_per_unit_Nm");  // a voltage servo's gains are in firmware units
   std::vector<double> scaled(point.begin(), point.end());
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const FitParameter& p = parameters_[i];

@@ -53,7 +53,7 @@ void show_runs(pages::Page& page, const FitResults& results, const Assessment& a
   if (order.size() > 2) show(0, "the best run");
 }
 
-/// Mean absolute error by what a row of runs.csv says.
+/// Mean absolute error by the columns of runs.csv.
 void show_groups(pages::Page& page, const FitResults& results, const Assessment& assessment, const std::string& title) {
   const auto name = [](const bench::BenchRun& run) { return run.trajectory.empty() ? run.file : run.trajectory; };
   std::map<std::string, std::pair<RolloutError, RolloutError>> groups;

@@ -124,7 +124,7 @@ Json fit_json(const FitResults& results) {
     json["parameters"][parameter.name] =
         parameter_json(parameter, value(results.fit.model, parameter.name), results.confidence[i]);
   }
-  if (results.bench->law == bench::DriveLaw::kPositionPd) {  // where all runs were told the same gains
+  if (results.bench->law == bench::DriveLaw::kPositionPd) {  // with the same gains in all runs
     const bench::BenchRun& run = results.problem->runs().front().run();
     json["gains"] = {{"kp_Nm_per_rad", results.fit.model.actuator.drive.kp_scale * run.kp},
                      {"kd_Nm_s_per_rad", results.fit.model.actuator.drive.kd_scale * run.kd}};

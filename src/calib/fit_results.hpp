@@ -1,4 +1,4 @@
-// A finished fit for people and machines: fit.json, report.html, and the remarks of motor.yaml.
+// Output of a finished fit: fit.json, report.html, and the remarks in motor.yaml.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,11 +14,11 @@
 
 namespace pmg::calib {
 
-/// Runs and what a model makes of them.
+/// Runs and their rollout errors.
 struct Assessment {
   std::string filter;  ///< of runs.csv
   const std::vector<SingleJoint>* runs = nullptr;
-  std::vector<RolloutError> before, after;  ///< a run each: the start of the fit, its result
+  std::vector<RolloutError> before, after;  ///< per run, with the start of the fit and with its result
 };
 
 struct FitResults {
@@ -29,17 +29,17 @@ struct FitResults {
   std::string method, joint;
   unsigned threads = 1;
   double wall_s = 0.0;
-  std::optional<InverseDynamics> inverse;  ///< where the drive was recorded
-  bool inverse_taken = false;              ///< and then the model has it, and rollouts found the rest
-  bench::NoiseFloor noise_floor;           ///< of fitted and scored runs that repeat each other
+  std::optional<InverseDynamics> inverse;  ///< if the drive's output was recorded
+  bool inverse_taken = false;              ///< true if the model uses it and rollouts fitted only the rest
+  bench::NoiseFloor noise_floor;           ///< from repeats among the fitted and scored runs
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
 };
 
-/// What inverse dynamics determines becomes the model's own and is looked for no longer: a rollout can't tell inertia
-/// from a lag of the drive's velocity, the recorded drive can. Where nothing is left to look for, that lag is. A number
-/// below zero by less than its uncertainty is taken as zero; where one is impossible nothing is taken, rollouts look
-/// for all of it, and the result is false.
+/// Moves the parameters that inverse dynamics determines from the unknowns into the start model: rollouts cannot
+/// separate inertia from a lag of the drive's velocity, the recorded drive can. If no unknown is left, that lag becomes
+/// one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then
+/// nothing is taken, rollouts fit all parameters, and the result is false.
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
                            std::vector<FitParameter>& unknowns);
 
@@ -47,18 +47,19 @@ Assessment assess(const std::string& filter, const std::vector<SingleJoint>& run
                   const JointModel& after, unsigned threads);
 
 nlohmann::ordered_json fit_json(const FitResults& results);
-/// The usual run as an SVG file: command, measured and simulated position, before the fit and after, and the miss.
+/// A typical run as an SVG picture: command, measured and simulated position before and after the fit, and the
+/// residual.
 std::string fit_picture(const FitResults& results, const JointModel& before);
 pages::Page fit_report(const FitResults& results);
 std::vector<std::string> motor_remarks(const FitResults& results);
 
-/// "rad" and "mrad" of a turning joint, "m" and "mm" of a linear axis.
+/// "rad" or "mrad" for a rotary joint, "m" or "mm" for a linear axis.
 std::string position_unit(const bench::Bench& bench, bool thousandths);
 
-/// What speaks against taking a parameter at its word, or "".
+/// A warning about a fitted parameter, or "".
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);
 
-/// At the edge of its range: what the fit would like to be is beyond.
+/// True if the value lies at an edge of its range: the optimum may be outside.
 bool at_bound(const FitParameter& parameter, double value);
 
 }  // namespace pmg::calib

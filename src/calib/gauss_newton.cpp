@@ -4,7 +4,7 @@ namespace pmg::calib {
 
 namespace {
 
-// Derivatives by differences say little further away than a tenth of the range.
+// Finite-difference slopes hold for about a tenth of the range: the longest step.
 constexpr fitting::GaussNewtonOptions kOptions{.relative_tolerance = 1e-6, .most_tries = 8, .longest_step = 0.1};
 
 }  // namespace

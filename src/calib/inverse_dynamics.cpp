@@ -14,8 +14,8 @@ namespace pmg::calib {
 namespace {
 
 constexpr std::size_t kFewestWindows = 100;
-constexpr double kUnresolved = 0.1;   // of the drive: above it, accelerations are off by as much
-constexpr double kRest_share = 0.01;  // of the greatest speed: below it the sign is noise
+constexpr double kUnresolved = 0.1;   // share of the drive: above it, accelerations are wrong by as much
+constexpr double kRest_share = 0.01;  // share of the greatest speed, below which the sign is noise
 
 /// Value, first and second derivative of a cubic through 2 reach + 1 evenly spaced samples, at the middle one.
 struct LocalCubic {
@@ -26,7 +26,7 @@ struct LocalCubic {
       const double x = (static_cast<double>(row) - static_cast<double>(reach)) * step_s;
       powers.row(row) << 1.0, x, x * x, x * x * x;
     }
-    // Scaled columns: the fourth is of the order of 1e-8 where the first is 1.
+    // Columns are scaled: the fourth is about 1e-8 of the first.
     const Eigen::RowVector4d scale = powers.cwiseAbs().colwise().maxCoeff();
     const Eigen::MatrixXd scaled = powers.array().rowwise() / scale.array();
     weights = (scaled.transpose() * scaled).ldlt().solve(scaled.transpose());

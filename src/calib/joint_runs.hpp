@@ -1,4 +1,4 @@
-// Recorded runs made ready for simulation: read, chosen, kept apart.
+// Reads and selects recorded runs for simulation, and keeps fitted and scored runs apart.
 #pragma once
 
 #include <string>
@@ -13,11 +13,10 @@ namespace pmg::calib {
 std::vector<SingleJoint> read_joints(const bench::Bench& bench, const std::string& filter, double step_s,
                                      const work::Progress& progress = {});
 
-/// (runs) => (at most so many of them), spread over the list by steps of the golden ratio: no period of its order is
-/// met.
+/// (runs) => (at most `most` of them), spread over the list by steps of the golden ratio, to avoid its periods.
 std::vector<SingleJoint> spread(const std::vector<SingleJoint>& runs, std::size_t most);
 
-/// Throws std::invalid_argument that names a run of both: a score of what was fitted says nothing.
+/// Throws std::invalid_argument that names a run in both lists: a score of a fitted run is worthless.
 void expect_apart(const std::vector<SingleJoint>& fitted, const std::vector<SingleJoint>& scored);
 
 }  // namespace pmg::calib

@@ -37,7 +37,7 @@ std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t di
   return points;
 }
 
-/// Screening, searches from several starts, polish: one fit.
+/// One fit: screening => searches from several starts => polish.
 class MotorFitRun {
  public:
   MotorFitRun(const FitProblem& problem, const FitOptions& options, const work::Progress& progress)
@@ -63,7 +63,7 @@ class MotorFitRun {
   }
 
  private:
-  /// The neutral start and spread points, the best of them.
+  /// The best of the neutral start and a Latin hypercube of points.
   std::vector<Found> screen() {
     std::vector<std::vector<double>> points =
         spread_points(options_.screened_per_dimension * all_.dimensions(), all_.dimensions(), options_.seed);
@@ -79,7 +79,7 @@ class MotorFitRun {
     return found;
   }
 
-  /// The best start, and the next best that is nearly as good elsewhere.
+  /// The best start, and the next best one that is nearly as good and not close to it.
   std::vector<Found> candidates(const std::vector<Found>& starts) const {
     constexpr double kNearlyAsGood = 1.05, kElsewhere = 0.02;  // of the loss, of the cube's edge
     std::vector<Found> chosen{starts.front()};
@@ -95,8 +95,8 @@ class MotorFitRun {
     return chosen;
   }
 
-  /// The candidates on all runs, each by BOBYQA's parabolas and then SBPLX, which kinks don't mislead. Never worse than
-  /// the model that the fit started with: nested models only gain.
+  /// Fits the candidates to all runs: BOBYQA, which models the loss by parabolas, then SBPLX, which tolerates kinks.
+  /// Never worse than the start model.
   void polish(Fit& fit) {
     const std::vector<Found> chosen = candidates(fit.starts);
     std::vector<double> history;
@@ -108,7 +108,7 @@ class MotorFitRun {
       history.push_back(history.empty() ? value : std::min(history.back(), value));
       return value;
     };
-    if (stopped_) {  // no polish, but what was found
+    if (stopped_) {  // no polish: keep the best so far
       const double found = remembered(chosen.front().point);
       if (found < best.loss) best = {chosen.front().point, found, 1};
     }
@@ -129,8 +129,8 @@ class MotorFitRun {
     fit.history = history;
   }
 
-  /// All torques by one factor, which a load that is light beside the rotor hardly tells: in that valley friction makes
-  /// hollows, and every search stops in one.
+  /// Line search over a common factor on all torques. A load that is light relative to the rotor hardly determines it,
+  /// and dry friction makes local minima along this valley, in which every search stops.
   std::vector<double> rescaled(const std::vector<double>& point, const Loss& loss) {
     constexpr int kLooks = 8;      // to either side
     constexpr double kMost = 4.0;  // up or down
@@ -145,7 +145,7 @@ class MotorFitRun {
     return best;
   }
 
-  /// Along valleys that the searches took for the bottom.
+  /// Gauss-Newton steps along a valley in which a search stopped.
   Found followed(const Found& start, const Loss& loss) {
     if (options_.newton_steps == 0) return start;
     const std::vector<double> point = rescaled(start.point, loss);
@@ -155,7 +155,7 @@ class MotorFitRun {
     return at;
   }
 
-  /// Searches of the whole cube need more looks than those of a neighbourhood.
+  /// Global searches need more evaluations than local ones.
   SearchOptions limits(Method method, double step, unsigned turn) const {
     const int looks = method == Method::kCrs2 || method == Method::kCmaes ? 5 : 1;
     return {.most_evaluations = looks * options_.evaluations_per_dimension * static_cast<int>(all_.dimensions()),
@@ -172,7 +172,7 @@ class MotorFitRun {
     };
   }
 
-  /// For searches: asks whether to go on, tells nothing.
+  /// For searches: passes interruptions on, reports nothing.
   work::Progress stopping() {
     return {.told = {}, .interrupted = [this] {
               if (progress_.over()) stopped_ = true;
@@ -180,7 +180,7 @@ class MotorFitRun {
             }};
   }
 
-  /// One thread at a time; the share never falls.
+  /// Called by one thread at a time; the share never falls.
   void report(double share, const std::string& doing) {
     const std::lock_guard lock(reporting_);
     share_ = std::max(share_, share);

@@ -52,7 +52,7 @@ Found search(Method method, const Loss& loss, const std::vector<double>& start, 
              const work::Progress& progress) {
   Found best{start, loss(start), 1};
   const Loss watched = [&](const std::vector<double>& point) {
-    // NLopt's C core lets no exception of ours through but its own.
+    // Only NLopt's own exceptions can pass through its C core.
     if (progress.over()) throw nlopt::forced_stop();
     const double value = loss(point);
     ++best.evaluations;

@@ -1,4 +1,4 @@
-// Searches of the unit cube for the lowest loss, without derivatives.
+// Derivative-free minimisation over the unit cube.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace pmg::calib {
 
 enum class Method { kBobyqa, kSbplx, kCrs2, kCmaes };
 
-/// bobyqa, sbplx, crs2, cmaes. Throws std::invalid_argument.
+/// bobyqa, sbplx, crs2 or cmaes. Throws std::invalid_argument on other names.
 Method method_of(const std::string& name);
 
 struct SearchOptions {
@@ -29,8 +29,8 @@ struct Found {
 
 using Loss = std::function<double(const std::vector<double>& point)>;
 
-/// From start; the best point seen, also when interrupted. NLopt's BOBYQA and SBPLX are local, CRS2 and pagmo's CMA-ES
-/// (the paper's) look everywhere. Same input, same result.
+/// (loss, start) => (best point evaluated, also after an interruption). NLopt's BOBYQA and SBPLX are local searches,
+/// CRS2 and pagmo's CMA-ES (the paper's) global ones. Same input, same result.
 Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
              const work::Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// Runs of a joint as the residuals of a fit.
+// Residuals of a joint's rollouts.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace pmg::calib {
 
 /// (model, runs) => (simulated minus measured reading of each run [rad]; 0 where the sensor dropped out). Empty where
-/// the actuator model refuses the parameters. The same whatever the number of threads.
+/// the actuator model refuses the parameters. Does not depend on the number of threads.
 fitting::Residuals residuals(const JointModel& model, const std::vector<SingleJoint>& runs, unsigned threads);
 
 fitting::Blocks blocks(const std::vector<SingleJoint>& runs);

@@ -10,7 +10,7 @@ namespace pmg::calib {
 
 namespace {
 
-constexpr double kLost_rad = 1e3;  // a rollout that gets here has diverged
+constexpr double kLost_rad = 1e3;  // a larger angle means divergence
 
 sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& run, std::size_t sample) {
   const bench::Recording& r = run.recording;
@@ -30,8 +30,9 @@ sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& ru
   return input;
 }
 
-/// Where the joint rests before the command first changes: the mean of the readings there, or the first one where they
-/// drift by more than three deviations of their noise. One noisy reading would load friction by gain times noise.
+/// Resting position before the command first changes: the mean reading, or the first one if the readings drift by more
+/// than three deviations of their noise. The error of a single noisy reading would preload friction by gain times
+/// noise.
 double resting_reading_rad(const bench::Recording& r) {
   std::size_t count = 0;
   while (count < r.q_rad.size() && r.valid[count] && r.q_cmd_rad[count] == r.q_cmd_rad.front()) ++count;

@@ -1,4 +1,4 @@
-// One joint on its bench, simulated fast enough to be fitted: the actuator model, a pendulum load, and nothing else.
+// A fast simulation of one joint on its bench: the actuator model and a pendulum load.
 #pragma once
 
 #include <functional>
@@ -10,13 +10,13 @@
 
 namespace pmg::calib {
 
-/// Everything that a fit may change.
+/// All parameters that a fit can change.
 struct JointModel {
   sim::ActuatorParameters actuator;
   double inertia_scale = 1.0, gravity_scale = 1.0;  ///< of the bench's loads
 };
 
-/// What a simulated rollout missed by, over the recording's valid samples.
+/// Errors of a rollout, summed over the recording's valid samples.
 struct RolloutError {
   double sum_of_squares_rad2 = 0.0, sum_of_absolutes_rad = 0.0;
   std::size_t samples = 0;
@@ -24,14 +24,14 @@ struct RolloutError {
   double mean_absolute_rad() const { return sum_of_absolutes_rad / static_cast<double>(samples); }
 };
 
-/// A recording made ready: its inputs on the simulation's steps. Semi-implicit Euler, dq' = dq + h tau / (I - h slope),
-/// q' = q + h dq': what MuJoCo's `implicit` integrator does with one hinge, step for step.
+/// A recording with its inputs resampled to simulation steps. Semi-implicit Euler, dq' = dq + h tau / (I - h slope),
+/// q' = q + h dq', slope = d tau / d dq: identical to MuJoCo's `implicit` integrator for one hinge, step by step.
 class SingleJoint {
  public:
   SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s);
 
-  /// The drive's reading at each of the recording's samples, open loop from where it began, at rest there: what the
-  /// drive leaves of gravity lies on dry friction, as far as it can carry that.
+  /// (model) => (simulated reading at each sample of the recording [rad]). Open loop, from rest at the recording's
+  /// first position. There dry friction balances gravity minus drive torque, up to its limit.
   std::vector<double> rollout(const JointModel& model) const;
 
   RolloutError error(const JointModel& model) const;
@@ -61,8 +61,8 @@ class SingleJoint {
   std::vector<Place> place_of_sample_;
 };
 
-/// The simulation's step for a bench: the SIL's 2 ms, or less where the recording is faster: damping that is
-/// taken implicitly acts like an inertia of step times damping, which a fit would take off the rotor's.
+/// Simulation step for a bench: the SIL's 2 ms, or less for a faster recording. Implicit damping acts like an
+/// additional inertia of step times damping, and a fit would subtract that from the rotor's inertia.
 double simulation_step_s(const bench::Bench& bench);
 
 }  // namespace pmg::calib

@@ -38,7 +38,7 @@ BaseModel base_model(const bench::Bench& bench, const std::optional<sim::Actuato
   BaseModel base;
   base.model.actuator = given.value_or(bench.known);
   std::vector<std::string> free = given ? bench.unknown : calib::basic_parameters(bench);
-  if (!given) {  // no joint is without
+  if (!given) {  // every joint has friction
     for (const char* name : {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}) {
       if (!effects::contains(free, name)) free.emplace_back(name);
     }

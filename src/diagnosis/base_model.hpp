@@ -1,4 +1,4 @@
-// What a diagnosis starts from: the model that the simulation has, and how well its numbers are known.
+// The model that a diagnosis starts from, with the tolerances of its parameters.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace pmg::diagnosis {
 
-/// The simulation without any further effect. Its unknowns are fitted again with every extension, so that no effect is
-/// credited for what the base could have absorbed: in full range what bench.yaml calls unknown, and within their
-/// tolerance the numbers that a calibration or a data sheet knows.
+/// The model without further effects. Every extension refits its unknowns, so that an effect gets no credit for a
+/// residual that the base model can absorb. Parameters that bench.yaml calls unknown are fitted over their full range,
+/// parameters known from a calibration or a data sheet within their tolerance.
 struct BaseModel {
   calib::JointModel model;
   std::vector<effects::Unknown> unknowns;
   effects::BenchScale scale;
 };
 
-/// given: of motor.yaml; without it the paper's eta and what bench.yaml calls unknown are fitted from scratch.
+/// given: parameters of motor.yaml. Without them the paper's eta and bench.yaml's unknowns are fitted from scratch.
 BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
                      const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads);
 

@@ -18,7 +18,7 @@ namespace pmg::diagnosis {
 
 namespace {
 
-/// From whatever the bench repeats; else the sensor's own noise in the fitted runs.
+/// Noise floor from the bench's repeats; without repeats, from the sensor noise of the fitted runs.
 NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::SingleJoint>& fitted) {
   const std::vector<bench::BenchRun> all = bench.read_runs(bench::RowFilter(""));
   std::vector<const bench::BenchRun*> runs;
@@ -35,7 +35,7 @@ NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::Singl
           "nothing was repeated: the sensor's own noise, from sixth differences of its readings"};
 }
 
-/// Reading, fits, choice, explanation, verdict: one diagnosis.
+/// One diagnosis: reads the runs, fits, chooses effects, explains them, decides the verdict.
 class JointDiagnosisRun {
  public:
   JointDiagnosisRun(const bench::Bench& bench, const DiagnoseOptions& options, const work::Progress& progress)
@@ -103,7 +103,7 @@ class JointDiagnosisRun {
               .of_beginning = by_.amplitude_of_beginning,
               .of_rest = by_.gain_of_rest};
     }
-    // From scratch there are several effects to be found, the weaker in the presence of the stronger.
+    // From scratch: several effects are missing, so weaker ones must be found beside stronger ones.
     return {.noise_squares = noise,
             .healthy_squares = noise,
             .of_noise = by_.scratch_amplitude_of_noise,
@@ -132,7 +132,7 @@ class JointDiagnosisRun {
     diagnosis_.share_of_way_to_floor = way > 0.0 ? (errors.before.value - errors.after.value) / way : 0.0;
   }
 
-  /// What no run would tell apart is one cause with several names.
+  /// Plans the next excitation. Effects that no run on this rig can separate become one cause with several names.
   void ask_for_more(const effects::NestedFit& fit) {
     if (explanation_.rivals.empty()) return;
     report(share_, "looking for what to record next");
@@ -179,7 +179,7 @@ class JointDiagnosisRun {
   double share_ = 0.0;
   Diagnosis diagnosis_;
   std::optional<effects::NestedFit> judged_;
-  std::vector<evidence::Signature> checks_;  // without a model
+  std::vector<evidence::Signature> checks_;
   Explanation explanation_;
 };
 

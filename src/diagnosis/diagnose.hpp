@@ -13,22 +13,22 @@
 namespace pmg::diagnosis {
 
 struct DiagnoseOptions {
-  std::string fit, score;  ///< rows of runs.csv (bench::RowFilter); without a score everything is fitted
-  std::optional<sim::ActuatorParameters> model;  ///< what the simulation has now (motor.yaml); else a fit of the basics
+  std::string fit, score;  ///< filters of runs.csv (bench::RowFilter); with an empty score all runs are fitted
+  std::optional<sim::ActuatorParameters> model;  ///< present model (motor.yaml); without it the basics are fitted
   unsigned threads = 1;
   unsigned seed = 1;    ///< of the bootstrap
   double step_s = 0.0;  ///< of the simulation; 0 chooses
   JointDiagnosisOptions decide_by{};
 };
 
-/// What a diagnosis was made from, for pictures.
+/// The runs and the checks behind a diagnosis, for the report's pictures.
 struct DiagnosedRuns {
   std::vector<calib::SingleJoint> fitted{}, scored{};
-  std::vector<evidence::Signature> checks{};  ///< without a model, on the fitted runs
+  std::vector<evidence::Signature> checks{};  ///< model-free checks of the fitted runs
 };
 
-/// Throws std::invalid_argument and model::ConfigError on bad input. Ends with what is known where progress is over.
-/// The same input and seed give the same result.
+/// (bench, options) => (diagnosis; runs, unless null). After an interruption the result holds the findings so far. The
+/// same input and seed give the same result. Throws std::invalid_argument and model::ConfigError on bad input.
 Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs = nullptr,
                    const work::Progress& progress = {});
 

@@ -1,4 +1,5 @@
-// What a diagnosis of a bench says: what the simulation gets wrong, why, and how much better it is once that is known.
+// Result of a bench's diagnosis: the verdict, the causes of the simulation's error, and the error with and without
+// them.
 #pragma once
 
 #include <optional>
@@ -11,15 +12,15 @@
 
 namespace pmg::diagnosis {
 
-/// An effect that the simulation lacked. Errors are mean absolute ones of open-loop rollouts [rad; m on a linear axis]
-/// over the held-out runs: of the whole model without this effect (the rest fitted again), and with it.
+/// An effect that the model lacked. Errors are mean absolute errors of open-loop rollouts over the held-out runs [rad;
+/// m on a linear axis]: of the model without this effect, refitted, and of the whole model.
 struct Cause {
   std::string effect;  ///< of the catalogue
   std::vector<evidence::ParameterEstimate> parameters;
   double held_out_error_before = 0.0, held_out_error_after = 0.0;
   std::vector<std::string> evidence;    ///< sentences: folds won, and model-free checks that agree or disagree
-  std::vector<std::string> or_instead;  ///< effects that explain as much as this one; empty where it is told apart
-  std::vector<std::string> same_here;  ///< effects that no run on this rig would tell from this one: other names for it
+  std::vector<std::string> or_instead;  ///< rival effects that explain the runs as well; empty if there is none
+  std::vector<std::string> same_here;   ///< effects that no run on this rig can separate from this one
 };
 
 struct Rejected {
@@ -27,31 +28,31 @@ struct Rejected {
   std::string why;
 };
 
-/// Errors that no model can go below, as mean absolute and root mean square ones [rad].
+/// Lower bounds of a model's error, mean absolute and root mean square.
 struct NoiseFloor {
   double mean_absolute_rad = 0.0, rms_rad = 0.0;
   bool from_repeats = false;
-  std::string how;  ///< one line for people: from how many pairs of repeats, or how else it was estimated
+  std::string how;  ///< one line for people: the number of repeated pairs, or the other method of estimation
 };
 
 /// A run to record next.
 struct NextRun {
   std::string name;           ///< of the trajectory
   std::string shape;          ///< of the command, in words
-  int times = 1;              ///< to be recorded; all of them to be fitted
-  double kp = 1.0, kd = 0.0;  ///< what to tell the drive, as BenchRun's
+  int times = 1;              ///< how often to record it; all repeats are to be fitted
+  double kp = 1.0, kd = 0.0;  ///< gains to set on the drive, as BenchRun's
   bench::JointLoad load;
   double load_mass_kg = 0.0, load_length_m = 0.0;  ///< as in runs.csv; 0 on a bench without loads
   std::vector<double> t_s, q_cmd_rad;
 };
 
-/// How surely two effects part once the runs are there.
+/// Expected separation of two effects once the next runs are recorded.
 struct ExpectedPair {
   std::string first, second;
-  double deviations = 0.0;  ///< of their comparison on runs left out, which tells them apart from 2 on
+  double deviations = 0.0;  ///< of their comparison on left-out blocks; 2 or more separate them
 };
 
-/// A small campaign to record next, and what it is to tell apart.
+/// A small campaign to record next, and the effects that it separates.
 struct NextExcitation {
   std::string text;  ///< one line for the engineer
   std::vector<std::string> tells_apart;
@@ -66,17 +67,17 @@ struct Diagnosis {
   NoiseFloor noise_floor;
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
   evidence::Interval held_out_before, held_out_after;
-  bool held_out = false;               ///< runs were kept for the score; else the two above are from folds
+  bool held_out = false;               ///< true if runs were held out; else the two errors above are from folds
   double share_of_way_to_floor = 0.0;  ///< (before - after) / (before - floor)
-  /// What a usual block of half a second of the fitted runs misses by, in the noise (rms; geometric mean over blocks):
-  /// 1 where only noise is left.
+  /// rms residual of the fitted runs (geometric mean over half-second blocks) over the rms noise: 1 if only noise is
+  /// left.
   double before_over_noise = 1.0, after_over_noise = 1.0;
-  std::vector<std::string> depends_on;  ///< what a remaining residual hangs together with: velocity, position, ...
+  std::vector<std::string> depends_on;  ///< quantities that the remaining residual depends on: velocity, position, ...
   std::optional<NextExcitation> next_excitation;
   std::string unit = "rad";
   calib::JointModel before, after;
   std::vector<std::string> base_parameters;  ///< fitted with and without effects
-  std::vector<evidence::Option> options;     ///< that it was decided by
+  std::vector<evidence::Option> options;     ///< thresholds in force
 };
 
 }  // namespace pmg::diagnosis

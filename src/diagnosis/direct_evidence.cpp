@@ -16,7 +16,7 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
   for (const evidence::Signature& check : checks) {
     if (check.effect != "quantisation" || check.agreement != evidence::Agreement::kAgrees) continue;
     const double quantum_rad = check.value.value;
-    const double rms_rad = quantum_rad / std::sqrt(12.0);  // of what rounding leaves
+    const double rms_rad = quantum_rad / std::sqrt(12.0);  // of the rounding error, uniform over one quantum
     if (quantum_rad < options.coarser_quantum * base.sensor.quantum_rad ||
         rms_rad < options.quantum_of_noise * noise_rms_rad)
       continue;
@@ -25,7 +25,8 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
   return found;
 }
 
-/// Checks see what a joint has, not what it has beyond its model.
+/// True if the base model already contains the effect. A check detects an effect of the joint, not what the model
+/// lacks.
 bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
   const std::vector<std::string>& parameters = effects::effect(name).parameters;
   return std::any_of(parameters.begin(), parameters.end(), [&](const std::string& parameter) {
@@ -49,7 +50,7 @@ std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& c
   return {thermal};
 }
 
-/// A load's check sees its inertia against its weight, and a load of another mass has both.
+/// Effects that are ruled out. Not `load`: its check compares inertia with weight, and a wrong mass changes both alike.
 std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks,
                                          const sim::ActuatorParameters& base) {
   std::vector<std::string> found;

@@ -1,11 +1,11 @@
-// How EffectSearch chooses among its trials: one effect after the other, and back.
+// EffectSearch's stepwise choice: adds effects, removes superfluous ones, exchanges proxies.
 #include "diagnosis/effect_search.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis {
 
-/// Of those that convince and are nearly equal, the one with the fewest parameters; a special case unless it is clearly
-/// worse. Null where none convinces.
+/// (trials, best first) => (the convincing trial with the fewest parameters among the nearly equal ones; null if none
+/// is convincing). A special case wins over the effect that contains it unless it is clearly worse.
 const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
   const Trial* chosen = nullptr;
   double best = 0.0;
@@ -25,8 +25,8 @@ const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
 }
 
 /// (extension, the one before its newest effect) => (extension without superfluous effects). An earlier effect may be a
-/// proxy for a later one. And the newest effect may only have helped a fit that had not converged: then a fit without
-/// it, continued from here, regains more than half of its gain. Costs a fit for each effect.
+/// proxy for a later one. The newest effect may only have helped a fit that had not converged: then a refit without it,
+/// started from here, regains more than half of its gain. Costs a fit for each effect.
 Extension EffectSearch::pruned(Extension current, const Extension& before) {
   for (std::size_t e = 0; e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e];

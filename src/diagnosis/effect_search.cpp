@@ -44,7 +44,7 @@ bool EffectSearch::going(const std::string& text) {
   return !stopped_;
 }
 
-/// The base's, and the effects' over their whole range.
+/// The unknowns of the base model, then those of the effects over their whole range.
 std::vector<effects::Unknown> EffectSearch::unknowns(const std::vector<std::string>& effects) const {
   std::vector<effects::Unknown> found = base_.unknowns;
   for (const std::string& name : effects) {
@@ -62,7 +62,7 @@ std::vector<effects::Unknown> EffectSearch::unknowns(const std::vector<std::stri
   return found;
 }
 
-/// Without the effect, but for parameters that the kept ones share.
+/// The model with the effect's parameters neutral, except those that a kept effect shares.
 calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
                                       const std::vector<std::string>& kept) const {
   for (const std::string& parameter : effects::effect(effect).parameters) {
@@ -113,7 +113,7 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   const bool known = std::any_of(loose.unknowns.begin(), loose.unknowns.end(),
                                  [](const effects::Unknown& u) { return u.deviation > 0.0; });
   if (!known) return extension;
-  // The misses of a block hang together: it is one observation, of which a calibration's number is another.
+  // A block's residuals are correlated: each block counts as one observation, and so does each prior.
   const double weight = loose.squares / static_cast<double>(std::max<std::size_t>(1, loose.blocks.size()));
   calib::JointModel given = loose.model;
   std::vector<effects::Unknown> effects_only;
@@ -152,12 +152,12 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
 
 std::string EffectSearch::objection(const Trial& trial) const {
   const fitting::Comparison& c = trial.comparison;
-  if (shown(trial.effect)) {  // half-second blocks hardly see what is one number a run
+  if (shown(trial.effect)) {  // half-second blocks hardly detect an effect that is constant over a run
     return c.log_gain > 0.0 && c.folds_won >= options_.least_folds_won
                ? ""
                : "runs left out are predicted no better with it";
   }
-  // What nobody calibrated before may leave single blocks that go another way altogether; the usual one counts.
+  // An uncalibrated model may leave outlier blocks: then the gain of the geometric mean counts, too.
   const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
   const double gain = from_scratch ? std::max(c.gain, c.usual_gain) : c.gain;
   if (gain <= 0.0) return "runs left out are predicted no better with it";
@@ -180,7 +180,8 @@ std::string EffectSearch::objection(const Trial& trial) const {
   return "";
 }
 
-/// The effects that the extension doesn't have: looked at by the linearised fit, the most promising fitted.
+/// (extension) => (trials of the effects that it lacks): screened by the linearised fit, the most promising ones
+/// fitted.
 std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   struct Promising {
     const effects::Effect* effect = nullptr;
@@ -216,8 +217,8 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   }
   const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
   std::stable_sort(trials.begin(), trials.end(), better);
-  // Few steps may leave a fit in a valley (friction that grows with the load for friction that doesn't): the one that
-  // meets the runs best so far is finished whatever the folds say of it as yet.
+  // After few iterations a fit may still lie in a valley (load friction as a proxy for Coulomb friction). So the fit
+  // with the lowest squares is always finished, whatever its folds say so far.
   const auto closest = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });
@@ -248,7 +249,7 @@ fitting::Comparison EffectSearch::compared(const Extension& first, const Extensi
 
 std::vector<Trial> EffectSearch::alternatives(const Extension& without, const std::string& effect) {
   std::vector<Trial> trials = tried(without, options_.exchanged_effects);
-  // What contains the effect as a special case explains as much; the simpler one stands.
+  // An effect that contains this one as a special case explains as much: the simpler one stands.
   std::erase_if(trials, [&](const Trial& trial) {
     return trial.effect == effect || effects::contains(effects::effect(trial.effect).contains, effect);
   });

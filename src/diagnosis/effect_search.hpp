@@ -1,4 +1,4 @@
-// Which effects of the catalogue the runs ask for: nested extensions, chosen by folds.
+// Stepwise search for the effects that the runs need: nested extensions of the base model, chosen by cross-validation.
 #pragma once
 
 #include <string>
@@ -12,29 +12,29 @@
 
 namespace pmg::diagnosis {
 
-/// The base with some effects in it.
+/// The base model extended by some effects.
 struct Extension {
   std::vector<std::string> effects;
   effects::NestedModel fitted;
-  Eigen::VectorXd held_out;  ///< squares by block, from folds
+  Eigen::VectorXd held_out;  ///< squares of each block by fits without its fold [rad^2]
 
   double held_out_squares() const { return held_out.sum(); }
 };
 
-/// How an effect fared.
+/// One effect tried, and its gain.
 struct Trial {
   std::string effect;
-  fitting::Comparison comparison;  ///< of the extension without it with the one that has it
-  double share_of_rest = 0.0;      ///< of what was above a healthy model's without it
+  fitting::Comparison comparison;  ///< extension without the effect against extension with it
+  double share_of_rest = 0.0;      ///< gain as a share of the squares above a healthy model's without the effect
   Extension extension;
 };
 
 struct SearchLimits {
   double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
-  /// What may be left by a model that is in order [rad^2]: nothing is looked for below it.
+  /// Mean square that a correct model may leave [rad^2]. The search stops below it.
   double healthy_squares = 0.0;
-  /// What an effect's amplitude must reach: shares of the noise's, and of the residual in the beginning; and its gain:
-  /// of the residual beyond a correct model's.
+  /// Lower limits: an effect's amplitude as a share of the noise, and of the initial residual; its gain as a share of
+  /// the residual above a correct model's.
   double of_noise, of_beginning, of_rest;
 };
 
@@ -69,13 +69,13 @@ class EffectSearch {
   /// A model-free check should detect the effect and does not.
   bool refuted(const std::string& effect) const;
 
-  /// Why the trial isn't convincing, or "".
+  /// Why the trial is not convincing, or "".
   std::string objection(const Trial& trial) const;
   fitting::Comparison compared(const Extension& first, const Extension& second) const;
-  /// Mean square of a usual block beyond the noise [rad^2]: their geometric mean, on which single blocks that went
-  /// another way altogether (a joint that stuck, and didn't in the recording) have little say.
+  /// Geometric mean of the blocks' mean squares beyond the noise [rad^2]. Outlier blocks have little influence (a joint
+  /// that stuck in the simulation but not in the recording).
   double usual_rest(const Extension& extension) const;
-  /// Of the last round of choose(): what the effects that it didn't take would have added.
+  /// The effects that the last round of choose() did not take, with their gains.
   const std::vector<Trial>& last_additions() const { return last_additions_; }
   const BaseModel& base_model() const { return base_; }
 

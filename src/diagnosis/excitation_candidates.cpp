@@ -16,7 +16,7 @@ namespace {
 constexpr double kDuration_s = 6.0, kGlide_s = 0.6;
 constexpr double kShapeLasts_s = kDuration_s - kGlide_s;
 
-/// -1 .. 1 over time, of the range that the runs' commands had.
+/// Command over time, -1..1 over the range of the recorded commands.
 struct Shape {
   std::string name;
   std::function<double(double t_s)> at;
@@ -43,7 +43,7 @@ void add_steps(std::vector<Shape>& shapes) {
   }
 }
 
-/// Through the range in stairs, up and down, resting at each.
+/// A staircase through the range, up and down, with a rest at each step.
 void add_stairs(std::vector<Shape>& shapes) {
   for (const int stairs : {4, 8}) {
     shapes.push_back({fmt::format("a staircase of {} steps through the range and back", stairs), [=](double t_s) {
@@ -133,14 +133,14 @@ bench::Recording recording_of(const bench::Bench& bench, const bench::Recording&
   return r;
 }
 
-/// The lowest, the middle and the highest of what has an order.
+/// The lowest, middle and highest of sorted values.
 template <typename Value>
 std::vector<Value> three_of(const std::vector<Value>& sorted) {
   if (sorted.size() <= 3) return sorted;
   return {sorted.front(), sorted[sorted.size() / 2], sorted.back()};
 }
 
-/// A run of each setting that is to be tried; recordings are still those of other runs.
+/// One run for each setting to try; its recording is a placeholder from another run.
 std::vector<bench::BenchRun> settings(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs) {
   std::set<std::pair<double, double>> gains;
   std::set<std::tuple<double, double, double>> loads;

@@ -8,15 +8,15 @@
 
 namespace pmg::diagnosis {
 
-/// A run that nobody has recorded yet: its readings are those of a joint that stays where it begins.
+/// A run not recorded yet. Its readings are constant, at its first position.
 struct ExcitationCandidate {
   std::string shape;  ///< of the command, in words
   bench::BenchRun run;
 };
 
 /// Steps, staircases, sweeps, reversals and chirps of several sizes and paces, each with the lowest, middle and highest
-/// of the gains that were used and of the loads that the bench has. Six seconds each, within the range of the commands
-/// that were recorded; each begins where the recorded runs begin and glides to where its shape does.
+/// of the gains used and of the bench's loads. Each lasts six seconds, stays within the range of the recorded commands,
+/// starts where the recorded runs start and glides to the start of its shape.
 std::vector<ExcitationCandidate> excitation_candidates(const bench::Bench& bench,
                                                        const std::vector<calib::SingleJoint>& runs);
 

@@ -100,7 +100,7 @@ class Explaining {
     for (const effects::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
-      if (stiffest) return false;  // a shaft as stiff as any bends nowhere
+      if (stiffest) return false;  // at the upper bound of stiffness the shaft is rigid: no rival
     }
     const JointDiagnosisOptions& o = from_.options;
     return apart.blocks < o.fewest_apart_blocks || apart.deviations < o.apart_deviations ||

@@ -1,4 +1,4 @@
-// What is said of the effects that a search has chosen, and of the others.
+// Explains a search's result: causes with parameters and rivals, and reasons for the rejected effects.
 #pragma once
 
 #include <string>
@@ -12,21 +12,21 @@
 namespace pmg::diagnosis {
 
 struct ExplainedFrom {
-  const effects::NestedFit& searched;              ///< the runs that the choice was made on
-  const effects::NestedFit& all;                   ///< and all that were fitted
-  const effects::NestedFit& judged;                ///< those that errors are said of
-  const effects::NestedModel& fitted;              ///< the chosen effects, to all runs
-  const std::vector<evidence::Signature>& checks;  ///< without a model
+  const effects::NestedFit& searched;              ///< the runs of the search
+  const effects::NestedFit& all;                   ///< all fitted runs
+  const effects::NestedFit& judged;                ///< the runs of the reported errors
+  const effects::NestedModel& fitted;              ///< the chosen effects, fitted to all runs
+  const std::vector<evidence::Signature>& checks;  ///< model-free
   const NoiseFloor& noise;
   const JointDiagnosisOptions& options;
-  double error_after = 0.0;  ///< of the judged runs, with all causes [unit]
+  double error_after = 0.0;  ///< mean absolute error of the judged runs with all causes [unit]
   std::string unit;
 };
 
 struct Explanation {
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;
-  std::vector<Rivals> rivals;  ///< of each cause that can't be told apart
+  std::vector<Rivals> rivals;  ///< for each ambiguous cause
 };
 
 Explanation explain(EffectSearch& search, const Extension& chosen, const ExplainedFrom& from);

@@ -42,7 +42,7 @@ std::vector<evidence::Interval> parameter_intervals(const effects::NestedModel& 
     const effects::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     const double range = u.coordinate(u.upper) - u.coordinate(u.lower);
     if (u.upper - u.lower > options.widest_tolerance * u.upper)
-      continue;  // an effect at its limit, not a number known to a tolerance
+      continue;  // an effect's parameter at its bound, not one known to a tolerance
     const Eigen::VectorXd pull = inverse * information(seen, i) * (range / std::sqrt(12.0));
     covariance += pull * pull.transpose();
   }

@@ -17,14 +17,14 @@ namespace pmg::diagnosis {
 namespace {
 
 constexpr int kTimes = 2, kMostTimes = 8;
-constexpr double kWorthARun = 0.01;  // of what all pairs together want
+constexpr double kWorthARun = 0.01;  // least gain of a recording, as a share of all pairs' targets
 
 bool are(const std::string& a, const std::string& b, const char* one, const char* other) {
   return (a == one && b == other) || (a == other && b == one);
 }
 
-/// Dry friction c (1 + a) one way and c (1 - a) the other is friction c both ways and a constant torque -a c, whether
-/// the joint slides or sticks, unless c varies: with speed, load, temperature or heat.
+/// Dry friction c (1 + a) in one direction and c (1 - a) in the other equals friction c in both and a constant torque
+/// -a c, sliding or sticking, unless c varies with speed, load, temperature or heat.
 bool are_one_torque(const std::string& a, const std::string& b, const sim::ActuatorParameters& model) {
   const auto& f = model.friction;
   const bool varies = f.stribeck_Nm != 0.0 || f.load_driving != 0.0 || f.load_backdriving != 0.0 ||
@@ -32,13 +32,13 @@ bool are_one_torque(const std::string& a, const std::string& b, const sim::Actua
   return !varies && are(a, b, "offset", "direction_friction");
 }
 
-/// One of two models as the truth and the other one against it.
+/// Two rival models, the first taken as the truth.
 struct Pair {
   std::size_t rivals, truth, other;
   Separation separation;
 };
 
-/// A run not made yet, as every pair would see it.
+/// A candidate run: its blocks for every pair.
 using Seen = std::vector<Separation::Blocks>;
 
 class Campaign {
@@ -64,7 +64,7 @@ class Campaign {
     });
   }
 
-  /// The candidates' numbers, and how often each is to be recorded.
+  /// The chosen candidates, and how often to record each.
   std::map<std::size_t, int> choose() {
     std::map<std::size_t, int> chosen;
     const auto count = static_cast<double>(pairs_.size());
@@ -86,11 +86,11 @@ class Campaign {
     return chosen;
   }
 
-  /// Names of what is one and the same.
+  /// Pairs of effects that are the same on this rig.
   const std::vector<std::pair<std::string, std::string>>& same_here() const { return same_here_; }
   const ExcitationCandidate& candidate(std::size_t c) const { return candidates_[c]; }
 
-  /// What is expected of each two, whichever of them is the truth.
+  /// Expected deviations of each pair of rivals, the smaller of both directions.
   std::vector<ExpectedPair> expected() const {
     std::vector<ExpectedPair> found;
     for (const Pair& p : pairs_) {
@@ -105,7 +105,7 @@ class Campaign {
   }
 
  private:
-  /// Over all pairs, each counted as far as it is wanted.
+  /// Sum of the expected deviations over all pairs, each capped at its target.
   double total(const Seen* further) const {
     double sum = 0.0;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -117,8 +117,8 @@ class Campaign {
     return sum;
   }
 
-  /// Rounded readings would hide what changes by less than a quantum, in the model's derivatives too. A sensor's
-  /// quantum is a rival's matter only where they differ in it.
+  /// Rounding hides changes below a quantum, also in the Jacobian. So the quantum is set to 0 unless the rivals differ
+  /// in it.
   static std::vector<effects::NestedModel> without_rounding(const Rivals& rivals) {
     std::vector<effects::NestedModel> models = rivals.models;
     const auto quantum_rad = [](const effects::NestedModel& m) { return m.model.actuator.sensor.quantum_rad; };
@@ -163,7 +163,7 @@ class Campaign {
   std::vector<std::pair<std::string, std::string>> same_here_;
 };
 
-/// Of the trajectories that were asked for before and are in runs.csv now, the first free number.
+/// The first number that no requested trajectory in runs.csv uses.
 std::size_t first_number(const bench::Bench& bench) {
   const auto column = bench.runs.find("trajectory");
   if (!column) return 0;

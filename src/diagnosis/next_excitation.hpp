@@ -1,4 +1,4 @@
-// What to record next so that explanations part.
+// The runs to record next, so that rival explanations separate.
 #pragma once
 
 #include <optional>
@@ -10,32 +10,32 @@
 
 namespace pmg::diagnosis {
 
-/// Models that explain the runs equally well, fitted and linearised, and what they are called: a cause and what could
-/// stand in its place.
+/// Models that explain the runs equally well, fitted and linearised: a cause and its possible replacements.
 struct Rivals {
   std::vector<effects::NestedModel> models;
-  std::vector<std::string> names;  ///< the models'
+  std::vector<std::string> names;  ///< of the models
 };
 
-/// How sure a comparison has to be before it tells two models apart.
+/// The separation that a campaign must reach, and its cost limits.
 struct SeparationWanted {
   double deviations = 2.0;     ///< of the mean over blocks
   double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
-  double enough = 2.0;         ///< times `deviations`, to aim at
-  std::size_t most_runs = 6;   ///< that differ
+  double enough = 2.0;         ///< the target, in multiples of `deviations`
+  std::size_t most_runs = 6;   ///< different runs
   int most_recordings = 24;
 };
 
 struct AskedFor {
   std::optional<NextExcitation> next;
-  std::vector<std::pair<std::string, std::string>> same_here;  ///< two names for one torque on this rig
+  std::vector<std::pair<std::string, std::string>> same_here;  ///< pairs of effects with the same torque on this rig
 };
 
-/// A small campaign, chosen recording by recording: of the candidates (excitation_candidates.hpp) the one that brings
-/// all pairs of rivals together furthest towards twice of what is wanted, as Separation expects it, whichever of a pair
-/// is the truth; until all are there, or recordings don't help any more, or there are six runs or 24 recordings. Twice:
-/// what is found strays by one deviation. Direction-dependent friction and a constant torque are one where the friction
-/// varies with nothing; such a pair is named and not asked about.
+/// (bench, runs, rivals, wanted separation) => (campaign). A greedy choice: each recording is the candidate
+/// (excitation_candidates.hpp) that raises the expected separation most, summed over all pairs, with either of a pair
+/// as the truth and each capped at its target. It ends when all pairs reach the target, when no candidate helps, or at
+/// six runs or 24 recordings. The target is twice the wanted deviations, because the measured value scatters by one
+/// deviation. Direction-dependent friction and a constant torque are the same if the friction is constant: such a pair
+/// is reported in same_here and gets no runs.
 AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                          const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads = 1);
 

@@ -23,7 +23,7 @@ std::string command_csv(const bench::Bench& bench, const NextRun& run) {
   return model::format_number_table({"t_s", bench.rig == bench::Rig::kLinear ? "q_cmd_m" : "q_cmd_rad"}, rows);
 }
 
-/// What is known of a row, by column.
+/// The row's known cells, by column.
 std::map<std::string, std::string> cells(const NextRun& run, int repeat) {
   std::map<std::string, std::string> known = {{"file", fmt::format("{}_r{}.csv", run.name, repeat)},
                                               {"trajectory", run.name},
@@ -42,7 +42,7 @@ std::string runs_csv(const std::vector<std::string>& header, const NextExcitatio
   std::string text = fmt::format("{}\n", fmt::join(header, ","));
   for (const NextRun& run : next.runs) {
     for (int time = 0; time < run.times; ++time) {
-      const int repeat = time == 0 ? 0 : time + 1;  // 1 is what scores are of
+      const int repeat = time == 0 ? 0 : time + 1;  // repeat 1 is for the score
       const std::map<std::string, std::string> known = cells(run, repeat);
       std::vector<std::string> row;
       for (const std::string& column : header) row.push_back(known.contains(column) ? known.at(column) : "");

@@ -1,4 +1,4 @@
-// The numbers that a joint's diagnosis decides by.
+// The thresholds of a joint's diagnosis.
 #pragma once
 
 #include <vector>
@@ -7,27 +7,27 @@
 
 namespace pmg::diagnosis {
 
-/// listed() has units, reasons, and what each was set on.
+/// listed() gives the unit, the reason and the data of each threshold.
 struct JointDiagnosisOptions {
-  // An effect is taken.
+  // When an effect is taken.
   double least_deviations = 3.0, least_folds_won = 0.6;
   double amplitude_of_noise = 1.2, amplitude_of_beginning = 0.1, gain_of_rest = 0.35;
   double scratch_amplitude_of_noise = 0.4, scratch_amplitude_of_beginning = 0.05, scratch_gain_of_rest = 0.1;
   double equal_gain = 0.03, clearly_deviations = 3.0, regained_share = 0.5, most_effects = 6.0;
-  // Two effects are told apart.
+  // When two effects are told apart.
   double apart_deviations = 2.0, apart_share = 0.5, fewest_apart_blocks = 6.0, visible_share = 0.25;
   // The verdict.
   double remains_of_noise = 8.0, remains_of_beginning = 0.1;
-  // Readings decide alone.
+  // When the readings alone decide.
   double coarser_quantum = 1.5, quantum_of_noise = 0.5;
   // The base model.
   double gain_tolerance = 0.02, damping_tolerance = 0.03, friction_tolerance = 0.1, load_tolerance = 0.02;
   double deviation_of_tolerance = 0.5;
   // Intervals.
   double form_of_squares = 0.01, form_of_value = 0.04, widest_tolerance = 0.3;
-  // What is asked for next.
+  // The next excitation.
   double enough_deviations = 2.0, most_asked_runs = 6.0, most_asked_recordings = 24.0;
-  // What a search may cost.
+  // Cost limits of the search.
   double searched_runs = 40.0, fitted_effects = 8.0, exchanged_effects = 5.0, finished_effects = 3.0;
   double worth_finishing = 0.4, few_iterations = 4.0, many_iterations = 15.0;
 

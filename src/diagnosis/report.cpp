@@ -20,7 +20,7 @@ const std::vector<calib::SingleJoint>& shown_runs(const Diagnosis& diagnosis, co
   return diagnosis.held_out && !runs.scored.empty() ? runs.scored : runs.fitted;
 }
 
-/// Names that other versions of the catalogue gave are shown as they are.
+/// Title of an effect; an unknown name, from another version of the catalogue, is shown as it is.
 std::string title(const std::string& name) {
   for (const effects::Effect& effect : effects::catalogue()) {
     if (effect.name == name) return effect.title;

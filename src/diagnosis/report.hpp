@@ -8,7 +8,7 @@
 
 namespace pmg::diagnosis {
 
-/// Held-out runs are shown where there are any, else the fitted ones. threads: for the rollouts.
+/// Shows the held-out runs if there are any, else the fitted ones. threads: for the rollouts.
 pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs,
                              unsigned threads = 1);
 

@@ -13,7 +13,7 @@ namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kBlock_s = 0.5;  // a joint's motion forgets its disturbance within that
+constexpr double kBlock_s = 0.5;  // as fitting::Blocks
 constexpr std::size_t kFewestBlocks = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -74,7 +74,7 @@ bool varies(const std::vector<double>& values) {
   return low < high;
 }
 
-/// Which bin each sample is in: equally many samples each; none where the circumstance isn't known.
+/// Bin of each sample, by rank: bins have equal numbers of samples. `bins` marks an unknown circumstance.
 std::vector<std::size_t> bins_of(const std::vector<double>& values, std::size_t bins) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -83,14 +83,15 @@ std::vector<std::size_t> bins_of(const std::vector<double>& values, std::size_t 
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
   std::vector<std::size_t> bin(values.size(), bins);
   for (std::size_t rank = 0; rank < order.size(); ++rank) bin[order[rank]] = rank * bins / order.size();
-  // Equal values belong together.
+  // Equal values share a bin.
   for (std::size_t rank = 1; rank < order.size(); ++rank) {
     if (values[order[rank]] == values[order[rank - 1]]) bin[order[rank]] = bin[order[rank - 1]];
   }
   return bin;
 }
 
-/// Mean of the samples in one bin. Block b adds sum_b of n_b samples; the variance of sum / n is that of a ratio.
+/// Mean of one bin, with the cluster-robust variance of a ratio: B / (B - 1) * sum over its B blocks of
+/// (sum_b - n_b mean)^2 / n^2.
 ResidualBin bin_mean(const ResidualSamples& samples, const std::vector<double>& values,
                      const std::vector<std::size_t>& bin, std::size_t which) {
   std::vector<double> sum(samples.blocks, 0.0), count(samples.blocks, 0.0);
@@ -122,8 +123,8 @@ ResidualBin bin_mean(const ResidualSamples& samples, const std::vector<double>& 
   return found;
 }
 
-/// Runs are dealt to two halves, blocks of a second where there are fewer than four runs; each half's bin means predict
-/// the other half's residual.
+/// Twofold cross-validation: alternate runs (seconds, with fewer than four runs) form two halves, and each half's bin
+/// means predict the other half's residual.
 evidence::Interval explained_share(const ResidualSamples& samples, const std::vector<std::size_t>& bin,
                                    std::size_t bins) {
   const std::size_t runs = samples.run.empty() ? 0 : samples.run.back() + 1;

@@ -12,7 +12,7 @@ namespace pmg::diagnosis {
 
 namespace {
 
-/// Bins as a plot's columns, in thousandths.
+/// Bins as a plot's columns [mrad, mm].
 struct Columns {
   std::vector<double> at, mean;
   std::vector<pages::Interval> intervals;

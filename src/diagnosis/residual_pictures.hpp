@@ -1,4 +1,4 @@
-// The report's pictures of what the residual hangs together with.
+// The report's pictures of the residual's dependences.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace pmg::diagnosis {
 
-/// A section of the page: residual before and after against each circumstance, and over frequency.
+/// Adds a section: residual before and after, against each circumstance and over frequency.
 void show_residuals(pages::Page& page, const bench::Bench& bench, const Diagnosis& diagnosis,
                     const std::vector<calib::SingleJoint>& runs, unsigned threads);
 

@@ -12,8 +12,8 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-/// Of one window without its mean, up to half the sampling rate. A sum of n^2 / 2 terms: windows have a few hundred
-/// samples.
+/// Fourier transform of one Hann window without its mean, up to half the sampling rate. Direct sums of n^2 / 2 terms
+/// are fast enough: windows have a few hundred samples.
 Spectrum windowed_transform(const std::vector<double>& values, std::size_t first, std::size_t count) {
   std::vector<double> window(count);
   double mean = 0.0;
@@ -72,7 +72,7 @@ ResidualSpectrum residual_spectrum(const std::vector<calib::SingleJoint>& runs, 
     }
   }
   if (found.windows == 0) return found;
-  // Hann's window has a mean square of 3/8; one-sided densities count both signs of a frequency.
+  // The mean square of a Hann window is 3/8; the factor 2 makes the densities one-sided.
   const double scale = 2.0 * step_s / (0.375 * static_cast<double>(count) * static_cast<double>(found.windows));
   for (std::size_t f = 1; f < lines; ++f) {
     found.frequency_Hz.push_back(static_cast<double>(f) / (static_cast<double>(count) * step_s));

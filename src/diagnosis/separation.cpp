@@ -9,7 +9,7 @@ namespace {
 
 double mean_square(const fitting::NormalEquations& block) { return block.squares / std::max(1.0, block.samples); }
 
-/// The geometric mean over blocks.
+/// Geometric mean of the blocks' mean squares.
 double usual_square(const effects::NestedModel& model, double noise_squares) {
   if (model.blocks.empty()) return noise_squares;
   double sum = 0.0;
@@ -18,14 +18,14 @@ double usual_square(const effects::NestedModel& model, double noise_squares) {
   return std::exp(sum / static_cast<double>(model.blocks.size()));
 }
 
-/// Sums over blocks of what they are expected to say, its square, and the variance of each.
+/// Sums over blocks: expected log-ratio, and its square plus its variance.
 struct Sums {
   double blocks = 0.0, values = 0.0, squares = 0.0;
 
   void add(double difference_squares, double usual_squares, double noise_squares) {
     const double floor = usual_squares + noise_squares;
     const double value = std::log1p(difference_squares / floor);
-    // mean((e + d)^2) - mean(e^2) = d^2 + 2 mean(e d): the last strays by 2 |e| |d|.
+    // mean((e + d)^2) - mean(e^2) = d^2 + 2 mean(e d): the last term scatters by 2 |e| |d|.
     const double strays = 2.0 * std::sqrt(usual_squares * difference_squares) / (floor + difference_squares);
     blocks += 1.0;
     values += value;

@@ -9,7 +9,7 @@ namespace pmg::effects {
 
 namespace {
 
-constexpr std::size_t kMostFolds = 8;  // of a kind; more groups are left out together
+constexpr std::size_t kMostFolds = 8;  // of a kind; with more groups, several share a fold
 
 }  // namespace
 

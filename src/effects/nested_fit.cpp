@@ -15,7 +15,7 @@ calib::JointModel model_at(const NestedModel& model, const Eigen::VectorXd& coor
   return changed;
 }
 
-/// Keeps references to the model and to the known derivatives.
+/// The result refers to the model and to the known Jacobian: both must outlive it.
 fitting::Problem NestedFit::problem(const NestedModel& model, const RolloutJacobian* known) const {
   fitting::Problem problem{
       .residuals = [this, &model](const Eigen::VectorXd& x) { return residuals(model_at(model, x)); },

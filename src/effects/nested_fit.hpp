@@ -1,4 +1,4 @@
-// Fits of nested models to a bench's runs: the joint's model with some parameters free, by Gauss-Newton steps.
+// Gauss-Newton fits of nested models to a bench's runs: the joint's model with some parameters free.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,23 @@
 
 namespace pmg::effects {
 
-/// A fitted model; coordinates are those of the unknowns.
+/// A fitted model. LinearisedFit's coordinates are those of the unknowns, in their order.
 struct NestedModel : fitting::LinearisedFit {
   calib::JointModel model;
   std::vector<Unknown> unknowns;
 };
 
-/// (model, coordinates) => (the joint's model with its unknowns there).
+/// (model, coordinates) => (joint model with the unknowns at these coordinates).
 calib::JointModel model_at(const NestedModel& model, const Eigen::VectorXd& coordinates);
 
-/// Derivatives of the rollouts at a model; columns are the unknowns'.
+/// Jacobian of the rollouts at a model, one column per unknown.
 struct RolloutJacobian {
   std::vector<Unknown> unknowns;
   fitting::Jacobian of_run;
 };
 
-/// The runs that models are fitted to. `known` below: derivatives at a model nearby; unknowns that it has as well take
-/// its columns instead of rollouts of their own.
+/// Fits models to one set of runs. `known` below is a Jacobian at a nearby model: unknowns that it contains reuse its
+/// columns and cost no rollouts.
 class NestedFit {
  public:
   NestedFit(std::vector<calib::SingleJoint> runs, unsigned threads)
@@ -41,14 +41,14 @@ class NestedFit {
   /// One rollout of every run for each unknown.
   RolloutJacobian jacobian(const NestedModel& model, const fitting::Residuals& at_model) const;
 
-  /// From the start's values; never worse than the start. Each iteration costs a rollout for each unknown, and one to
-  /// six more.
+  /// Gauss-Newton from the start's values; the result is never worse than the start. Each iteration costs one rollout
+  /// of every run for each unknown, and one to six more.
   NestedModel fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
                   const RolloutJacobian* known = nullptr, double prior_weight = 0.0) const;
   /// Fills the model's blocks, at the cost of jacobian().
   void linearise(NestedModel& model, const RolloutJacobian* known = nullptr) const;
 
-  /// (fitted model, folds) => (squares of each block by fits without its fold).
+  /// (fitted model, folds) => (squares of each block by fits without its fold [rad^2]).
   Eigen::VectorXd held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const;
 
  private:

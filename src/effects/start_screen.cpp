@@ -25,7 +25,8 @@ StartScreen::StartScreen(const NestedFit& fit, const NestedModel& current)
   for (const Eigen::MatrixXd& slope : jacobian_.of_run) information_ += slope.transpose() * slope;
 }
 
-/// The unknowns that the effect doesn't set move to where their slopes say; squares as expected there.
+/// One bounded Gauss-Newton step d of the unknowns that the effect does not set; expected squares
+/// r^T r + 2 g^T d + d^T A d, with g = J^T r and A = J^T J of the current model's Jacobian.
 void StartScreen::follow(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const {
   start.squares = fitting::sum_of_squares(residuals);
   if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
@@ -52,8 +53,8 @@ void StartScreen::look(const Effect& effect, const std::vector<double>& values,
   if (values.size() == 1 || effect.name == "load") look_along(effect, values, there, into);
 }
 
-/// Along the straight line from the model without it, how much of it would be best? For effects of one number, and a
-/// load's two, in which rollouts are nearly linear.
+/// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
+/// within 0..3. For the load's effect and effects of one parameter, in which rollouts are nearly linear.
 void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
                              std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
@@ -77,7 +78,8 @@ void StartScreen::look_along(const Effect& effect, const std::vector<double>& va
   if (std::isfinite(scaled.squares)) into.push_back(scaled);
 }
 
-/// The response to a small wave over the joint's angle is linear in its sine and cosine.
+/// The response to a small wave over the joint's angle is linear in its sine and cosine parts: two rollouts give the
+/// least-squares amplitude and phase (2 x 2 normal equations).
 void StartScreen::look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase,
                                double height, const calib::JointModel& flat, std::vector<ScreenedStart>& into) const {
   ScreenedStart start{flat, 0.0};

@@ -1,4 +1,4 @@
-// A cheap look at what an effect could explain: rollouts with it, the rest of the model following linearly.
+// A cheap screen of an effect's start values: rollouts with the effect, the other unknowns refitted linearly.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,18 @@
 
 namespace pmg::effects {
 
-/// A model with the effect in it, from which a fit is worth beginning.
+/// A model with the effect in it: a promising start of a fit.
 struct ScreenedStart {
   calib::JointModel model;
-  double squares = 0.0;  ///< expected once the rest has followed [rad^2]
+  double squares = 0.0;  ///< expected after the linear refit of the other unknowns [rad^2]
 };
 
 class StartScreen {
  public:
   StartScreen(const NestedFit& fit, const NestedModel& current);
 
-  /// The most promising starts of the effect, the best first.
+  /// The effect's best starts, at most four, the lowest expected squares first. Costs one rollout of every run for each
+  /// start value, two for each wave.
   std::vector<ScreenedStart> best(const Effect& effect, const BenchScale& scale) const;
 
   /// At the current model.

@@ -11,7 +11,8 @@ namespace {
 
 using calib::JointModel;
 
-/// What the drive would put out at the recorded positions, by its law without any timing.
+/// Nominal drive torque at a recorded position, kp e clamped to the drive's limit, without delays; or the recorded
+/// torque.
 double wished_torque_Nm(const bench::BenchRun& run, std::size_t k, double supply, const JointModel& model) {
   const auto& drive = model.actuator.drive;
   const bench::Recording& r = run.recording;
@@ -21,7 +22,7 @@ double wished_torque_Nm(const bench::BenchRun& run, std::size_t k, double supply
   return drive.torque_per_unit_Nm * supply * output;
 }
 
-/// The smallest step between readings, where all are multiples of it.
+/// The smallest step between distinct readings if all steps are multiples of it, else 0.
 double quantum_of(const std::vector<calib::SingleJoint>& runs) {
   std::vector<double> values;
   for (const calib::SingleJoint& run : runs) {
@@ -43,7 +44,7 @@ double quantum_of(const std::vector<calib::SingleJoint>& runs) {
   return off < 0.1 ? smallest : 0.0;
 }
 
-/// One period over the range that was moved [1/turn].
+/// Order of a wave with one period over the range of motion [1/turn].
 double lowest_order(const BenchScale& scale) {
   return 2.0 * 3.141592653589793 / std::max(0.1, scale.position_high_rad - scale.position_low_rad);
 }
@@ -91,8 +92,8 @@ double Unknown::value(double coordinate) const {
   return std::clamp(logarithmic ? std::exp(coordinate) : coordinate, lower, upper);
 }
 
-// Differences are wide enough that a joint which sticks a sample sooner or later doesn't pass for a slope. A held
-// command is late by whole steps of the simulation: a smaller difference of the delay changes nothing.
+// The differences are wide: a joint that sticks one sample earlier or later must not dominate the slope. A held command
+// is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
 fitting::Coordinate Unknown::range() const {
   constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
   const double step = name == "command.delay_s" ? kDelayStep_s
@@ -131,7 +132,7 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
     u.typical = 0.3;
   }
   u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && name != "ripple.order";
-  // What doesn't come back within the range that was moved is a slope or an offset, and no wave.
+  // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
   if (name == "ripple.order") u.lower = std::max(u.lower, lowest_order(scale)), u.typical = 1.0;
   if (name == "ripple.phase_rad" || name == "sensor.eccentricity_phase_rad")
     u.lower = -10.0, u.upper = 10.0, u.typical = 1.0;
@@ -189,8 +190,8 @@ std::vector<std::vector<double>> starts(const Effect& effect, const JointModel& 
       for (const double no_load : {1.05, 1.4, 2.5}) found.push_back({stall * peak, no_load * speed});
     }
   } else if (effect.name == "supply_sag") {
-    // What stands against back-EMF is a voltage; other drives regulate their current, whatever the bus. A bus that was
-    // recorded is an input, with its sag.
+    // Only voltage drives, which have back-EMF, feel the bus; the others regulate their current. A recorded bus voltage
+    // is an input that already contains the sag.
     if (a.drive.back_emf_s_per_rad > 0.0 && !scale.bus_recorded) each({0.05, 0.2, 0.5, 1.0}, 1.0 / peak);
   } else if (effect.name == "gain") {
     each({0.6, 0.8, 0.9, 1.1, 1.25, 1.6}, a.drive.kp_scale);

@@ -1,4 +1,4 @@
-// What a fit of the diagnosis may change, how far, and where it begins to look.
+// The free parameters of a diagnosis fit: ranges, difference steps, priors and start values.
 #pragma once
 
 #include <string>
@@ -9,40 +9,42 @@
 
 namespace pmg::effects {
 
-/// How strongly and how fast a bench was moved: the yardsticks for friction, limits and steps of differences.
+/// Typical torque, speed, inertia and range of a bench's runs. They scale ranges, start values and difference steps.
 struct BenchScale {
-  double torque_Nm = 1.0;       ///< root mean square of what the drive wished, from recorded positions
-  double torque_peak_Nm = 1.0;  ///< 99 % are below
-  double speed_rad_s = 1.0;     ///< 98 % of the recorded speeds are below
-  double inertia_kg_m2 = 0.01;  ///< median of the loads with the rotor
-  double position_low_rad = 0.0, position_high_rad = 0.0;
-  double quantum_rad = 0.0;  ///< the readings are multiples of it; 0 where they aren't
+  double torque_Nm = 1.0;       ///< rms of the nominal drive torque at the recorded positions
+  double torque_peak_Nm = 1.0;  ///< its 99 % quantile
+  double speed_rad_s = 1.0;     ///< 98 % quantile of the recorded speeds
+  double inertia_kg_m2 = 0.01;  ///< median over runs of load and rotor inertia
+  double position_low_rad = 0.0, position_high_rad = 0.0;  ///< 1 % and 99 % quantiles
+  double quantum_rad = 0.0;                                ///< all readings are multiples of it; 0 for a fine sensor
   bool bus_recorded = false;
 };
 
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                     const calib::JointModel& model);
 
-/// A parameter of a fit. Fits move it along its coordinate: the value, or its logarithm.
+/// A free parameter. A fit moves its coordinate: the value, or its natural logarithm.
 struct Unknown : calib::FitParameter {
   bool logarithmic = false;
-  double typical = 1.0;                    ///< a change of it that matters
-  double expected = 0.0, deviation = 0.0;  ///< what a calibration says of its coordinate; nothing where deviation is 0
+  double typical = 1.0;  ///< a change of the value that matters
+  double expected = 0.0,
+         deviation = 0.0;  ///< normal prior of the coordinate, from a calibration; none if deviation is 0
 
   double coordinate(double value) const;
   double value(double coordinate) const;
-  fitting::Coordinate range() const;  ///< its coordinate's
+  fitting::Coordinate range() const;  ///< bounds, difference step and prior of the coordinate
   bool operator==(const Unknown&) const = default;
 };
 
-/// Over the whole range in which it makes sense on this bench.
+/// (parameter name, bench, scale) => (unknown with its whole plausible range on this bench).
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);
 
-/// Values of the effect's parameters from which fits begin, in their order; current: the model that is extended.
+/// (effect, model to extend, scale) => (start values of the effect's parameters, in the order of Effect::parameters).
 std::vector<std::vector<double>> starts(const Effect& effect, const calib::JointModel& current,
                                         const BenchScale& scale);
 
-/// Units that don't change by a fit of their neighbourhood: an order of cogging, the period of a loop.
+/// True for parameters that a fit keeps at their start value, because rollouts are not smooth in them: the period of a
+/// sample-and-hold and a sensor's quantum.
 bool is_jagged(const std::string& parameter);
 
 }  // namespace pmg::effects

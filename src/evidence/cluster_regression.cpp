@@ -8,7 +8,7 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kImitated = 0.01;  // of a column's norm
+constexpr double kImitated = 0.01;  // share of a column's norm: with less of its own the column is collinear
 
 double rms(const Eigen::VectorXd& values) {
   return values.size() > 0 ? values.norm() / std::sqrt(static_cast<double>(values.size())) : 0.0;
@@ -29,7 +29,7 @@ ClusterRegression::ClusterRegression(const std::vector<Eigen::VectorXd>& columns
   for (const int cluster : clusters_) clusters_count_ = std::max(clusters_count_, cluster + 1);
 }
 
-/// Twice: once leaves rounding where columns are nearly alike.
+/// Projects twice: one pass leaves rounding errors where columns are nearly collinear.
 Eigen::VectorXd ClusterRegression::without_columns(const Eigen::VectorXd& values) const {
   if (basis_.cols() == 0) return values;
   Eigen::VectorXd rest = values - basis_ * (basis_.transpose() * values);

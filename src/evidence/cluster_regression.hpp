@@ -1,4 +1,4 @@
-// Least squares whose observations hang together within clusters.
+// Least squares with observations that are correlated within clusters.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,23 +6,29 @@
 
 namespace pmg::evidence {
 
-/// What one more term adds to a regression that has the others already.
+/// One more term added to a regression. u is the part of its column orthogonal to the other columns, r the residual of
+/// y without the term.
 struct TermEstimate {
-  double coefficient = 0.0, deviation = 0.0;  ///< one standard deviation, cluster-robust
+  /// b = u.r / u.u, and its cluster-robust standard deviation sqrt(n / (n - p - 1) * sum over the n clusters of
+  /// (sum of u_i e_i)^2) / u.u, with e = r - b u and p other columns (K.-Y. Liang, S. L. Zeger, Biometrika 73:13,
+  /// 1986).
+  double coefficient = 0.0, deviation = 0.0;
   double t() const { return deviation > 0.0 ? coefficient / deviation : 0.0; }
-  double share = 0.0;       ///< rms of what only this term adds, over the left-hand side's rms
-  double share_sure = 0.0;  ///< the same with the coefficient two deviations farther from 0
-  double own = 0.0;         ///< rms of the term that the others can't imitate, over its rms
+  double share = 0.0;       ///< |b| rms(u) / rms(y)
+  double share_sure = 0.0;  ///< upper bound of share: (|b| + 2 deviations) rms(u) / rms(y)
+  double own = 0.0;         ///< rms(u) / rms(column): 0 for a linear combination of the other columns
 };
 
-/// y = columns * coefficients + error. Columns that the ones before them imitate to 1 % are left out.
+/// y = columns * coefficients + error. A column is left out if a linear combination of the columns before it leaves at
+/// most 1 % of its norm.
 class ClusterRegression {
  public:
   ClusterRegression(const std::vector<Eigen::VectorXd>& columns, const Eigen::VectorXd& y, std::vector<int> clusters);
 
   TermEstimate term(const Eigen::VectorXd& column) const;
 
-  /// Of two terms together: their coefficients, and T^2 (chi-square with 2 degrees of freedom where neither is real).
+  /// Two terms together: coefficients b, Wald statistic t2 = b^T cov(b)^-1 b (chi-square with 2 degrees of freedom if
+  /// both true coefficients are 0), rms of both terms over rms(y), and the smaller `own` of the two.
   struct Pair {
     Eigen::Vector2d coefficients = Eigen::Vector2d::Zero();
     double t2 = 0.0, share = 0.0, own = 0.0;
@@ -34,8 +40,8 @@ class ClusterRegression {
 
  private:
   Eigen::VectorXd without_columns(const Eigen::VectorXd& values) const;
-  Eigen::MatrixXd basis_;  // orthonormal
-  Eigen::VectorXd rest_;   // of y
+  Eigen::MatrixXd basis_;  // orthonormal basis of the columns
+  Eigen::VectorXd rest_;   // part of y orthogonal to it
   double rms_;             // of y
   std::vector<int> clusters_;
   int clusters_count_ = 0;

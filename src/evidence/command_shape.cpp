@@ -13,8 +13,8 @@ constexpr double kLongest_s = 0.1;
 constexpr int kResamples = 200;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// For each candidate shape (columns) and cluster (rows): squared residual of the balance, and of the drive with
-/// neither load nor acceleration to explain it. The second makes shapes comparable: less command is less to explain.
+/// For each cluster (row) and candidate shape (column): squared residual of the full balance, and of a balance without
+/// load and acceleration. Their ratio compares shapes fairly: a shape that shrinks the command shrinks both.
 struct Profile {
   Eigen::MatrixXd residual, whole;
   double ratio(Eigen::Index shape) const { return residual.col(shape).sum() / whole.col(shape).sum(); }
@@ -57,7 +57,7 @@ Profile profile(TorqueBalance& balance, const std::vector<CommandShape>& shapes)
   return found;
 }
 
-/// How often each cluster is drawn.
+/// A bootstrap sample: how often each cluster is drawn.
 Eigen::VectorXd draw(Eigen::Index clusters, std::mt19937& random) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(clusters);
   for (Eigen::Index i = 0; i < clusters; ++i) {
@@ -70,7 +70,7 @@ Eigen::VectorXd ratios(const Profile& profile, const Eigen::VectorXd& weights) {
   return (profile.residual.transpose() * weights).array() / (profile.whole.transpose() * weights).array();
 }
 
-/// Where a parabola through the lowest value and its neighbours has its lowest point; values on an even grid.
+/// Minimum of the parabola through the lowest value and its two neighbours, as an index into an even grid.
 double lowest_at(const Eigen::VectorXd& values) {
   Eigen::Index best = 0;
   values.minCoeff(&best);
@@ -127,14 +127,14 @@ void find_rate(TorqueBalance& balance, double delay_s, std::mt19937& random, Fou
 
 FoundShape find_shape(TorqueBalance& balance, unsigned seed) {
   constexpr std::size_t kFewestWindows = 40;
-  constexpr double kWorthIt = 0.1;  // of the balance's residual
+  constexpr double kWorthIt = 0.1;  // share of the balance's squared residual
   FoundShape found;
   found.rate_limit_rad_s = {kInfinite, kInfinite, kInfinite};
   if (!balance.shaped() || balance.windows() < kFewestWindows) return found;
   found.known = true;
   std::mt19937 random(seed);
   CommandShape shape;
-  // One after the other, twice: a limited rate looks like a delay until it is known, and the other way round.
+  // Alternate twice: a rate limit is a proxy for a delay until it is known, and vice versa.
   for (int round = 0; round < 2; ++round) {
     find_delay(balance, shape.rate_limit_rad_s, random, found);
     shape.delay_s = found.delay_gain > kWorthIt && found.delay_s.low > 0.0 ? found.delay_s.value : 0.0;

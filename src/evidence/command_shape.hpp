@@ -1,4 +1,4 @@
-// How late and how fast a command takes effect, found where the torques balance best.
+// A command's dead time and rate limit: those with which the torques balance best.
 #pragma once
 
 #include "evidence/cluster_regression.hpp"
@@ -9,14 +9,14 @@ namespace pmg::evidence {
 
 struct FoundShape {
   Interval delay_s;
-  double delay_gain = 0.0;  ///< share of the balance's residual that the delay removes, -inf..1
-  /// Infinite where a limit makes nothing better; low and high are the range in which it is as good.
-  Interval rate_limit_rad_s;
-  Interval rate_gain;  ///< share of the balance's residual that the limit removes
-  bool known = false;  ///< false where too little moves
+  double delay_gain = 0.0;    ///< share of the balance's squared residual that the delay removes, 0..1
+  Interval rate_limit_rad_s;  ///< best limit, with a 95 % bootstrap interval; infinite where the search was not run
+  Interval rate_gain;         ///< share of the balance's squared residual that the limit removes, -inf..1
+  bool known = false;         ///< false if too little moves
 };
 
-/// Sets the balance to the shape found, as far as it is sure: what isn't stays neutral.
+/// (balance) => (best shape). Sets the balance to the shape found; a delay or a limit that is not significant stays
+/// neutral. 95 % intervals are a bootstrap over clusters, seeded.
 FoundShape find_shape(TorqueBalance& balance, unsigned seed = 1);
 
 }  // namespace pmg::evidence

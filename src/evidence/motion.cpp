@@ -11,11 +11,12 @@ namespace pmg::evidence {
 namespace {
 
 constexpr double kNoMotion = std::numeric_limits<double>::quiet_NaN();
-constexpr double kJump = 4.0;           // times what the commands beside it do
-constexpr double kSmallestJump = 0.04;  // of the command's range
+constexpr double kJump = 4.0;           // ratio to the command's move in the neighbouring samples
+constexpr double kSmallestJump = 0.04;  // share of the command's range
 constexpr std::size_t kSmallestReach = 2;
 
-/// Slope and curvature of a parabola through the valid samples from first to last, at the sample `at`.
+/// Slope [rad/s] and curvature [rad/s^2] at the sample `at` of a least-squares parabola through the valid samples from
+/// first to last; NaN with fewer than four of them.
 Eigen::Vector2d parabola(const bench::Recording& r, std::size_t first, std::size_t last, std::size_t at) {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d products = Eigen::Vector3d::Zero();

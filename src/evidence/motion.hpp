@@ -1,4 +1,4 @@
-// What a recording alone says of a joint's motion, sample by sample: no simulation is asked.
+// A joint's motion, estimated sample by sample from a recording alone, without a simulation.
 #pragma once
 
 #include <cstddef>
@@ -8,22 +8,23 @@
 
 namespace pmg::evidence {
 
-/// Columns as long as the recording.
+/// One value per sample of the recording.
 struct Motion {
-  std::vector<double> dq_rad_s, ddq_rad_s2;  ///< of a local parabola; NaN at the ends
-  /// What the drive's law makes of the recorded error, in the drive's unit times supply (Nm of a position PD, volts of
-  /// a servo), or the recorded torque; 0 while switched off. NaN where dq is needed and missing.
+  std::vector<double> dq_rad_s, ddq_rad_s2;  ///< derivatives of a local parabola; NaN at the ends
+  /// Output of the drive's law for the recorded error, clamp(kp e + kd de/dt + tau_ff) * supply (Nm for a position PD,
+  /// volts for a servo), or the recorded torque. 0 while switched off; NaN where the law needs dq and it is missing.
   std::vector<double> drive;
-  std::vector<bool> at_limit;        ///< the drive gives all it has
-  std::vector<double> gravity_Nm;    ///< torque that holds the load there
-  std::vector<double> since_step_s;  ///< since the command last jumped; NaN before the first jump
-  std::vector<std::size_t> steps;    ///< samples at which the command has just jumped
+  std::vector<bool> at_limit;        ///< the drive's output is saturated
+  std::vector<double> gravity_Nm;    ///< gravity torque of the load, G sin(q - hangs_at)
+  std::vector<double> since_step_s;  ///< time since the command last jumped; NaN before the first jump
+  std::vector<std::size_t> steps;    ///< first sample after each jump of the command
 };
 
-/// window_s: the parabola is fitted to the samples within half of it on either side, to two on either side at least.
+/// The parabola is fitted to the samples within window_s / 2 on either side, at least two samples on either side.
 Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s = 0.05);
 
-/// Samples whose command is farther from the one before than from anything that the neighbouring samples' commands do.
+/// (recording) => (samples at which the command jumps): it moves there by more than 4 times its move in the samples
+/// before and after, and by more than 4 % of its range.
 std::vector<std::size_t> command_steps(const bench::Recording& recording);
 
 }  // namespace pmg::evidence

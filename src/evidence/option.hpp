@@ -1,4 +1,4 @@
-// A number that a diagnosis decides by, with its reason.
+// A threshold of a diagnosis, with its reason.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,11 +11,11 @@ struct Option {
   std::string name;
   double value = 0.0;
   std::string unit;    ///< "" for a share, a count or a number of standard deviations
-  std::string reason;  ///< what it decides
-  std::string set_on;  ///< the data that it was set on, or "assumed"
+  std::string reason;  ///< the decision that depends on it
+  std::string set_on;  ///< the data it was tuned on, or "assumed"
 };
 
-/// [{name, value, unit, reason, set_on}], in their order.
+/// [{name, value, unit, reason, set_on}], in the order given.
 nlohmann::ordered_json options_json(const std::vector<Option>& options);
 
 }  // namespace pmg::evidence

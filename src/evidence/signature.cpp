@@ -21,7 +21,7 @@ const char* name(Agreement agreement) {
 
 namespace {
 
-/// A limited rate, too, sets off slowly; then only the balance, which knows the rate, can tell of a delay.
+/// A rate limit also delays the onset of motion. Then only the torque balance, which knows the rate, can show a delay.
 void doubt_onset(std::vector<Signature>& checks) {
   const bool limited = std::any_of(checks.begin(), checks.end(), [](const Signature& check) {
     return check.effect == "rate_limit" && check.agreement == Agreement::kAgrees;

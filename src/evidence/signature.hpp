@@ -1,5 +1,5 @@
-// Checks of single effects on the recordings alone: no simulation, no fit of a rollout. What they see speaks for or
-// against a cause that a fit names.
+// Model-free checks: each looks for one effect in the recordings alone, without a simulation. Their results support or
+// contradict the causes that a fit names.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 namespace pmg::evidence {
 
 enum class Agreement {
-  kAgrees,     ///< the recordings show the effect; falsely in at most 2 % of recordings of a joint without it
-  kDisagrees,  ///< they would show it, and don't
+  kAgrees,     ///< the recordings show the effect; at most 2 % false alarms on joints without it
+  kDisagrees,  ///< the recordings should show the effect and do not
   kCannotTell,
 };
 
@@ -22,16 +22,16 @@ const char* name(Agreement agreement);
 
 struct Signature {
   std::string effect;  ///< of the catalogue
-  std::string check;   ///< what was looked at: "step onset", "balance of torques", ...
+  std::string check;   ///< the method: "step onset", "balance of torques", ...
   Agreement agreement = Agreement::kCannotTell;
-  Interval value;  ///< what was measured, with its 95 % interval; NaN where it couldn't be
+  Interval value;  ///< the measured value with its 95 % interval; NaN if it could not be measured
   std::string unit;
   std::string sentence;  ///< for people, with the numbers
 };
 
-/// One for each check; where the runs don't have what it takes, it says what is missing. Effects that don't show
-/// without a model have none, some have two. Friction and offsets that a check agrees with may well be in the model
-/// already.
+/// (bench, runs) => (one result per check). Where the runs cannot answer a check, its sentence says what is missing.
+/// Some effects have two checks; effects that need a model have none. A check detects everything that the joint has,
+/// also the friction and the offsets that the model already contains.
 std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                   const SignatureOptions& options = {});
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The balance's columns. Drive = load + rotor + friction: all at the joint, in the drive's unit.
+/// Columns of the balance: drive = load + rotor + friction, all at the joint, in the drive's unit.
 struct Columns {
   explicit Columns(const TorqueBalance& balance)
       : load(balance.integral([](const BalancePoint& p) { return p.gravity_Nm; }) + balance.load_inertia_Nm()),
@@ -62,7 +62,7 @@ class BalanceChecks {
     found_.push_back({effect, "balance of torques", Agreement::kCannotTell, {kNaN, kNaN, kNaN}, "", why});
   }
 
-  /// An effect that is one term of the balance. must_be_positive: a friction that pushes is no friction.
+  /// An effect that is one term of the balance. must_be_positive: friction cannot drive the motion.
   void add_term(const std::string& effect, const std::vector<Column>& base, const Column& column,
                 const std::string& what, const std::string& unit, bool must_be_positive, double worth_share) {
     if (!enough_) return cannot_tell(effect, "too little motion was recorded");
@@ -147,7 +147,8 @@ class BalanceChecks {
              options_.drive_share);
   }
 
-  /// A source resistance in front of a bridge counts by the duty's square.
+  /// Behind a source resistance R the bridge, at duty d, draws the bus current d i. The bus drops by R d i, the motor's
+  /// voltage by R d^2 i.
   void add_supply_sag(const std::vector<Column>& base) {
     if (bench_.law != bench::DriveLaw::kServoVoltage) {
       return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
@@ -158,7 +159,7 @@ class BalanceChecks {
              "drive that torques need beyond their share at full duty", "V/Nm", true, options_.drive_share);
   }
 
-  /// Within the band the whole of the gain's output is missing: a share of 1 is what tells it from friction.
+  /// Inside the band the gain's whole output is missing: a coefficient near 1 tells a dead band from friction.
   void add_dead_band() {
     if (!balance_.shaped() || !enough_) return cannot_tell("dead_band", "too little motion was recorded");
     if (bench_.rig == bench::Rig::kLinear) return cannot_tell("dead_band", "looked for on turning joints only");
@@ -206,14 +207,15 @@ class BalanceChecks {
     found_.push_back(s);
   }
 
-  /// The strongest of many orders is strong by chance: the bar grows with their number.
+  /// Takes the strongest of kOrders orders, with a Bonferroni threshold: 0.1 % false alarms over all of them, and
+  /// P(t2 > x) = exp(-x / 2) for chi-square with 2 degrees of freedom.
   void add_cogging() {
     if (!enough_) return cannot_tell("cogging", "too little motion was recorded");
     if (bench_.rig == bench::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
     const ClusterRegression base = regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy,
                                                balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; })});
-    constexpr int kLowest = 3, kOrders = 60;             // below, a wrong load looks the same
-    const double bar = 2.0 * std::log(kOrders / 0.001);  // chi-square, 2 degrees of freedom
+    constexpr int kLowest = 3, kOrders = 60;  // a wrong load mimics orders below 3
+    const double bar = 2.0 * std::log(kOrders / 0.001);
     double best = 0.0, largest_missed = 0.0;
     int at = 0;
     ClusterRegression::Pair strongest;

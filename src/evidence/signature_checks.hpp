@@ -12,18 +12,17 @@ namespace pmg::evidence {
 std::vector<Signature> balance_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                       const SignatureOptions& options);
 
-/// (best delay and rate limit of a command, time of a sample) => (checks for delay and rate_limit).
+/// (best command shape, sample time) => (checks for delay and rate_limit).
 std::vector<Signature> command_shape_checks(const FoundShape& shape, double sample_s);
 
-/// How a hanging load loses its swing while the drive is off: by Coulomb friction evenly, by viscous friction in
-/// proportion.
+/// A pendulum with its drive off: Coulomb friction lowers the amplitude linearly, viscous friction exponentially.
 std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                          const SignatureOptions& options);
 
-/// When readings begin to move after a step of the command.
+/// Dead time from a step of the command to the onset of motion.
 Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs);
 
-/// Where the joint comes to rest short of its command: by 1/gain under friction, whatever the gain in a dead band.
+/// Steady-state error: proportional to 1 / gain under Coulomb friction, independent of the gain in a dead band.
 std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                    const SignatureOptions& options);
 

@@ -1,4 +1,4 @@
-// Checks of a command's delay and rate limit, by which torques balance best.
+// Checks of a command's delay and rate limit from the torque balance.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Signature too_little(const std::string& effect) {
 
 Signature delay_check(const FoundShape& shape, double sample_s) {
   const Interval& d = shape.delay_s;
-  // Half a sample: a command is held, and when within a sample it came is not recorded.
+  // Half a sample: the recording does not give the time of a command within a sample.
   const double unsure_s = std::max(0.002, 0.5 * sample_s);
   Signature s{"delay", "balance of torques", Agreement::kCannotTell, d, "s", ""};
   if (d.low > unsure_s && shape.delay_gain > 0.1) {

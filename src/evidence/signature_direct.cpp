@@ -1,4 +1,4 @@
-// Checks that look at readings as they are.
+// Checks on raw readings: step onset, steady-state error, quantisation.
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -21,7 +21,7 @@ namespace {
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr Interval kUnknown{kNoNumber, kNoNumber, kNoNumber};
 
-/// Of the median, from ranks (normal approximation of the binomial).
+/// Median with its 95 % interval: the values at ranks n / 2 +- 1.96 sqrt(n) / 2 (normal approximation of the binomial).
 Interval median_interval(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
@@ -30,10 +30,11 @@ Interval median_interval(std::vector<double> values) {
   return {fitting::median(values), rank(std::floor(0.5 * n - reach)), rank(std::ceil(0.5 * n + reach))};
 }
 
-/// When readings leave rest after the step at this sample, in seconds after it; nothing where the joint wasn't at rest
-/// or hardly moves. From rest a joint gains speed evenly: the root of its way is a straight line, whose foot is sought.
+/// Time from the step at this sample to the onset of motion; empty if the joint was not at rest or hardly moves. With
+/// constant acceleration from rest, sqrt(q - q_rest) is proportional to t - t_onset: t_onset is the root of a fitted
+/// line.
 std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad) {
-  constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // shares of the step's size
+  constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // the last two: fitted part, as shares of the step
   const double size_rad = std::abs(r.q_cmd_rad[step] - r.q_cmd_rad[step - 1]);
   std::size_t before = step;
   while (before > 0 && r.t_s[step] - r.t_s[before - 1] < kRest_s) --before;
@@ -68,12 +69,12 @@ std::optional<double> onset_s(const bench::Recording& r, std::size_t step, doubl
   return (t - y / slope) / n;
 }
 
-/// Where one run came to rest.
+/// One place where a run came to rest.
 struct Rest {
-  double kp, short_by_rad;  ///< command minus reading, less what holds the load
+  double kp, short_by_rad;  ///< steady-state error without the load's share: command - reading - G sin(q) / kp
 };
 
-/// Stretches of unchanged command in which the reading, too, has stood for the last 0.3 s.
+/// Adds a rest for each stretch of constant command with readings constant over its last 0.3 s.
 void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vector<Rest>& rests) {
   constexpr double kStood_s = 0.3;
   const bench::Recording& r = run.recording;
@@ -113,7 +114,7 @@ Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::B
   }
   if (onsets_s.size() < 4) return s;
   s.value = median_interval(onsets_s);
-  // The command is held: within a sample it isn't known when it came, nor when the reading was taken.
+  // The recording gives neither the time of the command nor that of the reading within a sample.
   const double unsure_s = std::max(0.003, 0.75 / bench.sample_rate_hz);
   if (s.value.low > unsure_s) {
     s.agreement = Agreement::kAgrees;
@@ -127,7 +128,8 @@ Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::B
   return s;
 }
 
-/// |short_by| = a + b / kp: b is a torque, a an angle. Each rest comes from another direction and distance.
+/// Fits |short_by| = a + b / kp: dead band a [rad], Coulomb friction b [Nm]. Deviations are heteroscedasticity-robust:
+/// the rests are approached from different directions and distances.
 std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                    const SignatureOptions& options) {
   Signature band{"dead_band",
@@ -184,7 +186,8 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
   return {band, friction};
 }
 
-/// The smallest step between different readings; a quantised sensor's readings are its multiples (plus an offset).
+/// Quantum: median of the smallest steps between distinct readings. All steps of a quantised sensor are multiples of
+/// it.
 Signature quantum_check(const std::vector<bench::BenchRun>& runs, const SignatureOptions& options) {
   const auto fewest = static_cast<std::size_t>(options.quantum_fewest_readings);
   Signature s{"quantisation", "multiples of one number",   Agreement::kCannotTell, kUnknown,
@@ -206,7 +209,7 @@ Signature quantum_check(const std::vector<bench::BenchRun>& runs, const Signatur
   const double quantum_rad =
       fitting::median({steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(fewest)});
   std::size_t multiples = 0;
-  Interval single{quantum_rad, quantum_rad, quantum_rad};  // files round each
+  Interval single{quantum_rad, quantum_rad, quantum_rad};  // range of step / multiple: files round each reading
   for (const double step_rad : steps_rad) {
     const double count = step_rad / quantum_rad;
     if (std::abs(count - std::round(count)) >= options.quantum_rounding || count <= 0.5) continue;

@@ -11,7 +11,7 @@ namespace pmg::evidence {
 
 namespace {
 
-/// weight: torque of gravity; what friction leaves over is no measure of itself.
+/// The share is relative to the gravity torque `weight`: with the drive off there is no drive to compare with.
 Signature check(const std::string& effect, const ClusterRegression& regression, const Column& column,
                 const Column& weight, const std::string& what, const std::string& unit,
                 const SignatureOptions& options) {
@@ -39,7 +39,7 @@ std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::v
   if (balance.windows() == 0) return {};
   const std::vector<int> clusters = balance.clusters();
   if (clusters.back() + 1 < options.swing_fewest_clusters) return {};
-  // Nothing drives: what the load's weight and inertia leave is friction's and the rotor's.
+  // With the drive off, friction and the rotor's inertia account for the rest of the load's torque.
   const Column weight = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
   const Column left = -(weight + balance.load_inertia_Nm());
   const Column direction = balance.integral([](const BalancePoint& p) { return p.direction; });

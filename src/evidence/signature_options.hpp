@@ -1,4 +1,4 @@
-// What a check without a model must see before it agrees or disagrees.
+// Thresholds of the model-free checks.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pmg::evidence {
 
-/// Shares of the drive are of its root mean square. listed() has units and reasons.
+/// Each share is relative to the drive's root mean square. listed() gives units and reasons.
 struct SignatureOptions {
   double sure_deviations = 4.0;
   double friction_share = 0.010, constant_share = 0.003, drive_share = 0.012;

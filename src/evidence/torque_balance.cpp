@@ -10,13 +10,14 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kWindow_s = 0.2;       // long enough for noise, shorter than most motions
-constexpr std::size_t kFewest = 12;     // midpoints in one
-constexpr double kDerivative_s = 0.07;  // window of the speed whose sign is asked for
-constexpr double kRest_share = 0.01;    // of the fastest speed: below it the sign is noise at any rate
-constexpr double kMoving_share = 0.7;   // of a window
+constexpr double kWindow_s = 0.2;       // averages sensor noise, yet is shorter than most motions
+constexpr std::size_t kFewest = 12;     // midpoints in a window
+constexpr double kDerivative_s = 0.07;  // window of the speed that gives the direction of motion
+constexpr double kRest_share = 0.01;    // share of the fastest speed below which the direction counts as noise
+constexpr double kMoving_share = 0.7;   // of a window must move in a known direction
 
-/// Speeds whose sign says nothing: three deviations of the parabola's slope under the sensor's noise.
+/// Speed below which its sign is unknown: three deviations of a fitted slope, 3 noise / (T sqrt(sum k^2)) with the
+/// sample time T and k = -reach..reach.
 double uncertain_rad_s(const bench::Recording& r, double sample_s) {
   const double reach = std::max(2.0, std::round(0.5 * kDerivative_s / sample_s));
   const double squares = reach * (reach + 1.0) * (2.0 * reach + 1.0) / 3.0;
@@ -35,7 +36,7 @@ double usual_fastest(const std::vector<double>& speeds_rad_s) {
   return *place;
 }
 
-/// Of the command from each sample to the next: held, run straight, or chased at a limited rate.
+/// Mean of the command between each sample and the next: held, interpolated, or followed at a limited rate.
 std::vector<double> means(const bench::Bench& bench, const bench::Recording& r, double rate_limit_rad_s) {
   std::vector<double> found;
   double at_rad = r.q_cmd_rad.front();
@@ -162,7 +163,7 @@ Column TorqueBalance::acceleration_rad_s2() const {
   for (std::size_t i = 0; i < windows_.size(); ++i) {
     const BalancePoint* points = &runs_[windows_[i].run][windows_[i].first];
     double sum = 0.0;
-    // The weight's second derivative sums to nothing exactly only in the continuum.
+    // The sampled second derivative of the weight does not sum to exactly 0: take off a constant first.
     for (std::size_t k = 0; k < weight_.size(); ++k) sum += weight_2_[k] * (points[k].q_rad - points[0].q_rad);
     column[static_cast<Eigen::Index>(i)] = sum;
   }

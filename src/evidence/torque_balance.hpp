@@ -1,4 +1,4 @@
-// What drives a joint against what moves: the equation of motion over short windows, from recordings alone.
+// A joint's equation of motion, integrated over short windows of the recordings (weak form).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace pmg::evidence {
 
-/// What happens to a command before the drive compares it with its sensor.
+/// Dead time and rate limit of a command before the drive compares it with its sensor.
 struct CommandShape {
   double delay_s = 0.0;
   double rate_limit_rad_s = std::numeric_limits<double>::infinity();
@@ -18,37 +18,38 @@ struct CommandShape {
 /// The joint half-way between two samples.
 struct BalancePoint {
   double q_rad = 0.0, dq_rad_s = 0.0;
-  double direction = 0.0;                     ///< of motion, -1..1; runs through 0 where the speed is noise
-  double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the bench's load: gravity sin q, and with I ddq
-  double hanging_Nm = 0.0;                    ///< gravity cos q
-  double drive = 0.0;                         ///< what the law makes of the error [unit of output times supply]
-  double error_rad = 0.0, error_drive = 0.0;  ///< command minus reading, and what the drive's gain makes of it
+  double direction = 0.0;                     ///< of motion: clamp(dq / uncertain speed, -1, 1)
+  double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the bench's load: G sin q, and G sin q + I ddq
+  double hanging_Nm = 0.0;                    ///< G cos q
+  double drive = 0.0;                         ///< output of the drive's law [unit of output times supply]
+  double error_rad = 0.0, error_drive = 0.0;  ///< command minus reading, and kp * error * supply
   double temp_C = 0.0;
   double since_turn_s = 0.0;  ///< since the drive's torque last changed its sign
 };
 
 using Column = Eigen::VectorXd;
 
-/// Windows of a bench's runs in which the joint moves. Columns hold one number a window: the integral of a quantity
-/// under a smooth weight. Speeds and accelerations need no differences of readings (weak form: by parts,
-/// integral(w ddq) = integral(w'' q)), so noise hardly biases what is regressed on them.
+/// Windows of a bench's runs in which the joint moves. A column holds one value per window: the integral of a quantity
+/// under the weight w = (1 - x^2)^3, x = -1..1 over the window, scaled to integral(w) = 1. Speeds and accelerations
+/// follow by parts, integral(w dq) = -integral(w' q) and integral(w ddq) = integral(w'' q): the readings are not
+/// differentiated, so sensor noise hardly biases a regression on them.
 class TorqueBalance {
  public:
-  /// Runs must outlive it. Windows lie where the drive is on throughout, or where it is off.
+  /// The bench and the runs must outlive the balance. Windows lie where the drive is on throughout, or off throughout.
   enum class While { kOn, kOff };
   TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when = While::kOn);
 
   std::size_t windows() const { return windows_.size(); }
-  bool shaped() const { return shaped_; }  ///< a command's shape matters: positions are commanded
+  bool shaped() const { return shaped_; }  ///< positions are commanded, so the command's shape matters
 
-  Column drive() const;  ///< under the shape as it is set
+  Column drive() const;  ///< for the command shape that is set
   void shape(const CommandShape& shape);
 
   Column acceleration_rad_s2() const;
   Column speed_rad_s() const;
   Column load_inertia_Nm() const;  ///< I ddq
 
-  /// Of any function of a BalancePoint.
+  /// Weighted integral of any function of a BalancePoint.
   template <typename Function>
   Column integral(const Function& function) const {
     Column column(static_cast<Eigen::Index>(windows_.size()));
@@ -62,11 +63,11 @@ class TorqueBalance {
     return column;
   }
 
-  /// Which cluster each window belongs to: a second of one run, whose windows hang together; or a whole run.
+  /// Cluster of each window: one second of one run, or one whole run. Windows of a cluster are correlated.
   std::vector<int> clusters(bool whole_runs = false) const;
 
   double sample_s() const { return sample_s_; }
-  double fastest_rad_s() const { return fastest_rad_s_; }  ///< of all runs, noise aside
+  double fastest_rad_s() const { return fastest_rad_s_; }  ///< over all runs: 98 % quantile of a run's |dq|
 
  private:
   struct Window {

@@ -1,4 +1,4 @@
-// What every diagnosis says in the same words: a verdict, numbers with intervals.
+// Results that both diagnoses share: verdict, interval, parameter estimate.
 #pragma once
 
 #include <string>
@@ -6,16 +6,16 @@
 namespace pmg::evidence {
 
 enum class Verdict {
-  kFound,        ///< the causes are these
-  kAmbiguous,    ///< at least one cause can't be told from another with this data: record next_excitation
-  kNone,         ///< nothing beyond noise
-  kUnexplained,  ///< something real remains that no effect of the catalogue explains
+  kFound,        ///< the causes are identified
+  kAmbiguous,    ///< these data cannot tell at least one cause from another: record next_excitation
+  kNone,         ///< the residual is noise
+  kUnexplained,  ///< the residual exceeds the noise, and no effect of the catalogue explains it
 };
 
 /// found, ambiguous, none, unexplained.
 const char* name(Verdict verdict);
 
-/// A number and where it lies with 95 % probability.
+/// A value with its 95 % interval.
 struct Interval {
   double value = 0.0, low = 0.0, high = 0.0;
 };

@@ -1,4 +1,4 @@
-// Residuals of runs, cut into blocks of half a second that count as one observation each.
+// Blocks: half-second pieces of the runs. Each counts as one observation of a fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,20 +8,19 @@
 
 namespace pmg::fitting {
 
-/// Sums over one block after the other.
+/// Sum of a quantity, and number of valid samples, of each block.
 struct BlockSums {
   std::vector<double> values, samples;
-  double mean() const;  ///< of all samples
+  double mean() const;  ///< over all samples
 };
 
-/// How the runs' samples are cut. Residuals of one rollout hang together over time; a joint's motion forgets its
-/// disturbance within half a second. Every sample is in one block; a rest shorter than half a block belongs to the
-/// block before it.
+/// Cuts runs into blocks. Residuals of a rollout are correlated over time, up to about half a second after a
+/// disturbance. Every sample is in one block; a remainder shorter than half a block joins the block before it.
 class Blocks {
  public:
   static constexpr double kLength_s = 0.5;
 
-  /// The next run: times [s], rising, and which of its samples are valid.
+  /// Adds the next run: increasing times [s], and which of its samples are valid.
   void add_run(const std::vector<double>& t_s, const std::vector<bool>& valid);
 
   std::size_t count() const { return run_of_block_.size(); }
@@ -30,11 +29,11 @@ class Blocks {
   double all_samples() const { return all_samples_; }
 
   Eigen::VectorXd squares(const Residuals& residuals) const;  ///< of each block [rad^2]
-  BlockSums absolutes(const Residuals& residuals) const;      ///< [rad]
+  BlockSums absolutes(const Residuals& residuals) const;      ///< sums of |residual| [rad]
   std::vector<NormalEquations> normal_equations(const Residuals& residuals, const Jacobian& jacobian) const;
 
  private:
-  std::vector<std::vector<Eigen::Index>> starts_;  // of each run's blocks, with the run's end
+  std::vector<std::vector<Eigen::Index>> starts_;  // first sample of each block of a run, then the run's end
   std::vector<std::size_t> run_of_block_;
   std::vector<double> samples_;
   double all_samples_ = 0.0;

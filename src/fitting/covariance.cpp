@@ -6,7 +6,7 @@
 namespace pmg::fitting {
 
 namespace {
-constexpr double kCovarianceRidge = 1e-9;  // of a unit diagonal, for coordinates that can't be told apart
+constexpr double kCovarianceRidge = 1e-9;  // added to a unit diagonal: keeps collinear coordinates solvable
 }
 
 Eigen::MatrixXd information(const LinearisedFit& fit) {
@@ -23,7 +23,7 @@ Covariance cluster_robust_covariance(const LinearisedFit& fit, std::vector<Eigen
   scatter *= blocks / std::max(1.0, blocks - static_cast<double>(size));
   scatter += fit.prior_weight * prior(fit).information;
   const Eigen::MatrixXd seen = information(fit)(of, of);
-  // A unit diagonal: coordinates of any weight alike.
+  // Scaled to a unit diagonal: coordinates have different units.
   const Eigen::VectorXd weight = seen.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = weight.asDiagonal() * seen * weight.asDiagonal();
   Covariance found;

@@ -7,9 +7,9 @@ namespace pmg::fitting {
 
 namespace {
 
-constexpr double kKept = 0.05;         // of a fold's weight
-constexpr double kFoldDamping = 1e-6;  // the fit of all is close
-constexpr double kLeastShare = 0.05;   // of a step: shorter ones change nothing
+constexpr double kKept = 0.05;         // share of a fold's weight
+constexpr double kFoldDamping = 1e-6;  // small: the fit of all blocks is a close start
+constexpr double kLeastShare = 0.05;   // of a step; ends the tries after s = 0.09
 
 }  // namespace
 
@@ -50,7 +50,7 @@ Eigen::VectorXd held_out_squares(const ResidualFunction& residuals, const Blocks
       const Eigen::VectorXd by_block = blocks.squares(reached);
       const double change =
           weight.dot(by_block - at_all) + prior(fit.ranges, there, fit.prior_weight).squares - prior(fit).squares;
-      if (!(change < 0.0)) continue;  // also where the rollout diverged
+      if (!(change < 0.0)) continue;  // not lower, or NaN: the rollout diverged
       found = by_block;
       break;
     }

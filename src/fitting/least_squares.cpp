@@ -10,10 +10,10 @@ namespace pmg::fitting {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6, kLessDamping = 0.2, kMoreDamping = 6.0;
-constexpr double kUnseen = 1e-14;  // of the largest information: such a coordinate stays where it is
-constexpr double kRidge = 1e-9;    // of a unit diagonal, for coordinates that can't be told apart
+constexpr double kUnseen = 1e-14;  // of the largest information: an unobservable coordinate keeps its value
+constexpr double kRidge = 1e-9;    // added to a unit diagonal: keeps collinear coordinates solvable
 
-/// The bounds, narrowed to the longest step from x.
+/// (coordinates, x, longest step) => (coordinates with bounds at most one longest step from x).
 Coordinates within_reach(const Coordinates& coordinates, const Eigen::VectorXd& x, double longest_step) {
   Coordinates near = coordinates;
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -24,7 +24,7 @@ Coordinates within_reach(const Coordinates& coordinates, const Eigen::VectorXd& 
   return near;
 }
 
-/// Between which two places a coordinate's difference is taken; for a forward difference the first is x itself.
+/// The two points of a coordinate's difference; for a forward difference the first is x.
 std::pair<double, double> ends(const Coordinate& c, double x, Differences differences) {
   if (differences == Differences::kCentral) return {std::max(c.lower, x - c.step), std::min(c.upper, x + c.step)};
   double step = c.step;
@@ -132,7 +132,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& information, const Eigen::Ve
     for (Eigen::Index i = 0; i < count; ++i) {
       if (!held[static_cast<std::size_t>(i)]) step[i] = solved[i];
     }
-    // The furthest out is held, one at a time: with it held, another one may stay inside.
+    // Fix only the coordinate furthest outside: with it fixed, the others may stay inside.
     Eigen::Index furthest = -1;
     double most = 1e-12;
     for (Eigen::Index i = 0; i < count; ++i) {

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSample_s = 0.05;
 
-/// (support of each sample) => (the same, but loose for so many samples to each side of a change): landing, lifting and
-/// the first slip obey no equation here.
+/// (support of each sample) => (the same, but kLoose for `settle` samples on each side of a change): no equation here
+/// holds during landing, lifting or the first slip.
 std::vector<Support> without_transitions(const std::vector<Support>& seen, std::size_t settle) {
   std::vector<Support> result = seen;
   for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -27,7 +27,7 @@ std::vector<Support> without_transitions(const std::vector<Support>& seen, std::
   return result;
 }
 
-/// Of the sample nearest to each tick.
+/// Support of each tick: that of the nearest sample.
 std::vector<Support> supports_of_ticks(const RobotRecording& recording, std::span<const RobotSample> samples,
                                        std::span<const Support> supports) {
   std::vector<Support> result;
@@ -41,7 +41,7 @@ std::vector<Support> supports_of_ticks(const RobotRecording& recording, std::spa
   return result;
 }
 
-/// Without what the torques' ripple adds; ticks on both sides of which the robot stands are left as they are.
+/// Accelerometer readings without the torque ripple's share. Ticks with standing on both sides stay as they are.
 std::vector<Eigen::Vector3d> smooth_readings(RobotEquations& equations, const RobotRecording& recording,
                                              std::span<const Support> supports) {
   const std::vector<JointVector> ripple_Nm = torque_ripple(recording);
@@ -55,8 +55,8 @@ std::vector<Eigen::Vector3d> smooth_readings(RobotEquations& equations, const Ro
   return readings_I;
 }
 
-/// While both soles rest, between a tick and the next one: from the legs. Joint speeds at both ends give the mean
-/// acceleration whatever happened in between; an accelerometer that is read once a tick doesn't.
+/// Mean specific force between two ticks while both soles rest, from the legs' kinematics [m/s^2, IMU axes]. Joint
+/// speeds at both ends give the exact mean acceleration; an accelerometer that is read once a tick does not.
 Eigen::Vector3d specific_force_of_legs(RobotEquations& equations, const model::RobotState& at,
                                        const model::RobotState& after, double period_s) {
   const auto up_I = [](const model::RobotState& s) -> Eigen::Vector3d {
@@ -69,7 +69,7 @@ Eigen::Vector3d specific_force_of_legs(RobotEquations& equations, const model::R
          0.5 * kGravity_m_s2 * (up_I(at) + up_I(after));
 }
 
-/// Means between every tick and the next one.
+/// Mean specific force between every tick and the next one [m/s^2, IMU axes].
 std::vector<Eigen::Vector3d> specific_forces(RobotEquations& equations, const RobotRecording& recording,
                                              std::span<const Support> supports) {
   const std::vector<Eigen::Vector3d> readings_I = smooth_readings(equations, recording, supports);
@@ -84,7 +84,7 @@ std::vector<Eigen::Vector3d> specific_forces(RobotEquations& equations, const Ro
   return forces_I;
 }
 
-/// Samples, supports, equations, evidence, verdict: one diagnosis.
+/// One diagnosis: recordings => samples => supports => equations => evidence => verdict.
 class RobotDiagnosisRun {
  public:
   RobotDiagnosisRun(const model::RobotModel& robot, const RobotDiagnosisOptions& options,
@@ -129,7 +129,7 @@ class RobotDiagnosisRun {
       const double since_s = samples[i].t_s - samples.front().t_s;
       if (i == 0 || std::floor(since_s / options_.block_s) > std::floor((since_s - kSample_s) / options_.block_s))
         blocks_.push_back({fmt::format("{} from {:.1f} s", recording.name, samples[i].t_s), {}});
-      if (support != Support::kLoose) {  // steps and slips shake the arms: no equations of smooth motion
+      if (support != Support::kLoose) {  // steps and slips shake the arms: the equations need smooth motion
         for (RobotRow& row : equations_.rows(samples[i], support)) blocks_.back().rows.push_back(std::move(row));
       }
       done_ticks_ += kSample_s / recording.period_s;
@@ -184,9 +184,9 @@ class RobotDiagnosisRun {
     add_not_seen(evidence);
   }
 
-  /// A hanging robot whose numbers are known leaves two things in its joints' equations: the shape of dry friction near
-  /// standstill, and the noise of accelerations. A joint with a cause of its own is left out: a strong one bends the
-  /// equations, which are linear in it.
+  /// With correct parameters, a hanging joint's residual holds only the shape of dry friction near standstill and
+  /// acceleration noise. A joint with a cause is left out: the equations are linear in the cause, and a strong one
+  /// makes a linearisation error.
   void add_unexplained(const RobotEvidence& evidence) {
     const JointVector moved_kg_m2 = moved_inertia_kg_m2(robot_);
     for (int j = 0; j < robot_.joint_index.size(); ++j) {

@@ -20,10 +20,10 @@ struct RobotCause {
   double log_evidence = 0.0;
   int folds_better = 0, folds = 0;
   std::vector<std::string> or_instead{};  ///< "effect of place"
-  std::string told_apart_by{};            ///< "hanging" or "standing": where these differ most; "" when there are none
+  std::string told_apart_by{};            ///< "hanging" or "standing": where the rivals differ most; "" without rivals
 };
 
-/// What the logs had of each kind of support [s].
+/// Recorded time of each kind of support [s].
 struct RobotCoverage {
   double hanging_s = 0.0, standing_s = 0.0, other_s = 0.0;
 };
@@ -34,15 +34,15 @@ struct RobotDiagnosis {
   GroundFriction ground;
   RobotCoverage coverage;
   double held_out_before = 0.0, held_out_after = 0.0;  ///< rms of left-out equations, in units of their noise
-  std::vector<std::string> depends_on;                 ///< unexplained: equations with more than noise
-  std::vector<RobotCause> others;                      ///< what came next, with its evidence, no parameters
-  std::string drive_sampling;                          ///< when the drives took positions, and what says so
-  std::vector<evidence::Option> options;               ///< that it was decided by
-  std::vector<std::string> not_seen;  ///< "effect of place": no strength that matters would have shown in these logs
+  std::vector<std::string> depends_on;                 ///< unexplained: equations whose residual exceeds the noise
+  std::vector<RobotCause> others;                      ///< the next candidates, with their evidence, no parameters
+  std::string drive_sampling;                          ///< when the drives sample positions, and the source
+  std::vector<evidence::Option> options;               ///< thresholds in force
+  std::vector<std::string> not_seen;                   ///< "effect of place": not observable in these logs
 };
 
-/// Throws std::runtime_error when the recordings hold nothing that can be used, work::Interrupted when progress is
-/// over.
+/// (robot, recordings) => (diagnosis). Throws std::runtime_error if the recordings hold no usable data,
+/// work::Interrupted after an interruption.
 RobotDiagnosis diagnose_robot(const model::RobotModel& robot, std::span<const RobotRecording> recordings,
                               const RobotDiagnosisOptions& options = {}, const work::Progress& progress = {});
 

@@ -19,7 +19,7 @@ RobotDynamics::RobotDynamics(const model::RobotModel& robot) : p_BI_(robot.imu.T
   const sim::World world(robot, {});
   model_.reset(mj_copyModel(nullptr, world.mj_model()));
   nominal_.reset(mj_copyModel(nullptr, world.mj_model()));
-  mju_zero(model_->opt.gravity, 3);  // it comes with the specific force
+  mju_zero(model_->opt.gravity, 3);  // the specific force contains gravity
   data_.reset(mj_makeData(model_.get()));
   for (const auto& joint : robot.joints) {
     const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.name.c_str());
@@ -28,7 +28,7 @@ RobotDynamics::RobotDynamics(const model::RobotModel& robot) : p_BI_(robot.imu.T
   }
 }
 
-/// The base unturned at the world's origin: B's axes are the world's.
+/// Puts the base at the world's origin, so that B's axes are the world's.
 void RobotDynamics::take_posture(const JointVector& q) {
   mjData* d = data_.get();
   mju_zero(d->qpos, 7);
@@ -56,7 +56,7 @@ GeneralizedVector RobotDynamics::required(const RobotMotion& motion) {
   const mjModel* m = model_.get();
   const Eigen::Vector3d centripetal = motion.omega_B.cross(motion.omega_B.cross(p_BI_));
   const Eigen::Vector3d specific_force_base = motion.specific_force_B - motion.alpha_B.cross(p_BI_) - centripetal;
-  mju_zero(d->qvel, 3);  // where the frame moves to evenly doesn't matter
+  mju_zero(d->qvel, 3);  // a constant velocity changes no force
   for (int i = 0; i < 3; ++i) {
     d->qvel[3 + i] = motion.omega_B[i];
     d->qacc[i] = specific_force_base[i];

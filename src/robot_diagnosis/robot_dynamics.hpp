@@ -1,4 +1,4 @@
-// Which forces a robot's motion takes, by MuJoCo's recursive Newton-Euler, from what its IMU and encoders say alone.
+// Inverse dynamics of a robot from its IMU and encoders alone, by MuJoCo's recursive Newton-Euler.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -13,8 +13,8 @@
 
 namespace pmg::robot_diagnosis {
 
-/// Of the base frame B and the joints. The specific force, what an accelerometer shows, is that of the IMU's place; it
-/// holds gravity, so neither attitude nor place in the world are needed.
+/// Motion of the joints (rad, rad/s, rad/s^2) and of the base, in the base frame B. The specific force is an
+/// accelerometer's reading at the IMU's position; it contains gravity, so no attitude is needed.
 struct RobotMotion {
   JointVector q, dq, ddq;
   Eigen::Vector3d omega_B, alpha_B, specific_force_B;
@@ -26,28 +26,29 @@ using WrenchJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor,
 
 class RobotDynamics {
  public:
-  /// Throws std::runtime_error when the IMU isn't on the base link.
+  /// Throws std::runtime_error if the IMU is not on the base link.
   explicit RobotDynamics(const model::RobotModel& robot);
 
-  /// What drives and contacts together have to do, without armatures and joint friction: force and moment on the base
-  /// [N, Nm], joint torques [Nm].
+  /// (motion) => (generalised force of drives and contacts together, without armatures and joint friction): force and
+  /// moment on the base [N, Nm, B axes], joint torques [Nm].
   GeneralizedVector required(const RobotMotion& motion);
 
-  /// For what follows, as required() does.
+  /// Sets the posture of the functions below; required() does so, too.
   void take_posture(const JointVector& q);
 
-  /// At the posture taken last: motion of the body's place (B axes, linear then angular).
+  /// At that posture: Jacobian of the body's frame origin or centre of mass (B axes, linear, then angular).
   WrenchJacobian jacobian_of_link(int body) const;
   WrenchJacobian jacobian_of_center(int body) const;
   Eigen::Matrix3d rotation(int body) const;  ///< R_BL
   Eigen::Vector3d origin(int body) const;    ///< p_BL
 
-  /// What these joint torques alone do to the acceleration at the IMU's place, of a robot in the air [m/s^2, B axes].
+  /// Acceleration at the IMU that these joint torques alone cause on a free-floating robot [m/s^2, B axes].
   Eigen::Vector3d imu_acceleration(const JointVector& q, const JointVector& torque_Nm);
 
-  int body(const std::string& link) const;  ///< throws std::invalid_argument when there is none
+  int body(const std::string& link) const;  ///< throws std::invalid_argument if there is none
   double mass_kg(int body) const { return model_->body_mass[body]; }
-  /// From here on: mass added at the link's centre of mass, and how far that is moved. Replaces what was set before.
+  /// Changes a link for the following calls: mass factor, mass added at its centre of mass, shift of that centre.
+  /// Replaces the link's earlier change.
   void set_link(int body, double mass_factor, double added_kg, const Eigen::Vector3d& center_shift_m);
 
  private:

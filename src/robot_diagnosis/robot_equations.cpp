@@ -24,7 +24,7 @@ bool of_torque(Kind kind) {
          kind == Kind::kArmature || kind == Kind::kDelay;
 }
 
-/// d (what a joint's torque lacks) / d parameter.
+/// Derivative of a joint's generalised-force residual by one parameter.
 double missing_per_unit(const RobotParameter& p, const RobotSample& s) {
   switch (p.kind) {
     case Kind::kKp:
@@ -102,7 +102,8 @@ std::vector<int> RobotEquations::joints_of_rows(Support support) const {
   return joints;
 }
 
-/// What the drives and the contacts have to do beyond what the drives do.
+/// Generalised-force residual [N, Nm]: required minus nominal drive force, M(q) ddq + h + armature ddq + damping dq +
+/// friction sign(dq) - (spring + damper + feed-forward torque). Contacts must supply it.
 GeneralizedVector RobotEquations::missing(const RobotSample& s, const Change& change) {
   const Eigen::Matrix3d R_BI = robot_.imu.T_LI.linear() * turned(change.imu_rad);
   RobotMotion motion{.q = s.q,
@@ -127,7 +128,7 @@ Eigen::Matrix<double, 6, 6> RobotEquations::leg_jacobian(const WrenchJacobian& f
   return leg;
 }
 
-/// On the foot, along B's axes, about its link's origin: what the leg's joints lack, the ground gives.
+/// Ground's wrench on the foot [N, Nm, B axes, about its link's origin], from the residuals of its leg's six joints.
 Eigen::Matrix<double, 6, 1> RobotEquations::foot_wrench(const GeneralizedVector& force, Foot side) {
   Eigen::Matrix<double, 6, 1> leg_force;
   for (int i = 0; i < 6; ++i) leg_force[i] = force[6 + robot_.leg_joints[side][static_cast<std::size_t>(i)]];
@@ -225,7 +226,7 @@ std::vector<RobotRow> RobotEquations::rows(const RobotSample& sample, Support su
     rows[i].residual = nominal[static_cast<Eigen::Index>(i)];
   }
   std::vector<double> all_still(rows.size(), 0.0);
-  for (int j = 0; j < joints_; ++j) {  // dry friction whose direction isn't known
+  for (int j = 0; j < joints_; ++j) {  // dry friction of unknown direction
     const double friction_Nm = robot_.joints[static_cast<std::size_t>(j)].friction_Nm;
     RobotParameter coulomb{.kind = Kind::kCoulomb, .joint = j};
     RobotSample one = sample;
@@ -266,7 +267,7 @@ std::vector<RobotRow> RobotEquations::rows(const RobotSample& sample, Support su
 }
 
 void RobotEquations::add_column(int parameter, const Eigen::VectorXd& column, std::vector<RobotRow>& rows) const {
-  const double negligible = 1e-9;  // of any unit here; roundings of the finite differences are below 1e-7 of a Nm
+  const double negligible = 1e-9;  // in any unit here; roundings of the finite differences are below 1e-7 Nm
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double value = column[static_cast<Eigen::Index>(i)];
     if (std::abs(value) > negligible) rows[i].coefficients.emplace_back(parameter, value);

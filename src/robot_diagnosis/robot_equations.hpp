@@ -1,4 +1,4 @@
-// Equations of motion that hold whatever the ground and the gantry push, linear in what may be wrong with a robot.
+// Equations of motion with the contact forces of ground and gantry eliminated, linear in a robot's parameter errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,23 +14,23 @@
 
 namespace pmg::robot_diagnosis {
 
-/// Forces on one foot, from its leg's torques.
+/// Contact force on one foot, from its leg's torques.
 struct FootForce {
   double normal_N = 0.0, tangential_N = 0.0;
 };
 
 class RobotEquations {
  public:
-  /// Keeps references. Throws std::runtime_error when the IMU isn't on the base link.
+  /// The robot and the list must outlive it. Throws std::runtime_error if the IMU is not on the base link.
   RobotEquations(const model::RobotModel& robot, const RobotParameterList& list, const SupportOptions& support = {});
 
   Support support(const RobotSample& sample);
   std::vector<RobotRow> rows(const RobotSample& sample, Support support);
 
-  /// What such torques add to the accelerometer's reading while the feet are free [m/s^2, IMU axes].
+  /// Share of these joint torques in the accelerometer's reading while the feet are free [m/s^2, IMU axes].
   Eigen::Vector3d accelerometer_share(const JointVector& q, const JointVector& torque_Nm);
 
-  /// The IMU's velocity while both soles rest [m/s, IMU axes], from the legs.
+  /// The IMU's velocity while both soles rest, from the legs' kinematics [m/s, IMU axes].
   Eigen::Vector3d imu_velocity_on_resting_soles(const model::RobotState& state);
 
   PerFoot<FootForce> foot_forces(const RobotSample& sample);
@@ -41,12 +41,12 @@ class RobotEquations {
   int kind_of_joint(Support support, int joint) const;
 
  private:
-  struct Change {  // of what is taken for true
+  struct Change {  // of the assumed zero point or IMU mounting
     int joint = -1;
     double zero_offset_rad = 0.0;
     Eigen::Vector3d imu_rad = Eigen::Vector3d::Zero();
   };
-  struct Legs {  // how the joint torques of a leg act on the base rows, once the foot's wrench is eliminated
+  struct Legs {  // maps a leg's joint torques to the base rows after its foot's wrench is eliminated
     PerFoot<Eigen::Matrix<double, 6, 6>> to_base;
   };
 

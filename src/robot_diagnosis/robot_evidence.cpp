@@ -21,7 +21,7 @@ NormalEquations left_out(NormalEquations all, const NormalEquations& block) {
   return all;
 }
 
-/// One cause after the other: the one with the most evidence, until there is none.
+/// Greedy search: adds the candidate with the most evidence, until none has enough.
 class CauseSearch {
  public:
   CauseSearch(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list, const EvidenceOptions& options)
@@ -48,7 +48,8 @@ class CauseSearch {
   }
 
  private:
-  /// With everything free what remains is noise; its level weighs the rows, and so on.
+  /// Iteratively reweighted least squares: with all parameters free the residual is noise, and its level weighs the
+  /// rows.
   void learn_noise() {
     const auto parameters = static_cast<Eigen::Index>(list_.parameters.size());
     Priors free(list_);
@@ -65,8 +66,8 @@ class CauseSearch {
     sum_blocks(parameters);
   }
 
-  /// A spring's torque as the motion with these parameters takes it, not as the encoder shows it: the same encoder
-  /// noise in a row and in its gain's coefficient would look like too small a gain.
+  /// Replaces the spring's torque in a gain's coefficient by the torque that the motion requires at theta. With the
+  /// encoder's noise in both the row and the coefficient, the estimated gain would be biased low.
   void clear_own_gains(const Eigen::VectorXd& theta) {
     for (RobotBlock& block : blocks_) {
       for (RobotRow& row : block.rows) {
@@ -143,8 +144,9 @@ class CauseSearch {
     }
   }
 
-  /// No one block carries the evidence, and what blocks that are left out say against the cause doesn't outweigh it.
-  /// They needn't speak for it: many numbers, each a little further off than is normal, often predict as well.
+  /// True if the evidence does not hang on a single block, and if the log-likelihood of left-out blocks does not
+  /// outweigh it. That log-likelihood may be negative: many parameters, each slightly out of tolerance, often predict
+  /// as well.
   bool holds_in_folds(const Priors& with, RobotFinding& finding) const {
     const RobotCandidate& candidate = list_.candidates[static_cast<std::size_t>(finding.candidate)];
     const Eigen::VectorXd precision = priors_.precision();
@@ -160,7 +162,8 @@ class CauseSearch {
     return finding.log_evidence + gain > options_.least_log_evidence && finding.folds_better == finding.folds;
   }
 
-  /// Value from everything; interval from the posterior or from how the blocks disagree, whichever is wider.
+  /// Value: posterior mean. Interval: value +- 1.96 sqrt(v + tolerance^2), v the larger of the posterior variance and
+  /// the jackknife's over blocks, sum of (mean without the block - mean)^2.
   void estimate_values(RobotFinding& finding) const {
     const auto& parameters = list_.candidates[static_cast<std::size_t>(finding.candidate)].parameters;
     const Posterior now = posterior(all_, priors_);
@@ -196,7 +199,8 @@ class CauseSearch {
     return std::sqrt(sum / std::max(rows, 1.0));
   }
 
-  /// Where the evidence of one parameter alone would just suffice, the rest being as in every robot.
+  /// Smallest parameter error whose evidence alone would suffice, all others at their tolerances:
+  /// sqrt(2 (least_log_evidence + 2) v), v the data's variance plus tolerance^2, and at least `relevant`.
   void find_detectable(RobotEvidence& evidence) const {
     const Posterior now = posterior(all_, Priors(list_));
     const Eigen::VectorXd prior = Priors(list_).precision();

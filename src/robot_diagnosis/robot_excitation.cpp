@@ -34,8 +34,7 @@ double smooth(double share) {
   return s * s * (3.0 - 2.0 * s);
 }
 
-/// By how much a joint's link and all below it move outwards, away from the robot's middle, per radian [m]; 0 for what
-/// lies in the middle.
+/// Outward motion of the subtree below each joint, away from the median plane [m/rad]; 0 for joints in that plane.
 JointVector outward_m_per_rad(const model::RobotModel& robot) {
   sim::World world(robot, {});
   const mjModel* m = world.mj_model();
@@ -51,7 +50,7 @@ JointVector outward_m_per_rad(const model::RobotModel& robot) {
   return outward;
 }
 
-/// Three sines of a joint: slow for gravity and friction, fast for inertia.
+/// Sum of three sines of a joint: slow ones for gravity and friction, fast ones for inertia.
 struct Swing {
   double center_rad = 0.0;
   std::array<double, 3> amplitude_rad{}, frequency_Hz{}, phase_rad{};
@@ -74,7 +73,7 @@ struct Swing {
   }
 };
 
-/// Legs a little, arms further: so far that hands and thighs never meet.
+/// Legs slightly, arms further, so that hands and thighs never collide.
 double spread_rad(const model::RobotModel& robot, const JointVector& outward_m_per_rad, int joint) {
   constexpr double kSpreading_m_per_rad = 0.15, kLeg_rad = 0.2, kArm_rad = 0.6;
   if (std::abs(outward_m_per_rad[joint]) < kSpreading_m_per_rad) return 0.0;
@@ -86,7 +85,7 @@ double spread_rad(const model::RobotModel& robot, const JointVector& outward_m_p
 std::vector<Swing> swings(const model::RobotModel& robot) {
   constexpr std::array<double, 3> kAmplitude_rad{0.16, 0.09, 0.04}, kSlowest_Hz{0.20, 0.50, 1.30},
       kFastest_Hz{0.40, 0.95, 2.10};
-  constexpr double kGolden = 0.6180339887498949;  // spreads frequencies and phases evenly, whatever the joint's number
+  constexpr double kGolden = 0.6180339887498949;  // golden ratio: spreads frequencies and phases evenly over joints
   constexpr double kMargin_rad = 0.03;
   const JointVector outward = outward_m_per_rad(robot);
   std::vector<Swing> all;
@@ -122,7 +121,7 @@ std::vector<model::JointCommand> hanging_excitation(const model::RobotModel& rob
   std::vector<model::JointCommand> commands;
   for (double t_s = 0.0; t_s < 3.0 * kStretch_s; t_s += model::kControlPeriod_s) {
     const auto stretch = static_cast<int>(t_s / kStretch_s);
-    // Gains change within half a second, so that nothing jerks.
+    // Gains change over half a second, without a jerk.
     const double half = smooth(2.0 * (t_s - kStretch_s)) - smooth(2.0 * (t_s - 2.0 * kStretch_s));
     const double share = smooth(t_s / kRamp_s);
     model::JointCommand command = stand;
@@ -140,7 +139,7 @@ std::vector<model::JointCommand> hanging_excitation(const model::RobotModel& rob
 
 namespace {
 
-/// Postures [pitch, roll, height] that are gone through one after the other, smoothly and without resting.
+/// A posture on a smooth path without rests, and the time to reach it.
 struct Waypoint {
   double pitch_rad, roll_rad, height_m, for_s;
 };
@@ -160,10 +159,10 @@ constexpr std::array<Waypoint, 15> kWaypoints{{{0.0, 0.0, 0.0, 1.0},
                                                {0.0, -0.2, -0.06, 3.0},
                                                {0.0, 0.0, -0.18, 3.0}}};
 constexpr double kPush_rad = 0.33;  // 100 Nm of hips with 300 Nm/rad
-constexpr double kPush_s = 0.8;     // 0.2 m/s: slower, MuJoCo's soft contacts creep; faster, the feet hop
+constexpr double kPush_s = 0.8;     // 0.2 m/s: slower, MuJoCo's soft contacts only creep; faster, the feet hop
 constexpr int kPushes = 3;
 
-/// Pushes the feet apart: hips outwards, ankles so that the soles stay flat.
+/// Turns the hips outwards, and the ankles so that the soles stay flat.
 void push_apart(const model::RobotModel& robot, const JointVector& outward, double share, JointVector& q) {
   for (const Foot foot : {kLeft, kRight}) {
     int hip = -1;

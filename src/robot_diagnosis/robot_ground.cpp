@@ -29,7 +29,7 @@ GroundFriction ground_friction(RobotEquations& equations, std::span<const RobotS
     if (std::min(feet[kLeft].normal_N, feet[kRight].normal_N) < options.least_load * weight_N ||
         sum_N > options.most_weight * weight_N)
       continue;
-    // the foot that slips has the larger share: the other still holds
+    // The slipping foot has the larger ratio: the other one still sticks.
     const double larger = std::max(ratio(feet[kLeft]), ratio(feet[kRight]));
     const double speed_m_s = equations.foot_separation_speed_m_s(sample);
     if (speed_m_s > options.slipping_m_s) slipping.push_back(larger);

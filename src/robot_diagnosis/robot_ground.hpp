@@ -1,4 +1,4 @@
-// The ground's friction, where a sole has slipped.
+// The ground's friction coefficient, from slipping soles.
 #pragma once
 
 #include <span>
@@ -8,13 +8,14 @@
 namespace pmg::robot_diagnosis {
 
 struct GroundFriction {
-  bool observable = false;                    ///< a sole has slipped under load
-  double value = 0.0, low = 0.0, high = 0.0;  ///< 95 %; if observable
-  double at_least = 0.0;                      ///< the largest share of tangential in normal force that held
+  bool observable = false;                    ///< a sole slipped under load
+  double value = 0.0, low = 0.0, high = 0.0;  ///< estimate and 95 % interval, if observable
+  double at_least = 0.0;                      ///< largest tangential over normal force without slip
   int slipping_samples = 0;
 };
 
-/// Tangential over normal force of the feet, by their legs' torques, while their distance changes under load.
+/// (equations, samples, weight) => (friction): the ratio of tangential to normal force, from the legs' torques, while
+/// the distance of the loaded feet changes.
 GroundFriction ground_friction(RobotEquations& equations, std::span<const RobotSample> samples, double weight_N,
                                const GroundOptions& options = {});
 

@@ -11,7 +11,7 @@ bool moves(const RobotRow& row) {
   return row.standstill <= kMostStandstill;
 }
 
-/// 1 + 2 * sum of the autocorrelations, up to the first that is small.
+/// 1 + 2 * sum of the autocorrelations, up to the first one below 0.05.
 double rows_per_independent(const std::vector<double>& e, double mean_square) {
   constexpr int kLongestLag = 30;
   constexpr double kSmall = 0.05;
@@ -39,7 +39,7 @@ double NoiseLevels::weight(const RobotRow& row) const {
 }
 
 NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta) {
-  constexpr std::size_t kFewest = 20;  // rows of a kind; fewer tell no noise
+  constexpr std::size_t kFewest = 20;  // rows of a kind that a noise level needs
   std::vector<std::vector<double>> by_kind(static_cast<std::size_t>(kinds));
   for (const RobotBlock& block : blocks) {
     for (const RobotRow& row : block.rows)

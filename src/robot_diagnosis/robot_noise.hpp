@@ -1,4 +1,4 @@
-// Weights of the equations of motion, from what a fit leaves of them.
+// Noise levels and weights of the equations of motion, from a fit's residuals.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,21 +15,21 @@ double residual(const RobotRow& row, const Eigen::VectorXd& theta);
 
 /// The noise of every kind of row.
 struct NoiseLevels {
-  std::vector<double> variance;              ///< in the row's unit squared; 0 where there are too few rows to tell
-  std::vector<double> rows_per_independent;  ///< 1 + 2 * sum of autocorrelations: noise hangs together in time
+  std::vector<double> variance;              ///< in the row's unit squared; 0 with too few rows
+  std::vector<double> rows_per_independent;  ///< 1 + 2 * sum of the noise's autocorrelations
 
   explicit NoiseLevels(int kinds)
       : variance(static_cast<std::size_t>(kinds), 0.0), rows_per_independent(static_cast<std::size_t>(kinds), 1.0) {}
 
-  /// 1 / ((variance + friction_variance) * rows_per_independent); 0 near standstill, where dry friction may be anything
-  /// and stays the same for long: such rows say nothing.
+  /// 1 / ((variance + friction_variance) * rows_per_independent); 0 near standstill, where dry friction is unknown and
+  /// stays constant for long.
   double weight(const RobotRow& row) const;
 };
 
-/// (blocks, theta) => (noise of each kind): rows of one kind follow each other in time.
+/// (blocks, theta) => (noise of each kind). Rows of one kind must be in the order of time.
 NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta);
 
-/// (rows, noise) => (weighted normal equations at theta = 0; samples: as many rows as are independent).
+/// (rows, noise) => (weighted normal equations at theta = 0; samples: the equivalent number of independent rows).
 fitting::NormalEquations normal_equations(std::span<const RobotRow> rows, const NoiseLevels& noise,
                                           Eigen::Index parameters);
 

@@ -1,4 +1,4 @@
-// The numbers that a robot's diagnosis decides by.
+// The thresholds of a robot's diagnosis.
 #pragma once
 
 #include <vector>
@@ -8,24 +8,24 @@
 
 namespace pmg::robot_diagnosis {
 
-/// What carries the robot; forces as shares of its weight.
+/// How the robot's support is recognised; forces are shares of its weight.
 struct SupportOptions {
   double most_in_the_air = 0.12, least_on_the_ground = 0.15, least_weight = 0.7, most_weight = 1.4;
   double stepping_m_s = 0.03, flat_rad = 0.15, least_upright = 0.7;
 };
 
-/// When a sole has slipped, and how well the ground's friction is known then.
+/// When a sole slips, and the uncertainty of the ground's friction.
 struct GroundOptions {
   double slipping_m_s = 0.24, sticking_m_s = 0.08, quantile_of_slipping = 0.75, least_load = 0.25;
   double most_weight = 1.4, fewest_samples = 8.0, systematic = 0.03;
 };
 
-/// Which causes are named.
+/// When a cause is named, and when two are told apart.
 struct EvidenceOptions {
   double least_log_evidence = 12.0, told_apart = 5.0, most_findings = 4.0;
 };
 
-/// listed() has units, reasons, and what each was set on.
+/// listed() gives the unit, the reason and the data of each threshold.
 struct RobotDiagnosisOptions {
   RobotTolerances tolerances;
   EvidenceOptions evidence;

@@ -37,7 +37,7 @@ class ParameterListBuilder {
   }
 
   void add_links() {
-    constexpr double kLightest_kg = 0.15;  // of what a per cent is worth a column
+    constexpr double kLightest_kg = 0.15;  // lighter links need no nuisance parameter
     for (const auto& [name, link] : robot_.urdf->links_) {
       if (!link->inertial || link->inertial->mass < kLightest_kg) continue;
       add({.kind = Kind::kLinkMass, .link = name, .tolerance = tolerances_.link_mass_share, .wide = 0.0});

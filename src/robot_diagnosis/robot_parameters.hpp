@@ -1,4 +1,4 @@
-// What may be wrong with a whole robot, as numbers that the equations of motion are linear in.
+// Parameter errors of a whole robot. The equations of motion are linear in them.
 #pragma once
 
 #include <string>
@@ -8,50 +8,50 @@
 
 namespace pmg::robot_diagnosis {
 
-/// What is normal between a model and a robot that it describes well: standard deviations. A cause is more than that.
-/// Assumed; a series of robots that were measured would say better.
+/// Standard deviations of a healthy robot's parameters from its model. A cause lies beyond them. Assumed; measurements
+/// of a series of robots should replace them.
 struct RobotTolerances {
   double link_mass_share = 0.01;
   double payload_kg = 0.03;
   double torso_center_m = 0.002;
   double imu_rad = 0.001;
   double kp_share = 0.01, kd_share = 0.03;
-  double friction_share = 0.15, friction_least_Nm = 0.02;  ///< Coulomb; viscous with a share alike
+  double friction_share = 0.15, friction_least_Nm = 0.02;  ///< Coulomb; viscous friction has the same share
   double armature_share = 0.06;
-  double inertia_share = 0.01;  ///< of what a joint moves: only its sum with the armature shows
+  double inertia_share = 0.01;  ///< of the inertia that a joint moves: only its sum with the armature is observable
   double zero_offset_rad = 0.0015;
   double delay_s = 0.0004;
 };
 
-/// One number. 0 is as the model says.
+/// One parameter error; 0 means that the model is right.
 struct RobotParameter {
   enum class Kind {
-    kLinkMass,     ///< share of a link's mass and inertia more; a nuisance, never a cause
+    kLinkMass,     ///< relative error of a link's mass and inertia; a nuisance parameter, never a cause
     kTorsoMass,    ///< [kg] at the torso's centre of mass
     kTorsoCenter,  ///< [m] along the torso's axes
     kHandPayload,  ///< [kg] at the hand's centre of mass
     kImu,          ///< [rad] about the IMU's axes
-    kKp,           ///< share of the gain more
+    kKp,           ///< relative error of the gain
     kKd,
-    kCoulomb,     ///< [Nm] more
-    kViscous,     ///< [Nm s/rad] more
-    kArmature,    ///< [kg m^2] more
-    kZeroOffset,  ///< [rad] reading minus truth
+    kCoulomb,     ///< additional [Nm]
+    kViscous,     ///< additional [Nm s/rad]
+    kArmature,    ///< additional [kg m^2]
+    kZeroOffset,  ///< [rad] reading minus true angle
     kDelay,       ///< [s] from command to torque
   } kind;
-  int joint = -1;      ///< of the robot's joints, or
-  std::string link{};  ///< a link
-  int axis = -1;       ///< of a vector
-  double tolerance = 0.0;
-  double wide = 0.0;      ///< standard deviation of what a cause may be
-  double relevant = 0.0;  ///< smaller isn't worth telling
+  int joint = -1;          ///< its joint, or -1
+  std::string link{};      ///< its link, or ""
+  int axis = -1;           ///< component of a vector
+  double tolerance = 0.0;  ///< standard deviation of the prior without a cause
+  double wide = 0.0;       ///< standard deviation of the prior of a cause
+  double relevant = 0.0;   ///< smallest value worth reporting
 };
 
-/// Parameters that are one cause together.
+/// Parameters that form one cause.
 struct RobotCandidate {
   std::string effect;           ///< "payload", "center_of_mass", "imu_mounting", "gain", ...
   std::string place;            ///< link or joint
-  std::vector<int> parameters;  ///< of the list
+  std::vector<int> parameters;  ///< indices into the list
 };
 
 struct RobotParameterList {
@@ -59,12 +59,12 @@ struct RobotParameterList {
   std::vector<RobotCandidate> candidates;
 };
 
-/// About each joint's axis, of all links beyond it and its armature, as the robot stands with straight joints.
+/// Inertia about each joint's axis, of all links beyond it and its armature, with all joints at 0 [kg m^2].
 JointVector moved_inertia_kg_m2(const model::RobotModel& robot);
 
 RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances);
 
-/// "kp_scale_error", "payload", ...: key of diagnosis.json, and its unit.
+/// Key of the parameter in diagnosis.json ("kp_scale_error", "payload", ...), and its unit.
 std::string name(const RobotParameter& parameter);
 std::string unit(const RobotParameter& parameter);
 

@@ -9,8 +9,8 @@
 
 namespace pmg::robot_diagnosis {
 
-/// Zero-mean normal priors: of each parameter's tolerance, or wide where a cause was found. Keeps a reference to the
-/// list.
+/// Zero-mean normal priors. The standard deviation is each parameter's tolerance, or `wide` if it belongs to a cause.
+/// The list must outlive it.
 class Priors {
  public:
   explicit Priors(const RobotParameterList& list) : list_(&list), wide_(list.parameters.size(), false) {}
@@ -35,8 +35,8 @@ Posterior posterior(const fitting::NormalEquations& data, const Priors& priors);
 /// The posterior's mean alone.
 Eigen::VectorXd posterior_mean(const fitting::NormalEquations& data, const Priors& priors);
 
-/// (candidate, posterior, precisions of the priors in it) => (natural logarithm of how much more probable the data are
-/// when the candidate's parameters have their wide priors than when they have their tolerances).
+/// (candidate, posterior, its priors' precisions) => (log Bayes factor: natural logarithm of the data's marginal
+/// likelihood with wide priors of the candidate's parameters, over that with their tolerances).
 double log_evidence(const RobotCandidate& candidate, const RobotParameterList& list, const Posterior& now,
                     const Eigen::VectorXd& prior_precision);
 

@@ -37,7 +37,7 @@ Json ground_json(const GroundFriction& ground) {
   return json;
 }
 
-/// What would settle what these logs don't; empty when nothing is open.
+/// The recording that would resolve the ambiguity; empty if there is none.
 std::string next_excitation(const RobotDiagnosis& d) {
   if (d.coverage.hanging_s == 0.0) return "record the hanging excitation: without it single joints aren't told apart";
   if (d.coverage.standing_s == 0.0)

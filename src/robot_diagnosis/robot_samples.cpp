@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDirectionLowPass_s = 0.025;
 constexpr int kMargin = 8;               // ticks at both ends of a recording without samples
-constexpr double kTurning_rad_s = 0.02;  // below it MuJoCo's dry friction isn't fully there
+constexpr double kTurning_rad_s = 0.02;  // below it MuJoCo's dry friction is not at its full value
 
 struct TickMeans {
   RobotSample mean;
@@ -21,8 +21,8 @@ struct TickMeans {
     mean.t_s = at.t_s + 0.5 * period_s;
     mean.q = between(at.state.q, after.state.q, drive.position_share(period_s)) +
              drive.speed_share(period_s) * period_s * (at.state.dq - after.state.dq);
-    // Not the speeds that were read: a command that is held for a tick makes joints ring with the ticks, and a speed
-    // read always at the same point of it is off by up to a tenth.
+    // Mean speed from positions, not from speed readings: a held command makes joints ring at the tick rate, and a
+    // speed that is always read at the same phase is wrong by up to a tenth.
     mean.dq = (after.state.q - at.state.q) / period_s;
     mean.ddq = (after.state.dq - at.state.dq) / period_s;
     const auto spring = [&](const model::JointCommand& c) { return (c.kp.array() * (c.q - mean.q).array()).matrix(); };
@@ -72,7 +72,7 @@ RobotSample zero(int joints) {
   return sample;
 }
 
-/// Of a Gaussian low-pass, three deviations to each side.
+/// Weights of a Gaussian low-pass, three deviations to each side.
 std::vector<double> weights(double deviation_s, double period_s) {
   const int reach = static_cast<int>(std::ceil(3.0 * deviation_s / period_s));
   std::vector<double> w;
@@ -85,7 +85,7 @@ std::vector<double> weights(double deviation_s, double period_s) {
   return w;
 }
 
-/// Calls add(k', weight) for the ticks around tick k of so many; the first and the last stand in for those beyond.
+/// Calls add(k', weight) for the ticks around tick k of `count`. Beyond the ends the first and the last tick repeat.
 template <typename Add>
 void around(int k, int count, const std::vector<double>& w, Add&& add) {
   const auto reach = static_cast<int>(w.size() / 2);
@@ -93,7 +93,7 @@ void around(int k, int count, const std::vector<double>& w, Add&& add) {
     add(static_cast<std::size_t>(std::clamp(k + i, 0, count - 1)), w[static_cast<std::size_t>(i + reach)]);
 }
 
-/// Of the low-passed speed: encoder noise alone would turn a slow joint's direction from tick to tick.
+/// Directions of motion from the low-passed speed: encoder noise would flip a slow joint's direction between ticks.
 void find_directions(double period_s, std::vector<TickMeans>& means) {
   const std::vector<double> w = weights(kDirectionLowPass_s, period_s);
   const auto count = static_cast<int>(means.size());

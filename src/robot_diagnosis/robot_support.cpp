@@ -1,4 +1,4 @@
-// What carries a robot, and what its soles and its IMU feel: RobotEquations' part about contacts.
+// RobotEquations' part about contacts: support, foot forces, and the accelerometer's share of torques.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ Eigen::Vector3d RobotEquations::imu_velocity_on_resting_soles(const model::Robot
   speed.segment<3>(3) = omega_B;
   speed.tail(joints_) = state.dq;
   dynamics_.take_posture(state.q);
-  Eigen::Vector3d v_base_B = Eigen::Vector3d::Zero();  // makes both feet rest, on average
+  Eigen::Vector3d v_base_B = Eigen::Vector3d::Zero();  // base velocity at which the feet's mean velocity is 0
   for (const Foot foot : {kLeft, kRight})
     v_base_B -= 0.5 * (dynamics_.jacobian_of_link(foot_body_[foot]) * speed).head<3>();
   return T_BI.linear().transpose() * (v_base_B + omega_B.cross(T_BI.translation()));

@@ -1,4 +1,4 @@
-// Independent pieces of work on several threads.
+// A parallel for loop with progress.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace pmg::work {
 
-/// Calls work(index) for every index below count on up to so many threads, in rising order of their beginnings, and
-/// returns when all have ended. Progress is told before the first and after each ("3 of 20"); once it is over, or after
-/// the first exception, which is thrown again here, no more begin.
+/// Calls work(index) for every index below count on up to `threads` threads, and returns when all have ended. Indices
+/// start in increasing order. Reports progress before the first and after each ("3 of 20"). After an interruption or an
+/// exception no more start; the first exception is rethrown here.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, unsigned threads, const Work& work, const Progress& progress = {}) {
   std::atomic<std::size_t> next{0};
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards done, thrown and the calls of progress
   std::size_t done = 0;
   std::exception_ptr thrown;
   const auto tell = [&] {

@@ -1,4 +1,4 @@
-// What long work tells, and asks, meanwhile.
+// Progress and interruption of long work.
 #pragma once
 
 #include <functional>
@@ -10,26 +10,27 @@ namespace pmg::work {
 
 inline constexpr double kUnknownShare = std::numeric_limits<double>::quiet_NaN();
 
-/// Thrown by work of which an unfinished rest is of no use.
+/// Thrown by interrupted work whose partial result is of no use.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Both functions may be empty: then nobody is told, or nothing interrupts.
+/// Each function may be empty: then nothing is reported, or nothing interrupts.
 struct Progress {
-  /// share: of the work that is done, 0 to 1, or kUnknownShare; doing: what is being done, or "". One call at a time.
+  /// share: part of the work done, 0 to 1, or kUnknownShare; doing: the present step in words, or "". One call at a
+  /// time.
   std::function<void(double share, std::string_view doing)> told{};
-  /// True: end the work and keep what is done. From any thread, at any time.
+  /// True: end the work and keep the partial result. Called from any thread, at any time.
   std::function<bool()> interrupted{};
 
   bool over() const { return interrupted && interrupted(); }
-  /// Tells; true: go on.
+  /// Reports; returns true to go on.
   bool operator()(double share, std::string_view doing = {}) const {
     if (told) told(share, doing);
     return !over();
   }
-  /// Tells; throws Interrupted where it is over.
+  /// Reports; throws Interrupted if interrupted.
   void go_on(double share, std::string_view doing = {}) const {
     if (!(*this)(share, doing)) throw Interrupted();
   }

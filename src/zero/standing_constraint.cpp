@@ -62,7 +62,7 @@ StandingMiss StandingConstraint::miss(const JointVector& q, const Eigen::Vector3
   return miss;
 }
 
-// Central differences: a few thousand forward kinematics in all, exact to 1e-9, and nothing to get wrong.
+// Central differences: simple and exact to 1e-9, at a few thousand forward kinematics in all.
 Eigen::Matrix<double, 5, Eigen::Dynamic> StandingConstraint::jacobian(const JointVector& q,
                                                                       const Eigen::Vector3d& gravity_I,
                                                                       const Eigen::Vector2d& imu_tilt_rad) {

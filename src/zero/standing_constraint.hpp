@@ -1,4 +1,4 @@
-// What standing on level ground with both soles says about joint angles and the IMU: five equations a pose.
+// Constraint of standing on level ground with both soles: five equations per pose for joint angles and IMU.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,28 +9,28 @@
 
 namespace pmg::zero {
 
-/// Both soles' tilts [rad], and how much higher the left one is [m].
+/// Tilts of both soles [rad], and height of the left sole above the right one [m].
 using StandingMiss = Eigen::Matrix<double, 5, 1>;
 
-/// The joints whose zero points it can say something about are those between the soles and between pelvis and IMU: no
-/// other moves a sole against the IMU.
+/// Only the zero points of joints between the soles, or between pelvis and IMU, are observable: no other joint moves a
+/// sole relative to the IMU.
 class StandingConstraint {
  public:
   explicit StandingConstraint(const model::RobotModel& robot);
 
   const std::vector<int>& joints() const { return joints_; }  ///< ascending, in the robot's order
 
-  /// imu_tilt_rad: the IMU's mounting about its own x and y beyond robot.yaml's. gravity_I: unit vector.
+  /// imu_tilt_rad: mounting error of the IMU against robot.yaml, about its x and y. gravity_I: unit vector, IMU frame.
   StandingMiss miss(const JointVector& q, const Eigen::Vector3d& gravity_I, const Eigen::Vector2d& imu_tilt_rad);
 
-  /// Of miss by joints(), then by the IMU's tilt.
+  /// Derivative of miss by joints(), then by the IMU's tilt.
   Eigen::Matrix<double, 5, Eigen::Dynamic> jacobian(const JointVector& q, const Eigen::Vector3d& gravity_I,
                                                     const Eigen::Vector2d& imu_tilt_rad);
 
-  /// s of the paper as the simulated robot's IMU shows it when it stands flat on one foot: gravity, in the IMU's frame.
+  /// s of the paper, simulated: gravity in the IMU frame while the robot stands flat on one foot, for each foot.
   PerFoot<Eigen::Vector3d> gravity_of_simulated(const JointVector& q, const Eigen::Vector2d& imu_tilt_rad);
 
-  /// In the base frame.
+  /// Gravity's direction in the base frame.
   Eigen::Vector3d gravity_B(const JointVector& q, const Eigen::Vector3d& gravity_I);
 
  private:

@@ -14,10 +14,10 @@ namespace pmg::zero {
 
 namespace {
 
-constexpr double kHuber = 2.0;       // weighted misses beyond it count linearly
-constexpr double kLeastScale = 0.4;  // poses that agree better than expected are trusted so much more, not further
-constexpr double kFirmLoad = 0.35;   // share of the weight from which on more makes no difference
-constexpr double kNamedShare = 0.2;  // of a direction that a joint must have to be named in it
+constexpr double kHuber = 2.0;       // Huber's threshold: larger weighted residuals count linearly
+constexpr double kLeastScale = 0.4;  // lower limit of the noise scale, for poses that agree better than expected
+constexpr double kFirmLoad = 0.35;   // share of the weight above which a sole settles fully
+constexpr double kNamedShare = 0.2;  // least component of a null-space direction for a joint to be named
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -26,11 +26,11 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-/// Besides zero points: what may be amiss in all poses alike.
+/// Nuisance parameters, the same in all poses.
 constexpr Eigen::Index kShared = 5;
-using Shared = Eigen::Matrix<double, kShared, 1>;  // the IMU's tilt, then the soles' give
+using Shared = Eigen::Matrix<double, kShared, 1>;  // the IMU's tilt, then the soles' compliance
 
-/// What soles that give under their load miss by.
+/// Derivative of the constraint's residual by the soles' compliance, at these loads.
 Eigen::Matrix<double, 5, 3> miss_by_give(const PerFoot<model::SoleLoad>& load) {
   Eigen::Matrix<double, 5, 3> miss = Eigen::Matrix<double, 5, 3>::Zero();
   miss(0, 0) = load[kLeft].moment_Nm.y();
@@ -41,13 +41,13 @@ Eigen::Matrix<double, 5, 3> miss_by_give(const PerFoot<model::SoleLoad>& load) {
   return miss;
 }
 
-/// The stacked equations of all poses about one point.
+/// The equations of all poses, stacked and linearised.
 struct Stack {
-  Eigen::MatrixXd J;     // weighted, rows 5 a pose; columns: zero points, what is shared
+  Eigen::MatrixXd J;     // weighted; 5 rows per pose; columns: zero points, then nuisance parameters
   Eigen::VectorXd miss;  // weighted
 };
 
-/// The simulated robot beside the real one: which zero points make all poses stand flat together.
+/// Finds the zero points with which the simulated robot stands flat in all poses.
 class Alignment {
  public:
   Alignment(const model::RobotModel& robot, const std::vector<StillPose>& poses, const ZeroOptions& options)
@@ -70,7 +70,7 @@ class Alignment {
     return q;
   }
 
-  /// Weighted, without and with what is shared.
+  /// Weighted residual, without and with the nuisance parameters.
   StandingMiss miss(std::size_t pose, const Eigen::VectorXd& z, const Shared& shared) {
     const StandingMiss bare = constraint_.miss(estimate(pose, z), poses_[pose].gravity_I, shared.head<2>());
     return trust(pose).asDiagonal() * (bare - miss_by_give(load_[pose]) * shared.tail<3>());
@@ -96,7 +96,7 @@ class Alignment {
     return all;
   }
 
-  /// Gauss-Newton from z on Huber's loss with the priors: the shift of z common to all poses.
+  /// Shift of z common to all poses: Gauss-Newton from z on Huber's loss with the priors (iteratively reweighted).
   Eigen::VectorXd common_shift(const std::vector<bool>& used, const Eigen::VectorXd& z, Shared& shared) {
     Eigen::VectorXd x(count() + kShared);
     x << z, shared;
@@ -115,8 +115,8 @@ class Alignment {
     return x.head(count()) - z;
   }
 
-  /// By how much the simulated robot's joints in one pose differ from the estimate beyond the common shift: what makes
-  /// it stand flat there, spread over the joints as far as they may deflect.
+  /// Joint deflections d of one pose beyond the common shift that make the simulated robot stand flat:
+  /// d = -(J^T J + I / deflection_rad^2)^-1 J^T miss.
   Eigen::VectorXd deflection(std::size_t pose, const Eigen::VectorXd& z, const Shared& shared) {
     const Eigen::MatrixXd J = jacobian(pose, z, shared).leftCols(count());
     const double stiffness = 1.0 / (options_.deflection_rad * options_.deflection_rad);
@@ -144,7 +144,7 @@ class Alignment {
         pose.load, [this](const model::SoleLoad& load) { return load.force_N >= options_.least_load * weight_N_; });
   }
 
-  /// Inverse squares of what is expected of zero points and of what is shared.
+  /// Precisions (1 / deviation^2) of the priors: zero points, then nuisance parameters.
   Eigen::VectorXd prior() const {
     const double give_m_per_N = options_.sole_give_m / weight_N_;
     Eigen::VectorXd expected(count() + kShared);
@@ -155,7 +155,7 @@ class Alignment {
   }
 
  private:
-  /// Weights of a pose's equations: a sole that hardly anything presses down settles less surely.
+  /// Weights of a pose's equations, 1 / deviation: a lightly loaded sole lies flat less reliably.
   StandingMiss trust(std::size_t pose) const {
     const auto tilt = [&](Foot foot) {
       const double firm_N = kFirmLoad * weight_N_;
@@ -196,7 +196,7 @@ std::string direction_text(const Eigen::VectorXd& direction, const std::vector<i
   return text;
 }
 
-/// What the poses can tell: deviations of the zero points, and along which directions there is nothing.
+/// Fills in the zero points' deviations and the unobservable directions (null space).
 void find_observability(ZeroCalibration& found, Alignment& alignment, const Shared& shared,
                         const std::vector<bool>& used, const model::RobotModel& robot, const ZeroOptions& options) {
   const Eigen::Index count = alignment.count();
@@ -204,7 +204,7 @@ void find_observability(ZeroCalibration& found, Alignment& alignment, const Shar
   found.weighted_rms = std::sqrt(all.miss.squaredNorm() / static_cast<double>(all.miss.size()));
   const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(all.J.leftCols(count)).singularValues();
   found.singular_values.assign(singular.begin(), singular.end());
-  // What the poses leave says how far they can be trusted; what they have in common says nothing of it.
+  // The residual sets the noise scale, with the degrees of freedom reduced by all fitted parameters.
   const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, all.miss.size() - count - kShared));
   const double scale = std::max(kLeastScale, std::sqrt(all.miss.squaredNorm() / freedom));
   const Eigen::MatrixXd precision =

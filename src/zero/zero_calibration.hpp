@@ -20,19 +20,19 @@ struct ZeroOptions {
   int M = 5;                  ///< ... over so many consecutive iterations
   int most_iterations = 200;
 
-  // What a pose can be trusted with: assumed, one standard deviation each.
-  double sole_tilt_rad = 0.001;      ///< of a sole that is said to lie flat: give of sole and ground
-  double height_m = 0.0003;          ///< of one sole over the other, likewise
+  // Uncertainties of a pose, one standard deviation each. Assumed.
+  double sole_tilt_rad = 0.001;      ///< of a flat sole: compliance of sole and ground
+  double height_m = 0.0003;          ///< of one sole above the other, likewise
   double deflection_rad = 0.001;     ///< of a joint in one pose against the others: play, bending
-  double sole_give_m = 0.003;        ///< of a sole and its ground under the whole weight, same in all poses
-  double imu_mounting_rad = 0.001;   ///< of the IMU's attitude against robot.yaml's, same in all poses
-  double expected_offset_rad = 0.1;  ///< of a zero point before anything is known
+  double sole_give_m = 0.003;        ///< compression of sole and ground under the whole weight, same in all poses
+  double imu_mounting_rad = 0.001;   ///< of the IMU's attitude against robot.yaml, same in all poses
+  double expected_offset_rad = 0.1;  ///< prior of a zero point
   double least_load = 0.1;           ///< share of the weight on a sole that stands
   double least_inside_m = 0.01;      ///< of the centre of pressure from the sole's edge when the sole lies flat
   double observable_rad = 0.002;     ///< a zero point is observable when one standard deviation is at most this
 };
 
-/// What became of a pose.
+/// Result of one pose.
 struct ZeroPose {
   bool used = false;
   std::string why_not;            ///< empty when used
@@ -41,16 +41,16 @@ struct ZeroPose {
   PerFoot<model::SoleLoad> load;
 };
 
-/// Joints of which nothing but a combination can be told.
+/// A combination of zero points that the poses do not determine (null space).
 struct BlindDirection {
   double deviation_rad = 0.0;  ///< along it
   std::string text;            ///< "0.71 left_hip_pitch - 0.70 left_ankle_pitch"
 };
 
 struct ZeroCalibration {
-  std::vector<int> joints;        ///< between soles and IMU; no other joint can be seen
-  Eigen::VectorXd z_rad;          ///< to be added to the reading, by joints
-  Eigen::VectorXd deviation_rad;  ///< one standard deviation, given the options' trust
+  std::vector<int> joints;        ///< between soles and IMU; no other joint is observable
+  Eigen::VectorXd z_rad;          ///< correction to add to the reading, one per entry of joints
+  Eigen::VectorXd deviation_rad;  ///< one standard deviation, given the options' uncertainties
   std::vector<bool> observable;
   Eigen::Vector2d imu_tilt_rad = Eigen::Vector2d::Zero();  ///< of its mounting, about its x and y
   /// Of soles and ground: pitch and roll [rad/Nm], height [m/N].
@@ -59,12 +59,12 @@ struct ZeroCalibration {
   std::vector<BlindDirection> blind;
   std::vector<ZeroPose> poses;    ///< in the order of the input
   std::vector<double> steps_rad;  ///< largest |alpha delta_i| of each iteration
-  double weighted_rms = 0.0;      ///< of what is left, 1 when it is as large as the options say
+  double weighted_rms = 0.0;      ///< of the residual; 1 if it is as large as the options expect
   bool converged = false;
   std::size_t used() const;
 };
 
-/// Throws std::invalid_argument when no pose is one of a robot that stands on both soles.
+/// (robot, poses) => (zero points). Throws std::invalid_argument if the robot stands on both soles in no pose.
 ZeroCalibration calibrate_zero(const model::RobotModel& robot, const std::vector<StillPose>& poses,
                                const ZeroOptions& options = {}, const work::Progress& progress = {});
 

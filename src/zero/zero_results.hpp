@@ -1,4 +1,4 @@
-// A finished zero calibration for people and machines: zero.json, report.html, and the actuators of zero.yaml.
+// Output of a finished zero calibration: zero.json, report.html, and the actuators of zero.yaml.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,11 +19,11 @@ struct ZeroResults {
   bool interrupted = false;
 };
 
-/// The actuators with sensor.zero_offset_rad (reading less truth, so -z) of the joints that could be observed; what an
-/// actuator had there is what the firmware's zero had taken no account of, and is replaced.
+/// The actuators with sensor.zero_offset_rad = -z (reading minus true angle) of the observable joints. Replaces an
+/// actuator's earlier offset, which the readings of the poses already contain.
 sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results);
 
-/// Joints of the robot whose zero the poses can't tell, with the reason.
+/// A joint whose zero point the poses do not determine, with the reason.
 struct UnobservedJoint {
   std::string name, why;
 };

@@ -16,16 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kCommandStep_m = 0.001;    // of the height command from one stance to the next
-constexpr double kMove_s = 2.0;             // from one stance to the next, feet in the air
-constexpr double kLift_s = 4.5;             // rope tight, up, move
-constexpr double kHold_s = 7.0;             // down in 3.5 s, calm, and three seconds to average over
-constexpr double kLegMargin_rad = 0.18;     // zero points may be 0.1 off, and legs yield
-constexpr double kLimitMargin_rad = 0.05;   // of the other joints; the generator keeps 0.035
-constexpr std::size_t kFewestStances = 10;  // 5 equations each, 12 joints and a few unknowns besides
-constexpr double kSoftKp_Nm_per_rad =
-    15.0;                             // a sole that is 0.2 rad off is turned flat by 3 Nm, a tenth of what it can
-constexpr double kYieldingLeg = 0.5;  // of the gains: legs that offsets make unequal still share the weight
+constexpr double kCommandStep_m = 0.001;     // of the height command from one stance to the next
+constexpr double kMove_s = 2.0;              // from one stance to the next, feet in the air
+constexpr double kLift_s = 4.5;              // tighten the rope, lift, move
+constexpr double kHold_s = 7.0;              // 3.5 s down, settling, and three seconds of averaging
+constexpr double kLegMargin_rad = 0.18;      // zero points may be 0.1 off, and legs yield
+constexpr double kLimitMargin_rad = 0.05;    // of the other joints; the generator keeps 0.035
+constexpr std::size_t kFewestStances = 10;   // 5 equations each, 12 joints and a few unknowns besides
+constexpr double kSoftKp_Nm_per_rad = 15.0;  // 3 Nm, a tenth of the joint's torque, turn a sole that is 0.2 rad off
+constexpr double kYieldingLeg = 0.5;  // share of the gains: legs that offsets make unequal still share the weight
 constexpr double kSoftKd_Nm_s_per_rad = 1.0;
 
 /// Rotation vector of a small rotation.
@@ -34,7 +33,7 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
-/// Newton's method with a little damping; legs are far from their singular postures.
+/// Inverse kinematics by damped Newton steps; the legs stay far from singular postures.
 void reach(JointVector& q, const model::RobotModel& robot, Foot foot, const Eigen::Matrix3d& R_BF,
            const Eigen::Vector3d& sole_B, const std::string& stance) {
   model::LegKinematics legs(robot);
@@ -89,10 +88,10 @@ void expect_within_limits(const JointVector& q, const model::RobotModel& robot, 
   }
 }
 
-/// robot.yaml with soft soles and a height channel that counts stances.
+/// robot.yaml with soft sole joints and a height command that selects the stance.
 std::string rig_yaml(const model::RobotModel& robot, std::size_t stances) {
   YAML::Node yaml = YAML::LoadFile((robot.directory / "robot.yaml").string());
-  yaml.remove("policy");  // it was trained on other legs and clips
+  yaml.remove("policy");  // it was trained with other leg gains and clips
   for (const auto& leg : robot.leg_joints) {
     for (const int joint : leg)
       yaml["joints"][robot.joint_index.name(joint)]["kp_Nm_per_rad"] =
@@ -227,7 +226,7 @@ void write_zero_rig(const model::RobotModel& robot, const fs::path& out) {
   const fs::path urdf = YAML::LoadFile((robot.directory / "robot.yaml").string())["urdf"].as<std::string>();
   fs::create_directories((out / urdf).parent_path());
   fs::copy_file(robot.directory / urdf, out / urdf, fs::copy_options::overwrite_existing);
-  // The command inverse belongs to the robot's own clips.
+  // Leave out the command inverse: it belongs to the robot's own clips.
   for (const fs::path& file : model::clip_library_files(robot.directory / "clips")) {
     if (file.stem() != "inverse") fs::copy_file(file, clips / file.filename(), fs::copy_options::overwrite_existing);
   }

@@ -1,4 +1,4 @@
-// Postures in which a robot that somebody steadies shows its joints' zero points, and what makes it take them.
+// Postures for zero calibration of a steadied robot, and the files with which it takes them.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace pmg::zero {
 
-/// Where one sole is, level, against the standing posture.
+/// Position of one level sole relative to the standing posture.
 struct SolePlace {
   double forward_m = 0.0, outward_m = 0.0, turned_out_rad = 0.0;
 };
@@ -22,23 +22,23 @@ struct ZeroStance {
   PerFoot<SolePlace> soles;
 };
 
-/// Strides, squats, straddles, tilted pelvis. Unequal legs are the point of it: where both legs do the same, a hip's
-/// offset and the opposite one of its ankle only move the pelvis, which neither IMU nor ground can see.
+/// Strides, squats, straddles, tilted pelvis. The legs differ on purpose: with equal legs, an offset of the hips and
+/// the opposite offset of the ankles only move the pelvis, which neither IMU nor ground can observe.
 std::vector<ZeroStance> zero_stances();
 
-/// All joints of the stance; those that it doesn't need stand. Throws std::invalid_argument when a joint can't.
+/// (stance, robot) => (angles of all joints [rad]; unused joints as in the standing posture). Throws
+/// std::invalid_argument if a joint's range does not allow the stance.
 JointVector posture(const ZeroStance& stance, const model::RobotModel& robot);
 
-/// Those that the robot can take. Throws std::invalid_argument when they are too few to calibrate by.
+/// The stances that the robot can take. Throws std::invalid_argument if they are too few for a calibration.
 std::vector<ZeroStance> reachable_stances(const model::RobotModel& robot);
 
-/// The joints that turn the sole of a leg whose knee is given: its last two. They go soft, so that soles lie flat
-/// whatever the offsets.
+/// The last two joints of each leg, which turn its sole. Their gains are low, so that soles lie flat despite offsets.
 std::vector<int> sole_joints(const model::RobotModel& robot);
 
-/// Makes a robot folder in which the height command calls up one stance after the other and the sole joints are soft,
-/// and scenario.yaml, in which the gantry sets the robot down in each: what pmg_sil and pmg_controller take the logs
-/// with. Throws std::invalid_argument or what copying files throws.
+/// Writes a robot folder for pmg_sil and pmg_controller in which the height command selects the stance and the sole
+/// joints are soft, and scenario.yaml, in which the gantry sets the robot down in each stance. Throws
+/// std::invalid_argument, or the errors of writing files.
 void write_zero_rig(const model::RobotModel& robot, const std::filesystem::path& out);
 
 }  // namespace pmg::zero
