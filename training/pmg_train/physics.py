@@ -128,7 +128,7 @@ class Worlds:
         graph = torch.cuda.CUDAGraph()
         with torch.cuda.graph(graph, stream=torch.cuda.current_stream()):
             part()
-        wp.set_stream(wp.stream_from_torch(torch.cuda.current_stream()), self.device)
+        wp.set_stream(wp.get_stream(self.device), self.device)  # a second object of the same stream would unregister it when the first goes
         return graph.replay
 
     def _all_steps(self) -> None:

@@ -177,7 +177,7 @@ class Training:
                     part()
                 graphs.append(graph)
             torch.cuda.synchronize()
-            wp.set_stream(wp.stream_from_torch(self.torch_stream), self.device)
+            wp.set_stream(wp.get_stream(self.device), self.device)
             self.act, self.observe = graphs[0].replay, graphs[1].replay
         self.sums.zero_()
         self.log("compiled")
