@@ -21,6 +21,7 @@
 #include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/clip_library_writer.hpp"
 #include "model/command_inverse_file.hpp"
 #include "model/config_error.hpp"
 #include "model/robot_model.hpp"
@@ -32,42 +33,6 @@
 namespace {
 
 using namespace pmg;
-
-void write_library(const std::filesystem::path& directory, const ClipLibrary& library, const model::RobotModel& robot) {
-  const auto dynamic = [&](const std::string& name, const std::optional<DynamicClip>& clip) {
-    if (clip) {
-      model::write_dynamic_clip(directory, name, *clip, robot, generator::clip_source(name));
-    }
-  };
-  const auto posture = [&](const std::string& name, Channel channel) {
-    model::write_static_clip(directory, name, channel, library.posture[channel - kPitch], robot,
-                             generator::clip_source(name));
-  };
-  dynamic("forward", library.positive[kVx]);
-  dynamic("backward", library.negative[kVx]);
-  dynamic("lateral", library.positive[kVy]);
-  dynamic("turn", library.positive[kOmega]);
-  for (const CornerClip& corner : library.corners) {
-    const std::string name = model::corner_clip_name({corner.sign});
-    model::write_dynamic_clip(directory, name, corner.clip, robot, generator::clip_source(name));
-  }
-  posture("bend", kPitch);
-  posture("lean", kRoll);
-  posture("squat", kHeight);
-}
-
-/// Throws model::ConfigError unless the directory, or the one that it would be made in, takes new files. Makes nothing.
-void require_writable(const std::filesystem::path& directory) {
-  std::filesystem::path existing = std::filesystem::absolute(directory);
-  std::error_code error;
-  while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) {
-    existing = existing.parent_path();
-  }
-  if (!std::filesystem::is_directory(existing, error) || access(existing.c_str(), W_OK | X_OK) != 0) {
-    throw model::ConfigError(directory.string() +
-                             ": can't be written to; expected a directory, or a place to make one in");
-  }
-}
 
 /// From the clips as they are read back, so that it belongs to the files. Interrupted, the old one stays.
 void write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips, const std::string& blend) {
@@ -81,52 +46,22 @@ void write_inverse(const model::RobotModel& robot, const std::filesystem::path& 
   if (named != kBlendNames.end()) model::write_blend(clips, library.blend);
 }
 
-/// A folder inside the library's, in which a new one is made and from which it moves when it is whole: an interruption
-/// leaves the old clips with the inverse that belongs to them.
-class UnfinishedLibrary {
- public:
-  explicit UnfinishedLibrary(const std::filesystem::path& library)
-      : library_(library), made_(!std::filesystem::exists(library)), folder_(library / ".unfinished") {
-    std::filesystem::remove_all(folder_);  // of a run that was killed
-    std::filesystem::create_directories(folder_);
-  }
-  ~UnfinishedLibrary() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-    if (made_) std::filesystem::remove(library_, ignored);  // if it is still empty
-  }
-  UnfinishedLibrary(const UnfinishedLibrary&) = delete;
-  UnfinishedLibrary& operator=(const UnfinishedLibrary&) = delete;
-
-  const std::filesystem::path& folder() const { return folder_; }
-  void finish() const {
-    for (const std::filesystem::path& file : model::clip_library_files(folder_)) {
-      std::filesystem::rename(file, library_ / file.filename());
-    }
-  }
-
- private:
-  std::filesystem::path library_;
-  bool made_;
-  std::filesystem::path folder_;
-};
-
 int invert(const std::string& robot_name, const std::filesystem::path& clips, const std::string& blend) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
-  require_writable(directory);
+  model::require_writable(directory);
   write_inverse(robot, directory, blend);
   return 0;
 }
 
 int synth(const std::string& robot_name, const std::filesystem::path& out, const std::string& blend) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
-  require_writable(out);  // now, not after a minute's work
+  model::require_writable(out);  // now, not after a minute's work
   apps::ProgressLine progress;
   const ClipLibrary library = generator::synthesize(robot, blend == "corners", apps::shown(progress));
   progress.clear();
-  const UnfinishedLibrary unfinished(out);
-  write_library(unfinished.folder(), library, robot);
+  const model::UnfinishedLibrary unfinished(out);
+  model::write_clips(unfinished.folder(), library, robot, generator::clip_source);
   write_inverse(robot, unfinished.folder(), blend);
   unfinished.finish();
   return 0;

@@ -10,12 +10,12 @@
 #include <optional>
 #include <thread>
 
+#include "eval_arguments.hpp"
 #include "evaluation/gait.hpp"
 #include "evaluation/push.hpp"
 #include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
 #include "evaluation/table2.hpp"
-#include "option_checks.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "sil/summary.hpp"
@@ -28,63 +28,7 @@ using namespace pmg;
 
 enum ExitCode { kOk = 0, kMissed = 1, kBadInput = 2, kInterrupted = 130 };
 
-constexpr const char* kFooter = R"(
-Each runs the real controller in lockstep with MuJoCo, writes DIR/report.html (self-contained) and DIR/COMMAND.json
-(docs/how-to/evaluation.md), and gives the same figures for the same seeds however many jobs run at once.
-
-Examples:
-  pmg_eval table1 --robot z1 --seeds 20 --out out/table1
-  pmg_eval table1 --policy pmg=trained/new.onnx --policy without_gco --seeds 4 --out out/new
-  pmg_eval table2 --robot z1 --policy pmg --out out/table2
-  pmg_eval push --trials 200 --out out/push
-  pmg_eval robust --seeds 20 --out out/robust
-  pmg_eval gait --out out/gait
-
-Exit codes: 0 done and every limit reached, 1 done and a limit missed, 2 bad input or output (a film that fails leaves the rest
-whole), 130 interrupted (what was done until then is written and marked incomplete).)";
-
-struct Arguments {
-  std::string robot = "z1";
-  std::vector<std::string> policies;
-  fs::path clips, out, scenario, variation = "config/evaluation/variation.yaml", norms,
-                                 plants = "config/evaluation/table2.yaml";
-  std::vector<double> strengths_N_s = {0.0, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0};
-  int seeds = 20, trials = 200, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  double speed_m_s = 0.8;
-  bool gantry = false, nominal = false, video = false, json = false;
-
-  std::string ranges_file() const { return nominal ? "" : variation.string(); }
-};
-
-void declare_common(CLI::App& command, Arguments& arguments) {
-  command.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
-      ->capture_default_str();
-  command.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
-  CLI::Option* variation =
-      command.add_option("--variation", arguments.variation, "ranges that simulated robots are drawn from (YAML)")
-          ->capture_default_str();
-  command.add_flag("--nominal", arguments.nominal, "robots as the model says; seeds differ in sensor noise alone")
-      ->excludes(variation);
-  command.add_option("--jobs", arguments.jobs, "runs at once")->check(apps::in_range(1, 1024))->capture_default_str();
-  command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
-  command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
-}
-
-constexpr const char* kPolicyHelp =
-    "policy's name below the robot's policies/, a file, or NAME=either; none: no policy";
-
-void declare_policy(CLI::App& command, Arguments& arguments) {
-  command.add_option("--policy", arguments.policies, kPolicyHelp)->expected(1)->default_str("pmg");
-}
-
-void declare_seeds(CLI::App& command, Arguments& arguments, const char* scenario) {
-  command.add_option("--scenario", arguments.scenario, "commands (YAML)")->default_str(scenario);
-  command.add_option("--seeds", arguments.seeds, "simulated robots")
-      ->check(apps::in_range(1, 100000))
-      ->capture_default_str();
-}
-
-evaluation::Candidate candidate(const std::string& text, const Arguments& arguments) {
+evaluation::Candidate candidate(const std::string& text, const apps::EvalArguments& arguments) {
   const std::size_t sign = text.find('=');
   const std::string policy = sign == std::string::npos ? text : text.substr(sign + 1);
   const std::string name = sign == std::string::npos ? fs::path(text).stem().string() : text.substr(0, sign);
@@ -98,7 +42,7 @@ evaluation::Candidate candidate(const std::string& text, const Arguments& argume
   return candidate;
 }
 
-std::vector<evaluation::Candidate> candidates(const Arguments& arguments) {
+std::vector<evaluation::Candidate> candidates(const apps::EvalArguments& arguments) {
   std::vector<evaluation::Candidate> all;
   for (const std::string& text : arguments.policies) {
     all.push_back(candidate(text, arguments));
@@ -111,7 +55,7 @@ std::vector<evaluation::Candidate> candidates(const Arguments& arguments) {
   return all;
 }
 
-evaluation::Plants plants(const Arguments& arguments) {
+evaluation::Plants plants(const apps::EvalArguments& arguments) {
   evaluation::Plants plants;
   if (!arguments.nominal) plants.ranges = sim::load_variation_ranges(arguments.variation);
   return plants;
@@ -120,7 +64,7 @@ evaluation::Plants plants(const Arguments& arguments) {
 /// Shows how far the work is, while it lives.
 class Watch {
  public:
-  explicit Watch(const Arguments& arguments) {
+  explicit Watch(const apps::EvalArguments& arguments) {
     supervision_.jobs = arguments.jobs;
     supervision_.progress = {.told = [this](double share, std::string_view pieces) { show(share, pieces); },
                              .interrupted = [] { return apps::interrupt_requested != 0; }};
@@ -143,7 +87,7 @@ class Watch {
 
 /// Page and JSON to the folder, text or JSON to stdout; the exit code.
 template <typename Result>
-int hand_over(const Arguments& arguments, const Result& result, bool complete, bool reached) {
+int hand_over(const apps::EvalArguments& arguments, const Result& result, bool complete, bool reached) {
   const nlohmann::ordered_json json = to_json(result);
   fs::create_directories(arguments.out);
   sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
@@ -159,7 +103,7 @@ int hand_over(const Arguments& arguments, const Result& result, bool complete, b
 }
 
 /// What went wrong with films, a line each. The table's films are those that can be watched.
-std::vector<std::string> make_films(const Arguments& arguments, evaluation::Table1& table) {
+std::vector<std::string> make_films(const apps::EvalArguments& arguments, evaluation::Table1& table) {
   const Watch watch(arguments);
   std::vector<std::optional<std::string>> failures(table.cases.size());  // nothing: not begun
   evaluation::for_each_piece(table.cases.size(), watch.supervision(), [&](std::size_t c) {
@@ -178,7 +122,7 @@ std::vector<std::string> make_films(const Arguments& arguments, evaluation::Tabl
   return lines;
 }
 
-int table1(const Arguments& arguments) {
+int table1(const apps::EvalArguments& arguments) {
   evaluation::Table1 table;
   table.robot = arguments.robot;
   table.scenario_file = arguments.scenario.string();
@@ -204,7 +148,7 @@ int table1(const Arguments& arguments) {
   return failures.empty() ? code : static_cast<int>(kBadInput);
 }
 
-int table2(const Arguments& arguments) {
+int table2(const apps::EvalArguments& arguments) {
   evaluation::Table2 table;
   table.robot = arguments.robot;
   table.policy = candidate(arguments.policies.front(), arguments).control.policy;
@@ -217,7 +161,7 @@ int table2(const Arguments& arguments) {
   return hand_over(arguments, table, table.complete, table.complete && table.all_reached());
 }
 
-int push(const Arguments& arguments) {
+int push(const apps::EvalArguments& arguments) {
   evaluation::PushTest test;
   test.robot = arguments.robot;
   test.ranges_file = arguments.ranges_file();
@@ -229,7 +173,7 @@ int push(const Arguments& arguments) {
   return hand_over(arguments, test, test.complete, test.reached().value_or(true));
 }
 
-int robust(const Arguments& arguments) {
+int robust(const apps::EvalArguments& arguments) {
   evaluation::RobustnessTest test;
   test.robot = arguments.robot;
   test.scenario_file = arguments.scenario.string();
@@ -244,7 +188,7 @@ int robust(const Arguments& arguments) {
   return hand_over(arguments, test, test.campaign.complete, test.all_survived());
 }
 
-int gait(const Arguments& arguments) {
+int gait(const apps::EvalArguments& arguments) {
   evaluation::GaitTest test;
   test.robot = arguments.robot;
   test.speed_m_s = arguments.speed_m_s;
@@ -260,68 +204,15 @@ int gait(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app("Evaluates policies over many simulated robots.", "pmg_eval");
-  app.footer(kFooter);
-  app.require_subcommand(1);
-  Arguments arguments;
-  CLI::App* table1_command =
-      app.add_subcommand("table1", "Errors of policies over the same commands: Table I of the paper");
-  declare_common(*table1_command, arguments);
-  declare_seeds(*table1_command, arguments, "config/scenarios/table1_full.yaml");
-  table1_command->add_option("--policy", arguments.policies, std::string(kPolicyHelp) + "; may be given several times")
-      ->default_str("pmg without_gco single_gait");
-  table1_command->add_flag("--video", arguments.video, "film each policy with seed 1 (needs ffmpeg; minutes each)");
-  table1_command->add_flag("--gantry", arguments.gantry, "hang the robot in a gantry: nothing is judged");
-  CLI::App* table2_command = app.add_subcommand(
-      "table2", "How far simulations are from robots with hidden actuators, by calibration: Table II of the paper");
-  table2_command->add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
-      ->capture_default_str();
-  declare_policy(*table2_command, arguments);
-  table2_command->add_option("--scenario", arguments.scenario, "commands (YAML)")
-      ->default_str("config/scenarios/table2.yaml");
-  table2_command->add_option("--plants", arguments.plants, "what the robots' actuators are drawn from (YAML)")
-      ->capture_default_str();
-  table2_command->add_option("--jobs", arguments.jobs, "runs at once")
-      ->check(apps::in_range(1, 1024))
-      ->capture_default_str();
-  table2_command->add_option("--out", arguments.out, "folder for the results; made if absent")->required();
-  table2_command->add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
-  CLI::App* push_command = app.add_subcommand("push", "Impulses at the torso: how many are survived");
-  declare_common(*push_command, arguments);
-  declare_policy(*push_command, arguments);
-  push_command->add_option("--strengths", arguments.strengths_N_s, "impulses [N s], separated by commas")
-      ->delimiter(',')
-      ->check(apps::in_range(0.0, 1000.0))
-      ->default_str("0,10,20,30,35,40,50");
-  push_command
-      ->add_option("--trials", arguments.trials,
-                   "pushes of each strength; 16 are every direction, standing and walking")
-      ->check(apps::in_range(1, 100000))
-      ->capture_default_str();
-  CLI::App* robust_command = app.add_subcommand("robust", "The tour with payload, little and much friction, and delay");
-  declare_common(*robust_command, arguments);
-  declare_policy(*robust_command, arguments);
-  declare_seeds(*robust_command, arguments, "config/scenarios/tour.yaml");
-  CLI::App* gait_command = app.add_subcommand("gait", "Steady walking beside published means of human gait");
-  declare_common(*gait_command, arguments);
-  declare_policy(*gait_command, arguments);
-  gait_command->add_option("--norms", arguments.norms,
-                           "CSV of published means (docs/how-to/evaluation.md); a built-in set if not given");
-  gait_command->add_option("--speed", arguments.speed_m_s, "forward [m/s]")
-      ->check(apps::positive())
-      ->capture_default_str();
+  apps::EvalArguments arguments;
+  arguments.declare(app);
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM}, "ending the runs under way, then the report of what is complete");
-    const bool compares = table1_command->parsed();
-    if (arguments.policies.empty()) arguments.policies = {"pmg"};
-    if (compares && table1_command->count("--policy") == 0) arguments.policies = {"pmg", "without_gco", "single_gait"};
-    if (arguments.scenario.empty())
-      arguments.scenario = table2_command->parsed() ? "config/scenarios/table2.yaml"
-                           : compares               ? "config/scenarios/table1_full.yaml"
-                                                    : "config/scenarios/tour.yaml";
-    if (compares) return table1(arguments);
-    if (table2_command->parsed()) return table2(arguments);
-    if (push_command->parsed()) return push(arguments);
-    if (robust_command->parsed()) return robust(arguments);
+    const std::string command = arguments.finish(app);
+    if (command == "table1") return table1(arguments);
+    if (command == "table2") return table2(arguments);
+    if (command == "push") return push(arguments);
+    if (command == "robust") return robust(arguments);
     return gait(arguments);
   });
 }

@@ -1,4 +1,5 @@
 // The parameterized motion generator (paper III-A.2) as one class: command in, reference out, once per tick.
+// Longer than 300 lines: its stages share the state of one walk, and the header stands alone.
 #pragma once
 
 #include <algorithm>

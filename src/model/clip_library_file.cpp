@@ -4,10 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
 #include "model/clip_table.hpp"
 #include "model/command_inverse_file.hpp"
@@ -18,10 +15,6 @@ namespace pmg::model {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, kVelocityChannels> kPositiveNames = {"forward", "lateral", "turn"};
-constexpr std::array<const char*, kVelocityChannels> kNegativeNames = {"backward", "lateral_right", "turn_right"};
-constexpr std::array<const char*, 3> kPostureNames = {"bend", "lean", "squat"};
-constexpr std::array<const char*, 2> kFootNames = {"left", "right"};
 constexpr std::size_t kMinSamples = 4, kMaxSamples = 1024;
 constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far above rounding
 
@@ -184,14 +177,6 @@ void check_total(const fs::path& directory, const ClipLibrary& library) {
   for (const CornerClip& corner : library.corners) add(corner.clip, corner_clip_name({corner.sign}));
 }
 
-void write_file(const fs::path& file, const std::string& text) {
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
-}
-
 fs::path library_yaml(const fs::path& directory) { return directory / "library.yaml"; }
 
 Blend read_blend(const fs::path& directory) {
@@ -200,16 +185,6 @@ Blend read_blend(const fs::path& directory) {
   const std::string name = reader.one_of("blend", {kBlendNames.begin(), kBlendNames.end()});
   reader.finish();
   return static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
-}
-
-/// text as a YAML double-quoted string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out + '"';
 }
 
 }  // namespace
@@ -292,32 +267,6 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   check_contact_centers(directory, library);
   check_total(directory, library);
   return library;
-}
-
-void write_dynamic_clip(const fs::path& directory, const std::string& name, const DynamicClip& clip,
-                        const RobotModel& robot, const std::string& source) {
-  std::string text = fmt::format("kind: dynamic\nsource: {}\nperiod_s: {}\ncontact:\n", quoted(source), clip.period_s);
-  for (const Foot foot : {kLeft, kRight}) {
-    text += fmt::format("  {}: {{center: {}, duty_factor: {}}}\n", kFootNames[foot], clip.contact_center[foot],
-                        clip.duty_factor[foot]);
-  }
-  text += "mean_velocity:\n";
-  for (std::size_t i = 0; i < kVelocityChannels; ++i) {
-    text += fmt::format("  {}: {}\n", kChannelNames[i], clip.mean_velocity[i]);
-  }
-  write_file(csv(directory, name), format_clip_table(robot.joint_index, {}, clip.q));
-  write_file(yaml(directory, name), text);
-}
-
-void write_blend(const fs::path& directory, Blend blend) {
-  write_file(library_yaml(directory), fmt::format("blend: {}\n", kBlendNames[static_cast<std::size_t>(blend)]));
-}
-
-void write_static_clip(const fs::path& directory, const std::string& name, Channel channel, const StaticClip& clip,
-                       const RobotModel& robot, const std::string& source) {
-  write_file(csv(directory, name), format_clip_table(robot.joint_index, clip.command, clip.q));
-  write_file(yaml(directory, name),
-             fmt::format("kind: static\nsource: {}\nchannel: {}\n", quoted(source), kChannelNames[channel]));
 }
 
 }  // namespace pmg::model

@@ -1,7 +1,7 @@
-// Reads and writes clip libraries: a CSV with one column per joint (SI) and a YAML beside each
-// (docs/reference/file-formats.md).
+// Reads clip libraries: a CSV with one column per joint (SI) and a YAML beside each (docs/reference/file-formats.md).
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +11,14 @@
 #include "pmg/clip.hpp"
 
 namespace pmg::model {
+
+/// File names of a velocity channel's clips in its positive and its negative direction, and of a posture channel's
+/// clip.
+inline constexpr std::array<const char*, kVelocityChannels> kPositiveNames = {"forward", "lateral", "turn"};
+inline constexpr std::array<const char*, kVelocityChannels> kNegativeNames = {"backward", "lateral_right",
+                                                                              "turn_right"};
+inline constexpr std::array<const char*, 3> kPostureNames = {"bend", "lean", "squat"};
+inline constexpr std::array<const char*, 2> kFootNames = {"left", "right"};  ///< a clip's contacts
 
 /// Largest difference of one foot's contact centre between the clips of a library [cycles].
 inline constexpr double kMaxContactCenterSpread = 0.15;
@@ -33,13 +41,5 @@ std::vector<std::filesystem::path> clip_library_files(const std::filesystem::pat
 /// dq/dphi [rad per cycle] at N equidistant samples of a cycle: the slopes of the periodic cubic spline through them.
 /// With the slopes m_k:  m_(k-1) + 4 m_k + m_(k+1) = 3 N (q_(k+1) - q_(k-1)).
 std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q);
-
-/// Writes NAME.csv and NAME.yaml, so that load_clip_library reads back the same numbers. dq_dphi isn't written: it is
-/// periodic_spline_slopes of q. Throws ConfigError when a file can't be written.
-void write_dynamic_clip(const std::filesystem::path& directory, const std::string& name, const DynamicClip& clip,
-                        const RobotModel& robot, const std::string& source);
-void write_blend(const std::filesystem::path& directory, Blend blend);  ///< library.yaml
-void write_static_clip(const std::filesystem::path& directory, const std::string& name, Channel channel,
-                       const StaticClip& clip, const RobotModel& robot, const std::string& source);
 
 }  // namespace pmg::model

@@ -1,3 +1,4 @@
+// One actuator, its stages in the order in which a command passes them. Longer than 300 lines for that.
 #include "sim/actuator_model.hpp"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 
 #include "io/whole_file.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/clip_library_writer.hpp"
 #include "model/leg_kinematics.hpp"
 
 namespace pmg::zero {

@@ -1,3 +1,4 @@
+// The promises of one tick. Longer than 300 lines: they share one driven robot.
 #include "control/tick.hpp"
 
 #include <gtest/gtest.h>

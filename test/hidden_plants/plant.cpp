@@ -1,3 +1,4 @@
+// One hidden plant: every effect beside the others. Longer than 300 lines: they act on one state.
 #include "plant.hpp"
 
 #include <algorithm>

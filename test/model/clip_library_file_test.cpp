@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "model/clip_library_writer.hpp"
 #include "model/config_error.hpp"
 #include "model/robots.hpp"
 #include "temporary_copy.hpp"

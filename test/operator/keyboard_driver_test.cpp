@@ -1,4 +1,5 @@
 // A robot driven by keys over the network: from limp to walking and to rest, and the things that must never happen.
+// Longer than 300 lines: the tests share one keyboard and one controller.
 #include "operator/keyboard_driver.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// An operator's requests to a controller, over the network and back.
+// An operator's requests to a controller, over the network and back. Longer than 300 lines: all share one
+// network.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 """The training environment: many Z1s in mujoco_warp that follow the deployed generator's references at 100 Hz.
 
 One tick is act() -> worlds.step() -> observe(): each part has static shapes and no host synchronisation, so that
-act() and observe() can be recorded as CUDA graphs.
+act() and observe() can be recorded as CUDA graphs. Longer than 300 lines: the parts share the state of all worlds.
 """
 
 import math

@@ -1,5 +1,6 @@
 """Runs an exported policy in plain MuJoCo on the CPU, on the exported model (dry friction is MuJoCo's own), with the controller's own
 generator and observation, and reports errors against the user's command.
+Longer than 300 lines: one program with its tables.
 
 Example: python3 -m pmg_train.evaluate pmg.onnx --robot config/robots/z1 --mjcf z1.xml --library libpmg_batch.so \\
              --scenario config/scenarios/tour.yaml --seeds 3

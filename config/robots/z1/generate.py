@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes z1.urdf, the description of the humanoid Z1 (1.50 m, 35 kg, 31 joints), beside this file.
+"""Writes z1.urdf, the description of the humanoid Z1 (1.50 m, 35 kg, 31 joints), beside this file. Longer than 300 lines: most are tables.
 
     python3 config/robots/z1/generate.py            writes z1.urdf
     python3 config/robots/z1/generate.py --check    exits with 1 when z1.urdf is not what would be written

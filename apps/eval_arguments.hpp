@@ -1,0 +1,31 @@
+// pmg_eval's command line: its subcommands and what they take.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace pmg::apps {
+
+struct EvalArguments {
+  std::string robot = "z1";
+  std::vector<std::string> policies;
+  std::filesystem::path clips, out, scenario, variation = "config/evaluation/variation.yaml", norms,
+                                              plants = "config/evaluation/table2.yaml";
+  std::vector<double> strengths_N_s = {0.0, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0};
+  int seeds = 20, trials = 200, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  double speed_m_s = 0.8;
+  bool gantry = false, nominal = false, video = false, json = false;
+
+  /// Declares every subcommand; app is then parsed by its owner.
+  void declare(CLI::App& app);
+  /// Name of the parsed subcommand. Fills in what was not given and differs from one subcommand to another.
+  std::string finish(const CLI::App& app);
+
+  std::string ranges_file() const { return nominal ? "" : variation.string(); }
+};
+
+}  // namespace pmg::apps
