@@ -6,15 +6,9 @@
 
 #include "generator/gait_optimization.hpp"
 #include "generator/gait_task.hpp"
+#include "pmg/blending.hpp"
 
 namespace pmg::generator {
-
-/// Stance windows and period of a trajectory.
-struct GaitTiming {
-  double period_s = 1.0;
-  PerFoot<double> contact_center{0.0, 0.5};
-  PerFoot<double> duty_factor{0.6, 0.6};
-};
 
 /// Timing of a clip: left initial contact at phase 0, right half a cycle later.
 GaitTiming timing(double period_s, double duty_factor);

@@ -10,12 +10,13 @@
 #include "model/command_inverse_file.hpp"
 #include "model/config_reader.hpp"
 #include "pmg/blending.hpp"
+#include "pmg/library_check.hpp"
 
 namespace pmg::model {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMinSamples = 4, kMaxSamples = 1024;
+constexpr std::size_t kMaxSamples = 1024;
 constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far above rounding
 
 fs::path csv(const fs::path& directory, const std::string& name) { return directory / (name + ".csv"); }
@@ -65,9 +66,9 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
   reader.finish();
 
   const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, false);
-  if (table.q.size() < kMinSamples || table.q.size() > kMaxSamples) {
+  if (table.q.size() < check::kMinSamples || table.q.size() > kMaxSamples) {
     raise({table.file.string()}, "", fmt::format("has {} samples", table.q.size()),
-          fmt::format("{} to {}", kMinSamples, kMaxSamples));
+          fmt::format("{} to {}", check::kMinSamples, kMaxSamples));
   }
   check_limits(table, robot);
   clip.q = table.q;
@@ -147,7 +148,7 @@ void check_contact_centers(const fs::path& directory, const ClipLibrary& library
   for (const NamedClip& clip : clips) {
     for (const NamedClip& other : clips) {
       for (const Foot foot : {kLeft, kRight}) {
-        if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= kMaxContactCenterSpread)
+        if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= check::kMaxContactCenterSpread)
           continue;
         const fs::path file = yaml(directory, clip.name);
         ConfigReader reader = ConfigReader::from_file(file);
@@ -155,7 +156,7 @@ void check_contact_centers(const fs::path& directory, const ClipLibrary& library
             .map(kFootNames[foot])
             .fail("center",
                   fmt::format("is {}, and {} in {}", clip.contact_center[foot], other.contact_center[foot], other.name),
-                  fmt::format("at most {} of a cycle between a library's clips", kMaxContactCenterSpread));
+                  fmt::format("at most {} of a cycle between a library's clips", check::kMaxContactCenterSpread));
       }
     }
   }

@@ -20,14 +20,13 @@ inline constexpr std::array<const char*, kVelocityChannels> kNegativeNames = {"b
 inline constexpr std::array<const char*, 3> kPostureNames = {"bend", "lean", "squat"};
 inline constexpr std::array<const char*, 2> kFootNames = {"left", "right"};  ///< a clip's contacts
 
-/// Largest difference of one foot's contact centre between the clips of a library [cycles].
-inline constexpr double kMaxContactCenterSpread = 0.15;
 inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< upper bound of the sum of all dynamic clips' periods
 
 /// Reads DIRECTORY/{forward,backward,lateral,turn}.{csv,yaml} (backward, lateral_right and turn_right optional) and
 /// {bend,lean,squat}.{csv,yaml} for this robot. Also reads, if they exist, clips of several velocities
 /// (corner_clip_name), inverse.csv, and library.yaml (the blending rule; gain without the file). Throws ConfigError
-/// with file and line: wrong or missing joint columns, NaN, contact centres of one foot that differ by more than 0.15,
+/// with file and line: wrong or missing joint columns, NaN, contact centres of one foot that differ by more than
+/// check::kMaxContactCenterSpread,
 /// static commands that don't increase, dynamic clips of ten seconds or more in total, samples outside joint limits,
 /// mean velocities in the wrong direction, a posture at command 0 that isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);

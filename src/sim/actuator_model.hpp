@@ -81,7 +81,6 @@ class ActuatorModel {
   Line dry_friction(double dq_rad_s) const noexcept;
   double ripple_Nm(double motor_rad) const noexcept;
   void warm(double temperature_C) noexcept;
-  ActuatorTorque rigid(const Line& motor, double dq_rad_s) noexcept;
   ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;
 
   ActuatorParameters parameters_;
