@@ -1,12 +1,15 @@
 // pmg_send and pmg_watch, used as by their users: alone, without a network, and against a pmg_controller over UDP.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -233,6 +236,58 @@ TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
     const Finished stop = run("pmg_send stop");
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, AllOf(HasSubstr("first: damping"), HasSubstr("second: damping")));
+  });
+}
+
+/// To LCM's default group.
+void send_datagram(const std::string& bytes) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(7667);
+  group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
+  sockaddr any{};
+  std::memcpy(&any, &group, sizeof(group));
+  EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
+  ::close(socket);
+}
+
+/// A fragment in LCM's wire format (io/lcm_assembler.hpp).
+std::string fragment(std::uint32_t size, std::uint32_t offset, std::uint8_t index, const std::string& rest) {
+  std::string bytes = "LC03";
+  for (const std::uint32_t number : {std::uint32_t{1}, size, offset}) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift & 0xff));
+  }
+  bytes += std::string{'\0', static_cast<char>(index), '\0', '\3'};
+  return bytes + rest;
+}
+
+TEST_F(OperatorApps, NoDatagramEndsAProgram) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    Background watch("pmg_watch", {"--json"}, folder_ / "watch.txt");
+    Background stop("pmg_send", {"stop", "--robot", "nobody", "--timeout", "100"}, folder_ / "stop.txt");
+    const auto lines = [&] {
+      const std::string shown = text(folder_ / "watch.txt");
+      return std::count(shown.begin(), shown.end(), '\n');
+    };
+    while (lines() < 2 && watch.running()) {
+    }
+    // An offset that wraps in 32 bits; names whose zero byte is outside the datagram, behind what an earlier one left.
+    send_datagram(fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"));
+    send_datagram(fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x')));
+    for (int k = 0; k < 20; ++k) send_datagram("LC02    " + std::string(52, 'A') + '\0' + "rest");
+    send_datagram(fragment(100, 41, 0, std::string(10, 'A')));
+    send_datagram("LC02    " + std::string(20, 'A'));
+    const auto before = lines();
+    while (lines() < before + 2 && watch.running()) {
+    }
+    EXPECT_TRUE(watch.running());
+    EXPECT_TRUE(stop.running());
+    EXPECT_TRUE(robot->running());
+    EXPECT_EQ(robot->end(SIGINT), 0);
+    EXPECT_EQ(watch.end(SIGINT), 0);
+    EXPECT_EQ(stop.end(SIGINT), 130);
   });
 }
 
