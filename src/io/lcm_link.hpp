@@ -3,6 +3,7 @@
 
 #include <lcm/lcm.h>
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <exception>
@@ -57,7 +58,7 @@ class LcmLink {
     ++publish_errors_;
     return false;
   }
-  /// Sends raw bytes: for tests with foreign packets.
+  /// Sends raw bytes. Another thread may call it, too.
   bool send(const std::string& channel, Bytes bytes) noexcept;
 
   /// Waits up to timeout_ms for a message, then handles the waiting ones, at most max_messages, and no more than
@@ -89,7 +90,8 @@ class LcmLink {
   std::deque<Subscription> subscriptions_;  // liblcm keeps their addresses: destroyed after it
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
   std::vector<std::uint8_t> buffer_;
-  std::int64_t publish_errors_ = 0, receive_errors_ = 0;
+  std::atomic<std::int64_t> publish_errors_ = 0;
+  std::int64_t receive_errors_ = 0;
 };
 
 }  // namespace pmg::io

@@ -24,8 +24,8 @@ class OperatorTest : public testing::Test {
   OperatorTest() {
     network_.link.subscribe("MODE", [this](io::Bytes) { ++requests_sent_; });
     network_.link.subscribe("COMMAND", [this](io::Bytes bytes) {
-      if (const auto command = io::decode_message<pmg_msgs::command_t>(bytes))
-        speeds_sent_m_s_.push_back(command->vx_m_s);
+      if (const auto command = seal::decode_sealed<pmg_msgs::command_t, pmg_msgs::seal_t>(bytes))
+        speeds_sent_m_s_.push_back(command->message.vx_m_s);
     });
     for (int k = 0; k < 3; ++k) network_.advance();
   }
@@ -334,9 +334,10 @@ class FloodTest : public OperatorTest {
     command.sequence = sent_;
     command.lease_s = 2.0;
     command.vx_m_s = -1.0;
-    network_.link.publish("COMMAND", command);
+    network_.link.send("COMMAND", seal_.seal("COMMAND", command, &*mine_.heard("biped")->peer));
   }
 
+  seal::OperatorSeal seal_;
   const std::vector<std::uint8_t> junk_ = std::vector<std::uint8_t>(200, 0x5a);
   int sent_ = 0;
 };
