@@ -15,6 +15,8 @@ namespace pmg::runtime {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000;
+constexpr std::int64_t kVerifyPeriod_ns =
+    10'000'000;                          // a signature takes 0.1 ms: a flood of forged ones must delay no stop
 constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
 
 }  // namespace
@@ -56,7 +58,7 @@ void Comms::hear_status(io::Bytes bytes) {
     if (listening_ && !known && others_.size() < kMostOthers && presentable(status.robot)) {
       others_.push_back(status.robot);
     }
-  } else if (!heard->seal || heard->seal->boot != seal_.boot()) {
+  } else if ((!heard->seal || heard->seal->boot != seal_.boot()) && may_verify()) {
     meet(seal_.ours("STATUS", heard->message_bytes, heard->seal), status.session);
   }
 }
@@ -66,6 +68,13 @@ void Comms::hear_claim(io::Bytes bytes) {
   if (!heard || !heard->seal || heard->message.robot != run_.robot || heard->seal->boot == seal_.boot()) return;
   const bool goes_first = heard->message.held != 0 || heard->seal->boot < seal_.boot();
   if (listening_ && goes_first) meet(seal_.ours("CLAIM", heard->message_bytes, heard->seal), heard->message.session);
+}
+
+bool Comms::may_verify() {
+  if (listening_ || !seal_.has_keys()) return true;
+  if (clock_.now_ns() < verify_at_ns_) return false;
+  verify_at_ns_ = clock_.now_ns() + kVerifyPeriod_ns;
+  return true;
 }
 
 void Comms::meet(bool ours, std::int64_t session) {

@@ -73,6 +73,8 @@ class Comms {
 
   void hear_status(io::Bytes message);
   void hear_claim(io::Bytes message);
+  /// Whether there is time to look at another signature.
+  bool may_verify();
   /// A message in our name that another controller sent.
   void meet(bool ours, std::int64_t session);
   std::vector<std::uint8_t> claim(bool held);
@@ -95,7 +97,7 @@ class Comms {
   std::vector<std::string> others_;
   std::int64_t impostors_heard_ = 0, impostor_session_ = 0, forgeries_heard_ = 0;
   std::array<bool, 7> warned_{};  // by Warning
-  std::int64_t next_second_ns_, next_hoist_ns_;
+  std::int64_t next_second_ns_, next_hoist_ns_, verify_at_ns_ = 0;
 
   control::TickRecord newest_;
   control::Fault published_fault_;
