@@ -47,13 +47,14 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     return;
   }
   const pmg_msgs::mode_t& message = sealed->message;
-  if (message.version != pmg_msgs::mode_t::VERSION) {
-    ++counts_.other_version;
-    return;
-  }
   control::ModeRequest request = mode_request(message, clock_.now_ns());
   if (message.mode < pmg_msgs::mode_t::PASSIVE || message.mode > pmg_msgs::mode_t::WALK) {
     request.mode = control::Mode::kFault;  // answered with NO_MODE
+  }
+  const bool our_version = message.version == pmg_msgs::mode_t::VERSION;
+  if (!our_version && !request.stops()) {
+    ++counts_.other_version;
+    return;
   }
   const bool for_every_robot = message.robot.empty() && request.stops();
   if (message.robot != robot_ && !for_every_robot) {
@@ -61,7 +62,7 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     return;
   }
   const auto judgement = seal_.judge("MODE", sealed->message_bytes, sealed->seal, request.received_ns);
-  request.sealed = judgement == seal::ControllerSeal::Judgement::kGood;
+  request.sealed = our_version && judgement == seal::ControllerSeal::Judgement::kGood;
   if (request.stops()) {
     take_stop(request);
   } else if (counts_.good(judgement)) {

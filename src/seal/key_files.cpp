@@ -107,9 +107,9 @@ void write_new(const fs::path& path, const std::string& text) {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
+  const bool made = fs::create_directories(folder, error);
   if (error) fail(folder, error.message());
-  ::chmod(folder.c_str(), 0700);
+  if (made) ::chmod(folder.c_str(), 0700);  // another's folder stays as it is; the keys in it are the owner's alone
 }
 
 fs::path config_folder() {

@@ -190,6 +190,16 @@ TEST_F(OperatorGateTest, AStopNeedsNoSealAndWithoutOneItIsNobodysInParticular) {
   EXPECT_EQ(gate_.counts().not_fresh, 1) << "a reset is no stop";
 }
 
+TEST_F(OperatorGateTest, AStopOfAnotherVersionStopsToo) {
+  mode_.mode = Modes::DAMPING;
+  for (const int version : {0, 1, 3}) {
+    mode_.version = version;
+    gate_.take_mode(sealed(mode_));
+  }
+  EXPECT_EQ(stop_line_.pulls(), 3u);
+  for (const control::ModeRequest& request : take_requests()) EXPECT_FALSE(request.sealed);
+}
+
 TEST_F(OperatorGateTest, StopsWithoutASealTakeNobodysPlaceOrAllowance) {
   mode_.mode = Modes::DAMPING;
   for (int k = 0; k < 100; ++k) {

@@ -75,6 +75,14 @@ TEST_F(KeyFiles, OnlyTheOwnerReadsThem) {
               AllOf(HasSubstr("anna.key"), HasSubstr("chmod 600"), Not(HasSubstr("\n"))));
 }
 
+TEST_F(KeyFiles, AFolderThatIsThereKeepsItsRights) {
+  fs::create_directories(controller_);
+  ::chmod(controller_.c_str(), 0755);
+  make_operator_key(controller_, "anna");
+  EXPECT_EQ(rights(controller_), static_cast<fs::perms>(0755));
+  EXPECT_EQ(rights(controller_ / "controller.key"), static_cast<fs::perms>(0600));
+}
+
 TEST_F(KeyFiles, ARevokedKeyIsGoneAndASecondOneIsNew) {
   const OperatorKey first = make_operator_key(controller_, "anna");
   EXPECT_THAT(error_of([&] { make_operator_key(controller_, "anna"); }), HasSubstr("revoke it first"));
