@@ -110,8 +110,19 @@ TEST_F(Assembler, AMessageWhoseNumbersContradictEachOtherIsDropped) {
   dropped((wrong.rest = "efg", wrong));
   wrong = good;
   dropped((wrong.rest = "e", wrong));
+  EXPECT_EQ(assembler_.counts().malformed, 6) << "all but the last, which is only too short";
   EXPECT_EQ(assembler_.counts().incomplete, 7);
   EXPECT_EQ(assembler_.counts().messages, 0);
+}
+
+TEST_F(Assembler, AFragmentThatReachesBehindTheMessagesMemoryIsMalformed) {
+  const std::string part(60'000, 'x');
+  const auto size = static_cast<std::uint32_t>(LcmAssembler::kLargestMessage);
+  for (std::uint32_t k = 0; k < 5; ++k) {  // 4 x 60,000 bytes fit, the fifth part does not
+    const std::string rest = k == 0 ? kChannel + part : part;
+    EXPECT_EQ(take(fragment({.size = size, .offset = 60'000 * k, .index = k, .count = 6, .rest = rest})), "-");
+  }
+  EXPECT_EQ(assembler_.counts().malformed, 1);
 }
 
 TEST_F(Assembler, AFragmentThatComesTwiceOrWithoutItsBeginningCompletesNothing) {
