@@ -54,6 +54,7 @@ class OperatorSource {
   /// without keys unless given.
   OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock,
                  seal::OperatorSeal seal = seal::OperatorSeal());
+  ~OperatorSource() = default;
   OperatorSource(const OperatorSource&) = delete;
   OperatorSource& operator=(const OperatorSource&) = delete;
 

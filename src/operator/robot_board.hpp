@@ -53,6 +53,7 @@ class RobotBoard {
 
   /// Keeps references.
   RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::OperatorSeal seal = seal::OperatorSeal());
+  ~RobotBoard() = default;
   RobotBoard(const RobotBoard&) = delete;
   RobotBoard& operator=(const RobotBoard&) = delete;
 

@@ -40,6 +40,7 @@ class Comms {
   Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
         const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock,
         seal::ControllerSeal seal = seal::ControllerSeal());
+  ~Comms() = default;
   Comms(const Comms&) = delete;
   Comms& operator=(const Comms&) = delete;
 

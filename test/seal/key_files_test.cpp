@@ -101,18 +101,19 @@ TEST_F(KeyFiles, NamesStayInTheFolder) {
 
 TEST_F(KeyFiles, WhatIsNoKeyIsSaidInOneLineWithItsFile) {
   const std::string digits(64, 'a');
+  const auto key = [&](const char* name, const std::string& secret_line) {
+    std::string text = "pmg operator key 1\noperator: ";
+    text.append(name).append("\ncontroller: ").append(digits).append("\n").append(secret_line).append("\n");
+    return text;
+  };
   for (const auto& [text, complaint] : {
            std::pair{std::string(), std::string("begins with \"pmg operator key 1\"")},
            std::pair{std::string(100'000, 'x'), std::string("begins with")},
            std::pair{std::string("pmg operator key 1\n"), std::string("begins with")},
-           std::pair{"pmg operator key 1\noperator: anna\ncontroller: " + digits + "\n", std::string("\"secret: \"")},
-           std::pair{"pmg operator key 1\noperator: anna\ncontroller: " + digits + "\nsecret: " + digits + "b\n",
-                     std::string("64 hexadecimal digits")},
-           std::pair{
-               "pmg operator key 1\noperator: anna\ncontroller: " + digits + "\nsecret: g" + digits.substr(1) + "\n",
-               std::string("64 hexadecimal digits")},
-           std::pair{"pmg operator key 1\noperator: a/b\ncontroller: " + digits + "\nsecret: " + digits + "\n",
-                     std::string("\"operator: \" and a name")},
+           std::pair{key("anna", ""), std::string("\"secret: \"")},
+           std::pair{key("anna", "secret: b" + digits), std::string("64 hexadecimal digits")},
+           std::pair{key("anna", "secret: g" + digits.substr(1)), std::string("64 hexadecimal digits")},
+           std::pair{key("a/b", "secret: " + digits), std::string("\"operator: \" and a name")},
        }) {
     write("bad.key", text);
     EXPECT_THAT(error_of([&] { read_operator_keys(folder_); }),
