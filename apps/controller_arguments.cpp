@@ -41,6 +41,10 @@ void ControllerArguments::declare(CLI::App& app) {
                  "given, and none with --bench");
   app.add_option("--clips", control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--lcm-url", lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
+  CLI::Option* keys_option = app.add_option(
+      "--keys", keys, "folder of keys (pmg_key); ~/.config/pmg/controller-keys where messages leave this computer");
+  app.add_flag("--insecure-without-keys", insecure, "let everybody who reaches the address drive the robot")
+      ->excludes(keys_option);
   CLI::Option* log_option = app.add_option("--log", log, "folder of the log; out/NAME-TIME if not given");
   app.add_flag("--no-log", no_log, "write no log but that of the seconds around a fault")->excludes(log_option);
   CLI::Option* joint = app.add_option("--bench", bench, "excite this joint of the hanging robot once");

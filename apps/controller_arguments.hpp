@@ -19,9 +19,10 @@ namespace pmg::apps {
 struct ControllerArguments {
   BackendArguments backend{backends()};
   control::ControlSetup control;
-  std::string name, lcm_url;
+  std::string name, lcm_url, keys;
   std::filesystem::path log, excitation, bench_out;
   std::string bench;
+  bool insecure = false;  ///< a network without keys
   bool no_log = false, no_realtime = false, print_config = false, json = false;
   std::optional<double> duration_s;
   runtime::ControllerOptions threads;

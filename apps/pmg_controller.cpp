@@ -21,6 +21,7 @@
 #include "runtime/controller_report.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/run_info.hpp"
+#include "seal/controller_seal.hpp"
 
 namespace {
 
@@ -134,11 +135,15 @@ runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedContr
 
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
-             runtime::Comms& comms, runtime::Recorder& recorder, hal::Window* window, Console& console,
-             const std::atomic<bool>& bench_over) {
+             runtime::Comms& comms, std::optional<runtime::HeldClaim> claim, runtime::Recorder& recorder,
+             hal::Window* window, Console& console, const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
-    controller.start([&] { comms.step(kCommsWait_ms); }, [&] { recorder.drain(); });
+    const auto speak = [&] {
+      claim.reset();  // STATUS says from now on whose the name is
+      comms.step(kCommsWait_ms);
+    };
+    controller.start(speak, [&] { recorder.drain(); });
     spdlog::info("mode: passive");
     supervise(controller, signals, arguments, window, console, bench_over);
     failure = controller.failure();
@@ -203,6 +208,11 @@ int run_controller(Arguments& arguments) {
   }
 
   const EndSignals signals;
+  seal::ControllerSeal seal = seal::load_controller_seal(arguments.keys, arguments.lcm_url, arguments.insecure);
+  if (!seal.has_keys() && io::leaves_this_computer(arguments.lcm_url)) {
+    spdlog::warn("INSECURE: without keys everybody who reaches {} can drive this robot", arguments.lcm_url);
+  }
+  const runtime::NameLock lock(arguments.name, arguments.lcm_url);
   io::LcmLink link(arguments.lcm_url);
   hal::Hal& drives = backend->connect([&signals] { return signals.wait_ms(0); });
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);
@@ -212,10 +222,12 @@ int run_controller(Arguments& arguments) {
 
   const double rate_Hz = 1.0 / loaded.options.dt_s;
   const auto warn = [](const std::string& text) { spdlog::warn("{}", text); };
-  runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock);
+  runtime::Comms comms(link, controller.inbox(), controller.outbox(), loaded.robot, info, rate_Hz, clock,
+                       std::move(seal));
   comms.on_warning = warn;
   comms.work(backend->hoist());
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
+  std::optional<runtime::HeldClaim> claim(comms.hold_name());
   runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
                              {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
   std::atomic<bool> bench_over{false};
@@ -227,7 +239,8 @@ int run_controller(Arguments& arguments) {
     if (excited->progress().over) bench_over = true;
   };
   Console console(loaded.robot, arguments.name);
-  const ExitCode code = run(arguments, signals, controller, comms, recorder, backend->window(), console, bench_over);
+  const ExitCode code =
+      run(arguments, signals, controller, comms, std::move(claim), recorder, backend->window(), console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;

@@ -33,7 +33,7 @@ Exit codes: 0 ended with Ctrl-C, or by a signal: velocity was brought to zero fi
 or no network.)";
 
 struct Arguments {
-  std::string robot, lcm_url;
+  std::string robot, lcm_url, keys;
 };
 
 enum ExitCode { kOk = 0, kNotHeard = 1 };
@@ -43,7 +43,8 @@ int drive(const Arguments& arguments) {
   constexpr std::int64_t kPicture_ns = 100'000'000;
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
-  ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, ops::session_number(), clock);
+  ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, ops::session_number(), clock,
+                               seal::load_operator_seal(arguments.keys, link.url()));
   const std::vector<std::string> keys = ops::key_lines();
   {
     apps::RawTerminal terminal;
@@ -77,5 +78,6 @@ int main(int argc, char** argv) {
   app.add_option("--robot", arguments.robot, "controller's name; may be left out when one is heard");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
+  app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");
   return apps::run_program(app, argc, argv, [&]() -> int { return drive(arguments); });
 }

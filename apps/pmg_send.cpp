@@ -39,7 +39,7 @@ network, 130 interrupted (a robot that was driven is brought to rest first).)";
 
 struct Arguments {
   std::string request;
-  std::string robot, lcm_url;
+  std::string robot, lcm_url, keys;
   double timeout_s = 0.0;  // 0: by request
   double duration_s = 0.0;
   Command command;
@@ -82,6 +82,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--robot", arguments.robot, "controller's name; may be left out when one is heard, and for stop");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
+  app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");
   app.add_option("--timeout", arguments.timeout_s,
                  "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 15, others 10")
       ->check(apps::positive());
@@ -98,8 +99,9 @@ class Session {
   explicit Session(const Arguments& arguments)
       : arguments_(arguments),
         link_(io::choose_lcm_url(arguments.lcm_url)),
-        source_(link_, fmt::format("pmg_send.{}", getpid()), ops::session_number(), clock_),
-        board_(link_, clock_),
+        source_(link_, fmt::format("pmg_send.{}", getpid()), ops::session_number(), clock_,
+                seal::load_operator_seal(arguments.keys, link_.url())),
+        board_(link_, clock_, seal::load_operator_seal(arguments.keys, link_.url())),
         taken_(arguments.command) {}
 
   int run() {

@@ -114,24 +114,29 @@ class Operators {
   /// Keeps references. Throws std::runtime_error when there is no such network, or a controller of this name on it.
   Operators(const Stage& stage, const runtime::RunInfo& info, runtime::Controller& controller,
             sil::SimulatedRobot& simulated)
-      : link_(io::choose_lcm_url(stage.arguments.lcm_url)),
+      : lock_(info.robot, io::choose_lcm_url(stage.arguments.lcm_url)),
+        link_(io::choose_lcm_url(stage.arguments.lcm_url)),
         comms_(link_, controller.inbox(), controller.outbox(), stage.loaded.robot, info,
                1.0 / stage.loaded.options.dt_s, clock_) {
     constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
     comms_.work(simulated.hoist_line());
     comms_.on_warning = [](const std::string& text) { std::cerr << text << '\n'; };
     comms_.listen_for_others(kListen_s, [] { return apps::interrupt_requested != 0; });
+    claim_.emplace(comms_.hold_name());
     std::cerr << fmt::format("{} hears operators on {}: pmg_keyboard, pmg_send\n", info.robot, link_.url());
   }
   void step() {
     constexpr int kWait_ms = 5;
+    claim_.reset();
     comms_.step(kWait_ms);
   }
 
  private:
   io::WallClock clock_;
+  runtime::NameLock lock_;
   io::LcmLink link_;
   runtime::Comms comms_;
+  std::optional<runtime::HeldClaim> claim_;
 };
 
 Played play_realtime(const Stage& stage) {

@@ -39,7 +39,7 @@ constexpr auto kReplace = nlohmann::json::error_handler_t::replace;  // stranger
 constexpr double kNotHeardAfter_s = 2.0;
 
 struct Arguments {
-  std::string robot, lcm_url;
+  std::string robot, lcm_url, keys;
   double timeout_s = 3.0;
   bool once = false, json = false;
 };
@@ -54,7 +54,9 @@ std::size_t columns() {
 class Watch {
  public:
   explicit Watch(const Arguments& arguments)
-      : arguments_(arguments), link_(io::choose_lcm_url(arguments.lcm_url)), board_(link_, clock_) {}
+      : arguments_(arguments),
+        link_(io::choose_lcm_url(arguments.lcm_url)),
+        board_(link_, clock_, seal::load_operator_seal(arguments.keys, link_.url())) {}
 
   /// One status, with what comes once a second if it comes in time.
   int once() {
@@ -155,6 +157,7 @@ int main(int argc, char** argv) {
   app.add_option("--robot", arguments.robot, "show the controller of this name only");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
+  app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");
   app.add_flag("--once", arguments.once, "print one status and end");
   app.add_option("--timeout", arguments.timeout_s, "with --once: wait so long [s]")
       ->capture_default_str()

@@ -22,7 +22,22 @@ std::int64_t receipt_ns(std::int64_t received_ns, std::int64_t now_ns) noexcept 
   return std::min(std::max<std::int64_t>(received_ns, 0), now_ns);
 }
 
+bool asks_for_motion(const Command& command, const Command& before) noexcept {
+  const bool moves = command[kVx] != 0.0 || command[kVy] != 0.0 || command[kOmega] != 0.0;
+  return moves || command.u != before.u;
+}
+
 }  // namespace
+
+const SourceRecord* CommandIntake::record_of(const Source& source, std::int64_t received_ns) const noexcept {
+  const SourceRecord* record = sources_.find(source);
+  if (record == nullptr || source.session >= record->source.session) return record;
+  return received_ns - record->heard_ns > SourceMemory::kSessionHolds_ns ? nullptr : record;
+}
+
+bool CommandIntake::uses_drivers_name(const Source& source, std::int64_t now_ns) const noexcept {
+  return leased(now_ns) && source.name == last_.source.name && source != last_.source;
+}
 
 CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, std::int64_t now_ns) noexcept {
   const std::int64_t received_ns = receipt_ns(message.received_ns, now_ns);
@@ -30,6 +45,9 @@ CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, s
   ++(ignored_.*kDriveCounters[static_cast<std::size_t>(verdict)]);
   if (verdict != DriveVerdict::kAccepted) return verdict;
   sources_.adopt(message.source, driving(now_ns), message.stamp_ns, received_ns).last_command = message.sequence;
+  if (!leased(now_ns) || message.source != last_.source || asks_for_motion(message.command, last_.command)) {
+    moved_ns_ = received_ns;
+  }
   any_ = true;
   last_ = message;
   received_ns_ = received_ns;
@@ -43,12 +61,11 @@ CommandIntake::DriveVerdict CommandIntake::check(const DriveMessage& message, st
     return DriveVerdict::kNotFinite;
   }
   if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
-  SourceRecord* record = sources_.find(message.source);
+  const SourceRecord* record = record_of(message.source, received_ns);
   if (record != nullptr && message.source.session < record->source.session) return DriveVerdict::kOutOfOrder;
   if (record != nullptr && message.source == record->source) {
-    const bool late = SourceMemory::late(*record, message.stamp_ns, received_ns);
     if (message.sequence <= record->last_command) return DriveVerdict::kOutOfOrder;
-    if (late) return DriveVerdict::kLate;
+    if (SourceMemory::late(*record, message.stamp_ns, received_ns)) return DriveVerdict::kLate;
   }
   return leased(now_ns) && message.source != last_.source ? DriveVerdict::kOtherSourceDrives : DriveVerdict::kAccepted;
 }
@@ -63,6 +80,11 @@ CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::i
   if (request.stops() && judgement.verdict == Verdict::kTaken) stop(received_ns);
   if (judgement.fresh) {
     sources_.adopt(request.source, driving(now_ns), request.stamp_ns, received_ns).last_request = request.sequence;
+    if (!request.stops() && leased(now_ns) && request.source != last_.source) {  // it takes over
+      last_.source = request.source;
+      moved_ns_ = received_ns;
+      lease_end_ns_ = received_ns + io::nanoseconds(kTakeOverLease_s);
+    }
   }
   return judgement;
 }
@@ -74,15 +96,18 @@ CommandIntake::Judgement CommandIntake::check(const ModeRequest& request, std::i
   const auto unless_stop = [&](Verdict verdict) {
     return Judgement{.verdict = request.stops() ? Verdict::kTaken : verdict};
   };
-  SourceRecord* record = sources_.find(request.source);
+  if (!request.sealed || (request.stops() && uses_drivers_name(request.source, now_ns))) {
+    return {.verdict = request.stops() ? Verdict::kTaken : Verdict::kNotYours};
+  }
+  const SourceRecord* record = record_of(request.source, received_ns);
   if (record != nullptr && request.source.session < record->source.session) return unless_stop(Verdict::kOutOfOrder);
   if (record != nullptr && request.source == record->source) {
-    const bool late = SourceMemory::late(*record, request.stamp_ns, received_ns);
     if (request.sequence == record->last_request) return {.verdict = Verdict::kTaken};
     if (request.sequence < record->last_request) return unless_stop(Verdict::kOutOfOrder);
-    if (late) return unless_stop(Verdict::kLate);
+    if (SourceMemory::late(*record, request.stamp_ns, received_ns)) return unless_stop(Verdict::kLate);
   }
-  const bool mine = !leased(now_ns) || request.source == last_.source;
+  const bool takes_over = received_ns - moved_ns_ >= kAtRest_ns;
+  const bool mine = !leased(now_ns) || request.source == last_.source || takes_over;
   return request.stops() || mine ? Judgement{.fresh = true} : Judgement{.verdict = Verdict::kNotYours};
 }
 

@@ -39,6 +39,12 @@ class CommandIntake {
     bool fresh = false;
   };
 
+  /// A driver whose commands have asked for no motion (velocity zero, posture unchanged) for so long only renews its
+  /// lease. A request for a mode from another source then takes the robot over.
+  static constexpr std::int64_t kAtRest_ns = 3'000'000'000;
+  /// The lease of a source that has taken over, until its first command.
+  static constexpr double kTakeOverLease_s = 0.5;
+
   /// Longest lease that is granted. A crashed operator station blocks the others for no longer.
   static constexpr double kLongestLease_s = 2.0;
 
@@ -46,7 +52,7 @@ class CommandIntake {
   DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
 
   /// (mode request, time) => (verdict). Anyone may stop at any time. Only the driving source may climb or reset; anyone
-  /// may when none drives.
+  /// may when none drives, or when the driver only renews its lease: then the request takes over.
   Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
 
   /// The stop line was pulled. The stop overtakes climbs and resets that were received until now, wherever they still
@@ -65,6 +71,10 @@ class CommandIntake {
 
  private:
   bool leased(std::int64_t now_ns) const noexcept { return any_ && now_ns < lease_end_ns_; }
+  /// The record that this source's messages are compared with; null: none, or of a session that no longer counts.
+  const SourceRecord* record_of(const Source& source, std::int64_t received_ns) const noexcept;
+  /// The driver's own name with another session: of a successor that must wait, or of a stranger.
+  bool uses_drivers_name(const Source& source, std::int64_t now_ns) const noexcept;
   DriveVerdict check(const DriveMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
   Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
 
@@ -75,6 +85,7 @@ class CommandIntake {
   DriveMessage last_;
   std::int64_t received_ns_ = 0;
   std::int64_t lease_end_ns_ = 0;
+  std::int64_t moved_ns_ = 0;  // when the driver began, or last asked for motion
 };
 
 }  // namespace pmg::control

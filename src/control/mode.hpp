@@ -60,6 +60,8 @@ struct ModeRequest {
   std::int64_t received_ns = 0;
   Mode mode = Mode::kDamping;
   bool reset_fault = false;
+  /// False: a stop that anybody may have sent, in any name. It stops, and changes nothing that is remembered.
+  bool sealed = true;
 
   /// What anyone may ask for at any time.
   bool stops() const noexcept { return !reset_fault && (mode == Mode::kPassive || mode == Mode::kDamping); }

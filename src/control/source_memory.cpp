@@ -11,9 +11,15 @@ std::int64_t offset_ns(std::int64_t stamp_ns, std::int64_t received_ns) noexcept
   return std::clamp(received_ns, -kFar_ns, kFar_ns) - std::clamp(stamp_ns, -kFar_ns, kFar_ns);
 }
 
+/// The smallest offset, grown until now.
+std::int64_t grown_offset_ns(const SourceRecord& record, std::int64_t received_ns) noexcept {
+  return record.smallest_offset_ns +
+         std::max<std::int64_t>(offset_ns(record.heard_ns, received_ns), 0) / SourceMemory::kForgetting;
+}
+
 }  // namespace
 
-SourceRecord* SourceMemory::find(const Source& source) noexcept {
+const SourceRecord* SourceMemory::find(const Source& source) const noexcept {
   const auto same_name = [&](const SourceRecord& record) {
     return record.heard_ns != SourceRecord::kNever && record.source.name == source.name;
   };
@@ -23,8 +29,13 @@ SourceRecord* SourceMemory::find(const Source& source) noexcept {
 
 SourceRecord& SourceMemory::adopt(const Source& source, const Source& kept, std::int64_t stamp_ns,
                                   std::int64_t received_ns) noexcept {
-  SourceRecord* record = find(source);
-  if (record != nullptr && record->source == source) return *record;
+  const SourceRecord* known = find(source);
+  SourceRecord* record = known == nullptr ? nullptr : &records_[static_cast<std::size_t>(known - records_.data())];
+  if (record != nullptr && record->source == source) {
+    record->smallest_offset_ns = std::min(grown_offset_ns(*record, received_ns), offset_ns(stamp_ns, received_ns));
+    record->heard_ns = std::max(record->heard_ns, received_ns);
+    return *record;
+  }
   if (record == nullptr) {
     for (SourceRecord& candidate : records_) {
       const bool free = candidate.heard_ns == SourceRecord::kNever;
@@ -36,12 +47,8 @@ SourceRecord& SourceMemory::adopt(const Source& source, const Source& kept, std:
   return *record;
 }
 
-bool SourceMemory::late(SourceRecord& record, std::int64_t stamp_ns, std::int64_t received_ns) noexcept {
-  const std::int64_t offset = offset_ns(stamp_ns, received_ns);
-  record.smallest_offset_ns += std::max<std::int64_t>(offset_ns(record.heard_ns, received_ns), 0) / kForgetting;
-  record.smallest_offset_ns = std::min(record.smallest_offset_ns, offset);
-  record.heard_ns = std::max(record.heard_ns, received_ns);
-  return offset - record.smallest_offset_ns > kLate_ns;
+bool SourceMemory::late(const SourceRecord& record, std::int64_t stamp_ns, std::int64_t received_ns) noexcept {
+  return offset_ns(stamp_ns, received_ns) - grown_offset_ns(record, received_ns) > kLate_ns;
 }
 
 }  // namespace pmg::control

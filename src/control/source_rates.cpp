@@ -24,10 +24,14 @@ bool SourceRates::admit(const Source& source, MessageKind kind, std::int64_t now
     if (kind != MessageKind::kStop) return false;
     place = &others_;
   }
-  place->heard_ns = now_ns;
+  return admit(*place, kind, now_ns);
+}
+
+bool SourceRates::admit(Place& place, MessageKind kind, std::int64_t now_ns) noexcept {
+  place.heard_ns = now_ns;
   const auto index = static_cast<std::size_t>(kind);
   const auto [period_ns, burst] = kAllowances[index];
-  std::int64_t& next_ns = place->next_ns[index];
+  std::int64_t& next_ns = place.next_ns[index];
   if (next_ns > now_ns + (burst - 1) * period_ns) return false;
   next_ns = std::max(next_ns, now_ns) + period_ns;
   return true;

@@ -21,6 +21,8 @@ class SourceRates {
   /// Takes one message into account. False: this source has sent too many, or there are too many sources. Sources
   /// without a place share one allowance for stops.
   bool admit(const Source& source, MessageKind kind, std::int64_t now_ns) noexcept;
+  /// A stop that anybody may have sent: it shares that allowance, whatever its name is, and takes nobody's place.
+  bool admit_stranger(std::int64_t now_ns) noexcept { return admit(others_, MessageKind::kStop, now_ns); }
 
  private:
   struct Place {
@@ -29,6 +31,7 @@ class SourceRates {
     std::array<std::int64_t, 3> next_ns{};  // by kind: when a steady sender's next message is due
   };
 
+  static bool admit(Place& place, MessageKind kind, std::int64_t now_ns) noexcept;
   Place* place_of(const Source& source, std::int64_t now_ns) noexcept;
 
   std::array<Place, kSources> places_{};

@@ -3,21 +3,21 @@
 
 #include <lcm/lcm.h>
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "io/lcm_assembler.hpp"
 #include "io/lcm_url.hpp"
+#include "io/multicast_receiver.hpp"
 
 namespace pmg::io {
-
-using Bytes = std::span<const std::uint8_t>;
 
 /// The message in these bytes; nothing if they are of another type, cut short or too long, or hold impossible lengths.
 /// Safe for foreign packets.
@@ -32,16 +32,18 @@ std::optional<Message> decode_message(Bytes bytes) {
   return std::nullopt;
 }
 
-/// For one thread, not a real-time one. The first subscription starts liblcm's receiving thread, which inherits the
-/// caller's scheduling. So subscribe before you request real-time scheduling.
+/// For one thread, not a real-time one. Publishing goes through liblcm. On udpm:// a MulticastReceiver receives,
+/// because liblcm's receiver doesn't survive hostile datagrams; on the other addresses liblcm receives.
 class LcmLink {
  public:
   using Handler = std::function<void(Bytes)>;
+  static constexpr int kDatagramsPerMessage = 4;
 
   /// Throws as checked_lcm_url() does, and std::runtime_error if liblcm still fails to open the address.
   explicit LcmLink(const std::string& url);
 
-  /// receive() calls the handler, and catches and counts its exceptions. Throws std::runtime_error.
+  /// receive() calls the handler, and catches and counts its exceptions. The first subscription makes sure that this
+  /// computer hears itself. Throws std::runtime_error.
   void subscribe(const std::string& channel, Handler handler);
 
   /// False, and counted, if the message could not be sent.
@@ -56,16 +58,18 @@ class LcmLink {
     ++publish_errors_;
     return false;
   }
-  /// Sends raw bytes: for tests with foreign packets.
+  /// Sends raw bytes. Another thread may call it, too.
   bool send(const std::string& channel, Bytes bytes) noexcept;
 
-  /// Waits up to timeout_ms for a message, then handles the waiting ones, at most max_messages, so that a flood can't
-  /// hold the caller. Returns their number.
+  /// Waits up to timeout_ms for a message, then handles the waiting ones, at most max_messages, and no more than
+  /// kDatagramsPerMessage times as many datagrams, so that a flood can't hold the caller. Returns the number of
+  /// messages.
   int receive(int timeout_ms, int max_messages = 500);
 
   const std::string& url() const noexcept { return url_; }  ///< the constructor's argument
   std::int64_t publish_errors() const noexcept { return publish_errors_; }
-  std::int64_t receive_errors() const noexcept { return receive_errors_; }  ///< includes errors of handlers
+  std::int64_t receive_errors() const noexcept { return receive_errors_; }        ///< includes errors of handlers
+  const MulticastReceiver* receiver() const noexcept { return receiver_.get(); }  ///< null: liblcm receives
 
  private:
   struct Subscription {
@@ -73,12 +77,21 @@ class LcmLink {
     LcmLink* link;
   };
   static void dispatch(const lcm_recv_buf_t* message, const char* channel, void* subscription);
+  void handle(const Handler& handler, Bytes bytes) noexcept;
+  void expect_to_hear_itself();
+  int receive_multicast(int timeout_ms, int max_messages);
+  int receive_by_liblcm(int timeout_ms, int max_messages);
 
   std::string url_;
+  std::optional<UdpmAddress> udpm_;
+  std::unique_ptr<MulticastReceiver> receiver_;   // from the first subscription on, for udpm://
+  std::vector<std::vector<Handler>> by_channel_;  // by the receiver's numbers
+  std::vector<std::string> channels_;
   std::deque<Subscription> subscriptions_;  // liblcm keeps their addresses: destroyed after it
   std::unique_ptr<lcm_t, decltype(&lcm_destroy)> lcm_;
   std::vector<std::uint8_t> buffer_;
-  std::int64_t publish_errors_ = 0, receive_errors_ = 0;
+  std::atomic<std::int64_t> publish_errors_ = 0;
+  std::int64_t receive_errors_ = 0;
 };
 
 }  // namespace pmg::io

@@ -151,6 +151,22 @@ std::string check_server(const std::string& url, const Address& address) {
   return "tcpq://" + std::string(number.data()) + ":" + std::to_string(address.port);
 }
 
+/// The value of an option of this name; the last one counts, as for liblcm.
+std::optional<long> option_of(std::string_view url, std::string_view name) {
+  std::optional<long> value;
+  const std::size_t question = url.find('?');
+  std::string_view options = question == std::string_view::npos ? std::string_view{} : url.substr(question + 1);
+  while (!options.empty()) {
+    const std::size_t end = options.find('&');
+    const std::string_view option = options.substr(0, end);
+    options = end == std::string_view::npos ? std::string_view{} : options.substr(end + 1);
+    if (option.starts_with(name) && option.substr(name.size()).starts_with('=')) {
+      value = whole_number(option.substr(name.size() + 1), 0, 1L << 30);
+    }
+  }
+  return value;
+}
+
 }  // namespace
 
 std::string choose_lcm_url(const std::string& given) {
@@ -180,6 +196,22 @@ std::string checked_lcm_url(const std::string& url) {
   check_multicast(url, parse_address(url, address));
   if (sized) return url;
   return url + (question == std::string_view::npos ? "?" : options.empty() ? "" : "&") + kReceiveBuffer;
+}
+
+std::optional<UdpmAddress> udpm_address(const std::string& url) {
+  constexpr std::string_view kScheme = "udpm://";
+  if (!url.starts_with(kScheme)) return std::nullopt;
+  const Address address =
+      parse_address(url, std::string_view(url).substr(kScheme.size(), url.find('?') - kScheme.size()));
+  UdpmAddress parts{.port = static_cast<std::uint16_t>(address.port),
+                    .ttl = static_cast<int>(option_of(url, "ttl").value_or(0)),
+                    .receive_buffer = static_cast<int>(option_of(url, "recv_buf_size").value_or(0))};
+  ::inet_pton(AF_INET, address.host.c_str(), &parts.group);
+  return parts;
+}
+
+bool leaves_this_computer(const std::string& url) {
+  return url.starts_with("tcpq://") || (url.starts_with("udpm://") && option_of(url, "ttl").value_or(0) > 0);
 }
 
 }  // namespace pmg::io

@@ -128,6 +128,7 @@ std::string Drive::trouble() const {
   const pmg_msgs::status_t& status = *heard->status;
   if (status.mode == pmg_msgs::mode_t::FAULT) return "fault: " + status.fault;
   if (status.driving_source != source_.name()) {
+    if (status.driving_source.empty() && heard->lacks_key()) return kNoKey;
     return status.driving_source.empty() ? "its commands are not taken: pmg_watch shows by what count"
                                          : "another source drives: " + status.driving_source;
   }

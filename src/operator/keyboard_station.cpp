@@ -10,12 +10,12 @@
 namespace pmg::ops {
 
 KeyboardStation::KeyboardStation(io::LcmLink& link, std::string robot, KeyReport report, std::int64_t session,
-                                 const io::Clock& clock)
+                                 const io::Clock& clock, const seal::OperatorSeal& seal)
     : link_(link),
       clock_(clock),
       report_(report),
-      source_(link, fmt::format("keyboard.{}", ::getpid()), session, clock),
-      board_(link, clock),
+      source_(link, fmt::format("keyboard.{}", ::getpid()), session, clock, seal),
+      board_(link, clock, seal),
       robot_(std::move(robot)),
       begin_ns_(clock.now_ns()) {
   if (!robot_.empty()) driver_.emplace(source_, robot_, report_);

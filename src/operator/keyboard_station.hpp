@@ -19,7 +19,9 @@ namespace pmg::ops {
 class KeyboardStation {
  public:
   /// robot: the controller's name; empty: the only controller on the address. session: as in OperatorSource.
-  KeyboardStation(io::LcmLink& link, std::string robot, KeyReport report, std::int64_t session, const io::Clock& clock);
+  /// seal: without keys unless given.
+  KeyboardStation(io::LcmLink& link, std::string robot, KeyReport report, std::int64_t session, const io::Clock& clock,
+                  const seal::OperatorSeal& seal = seal::OperatorSeal());
 
   /// Key names are those of key_named(); other names have no effect. Before a robot is known, "escape" stops every
   /// robot on the address.

@@ -12,7 +12,7 @@ constexpr int kWait_ms = 5;
 
 KeyboardThread::KeyboardThread(const std::string& url, const std::string& robot)
     : link_(url),
-      station_(link_, robot, KeyReport::kPressAndRelease, session_number(), clock_),
+      station_(link_, robot, KeyReport::kPressAndRelease, session_number(), clock_, seal::load_operator_seal("", url)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 KeyboardThread::~KeyboardThread() = default;

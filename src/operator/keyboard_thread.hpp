@@ -16,7 +16,8 @@ namespace pmg::ops {
 /// One thread at a time may call the methods. None waits longer than one step.
 class KeyboardThread {
  public:
-  /// Sends to this controller on this address. Throws as LcmLink does.
+  /// Sends to this controller on this address, with the keys of this user's folder. Throws as LcmLink and
+  /// seal::load_operator_seal() do.
   KeyboardThread(const std::string& url, const std::string& robot);
   ~KeyboardThread();  ///< without let_go() the commands end at once
   KeyboardThread(const KeyboardThread&) = delete;

@@ -125,7 +125,7 @@ Answer ModeWish::judge(const std::string& robot) const {
   }
   answer.mode = mode_name(*heard->mode());
   if (!heard->ack) {
-    answer.text = "not acknowledged";
+    answer.text = heard->lacks_key() ? kNoKey : "not acknowledged";
     return answer;
   }
   answer.acknowledged = true;

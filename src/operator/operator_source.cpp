@@ -1,6 +1,7 @@
 #include "operator/operator_source.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace pmg::ops {
 
@@ -21,8 +22,9 @@ std::int64_t session_number() {
   return std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count();
 }
 
-OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock)
-    : link_(link), clock_(clock) {
+OperatorSource::OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock,
+                               seal::OperatorSeal seal)
+    : link_(link), clock_(clock), seal_(std::move(seal)) {
   command_.version = pmg_msgs::command_t::VERSION;
   mode_.version = pmg_msgs::mode_t::VERSION;
   hoist_.version = pmg_msgs::hoist_t::VERSION;
@@ -44,7 +46,7 @@ void OperatorSource::send_command(const std::string& robot, const Command& comma
   command_.pitch_rad = command[kPitch];
   command_.roll_rad = command[kRoll];
   command_.height_m = command[kHeight];
-  link_.publish("COMMAND", command_);
+  send("COMMAND", command_);
 }
 
 void OperatorSource::request(const std::string& robot, std::int8_t mode, bool reset_fault) {
@@ -58,7 +60,7 @@ void OperatorSource::request(const std::string& robot, std::int8_t mode, bool re
 
 void OperatorSource::repeat_request() {
   mode_.stamp_ns = clock_.now_ns();
-  link_.publish("MODE", mode_);
+  send("MODE", mode_);
 }
 
 void OperatorSource::request_hoist(const std::string& robot, bool lift) {
@@ -70,7 +72,7 @@ void OperatorSource::request_hoist(const std::string& robot, bool lift) {
 
 void OperatorSource::repeat_hoist() {
   hoist_.stamp_ns = clock_.now_ns();
-  link_.publish("HOIST", hoist_);
+  send("HOIST", hoist_);
 }
 
 bool OperatorSource::hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept {
@@ -82,26 +84,37 @@ const HeardRobot* OperatorSource::heard(const std::string& robot) const {
   return found == heard_.end() ? nullptr : &found->second;
 }
 
+bool OperatorSource::outdated(const HeardRobot& robot, const pmg_msgs::status_t& status, const seal::Peer& peer) const {
+  if (!robot.status || !robot.peer) return false;
+  if (robot.peer->boot == peer.boot) return peer.boot != 0 && status.stamp_ns < robot.status->stamp_ns;
+  return status.session < robot.status->session && clock_.now_ns() - robot.status_heard_ns < kSessionHolds_ns;
+}
+
 void OperatorSource::hear_status(io::Bytes bytes) {
-  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
-  HeardRobot* robot = status ? place_of(status->robot) : nullptr;
-  if (robot == nullptr) return;
-  robot->status = status;
+  const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+  auto peer = heard ? seal_.believe("STATUS", heard->message_bytes, heard->seal) : std::nullopt;
+  HeardRobot* robot = peer ? place_of(heard->message.robot) : nullptr;
+  if (robot == nullptr || outdated(*robot, heard->message, *peer)) return;
+  peer->heard_ns = heard->message.stamp_ns;
+  robot->peer = peer;
+  robot->status = heard->message;
   robot->status_heard_ns = clock_.now_ns();
 }
 
 void OperatorSource::hear_ack(io::Bytes bytes) {
-  const auto ack = io::decode_message<pmg_msgs::ack_t>(bytes);
-  const bool mine = ack && ack->source == mode_.source && ack->session == mode_.session;
-  HeardRobot* robot = mine && ack->sequence == mode_.sequence ? place_of(ack->robot) : nullptr;
-  if (robot != nullptr) robot->ack = ack;
+  const auto heard = seal::decode_sealed<pmg_msgs::ack_t, pmg_msgs::proof_t>(bytes);
+  if (!heard) return;
+  const pmg_msgs::ack_t& ack = heard->message;
+  const bool mine = ack.source == mode_.source && ack.session == mode_.session && ack.sequence == mode_.sequence;
+  if (!mine || !seal_.believe("ACK", heard->message_bytes, heard->seal)) return;
+  if (HeardRobot* robot = place_of(ack.robot)) robot->ack = ack;
 }
 
 void OperatorSource::hear_hoist(io::Bytes bytes) {
-  const auto hoist = io::decode_message<pmg_msgs::hoist_state_t>(bytes);
-  const auto known = hoist ? heard_.find(hoist->robot) : heard_.end();  // a sender without STATUS is no controller
-  if (known == heard_.end()) return;
-  known->second.hoist = hoist;
+  const auto heard = seal::decode_sealed<pmg_msgs::hoist_state_t, pmg_msgs::proof_t>(bytes);
+  const auto known = heard ? heard_.find(heard->message.robot) : heard_.end();  // without STATUS it is no controller's
+  if (known == heard_.end() || !seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal)) return;
+  known->second.hoist = heard->message;
   known->second.hoist_heard_ns = clock_.now_ns();
 }
 

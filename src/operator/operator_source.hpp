@@ -15,6 +15,7 @@
 #include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/status_t.hpp"
+#include "seal/operator_seal.hpp"
 
 namespace pmg::ops {
 
@@ -26,7 +27,10 @@ struct HeardRobot {
   std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
   std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< only from a simulated robot with a hoist
   std::int64_t hoist_heard_ns = 0;                 ///< by the source's clock
+  std::optional<seal::Peer> peer{};                ///< sender of the status
 
+  /// The controller has keys, and none of ours is one of them.
+  bool lacks_key() const noexcept { return peer && peer->wants_key && !peer->key; }
   /// The newest known mode; nothing before the controller's first status.
   std::optional<std::int8_t> mode() const;
   /// Another source that drives but is silent: it has probably crashed without letting go, and its lease ends soon.
@@ -42,8 +46,17 @@ class OperatorSource {
  public:
   static constexpr std::size_t kMostRobots = 64;  ///< limit for a flood of invented names
 
-  /// Keeps references. name: at most 23 characters. session: larger after each start of a source with this name.
-  OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock);
+  /// While a newer session of a controller speaks, messages of an older one are recordings. After so long without one,
+  /// its clock may have been set back.
+  static constexpr std::int64_t kSessionHolds_ns = 1'000'000'000;
+
+  /// Keeps references. name: at most 23 characters. session: larger after each start of a source with this name. seal:
+  /// without keys unless given.
+  OperatorSource(io::LcmLink& link, const std::string& name, std::int64_t session, const io::Clock& clock,
+                 seal::OperatorSeal seal = seal::OperatorSeal());
+  ~OperatorSource() = default;
+  OperatorSource(const OperatorSource&) = delete;
+  OperatorSource& operator=(const OperatorSource&) = delete;
 
   /// Once this source drives, the robot with this name follows the command for lease_s.
   void send_command(const std::string& robot, const Command& command, double lease_s);
@@ -69,9 +82,17 @@ class OperatorSource {
   void hear_ack(io::Bytes message);
   void hear_hoist(io::Bytes message);
   HeardRobot* place_of(const std::string& robot);  // null: too many robots
+  bool outdated(const HeardRobot& robot, const pmg_msgs::status_t& status, const seal::Peer& peer) const;
+  /// Message and seal, for the robot of this name.
+  template <typename Message>
+  void send(const char* channel, const Message& message) {
+    const HeardRobot* robot = heard(message.robot);
+    link_.send(channel, seal_.seal(channel, message, robot != nullptr && robot->peer ? &*robot->peer : nullptr));
+  }
 
   io::LcmLink& link_;
   const io::Clock& clock_;
+  seal::OperatorSeal seal_;
   std::map<std::string, HeardRobot> heard_;
   pmg_msgs::command_t command_{};
   pmg_msgs::mode_t mode_{};

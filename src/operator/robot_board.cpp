@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pmg::ops {
 
@@ -23,7 +24,8 @@ double RecentValues::percentile(double percent) const {
   return *nth;
 }
 
-RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock) : clock_(clock) {
+RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::OperatorSeal seal)
+    : clock_(clock), seal_(std::move(seal)) {
   link.subscribe("STATUS", [this](io::Bytes bytes) { hear_status(bytes); });
   link.subscribe("ROBOT_INFO", [this](io::Bytes bytes) {
     const auto info = io::decode_message<pmg_msgs::robot_info_t>(bytes);
@@ -56,8 +58,9 @@ double RobotBoard::silence_s(const RobotNews& news) const noexcept {
 }
 
 void RobotBoard::hear_status(io::Bytes bytes) {
-  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
-  if (!status) return;
+  const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+  if (!heard || !seal_.believe("STATUS", heard->message_bytes, heard->seal)) return;
+  const pmg_msgs::status_t* status = &heard->message;
   if (robots_.size() >= kMostRobots && !robots_.contains(status->robot)) return;
   RobotNews& news = robots_[status->robot];
   if (news.heard_ns != 0 && news.status.session != status->session) ++news.sessions;

@@ -15,6 +15,7 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
+#include "seal/operator_seal.hpp"
 
 namespace pmg::ops {
 
@@ -51,7 +52,10 @@ class RobotBoard {
   static constexpr std::size_t kMostRobots = 64;  ///< limit for a flood of invented names
 
   /// Keeps references.
-  RobotBoard(io::LcmLink& link, const io::Clock& clock);
+  RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::OperatorSeal seal = seal::OperatorSeal());
+  ~RobotBoard() = default;
+  RobotBoard(const RobotBoard&) = delete;
+  RobotBoard& operator=(const RobotBoard&) = delete;
 
   const std::map<std::string, RobotNews>& robots() const noexcept { return robots_; }
   /// Seconds since the robot's last status.
@@ -61,6 +65,7 @@ class RobotBoard {
   void hear_status(io::Bytes message);
 
   const io::Clock& clock_;
+  seal::OperatorSeal seal_;
   std::map<std::string, RobotNews> robots_;
 };
 

@@ -64,7 +64,8 @@ std::string network_text(const pmg_msgs::link_t& link) {
   std::string text = fmt::format("{} accepted", link.accepted);
   for (const auto& [count, reason] :
        {std::pair{link.malformed, "malformed"}, std::pair{link.other_version, "of another version"},
-        std::pair{link.other_robot, "for another robot"}, std::pair{link.flooded, "too many"},
+        std::pair{link.other_robot, "for another robot"}, std::pair{link.not_fresh, "recorded or unsealed"},
+        std::pair{link.no_key, "without a key"}, std::pair{link.flooded, "too many"},
         std::pair{link.other_source, "while another drives"}, std::pair{link.out_of_order, "out of order"},
         std::pair{link.late, "late"}, std::pair{link.not_finite, "not finite"},
         std::pair{link.no_lease, "without lease"}, std::pair{link.no_hoist, "for a hoist that isn't there"}}) {
@@ -206,11 +207,19 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
   }
   if (news.link) {
     const pmg_msgs::link_t& link = *news.link;
-    json["messages"] = {
-        {"accepted", link.accepted},         {"malformed", link.malformed}, {"other_version", link.other_version},
-        {"other_robot", link.other_robot},   {"flooded", link.flooded},     {"other_source", link.other_source},
-        {"out_of_order", link.out_of_order}, {"late", link.late},           {"not_finite", link.not_finite},
-        {"no_lease", link.no_lease},         {"no_hoist", link.no_hoist}};
+    json["messages"] = {{"accepted", link.accepted},
+                        {"malformed", link.malformed},
+                        {"other_version", link.other_version},
+                        {"other_robot", link.other_robot},
+                        {"not_fresh", link.not_fresh},
+                        {"no_key", link.no_key},
+                        {"flooded", link.flooded},
+                        {"other_source", link.other_source},
+                        {"out_of_order", link.out_of_order},
+                        {"late", link.late},
+                        {"not_finite", link.not_finite},
+                        {"no_lease", link.no_lease},
+                        {"no_hoist", link.no_hoist}};
   }
   return json;
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
+#include "pmg_msgs/claim_t.hpp"
 #include "runtime/tick_messages.hpp"
 
 namespace pmg::runtime {
@@ -13,20 +15,24 @@ namespace pmg::runtime {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000;
+constexpr std::int64_t kVerifyPeriod_ns =
+    10'000'000;                          // a signature takes 0.1 ms: a flood of forged ones must delay no stop
 constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
 
 }  // namespace
 
 Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
-             const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock)
+             const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock,
+             seal::ControllerSeal seal)
     : link_(link),
       outbox_(outbox),
       robot_(robot),
       run_(run),
       control_rate_Hz_(control_rate_Hz),
       clock_(clock),
-      gate_(inbox, run.robot, clock),
-      hoist_gate_(run.robot),
+      seal_(std::move(seal)),
+      gate_(inbox, run.robot, clock, seal_),
+      hoist_gate_(run.robot, clock, seal_),
       next_second_ns_(clock.now_ns()),
       next_hoist_ns_(clock.now_ns()) {
   state_.robot = reference_.robot = motor_command_.robot = timing_.robot = run_.robot;
@@ -40,27 +46,66 @@ Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::Controll
     if (!listening_) hoist_gate_.take(message);
   });
   link_.subscribe("STATUS", [this](io::Bytes message) { hear_status(message); });
+  link_.subscribe("CLAIM", [this](io::Bytes message) { hear_claim(message); });
 }
 
 void Comms::hear_status(io::Bytes bytes) {
-  const auto status = io::decode_message<pmg_msgs::status_t>(bytes);
-  if (!status) return;  // nobody's request: not counted as one
-  if (status->robot != run_.robot) {
-    const bool known = std::ranges::find(others_, status->robot) != others_.end();
-    if (listening_ && !known && others_.size() < kMostOthers && presentable(status->robot)) {
-      others_.push_back(status->robot);
+  const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+  if (!heard) return;  // nobody's request: not counted as one
+  const pmg_msgs::status_t& status = heard->message;
+  if (status.robot != run_.robot) {
+    const bool known = std::ranges::find(others_, status.robot) != others_.end();
+    if (listening_ && !known && others_.size() < kMostOthers && presentable(status.robot)) {
+      others_.push_back(status.robot);
     }
-  } else if (status->session != run_.session) {
-    ++impostors_heard_;
-    impostor_session_ = status->session;
+  } else if ((!heard->seal || heard->seal->boot != seal_.boot()) && may_verify()) {
+    meet(seal_.ours("STATUS", heard->message_bytes, heard->seal), status.session);
   }
 }
+
+void Comms::hear_claim(io::Bytes bytes) {
+  const auto heard = seal::decode_sealed<pmg_msgs::claim_t, pmg_msgs::proof_t>(bytes);
+  if (!heard || !heard->seal || heard->message.robot != run_.robot || heard->seal->boot == seal_.boot()) return;
+  const bool goes_first = heard->message.held != 0 || heard->seal->boot < seal_.boot();
+  if (listening_ && goes_first) meet(seal_.ours("CLAIM", heard->message_bytes, heard->seal), heard->message.session);
+}
+
+bool Comms::may_verify() {
+  if (listening_ || !seal_.has_keys()) return true;
+  if (clock_.now_ns() < verify_at_ns_) return false;
+  verify_at_ns_ = clock_.now_ns() + kVerifyPeriod_ns;
+  return true;
+}
+
+void Comms::meet(bool ours, std::int64_t session) {
+  if (!ours) {
+    ++forgeries_heard_;
+    return;
+  }
+  ++impostors_heard_;
+  impostor_session_ = session;
+}
+
+std::vector<std::uint8_t> Comms::claim(bool held) {
+  const pmg_msgs::claim_t message{
+      .stamp_ns = clock_.now_ns(), .robot = run_.robot, .session = run_.session, .held = held};
+  const io::Bytes bytes = seal_.prove("CLAIM", message);
+  return {bytes.begin(), bytes.end()};
+}
+
+HeldClaim Comms::hold_name() { return {link_, claim(true)}; }
 
 std::vector<std::string> Comms::listen_for_others(double seconds, const std::function<bool()>& interrupted) {
   using std::chrono::steady_clock;
   listening_ = true;
+  const std::vector<std::uint8_t> wish = claim(false);
   const auto end = steady_clock::now() + std::chrono::duration<double>(seconds);
+  auto claim_at = steady_clock::now();
   do {
+    if (steady_clock::now() >= claim_at) {
+      link_.send("CLAIM", wish);
+      claim_at = steady_clock::now() + std::chrono::milliseconds(HeldClaim::kPeriod_ms);
+    }
     link_.receive(10);
   } while (impostors_heard_ == 0 && steady_clock::now() < end && !(interrupted && interrupted()));
   listening_ = false;
@@ -98,10 +143,18 @@ void Comms::warn() {
         "another controller (session {}) speaks as robot \"{}\" on {}: both hear the same operators; end one of them",
         impostor_session_, run_.robot, link_.url());
   });
+  once(Warning::kForgery, forgeries_heard_ > 0, [&] {
+    return fmt::format(
+        "somebody without this controller's key speaks as robot \"{}\" on {}; nobody with keys believes it", run_.robot,
+        link_.url());
+  });
   once(Warning::kMalformed, counts.malformed > 0,
        [] { return std::string("malformed operators' messages are ignored; LINK counts them"); });
   once(Warning::kVersion, counts.other_version > 0,
        [] { return std::string("operators' messages of another version are ignored; LINK counts them"); });
+  once(Warning::kKey, counts.no_key > 0, [] {
+    return std::string("operators' messages without a key of this controller are ignored; LINK counts them");
+  });
   once(Warning::kFlood, counts.flooded > 0,
        [] { return std::string("operators send more than they are listened to; LINK counts what is ignored"); });
   once(Warning::kNetwork, link_.publish_errors() > 0,
@@ -111,7 +164,7 @@ void Comms::warn() {
 void Comms::publish_acks() {
   outbox_.acks.consume_all([&](const control::ModeAck& ack) {
     fill(ack, run_, clock_.now_ns(), ack_);
-    link_.publish("ACK", ack_);
+    link_.send("ACK", seal_.prove("ACK", ack_));
   });
 }
 
@@ -120,7 +173,7 @@ void Comms::publish_newest() {
   hoist_gate_.see(newest_.result);
   const int joint_count = robot_.joint_index.size();
   fill(newest_, run_, robot_, status_);
-  link_.publish("STATUS", status_);
+  link_.send("STATUS", seal_.prove("STATUS", status_));
   fill(newest_, joint_count, state_);
   link_.publish("STATE", state_);
   fill(newest_, joint_count, reference_);
@@ -145,11 +198,12 @@ void Comms::publish_hoist() {
   if (!hoist_gate_.there() || (!news && clock_.now_ns() < next_hoist_ns_)) return;
   next_hoist_ns_ = clock_.now_ns() + kHoistPeriod_ns;
   hoist_state_.stamp_ns = clock_.now_ns();
-  link_.publish("HOIST_STATE", hoist_state_);
+  link_.send("HOIST_STATE", seal_.prove("HOIST_STATE", hoist_state_));
 }
 
 void Comms::publish_each_second() {
   const std::int64_t now_ns = clock_.now_ns();
+  if (const std::string news = seal_.refresh(); !news.empty() && on_warning) on_warning(news);
   fill(run_, robot_, control_rate_Hz_, now_ns, info_);
   link_.publish("ROBOT_INFO", info_);
 
@@ -161,6 +215,8 @@ void Comms::publish_each_second() {
   counts_.malformed = gate.malformed;
   counts_.other_version = gate.other_version;
   counts_.other_robot = gate.other_robot;
+  counts_.not_fresh = gate.not_fresh;
+  counts_.no_key = gate.no_key;
   counts_.flooded = gate.flooded;
   counts_.other_source = intake.other_source;
   counts_.out_of_order = intake.out_of_order;

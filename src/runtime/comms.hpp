@@ -24,8 +24,10 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "runtime/hoist_gate.hpp"
+#include "runtime/name_claim.hpp"
 #include "runtime/operator_gate.hpp"
 #include "runtime/run_info.hpp"
+#include "seal/controller_seal.hpp"
 
 namespace pmg::runtime {
 
@@ -34,9 +36,13 @@ namespace pmg::runtime {
 class Comms {
  public:
   /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
-  /// subscribe.
+  /// subscribe. seal: without keys unless given.
   Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
-        const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock);
+        const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock,
+        seal::ControllerSeal seal = seal::ControllerSeal());
+  ~Comms() = default;
+  Comms(const Comms&) = delete;
+  Comms& operator=(const Comms&) = delete;
 
   /// One line for the console when something is wrong for the first time. Called from step().
   std::function<void(const std::string&)> on_warning;
@@ -45,11 +51,15 @@ class Comms {
   /// pointer.
   void work(hal::HoistLine* hoist) noexcept { hoist_gate_.work(hoist); }
 
-  /// Before the controller publishes anything: who else is on this address? Returns the other robots' names after that
-  /// many seconds of wall time, or as soon as interrupted says so. Throws std::runtime_error when a controller of our
-  /// name is heard: one line with name, session, address and what to do. Operators' messages of this time are not
-  /// taken.
+  /// Before the controller publishes anything else: who else is on this address? Claims the name meanwhile. Returns the
+  /// other robots' names after that many seconds of wall time, or as soon as interrupted says so. Throws
+  /// std::runtime_error when the name belongs to another controller: one that runs, or the one with the smallest boot
+  /// number of those that start at this time. The error is one line with name, session, address and what to do.
+  /// Operators' messages of this time are not taken. With keys, only a controller with the same key has a say.
   std::vector<std::string> listen_for_others(double seconds, const std::function<bool()>& interrupted = {});
+
+  /// After listen_for_others(): keeps the name claimed until it is destroyed, which must be before the first step().
+  HeldClaim hold_name();
 
   /// Waits up to timeout_ms for operators and takes a bounded number of their messages. Then publishes ACK for each
   /// answer, the newest tick unless it was published, FAULT when one latches, and ROBOT_INFO and LINK once a second.
@@ -57,11 +67,18 @@ class Comms {
 
   const GateCounts& gate_counts() const noexcept { return gate_.counts(); }
   std::int64_t impostors_heard() const noexcept { return impostors_heard_; }  ///< messages of another one of our name
+  std::int64_t forgeries_heard() const noexcept { return forgeries_heard_; }  ///< in our name, without our key
 
  private:
-  enum class Warning { kImpostor, kMalformed, kVersion, kFlood, kNetwork };
+  enum class Warning { kImpostor, kForgery, kMalformed, kVersion, kKey, kFlood, kNetwork };
 
   void hear_status(io::Bytes message);
+  void hear_claim(io::Bytes message);
+  /// Whether there is time to look at another signature.
+  bool may_verify();
+  /// A message in our name that another controller sent.
+  void meet(bool ours, std::int64_t session);
+  std::vector<std::uint8_t> claim(bool held);
   void publish_acks();
   void publish_newest();
   void publish_hoist();
@@ -74,13 +91,14 @@ class Comms {
   const RunInfo& run_;
   double control_rate_Hz_;
   const io::Clock& clock_;
+  seal::ControllerSeal seal_;
   OperatorGate gate_;
   HoistGate hoist_gate_;
   bool listening_ = false;
   std::vector<std::string> others_;
-  std::int64_t impostors_heard_ = 0, impostor_session_ = 0;
-  std::array<bool, 5> warned_{};  // by Warning
-  std::int64_t next_second_ns_, next_hoist_ns_;
+  std::int64_t impostors_heard_ = 0, impostor_session_ = 0, forgeries_heard_ = 0;
+  std::array<bool, 7> warned_{};  // by Warning
+  std::int64_t next_second_ns_, next_hoist_ns_, verify_at_ns_ = 0;
 
   control::TickRecord newest_;
   control::Fault published_fault_;

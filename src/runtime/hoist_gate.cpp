@@ -6,8 +6,9 @@ namespace pmg::runtime {
 
 void HoistGate::take(io::Bytes bytes) {
   using pmg_msgs::hoist_t;
-  const auto message = io::decode_message<hoist_t>(bytes);
-  if (!message || !presentable(message->source) ||
+  const auto sealed = seal::decode_sealed<hoist_t, pmg_msgs::seal_t>(bytes);
+  const hoist_t* message = sealed ? &sealed->message : nullptr;
+  if (message == nullptr || !presentable(message->source) ||
       (message->request != hoist_t::LIFT && message->request != hoist_t::LOWER)) {
     ++counts_.malformed;
   } else if (message->version != hoist_t::VERSION) {
@@ -16,7 +17,7 @@ void HoistGate::take(io::Bytes bytes) {
     ++counts_.other_robot;
   } else if (line_ == nullptr) {
     ++counts_.no_hoist;
-  } else {
+  } else if (counts_.good(seal_.judge("HOIST", sealed->message_bytes, sealed->seal, clock_.now_ns()))) {
     answer_ = true;
     if (overtaken(message->source, message->session, message->sequence)) return;
     source_ = message->source;

@@ -15,7 +15,9 @@ namespace pmg::runtime {
 /// For the thread that hears operators. A request only sets a flag, so a flood of them costs no more than hearing it.
 class HoistGate {
  public:
-  explicit HoistGate(std::string robot) : robot_(std::move(robot)) {}  ///< the controller's name
+  /// Keeps references. robot: the controller's name.
+  HoistGate(std::string robot, const io::Clock& clock, const seal::ControllerSeal& seal)
+      : robot_(std::move(robot)), clock_(clock), seal_(seal) {}
 
   void work(hal::HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
   bool there() const noexcept { return line_ != nullptr; }
@@ -35,6 +37,8 @@ class HoistGate {
   bool overtaken(const std::string& source, std::int64_t session, std::int64_t sequence) const;
 
   std::string robot_;
+  const io::Clock& clock_;
+  const seal::ControllerSeal& seal_;
   hal::HoistLine* line_ = nullptr;
   GateCounts counts_;
   std::string source_;  // of the last request that was taken

@@ -3,30 +3,37 @@
 #include <algorithm>
 #include <utility>
 
+#include "control/source_memory.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "runtime/tick_messages.hpp"
 
 namespace pmg::runtime {
 
+// A source's messages are fresh for a second: whoever is forgotten earlier could be played back.
+static_assert(seal::ControllerSeal::kFresh_ns <= 2 * control::SourceRates::kSilent_ns);
+static_assert(control::SourceMemory::kSources > 2 * control::SourceRates::kSources);
+
 bool presentable(const std::string& name) {
   return !name.empty() && name.size() < control::Source{}.name.size() &&
          std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-OperatorGate::OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock)
-    : inbox_(inbox), robot_(std::move(robot)), clock_(clock) {}
+OperatorGate::OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock,
+                           const seal::ControllerSeal& seal)
+    : inbox_(inbox), robot_(std::move(robot)), clock_(clock), seal_(seal) {}
 
 void OperatorGate::take_command(io::Bytes bytes) {
-  const auto message = io::decode_message<pmg_msgs::command_t>(bytes);
-  if (!message || !presentable(message->source)) {
+  const auto sealed = seal::decode_sealed<pmg_msgs::command_t, pmg_msgs::seal_t>(bytes);
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!sealed || !presentable(sealed->message.source)) {
     ++counts_.malformed;
-  } else if (message->version != pmg_msgs::command_t::VERSION) {
+  } else if (sealed->message.version != pmg_msgs::command_t::VERSION) {
     ++counts_.other_version;
-  } else if (message->robot != robot_) {
+  } else if (sealed->message.robot != robot_) {
     ++counts_.other_robot;
-  } else {
-    const control::DriveMessage drive = drive_message(*message, clock_.now_ns());
+  } else if (counts_.good(seal_.judge("COMMAND", sealed->message_bytes, sealed->seal, now_ns))) {
+    const control::DriveMessage drive = drive_message(sealed->message, now_ns);
     const bool taken =
         rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
     if (!taken) ++counts_.flooded;
@@ -34,28 +41,42 @@ void OperatorGate::take_command(io::Bytes bytes) {
 }
 
 void OperatorGate::take_mode(io::Bytes bytes) {
-  const auto message = io::decode_message<pmg_msgs::mode_t>(bytes);
-  if (!message || !presentable(message->source)) {
+  const auto sealed = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
+  if (!sealed || !presentable(sealed->message.source)) {
     ++counts_.malformed;
     return;
   }
-  if (message->version != pmg_msgs::mode_t::VERSION) {
+  const pmg_msgs::mode_t& message = sealed->message;
+  control::ModeRequest request = mode_request(message, clock_.now_ns());
+  if (message.mode < pmg_msgs::mode_t::PASSIVE || message.mode > pmg_msgs::mode_t::WALK) {
+    request.mode = control::Mode::kFault;  // answered with NO_MODE
+  }
+  const bool our_version = message.version == pmg_msgs::mode_t::VERSION;
+  if (!our_version && !request.stops()) {
     ++counts_.other_version;
     return;
   }
-  control::ModeRequest request = mode_request(*message, clock_.now_ns());
-  if (message->mode < pmg_msgs::mode_t::PASSIVE || message->mode > pmg_msgs::mode_t::WALK) {
-    request.mode = control::Mode::kFault;  // answered with NO_MODE
-  }
-  const bool for_every_robot = message->robot.empty() && request.stops();
-  if (message->robot != robot_ && !for_every_robot) {
+  const bool for_every_robot = message.robot.empty() && request.stops();
+  if (message.robot != robot_ && !for_every_robot) {
     ++counts_.other_robot;
     return;
   }
-  const control::MessageKind kind = request.stops() ? control::MessageKind::kStop : control::MessageKind::kRequest;
-  const bool admitted = rates_.admit(request.source, kind, request.received_ns);
+  const auto judgement = seal_.judge("MODE", sealed->message_bytes, sealed->seal, request.received_ns);
+  request.sealed = our_version && judgement == seal::ControllerSeal::Judgement::kGood;
+  if (request.stops()) {
+    take_stop(request);
+  } else if (counts_.good(judgement)) {
+    const bool taken =
+        rates_.admit(request.source, control::MessageKind::kRequest, request.received_ns) && inbox_.put(request);
+    if (!taken) ++counts_.flooded;
+  }
+}
+
+void OperatorGate::take_stop(const control::ModeRequest& request) {
+  const bool admitted = request.sealed ? rates_.admit(request.source, control::MessageKind::kStop, request.received_ns)
+                                       : rates_.admit_stranger(request.received_ns);
   // A stop beyond its source's rate stops all the same; it only isn't acknowledged one by one.
-  if (!admitted && request.stops()) inbox_.stop();
+  if (!admitted) inbox_.stop();
   const bool taken = admitted && inbox_.put(request);
   if (!taken) ++counts_.flooded;
 }

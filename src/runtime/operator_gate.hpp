@@ -1,5 +1,6 @@
 // (bytes from the network) => (operators' inbox). It lets pass whole messages of our version, for our robot, from a
-// source with a name, up to a rate. It counts and ignores all others. A stop passes even a flood.
+// source with a name, with a good seal, up to a rate. It counts and ignores all others. A stop passes without a seal,
+// and passes even a flood.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include "control/source_rates.hpp"
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
+#include "seal/controller_seal.hpp"
 
 namespace pmg::runtime {
 
@@ -17,11 +19,22 @@ struct GateCounts {
   std::int64_t malformed = 0;
   std::int64_t other_version = 0;
   std::int64_t other_robot = 0;
+  std::int64_t not_fresh = 0;
+  std::int64_t no_key = 0;
   std::int64_t flooded = 0;
   std::int64_t no_hoist = 0;
   friend GateCounts operator+(const GateCounts& a, const GateCounts& b) noexcept {
-    return {a.malformed + b.malformed, a.other_version + b.other_version, a.other_robot + b.other_robot,
-            a.flooded + b.flooded, a.no_hoist + b.no_hoist};
+    return {a.malformed + b.malformed,     a.other_version + b.other_version,
+            a.other_robot + b.other_robot, a.not_fresh + b.not_fresh,
+            a.no_key + b.no_key,           a.flooded + b.flooded,
+            a.no_hoist + b.no_hoist};
+  }
+  /// Counts what is not good.
+  bool good(seal::ControllerSeal::Judgement judgement) noexcept {
+    using Judgement = seal::ControllerSeal::Judgement;
+    if (judgement == Judgement::kNotFresh) ++not_fresh;
+    if (judgement == Judgement::kNoKey) ++no_key;
+    return judgement == Judgement::kGood;
   }
   friend bool operator==(const GateCounts&, const GateCounts&) = default;
 };
@@ -33,7 +46,8 @@ bool presentable(const std::string& name);
 class OperatorGate {
  public:
   /// Keeps references. robot: the controller's name.
-  OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock);
+  OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock,
+               const seal::ControllerSeal& seal);
 
   void take_command(io::Bytes message);  ///< channel COMMAND
   void take_mode(io::Bytes message);     ///< channel MODE
@@ -41,9 +55,12 @@ class OperatorGate {
   const GateCounts& counts() const noexcept { return counts_; }
 
  private:
+  void take_stop(const control::ModeRequest& request);
+
   control::OperatorInbox& inbox_;
   std::string robot_;
   const io::Clock& clock_;
+  const seal::ControllerSeal& seal_;
   control::SourceRates rates_;
   GateCounts counts_;
 };

@@ -224,6 +224,7 @@ void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::comm
 
 void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message) {
   message.version = pmg_msgs::mode_t::VERSION;
+  if (!request.sealed) message.version = pmg_msgs::mode_t::UNSEALED;
   message.robot = run.robot;
   const ToMessage copy;
   pair_request(copy, request, message);
@@ -264,6 +265,7 @@ control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t 
   control::ModeRequest request;
   FromMessage take;
   pair_request(take, request, message);
+  request.sealed = message.version != pmg_msgs::mode_t::UNSEALED;
   request.received_ns = received_ns;
   return request;
 }

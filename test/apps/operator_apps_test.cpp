@@ -1,12 +1,16 @@
 // pmg_send and pmg_watch, used as by their users: alone, without a network, and against a pmg_controller over UDP.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -233,6 +237,227 @@ TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
     const Finished stop = run("pmg_send stop");
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, AllOf(HasSubstr("first: damping"), HasSubstr("second: damping")));
+  });
+}
+
+/// To LCM's default group.
+void send_datagram(const std::string& bytes) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(7667);
+  group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
+  sockaddr any{};
+  std::memcpy(&any, &group, sizeof(group));
+  EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
+  ::close(socket);
+}
+
+constexpr const char* kNetwork = "udpm://239.255.76.67:7667?ttl=1";
+
+/// Two controllers of the default name and network, started at the same moment; how many run.
+TEST_F(OperatorApps, OfTwoControllersStartedTogetherExactlyOneRuns) {
+  const char* tries = std::getenv("PMG_CLAIM_TRIES");  // 50 for the campaign
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    for (int k = 0; k < (tries != nullptr ? std::atoi(tries) : 2); ++k) {
+      const auto start = [&](const std::string& number) {
+        const std::string log = (folder_ / ("log" + number)).string();
+        return std::make_unique<Background>(
+            "pmg_controller",
+            std::vector<std::string>{"--hal", "sil", "--policy", "none", "--gantry", "--no-realtime", "--log", log},
+            folder_ / (number + ".txt"));
+      };
+      const auto first = start("1"), second = start("2");
+      const auto ended = [&] { return !first->running() || !second->running(); };
+      const auto shown = [&] { return text(folder_ / "1.txt") + text(folder_ / "2.txt"); };
+      while (!ended() || shown().find("mode: passive") == std::string::npos) {
+        if (!first->running() && !second->running()) break;
+      }
+      EXPECT_NE(first->running(), second->running()) << "try " << k << ": " << shown();
+      EXPECT_THAT(shown(), HasSubstr("is already run by another controller")) << k;
+      (first->running() ? second : first)->wait();
+      EXPECT_EQ((first->running() ? first : second)->end(SIGINT), 0);
+    }
+  });
+}
+
+TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const std::string keys = (folder_ / "controller").string(), anna = (folder_ / "anna").string(),
+                      bert = (folder_ / "bert").string(), url = std::string(" --lcm-url '") + kNetwork + "'";
+    const std::string start = "pmg_controller --hal sil --policy none --gantry --no-realtime --duration 0.1 --log " +
+                              (folder_ / "x").string() + url;
+    ::setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+    const Finished refused = run(start);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("pmg_key new"), HasSubstr("--insecure-without-keys")));
+    const Finished insecure = run(start + " --insecure-without-keys");
+    EXPECT_EQ(insecure.exit_code, 0) << insecure.err;
+    EXPECT_THAT(insecure.err, HasSubstr("INSECURE: without keys everybody"));
+
+    for (const std::string& folder : {anna, bert}) {
+      fs::create_directories(folder);
+      const Finished made = run("pmg_key new --keys " + keys + " " + fs::path(folder).filename().string() + " --out " +
+                                folder + "/z1.key");
+      EXPECT_EQ(made.exit_code, 0) << made.err;
+    }
+    EXPECT_EQ(run("pmg_key list --keys " + keys).out, "anna\nbert\n");
+    Background robot("pmg_controller",
+                     {"--hal", "sil", "--policy", "none", "--gantry", "--no-realtime", "--lcm-url", kNetwork, "--keys",
+                      keys, "--log", (folder_ / "log").string()},
+                     folder_ / "z1.txt");
+    EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot z1 --keys " + anna + url).exit_code, 0)
+        << text(folder_ / "z1.txt");
+
+    const Finished stranger = run("pmg_send stand --timeout 1" + url);
+    EXPECT_EQ(stranger.exit_code, 1);
+    EXPECT_THAT(stranger.err, HasSubstr("it takes only operators with a key"));
+    const Finished stand = run("pmg_send stand --keys " + anna + url);
+    EXPECT_EQ(stand.exit_code, 0) << stand.err;
+    const Finished stop = run("pmg_send stop" + url);
+    EXPECT_EQ(stop.exit_code, 0) << "a stop needs no key: " << stop.err;
+    EXPECT_EQ(stop.out, "z1: damping\n");
+
+    EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 0);
+    EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 1);
+    const Finished revoked = run("pmg_send stand --timeout 4 --keys " + anna + url);
+    if (revoked.exit_code == 0) {  // the controller looks once a second
+      EXPECT_EQ(run("pmg_send stop" + url).exit_code, 0);
+      EXPECT_EQ(run("pmg_send stand --timeout 4 --keys " + anna + url).exit_code, 1);
+    }
+    EXPECT_EQ(run("pmg_send stand --keys " + bert + url).exit_code, 0);
+    EXPECT_EQ(robot.end(SIGINT), 0);
+    ::unsetenv("XDG_CONFIG_HOME");
+  });
+}
+
+TEST_F(OperatorApps, BadKeysAreRefusedInOneLine) {
+  fs::create_directories(folder_ / "keys");
+  std::ofstream(folder_ / "keys" / "z1.key") << "not a key\n";
+  ::chmod((folder_ / "keys" / "z1.key").c_str(), 0600);
+  const std::string keys = " --keys " + (folder_ / "keys").string(), missing = " --keys " + (folder_ / "none").string();
+  for (const auto& [command, complaint] : {
+           std::pair{"pmg_key", std::string("a command is missing")},
+           std::pair{"pmg_key new ../anna", std::string("expected 1 to 23 letters")},
+           std::pair{"pmg_key new", std::string("NAME")},
+       }) {
+    const Finished refused =
+        run(std::string(command) + (command == std::string("pmg_key new ../anna") ? " --out x" : ""));
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    EXPECT_THAT(refused.err + refused.out, HasSubstr(complaint)) << command;
+  }
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    for (const std::string& command : {"pmg_send stop" + keys, "pmg_watch --once" + keys, "pmg_send stop" + missing}) {
+      const Finished refused = run(command);
+      EXPECT_EQ(refused.exit_code, 2) << command;
+      EXPECT_THAT(refused.err, HasSubstr(".key")) << command;
+      EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    }
+  });
+}
+
+/// Everything on LCM's default group, as somebody records it who means to play it back.
+class Eavesdropper {
+ public:
+  Eavesdropper() {
+    const int yes = 1;
+    ::setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    const int buffer = 1 << 22;
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &buffer, sizeof(buffer));
+    sockaddr_in group{};
+    group.sin_family = AF_INET;
+    group.sin_port = htons(7667);
+    group.sin_addr.s_addr = htonl(0xEFFF4C43);
+    sockaddr any{};
+    std::memcpy(&any, &group, sizeof(group));
+    EXPECT_EQ(::bind(socket_, &any, sizeof(group)), 0);
+    ip_mreq membership{};
+    membership.imr_multiaddr = group.sin_addr;
+    EXPECT_EQ(::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)), 0);
+  }
+  ~Eavesdropper() { ::close(socket_); }
+  Eavesdropper(const Eavesdropper&) = delete;
+  Eavesdropper& operator=(const Eavesdropper&) = delete;
+
+  /// The operators' datagrams of these channels that came since the last call.
+  std::vector<std::string> recorded() {
+    std::vector<std::string> all;
+    std::vector<char> buffer(65536);
+    for (ssize_t size = 0; (size = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT)) > 0;) {
+      const std::string datagram(buffer.data(), static_cast<std::size_t>(size));
+      const std::string channel = datagram.size() > 8 ? std::string(datagram.c_str() + 8) : "";
+      if (channel == "COMMAND" || channel == "MODE") all.push_back(datagram);
+    }
+    return all;
+  }
+
+ private:
+  int socket_ = ::socket(AF_INET, SOCK_DGRAM, 0);
+};
+
+TEST_F(OperatorApps, ARecordedSessionMovesNoRobot) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    Eavesdropper eavesdropper;
+    std::vector<std::string> recorded;
+    const auto play = [&] {
+      for (const std::string& datagram : recorded) {
+        send_datagram(datagram);
+        ::usleep(4000);  // slower than the rate limit
+      }
+    };
+    {
+      const auto robot = controller("z1");
+      EXPECT_EQ(run("pmg_send stand").exit_code, 0);
+      recorded = eavesdropper.recorded();
+      ASSERT_GE(recorded.size(), 1u);
+      EXPECT_EQ(run("pmg_send damping").exit_code, 0);
+      for (int k = 0; k < 9; ++k) EXPECT_EQ(run("pmg_send stop").exit_code, 0);  // nine other names
+      play();
+      EXPECT_EQ(mode_of("z1"), "damping") << "after nine other names";
+      EXPECT_EQ(robot->end(SIGINT), 0);
+    }
+    const auto robot = controller("z1");
+    play();
+    EXPECT_EQ(mode_of("z1"), "passive") << "after a restart of the controller";
+  });
+}
+
+/// A fragment in LCM's wire format (io/lcm_assembler.hpp).
+std::string fragment(std::uint32_t size, std::uint32_t offset, std::uint8_t index, const std::string& rest) {
+  std::string bytes = "LC03";
+  for (const std::uint32_t number : {std::uint32_t{1}, size, offset}) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift & 0xff));
+  }
+  bytes += std::string{'\0', static_cast<char>(index), '\0', '\3'};
+  return bytes + rest;
+}
+
+TEST_F(OperatorApps, NoDatagramEndsAProgram) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    Background watch("pmg_watch", {"--json"}, folder_ / "watch.txt");
+    Background stop("pmg_send", {"stop", "--robot", "nobody", "--timeout", "100"}, folder_ / "stop.txt");
+    const auto lines = [&] {
+      const std::string shown = text(folder_ / "watch.txt");
+      return std::count(shown.begin(), shown.end(), '\n');
+    };
+    while (lines() < 2 && watch.running()) {
+    }
+    // An offset that wraps in 32 bits; names whose zero byte is outside the datagram, behind what an earlier one left.
+    send_datagram(fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"));
+    send_datagram(fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x')));
+    for (int k = 0; k < 20; ++k) send_datagram("LC02    " + std::string(52, 'A') + '\0' + "rest");
+    send_datagram(fragment(100, 41, 0, std::string(10, 'A')));
+    send_datagram("LC02    " + std::string(20, 'A'));
+    const auto before = lines();
+    while (lines() < before + 2 && watch.running()) {
+    }
+    EXPECT_TRUE(watch.running());
+    EXPECT_TRUE(stop.running());
+    EXPECT_TRUE(robot->running());
+    EXPECT_EQ(robot->end(SIGINT), 0);
+    EXPECT_EQ(watch.end(SIGINT), 0);
+    EXPECT_EQ(stop.end(SIGINT), 130);
   });
 }
 

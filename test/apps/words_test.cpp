@@ -55,10 +55,19 @@ class Words : public testing::Test {
                            ("words_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
-const std::vector<std::string> kPrograms = {
-    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips",    "pmg_controller",
-    "pmg_diagnose",        "pmg_eval",           "pmg_keyboard", "pmg_log",
-    "pmg_report",          "pmg_send",           "pmg_sil",      "pmg_watch"};
+const std::vector<std::string> kPrograms = {"pmg_calibrate_motor",
+                                            "pmg_calibrate_zero",
+                                            "pmg_clips",
+                                            "pmg_controller",
+                                            "pmg_diagnose",
+                                            "pmg_eval",
+                                            "pmg_key",
+                                            "pmg_keyboard",
+                                            "pmg_log",
+                                            "pmg_report",
+                                            "pmg_send",
+                                            "pmg_sil",
+                                            "pmg_watch"};
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {

@@ -236,6 +236,86 @@ TEST_F(Intake, TheSourceThatWasSilentLongestMakesRoomButNeverTheDrivingOne) {
   EXPECT_TRUE(request("stranger0", 1, 1, Mode::kDamping, 100).fresh) << "forgotten";
 }
 
+TEST_F(Intake, AStopInTheDriversNameWithTheLargestSessionLocksNobodyOut) {
+  constexpr auto kHighest = std::numeric_limits<std::int64_t>::max();
+  drive("gamepad", 7, 1, 0);
+  EXPECT_EQ(request("gamepad", kHighest, kHighest, Mode::kDamping, 1).verdict, Verdict::kTaken);
+  EXPECT_FALSE(request("gamepad", kHighest, kHighest, Mode::kPassive, 1).fresh);
+  EXPECT_EQ(drive("gamepad", 7, 2, 2), DriveVerdict::kAccepted);
+  EXPECT_EQ(request("gamepad", 7, 1, Mode::kStand, 3).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, ASessionBlocksItsNameForTenSecondsAtMost) {
+  constexpr auto kHighest = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(drive("gamepad", kHighest, kHighest, 0, 0.1), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("gamepad", 7, 1, 10 * kSecond_ns), DriveVerdict::kOutOfOrder);
+  EXPECT_EQ(drive("gamepad", 7, 1, 10 * kSecond_ns + 1), DriveVerdict::kAccepted);
+}
+
+TEST_F(Intake, ARefusedMessageChangesNothingThatIsRemembered) {
+  constexpr auto kHighest = std::numeric_limits<std::int64_t>::max();
+  drive("gamepad", 7, 5, kSecond_ns, 2.0);
+  request("gamepad", 7, 5, Mode::kStand, kSecond_ns);
+  const std::int64_t now_ns = kSecond_ns + 100'000'000;
+  EXPECT_EQ(drive_sent(kHighest, "gamepad", 7, 5, now_ns), DriveVerdict::kOutOfOrder) << "a stamp in the far future";
+  request_sent(kHighest, "gamepad", 7, 5, Mode::kStand, now_ns);
+  request_sent(kHighest, "gamepad", 7, 4, Mode::kWalk, now_ns);
+  request_sent(kHighest, "gamepad", 7, 4, Mode::kDamping, now_ns);
+  EXPECT_EQ(drive("gamepad", 7, 6, now_ns + 1), DriveVerdict::kAccepted) << "is not late";
+  EXPECT_TRUE(request("gamepad", 7, 6, Mode::kStand, now_ns + 2).fresh);
+}
+
+TEST_F(Intake, AStopWithoutASealStopsAndIsForgotten) {
+  const auto stop = [&](std::int64_t stamp_ns, Mode mode) {
+    return intake_.judge({.source = Source::make("gamepad", std::numeric_limits<std::int64_t>::max()),
+                          .sequence = std::numeric_limits<std::int64_t>::max(),
+                          .stamp_ns = stamp_ns,
+                          .received_ns = 1,
+                          .mode = mode,
+                          .sealed = false},
+                         1);
+  };
+  for (const Mode mode : {Mode::kDamping, Mode::kPassive}) {
+    EXPECT_EQ(stop(kSecond_ns, mode).verdict, Verdict::kTaken);
+    EXPECT_FALSE(stop(kSecond_ns, mode).fresh) << "no wish for limp drives";
+  }
+  EXPECT_EQ(request("vr", 1, 1, Mode::kStand, 1).verdict, Verdict::kLate) << "it overtakes what was asked before";
+  EXPECT_EQ(stop(0, Mode::kWalk).verdict, Verdict::kLate) << "received with the stop";
+  EXPECT_EQ(drive("gamepad", 7, 1, 2), DriveVerdict::kAccepted);
+  EXPECT_TRUE(request("gamepad", 7, 1, Mode::kStand, 3).fresh);
+}
+
+TEST_F(Intake, ARequestTakesOverFromADriverThatOnlyRenewsItsLease) {
+  std::int64_t sequence = 0;
+  const auto renew = [&](std::int64_t now_ns, double vx_m_s) {
+    DriveMessage message{.source = Source::make("gamepad", 1),
+                         .sequence = ++sequence,
+                         .stamp_ns = now_ns,
+                         .received_ns = now_ns,
+                         .lease_s = 0.5,
+                         .command = {}};
+    message.command[kVx] = vx_m_s;
+    message.command[kHeight] = -0.1;  // a posture that is held
+    return intake_.accept(message, now_ns);
+  };
+  std::int64_t now_ns = 0;
+  renew(now_ns, 0.0);
+  for (; now_ns < kSecond_ns; now_ns += kSecond_ns / 5) renew(now_ns, 0.2);
+  const std::int64_t moved_ns = now_ns - kSecond_ns / 5;
+  for (; now_ns < moved_ns + CommandIntake::kAtRest_ns; now_ns += kSecond_ns / 5) {
+    renew(now_ns, 0.0);
+    EXPECT_EQ(request("vr", 1, 1, Mode::kWalk, now_ns).verdict, Verdict::kNotYours);
+  }
+  renew(now_ns, 0.0);  // the step from 0.2 m/s to 0 was the last motion
+  now_ns += kSecond_ns / 5;
+  EXPECT_EQ(drive("vr", 1, 1, now_ns), DriveVerdict::kOtherSourceDrives) << "commands alone take nothing over";
+  EXPECT_TRUE(request("vr", 1, 2, Mode::kWalk, now_ns).fresh);
+  EXPECT_EQ(intake_.driving(now_ns), Source::make("vr", 1));
+  EXPECT_EQ(renew(now_ns + 1, 0.0), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(drive("vr", 1, 3, now_ns + 2), DriveVerdict::kAccepted);
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kStand, now_ns + 3).verdict, Verdict::kNotYours) << "not back at once";
+}
+
 TEST(Source, LongNamesAreCutAndStayTerminated) {
   const Source source = Source::make("a name that is longer than any source has", 1);
   EXPECT_EQ(source.name.back(), '\0');

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
@@ -173,6 +176,163 @@ TEST(LcmLink, AMessageArrivesOverMulticastOnLoopback) {
     EXPECT_EQ(receiver.receive(5000), 1);
     EXPECT_EQ(heard, 0.25);
   });
+}
+
+/// Sends through liblcm itself, as every stock LCM tool does.
+class StockSender {
+ public:
+  StockSender() : lcm_(lcm_create(kDefaultLcmUrl)) {}
+  ~StockSender() { lcm_destroy(lcm_); }
+  StockSender(const StockSender&) = delete;
+  StockSender& operator=(const StockSender&) = delete;
+  void send(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+    EXPECT_EQ(lcm_publish(lcm_, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())), 0);
+  }
+
+ private:
+  lcm_t* lcm_;
+};
+
+TEST(LcmLink, MessagesOfStockLcmArriveWholeShortAndFragmented) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    LcmLink receiver(kDefaultLcmUrl);
+    std::vector<std::uint8_t> heard;
+    receiver.subscribe("ROBOT_INFO", [&](Bytes bytes) { heard.assign(bytes.begin(), bytes.end()); });
+    StockSender sender;
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1000}, std::size_t{65'499},
+                                   std::size_t{65'500}, std::size_t{150'000}, LcmAssembler::kLargestMessage}) {
+      std::vector<std::uint8_t> sent(size);
+      for (std::size_t i = 0; i < size; ++i) sent[i] = static_cast<std::uint8_t>(i % 253);
+      sender.send("OTHER", sent);
+      sender.send("ROBOT_INFO", sent);
+      heard = {1, 2, 3};
+      EXPECT_EQ(receiver.receive(5000), 1) << size;
+      EXPECT_EQ(heard, sent) << size;
+    }
+    EXPECT_EQ(receiver.receiver()->counts().malformed, 0);
+  });
+}
+
+TEST(LcmLink, StockLcmHearsOurMessages) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    lcm_t* const stock = lcm_create(kDefaultLcmUrl);
+    std::vector<std::uint8_t> heard;
+    const auto take = [](const lcm_recv_buf_t* message, const char*, void* into) {
+      const auto* data = static_cast<const std::uint8_t*>(message->data);
+      static_cast<std::vector<std::uint8_t>*>(into)->assign(data, data + message->data_size);
+    };
+    lcm_subscribe(stock, "COMMAND", take, &heard);
+    LcmLink sender(kDefaultLcmUrl);
+    EXPECT_TRUE(sender.publish("COMMAND", command(0.25)));
+    EXPECT_GT(lcm_handle_timeout(stock, 5000), 0);
+    EXPECT_EQ(decode_message<pmg_msgs::command_t>(heard)->vx_m_s, 0.25);
+    lcm_destroy(stock);
+  });
+}
+
+/// Datagrams as nobody's LCM sends them.
+void send_datagram(const std::vector<std::uint8_t>& bytes) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(7667);
+  group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
+  sockaddr any{};
+  std::memcpy(&any, &group, sizeof(group));
+  EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
+  ::close(socket);
+}
+
+TEST(LcmLink, HostileDatagramsAreCountedAndTheNextMessageArrives) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    LcmLink receiver(kDefaultLcmUrl), sender(kDefaultLcmUrl);
+    int heard = 0;
+    receiver.subscribe("COMMAND", [&](Bytes) { ++heard; });
+    send_datagram({});
+    send_datagram({'L', 'C'});
+    send_datagram({'L', 'C', '0', '2', 0, 0, 0, 1, 'C', 'O', 'M'});  // a name without end
+    send_datagram({'L', 'C', '0', '3', 0, 0, 0, 1, 0, 0, 0, 9, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 2, 'C', 0});
+    sender.publish("COMMAND", command(0.1));
+    while (receiver.receive(5000) == 0) {
+    }
+    EXPECT_EQ(heard, 1);
+    EXPECT_EQ(receiver.receiver()->counts().malformed, 4);
+  });
+}
+
+TEST(LcmLink, AFloodOfForeignDatagramsDoesNotKeepTheCaller) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    LcmLink receiver(kDefaultLcmUrl);
+    receiver.subscribe("COMMAND", [](Bytes) {});
+    for (int k = 0; k < 50; ++k) send_datagram({'n', 'o', 'i', 's', 'e', '.', '.', '.'});
+    EXPECT_EQ(receiver.receive(60'000, 10), 0) << "it returned although it might have waited for a minute";
+    EXPECT_EQ(receiver.receiver()->counts().malformed, 10 * LcmLink::kDatagramsPerMessage);
+  });
+}
+
+TEST(LcmLink, WithTtl0OnlyThisComputersMessagesAreHeard) {
+  // Another computer: a network namespace of its own, connected by a virtual wire.
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    std::array<int, 2> ready{}, send{};
+    ASSERT_EQ(::pipe(ready.data()), 0);
+    ASSERT_EQ(::pipe(send.data()), 0);
+    const pid_t other = ::fork();
+    if (other == 0) {
+      char token = 0;
+      const bool out =
+          ::unshare(CLONE_NEWNET) == 0 && ::write(ready[1], "r", 1) == 1 && ::read(send[0], &token, 1) == 1;
+      ::_exit(out &&
+                      std::system("ip link set lo up && ip addr add 10.9.0.2/24 dev wire1 && ip link set wire1 up && "
+                                  "ip route add 224.0.0.0/4 dev wire1") == 0 &&
+                      [] {
+                        lcm_t* const stock = lcm_create("udpm://239.255.76.67:7667?ttl=1");
+                        for (int k = 0; k < 20; ++k) {
+                          lcm_publish(stock, "COMMAND", "x", 1);
+                          ::usleep(10'000);  // until the wire is up
+                        }
+                        return true;
+                      }()
+                  ? 0
+                  : 1);
+    }
+    char token = 0;
+    ASSERT_EQ(::read(ready[0], &token, 1), 1);
+    const std::string wire = "ip link add wire0 type veth peer name wire1 netns " + std::to_string(other) +
+                             " && ip addr add 10.9.0.1/24 dev wire0 && ip link set wire0 up && "
+                             "ip route del 224.0.0.0/4 dev lo && ip route add 224.0.0.0/4 dev wire0";
+    const bool wired = std::system(wire.c_str()) == 0;
+    if (!wired) {
+      ::kill(other, SIGKILL);
+      ::waitpid(other, nullptr, 0);
+      GTEST_SKIP() << "NOT TESTED: the kernel makes no virtual wire (ip link add ... type veth)";
+    }
+    LcmLink here("udpm://239.255.76.67:7667?ttl=0"), everywhere("udpm://239.255.76.67:7667?ttl=1");
+    int heard_here = 0, heard_everywhere = 0;
+    here.subscribe("COMMAND", [&](Bytes) { ++heard_here; });
+    everywhere.subscribe("COMMAND", [&](Bytes) { ++heard_everywhere; });
+    ASSERT_EQ(::write(send[1], "s", 1), 1);
+    int status = -1;
+    ::waitpid(other, &status, 0);
+    ASSERT_EQ(status, 0);
+    here.receive(0);
+    everywhere.receive(0);
+    EXPECT_GT(heard_everywhere, 0);
+    EXPECT_EQ(heard_here, 0);
+    EXPECT_GT(here.receiver()->from_elsewhere(), 0);
+    here.publish("COMMAND", command(0.1));
+    here.receive(5000);
+    EXPECT_EQ(heard_here, 1);
+  });
+}
+
+TEST(LcmUrl, TellsWhetherMessagesLeaveThisComputer) {
+  for (const char* here : {"udpm://239.255.76.67:7667", "udpm://239.255.76.67:7667?ttl=0", "memq://"}) {
+    EXPECT_FALSE(leaves_this_computer(here)) << here;
+  }
+  for (const char* out : {"udpm://239.255.76.67:7667?ttl=1", "udpm://239.255.76.67:7667?recv_buf_size=9&ttl=32",
+                          "tcpq://localhost:7700"}) {
+    EXPECT_TRUE(leaves_this_computer(out)) << out;
+  }
 }
 
 TEST(LcmLink, ChannelsAreTakenByTheirWholeName) {

@@ -24,7 +24,8 @@ class KeyboardTest : public testing::Test {
  protected:
   explicit KeyboardTest(KeyReport report = KeyReport::kPressAndRelease) : driver_(mine_, "biped", report) {
     network_.link.subscribe("MODE", [this](io::Bytes bytes) {
-      if (const auto request = io::decode_message<pmg_msgs::mode_t>(bytes)) requests_.push_back(*request);
+      const auto request = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
+      if (request) requests_.push_back(request->message);
     });
     driver_.set_limits(robot_.robot.command_limits);
     run(0.5);

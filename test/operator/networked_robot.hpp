@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "control/control_cycle.hpp"
@@ -16,8 +17,11 @@
 namespace pmg::test {
 
 struct NetworkedRobot {
-  NetworkedRobot(const std::string& name, io::LcmLink& link, const io::Clock& clock)
-      : run{.robot = name, .session = 1}, comms(link, inbox, outbox, robot, run, 100.0, clock), clock_(clock) {
+  NetworkedRobot(const std::string& name, io::LcmLink& link, const io::Clock& clock,
+                 const std::optional<seal::ControllerKeys>& keys = std::nullopt)
+      : run{.robot = name, .session = 1},
+        comms(link, inbox, outbox, robot, run, 100.0, clock, seal::ControllerSeal(keys)),
+        clock_(clock) {
     bus_cycle.run();  // the first sample
   }
 
@@ -52,7 +56,9 @@ struct NetworkedRobot {
 
 class Network {
  public:
-  NetworkedRobot& add_robot(const std::string& name) { return robots_.emplace_back(name, link, clock); }
+  NetworkedRobot& add_robot(const std::string& name, const std::optional<seal::ControllerKeys>& keys = std::nullopt) {
+    return robots_.emplace_back(name, link, clock, keys);
+  }
 
   /// 10 ms of every robot; messages are delivered meanwhile.
   void advance() {

@@ -11,6 +11,7 @@
 #include "networked_robot.hpp"
 #include "operator/drive.hpp"
 #include "operator/mode_wish.hpp"
+#include "operator/words.hpp"
 
 namespace pmg::ops {
 namespace {
@@ -25,8 +26,8 @@ class OperatorTest : public testing::Test {
   OperatorTest() {
     network_.link.subscribe("MODE", [this](io::Bytes) { ++requests_sent_; });
     network_.link.subscribe("COMMAND", [this](io::Bytes bytes) {
-      if (const auto command = io::decode_message<pmg_msgs::command_t>(bytes))
-        speeds_sent_m_s_.push_back(command->vx_m_s);
+      if (const auto command = seal::decode_sealed<pmg_msgs::command_t, pmg_msgs::seal_t>(bytes))
+        speeds_sent_m_s_.push_back(command->message.vx_m_s);
     });
     for (int k = 0; k < 3; ++k) network_.advance();
   }
@@ -335,9 +336,10 @@ class FloodTest : public OperatorTest {
     command.sequence = sent_;
     command.lease_s = 2.0;
     command.vx_m_s = -1.0;
-    network_.link.publish("COMMAND", command);
+    network_.link.send("COMMAND", seal_.seal("COMMAND", command, &*mine_.heard("biped")->peer));
   }
 
+  seal::OperatorSeal seal_;
   const std::vector<std::uint8_t> junk_ = std::vector<std::uint8_t>(200, 0x5a);
   int sent_ = 0;
 };
@@ -358,6 +360,84 @@ TEST_F(FloodTest, AStopIsObeyedAndAcknowledged) {
   EXPECT_EQ(finish_in_flood(stop), Progress::kReached);
   EXPECT_LE(stop.elapsed_s(), 0.021);
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+}
+
+/// A robot with keys, and an operator that has one of them.
+class KeyedTest : public testing::Test {
+ protected:
+  KeyedTest() {
+    for (int k = 0; k < 3; ++k) network_.advance();
+  }
+  /// Answers every request as the controller might.
+  void forge_acks() {
+    network_.link.subscribe("MODE", [this](io::Bytes bytes) {
+      const auto request = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
+      pmg_msgs::ack_t ack{};
+      ack.robot = "biped";
+      ack.stamp_ns = network_.clock.now_ns() + 1;
+      ack.source = request.value().message.source;
+      ack.session = request->message.session;
+      ack.sequence = request->message.sequence;
+      ack.mode = pmg_msgs::mode_t::DAMPING;
+      network_.link.publish("ACK", ack);
+    });
+  }
+
+  Network network_;
+  seal::Secret secret_ = seal::random_secret();
+  seal::ControllerKeys keys_{.own = seal::random_secret(), .operators = {{"anna", secret_}}};
+  NetworkedRobot& robot_ = network_.add_robot("biped", keys_);
+  seal::OperatorKey key_{"anna", seal::Signer(keys_.own).public_key(), secret_};
+  OperatorSource anna_{network_.link, "anna.1", 1, network_.clock, seal::OperatorSeal({key_}, false)};
+  OperatorSource stranger_{network_.link, "stranger.1", 1, network_.clock};
+};
+
+TEST_F(KeyedTest, WhoHasAKeyDrivesAndWhoHasNoneStopsOnly) {
+  ModeWish stand(anna_, "biped", Goal::kStand, 10.0);
+  EXPECT_EQ(network_.finish(stand), Progress::kReached);
+  ModeWish walk(stranger_, "biped", Goal::kWalk, 1.0);
+  EXPECT_EQ(network_.finish(walk), Progress::kFailed);
+  EXPECT_EQ(walk.answers().front().text, kNoKey);
+  ModeWish stop(stranger_, "biped", Goal::kStop, 2.0);
+  EXPECT_EQ(network_.finish(stop), Progress::kReached);
+  EXPECT_EQ(robot_.result().mode, Mode::kDamping);
+}
+
+TEST_F(KeyedTest, AForgedAcknowledgementOfAStopIsNotBelieved) {
+  network_.control_alive = false;
+  forge_acks();
+  ModeWish stop(anna_, "biped", Goal::kStop, 2.0);
+  EXPECT_EQ(network_.finish(stop), Progress::kFailed);
+  EXPECT_FALSE(stop.answers().front().acknowledged);
+}
+
+TEST_F(KeyedTest, AForgedStatusNeitherShowsAModeNorMisleadsASeal) {
+  pmg_msgs::status_t status{};
+  status.robot = "biped";
+  status.session = 99;
+  status.stamp_ns = network_.clock.now_ns() + 1'000'000'000;
+  status.mode = pmg_msgs::mode_t::WALK;
+  network_.link.publish("STATUS", status);
+  network_.link.receive(0);
+  EXPECT_EQ(anna_.heard("biped")->mode(), pmg_msgs::mode_t::PASSIVE);
+  ModeWish stand(anna_, "biped", Goal::kStand, 10.0);
+  EXPECT_EQ(network_.finish(stand), Progress::kReached);
+}
+
+TEST_F(OperatorTest, ARecordedStatusOfAnEarlierStartIsIgnoredWhileTheControllerSpeaks) {
+  const auto say = [&](std::int64_t session, std::int8_t mode) {
+    pmg_msgs::status_t status{};
+    status.robot = "biped";
+    status.session = session;
+    status.stamp_ns = network_.clock.now_ns() - 1;
+    status.mode = mode;
+    network_.link.publish("STATUS", status);
+    network_.link.receive(0);
+  };
+  say(0, pmg_msgs::mode_t::WALK);
+  EXPECT_EQ(mine_.heard("biped")->mode(), pmg_msgs::mode_t::PASSIVE);
+  say(2, pmg_msgs::mode_t::DAMPING);
+  EXPECT_EQ(mine_.heard("biped")->mode(), pmg_msgs::mode_t::DAMPING) << "restarted";
 }
 
 }  // namespace

@@ -3,12 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <barrier>
+#include <cstdlib>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "control/fixtures.hpp"
+#include "io/private_network.hpp"
 #include "pmg_msgs/mode_t.hpp"
 
 namespace pmg::runtime {
@@ -22,6 +30,12 @@ using testing::Not;
 
 constexpr std::int64_t kTick_ns = 10'000'000;
 
+/// The message before its proof.
+template <typename Message>
+Message message_in(io::Bytes bytes) {
+  return seal::decode_sealed<Message, pmg_msgs::proof_t>(bytes).value().message;
+}
+
 class CommsTest : public testing::Test {
  protected:
   CommsTest() {
@@ -32,9 +46,9 @@ class CommsTest : public testing::Test {
       link_.subscribe(channel, [this, channel](io::Bytes) { ++heard_[channel]; });
     }
     link_.subscribe("TIMING", [this](io::Bytes bytes) { timing_ = *io::decode_message<pmg_msgs::timing_t>(bytes); });
-    link_.subscribe("ACK", [this](io::Bytes bytes) { ack_ = *io::decode_message<pmg_msgs::ack_t>(bytes); });
+    link_.subscribe("ACK", [this](io::Bytes bytes) { ack_ = message_in<pmg_msgs::ack_t>(bytes); });
     link_.subscribe("LINK", [this](io::Bytes bytes) { counts_ = *io::decode_message<pmg_msgs::link_t>(bytes); });
-    link_.subscribe("STATUS", [this](io::Bytes bytes) { status_ = *io::decode_message<pmg_msgs::status_t>(bytes); });
+    link_.subscribe("STATUS", [this](io::Bytes bytes) { status_ = message_in<pmg_msgs::status_t>(bytes); });
     comms_.on_warning = [this](const std::string& text) { warnings_.push_back(text); };
     const int n = robot_.joint_index.size();
     record_.state = test::standing_state(robot_);
@@ -200,6 +214,90 @@ TEST_F(CommsTest, AStopIsTakenWithoutWaitingForTheNextTick) {
   link_.publish("MODE", stop());
   comms_.step(0);
   EXPECT_EQ(stop_line_.pulls(), 1u);
+}
+
+/// Controllers of one name on one network, each starting in a thread of its own; the number that won it.
+int winners(int controllers, const std::vector<seal::ControllerKeys>& keys = {}) {
+  const std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  std::atomic<int> won{0}, refused{0};
+  std::vector<std::thread> threads;
+  std::barrier<> begin(controllers), end(controllers);
+  for (int k = 0; k < controllers; ++k) {
+    threads.emplace_back([&, k] {
+      const io::WallClock clock;
+      io::LcmLink link(url);
+      hal::StopLine stop_line;
+      control::OperatorInbox inbox(stop_line);
+      control::ControllerOutbox outbox;
+      const RunInfo run{.robot = "biped", .session = k};
+      const auto mine = keys.empty() ? std::nullopt : std::optional(keys[static_cast<std::size_t>(k) % keys.size()]);
+      Comms comms(link, inbox, outbox, test::biped(), run, 100.0, clock, seal::ControllerSeal(mine));
+      begin.arrive_and_wait();
+      std::optional<HeldClaim> claim;
+      try {
+        comms.listen_for_others(0.3);
+        claim.emplace(comms.hold_name());
+        ++won;
+      } catch (const std::runtime_error&) {
+        ++refused;
+      }
+      end.arrive_and_wait();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(won + refused, controllers);
+  return won;
+}
+
+TEST(NameClaim, OfControllersThatStartTogetherExactlyOneGetsTheName) {
+  const char* tries = std::getenv("PMG_CLAIM_TRIES");  // 50 for the campaign
+  PMG_IN_PRIVATE_NETWORK(io::Multicast::kOnLoopback, [&] {
+    for (int k = 0; k < (tries != nullptr ? std::atoi(tries) : 4); ++k) EXPECT_EQ(winners(2 + k % 3), 1) << "try " << k;
+  });
+}
+
+TEST(NameClaim, ControllersWithDifferentKeysAreDifferentRobotsForTheirOperators) {
+  PMG_IN_PRIVATE_NETWORK(io::Multicast::kOnLoopback, [&] {
+    const std::vector<seal::ControllerKeys> keys = {{.own = seal::random_secret(), .operators = {}},
+                                                    {.own = seal::random_secret(), .operators = {}}};
+    EXPECT_EQ(winners(2, keys), 2) << "a forged claim prevents no start";
+    EXPECT_EQ(winners(2, {keys[0], keys[0]}), 1);
+  });
+}
+
+TEST(NameClaim, WhoHoldsTheNameKeepsItUntilItsFirstStatus) {
+  PMG_IN_PRIVATE_NETWORK(io::Multicast::kOnLoopback, [&] {
+    const io::WallClock clock;
+    hal::StopLine stop_line;
+    control::OperatorInbox inbox(stop_line);
+    control::ControllerOutbox outbox;
+    const RunInfo run{.robot = "biped"};
+    io::LcmLink first_link("udpm://239.255.76.67:7667?ttl=0"), later_link(first_link.url());
+    Comms first(first_link, inbox, outbox, test::biped(), run, 100.0, clock);
+    first.listen_for_others(0.0);
+    const HeldClaim held = first.hold_name();
+    for (int k = 0; k < 4; ++k) {  // whatever their boot numbers are
+      Comms later(later_link, inbox, outbox, test::biped(), run, 100.0, clock);
+      EXPECT_THROW(later.listen_for_others(60.0), std::runtime_error);
+    }
+  });
+}
+
+TEST(NameLock, OneProgramOfThisComputerHoldsAName) {
+  const std::string name = "lock_test_" + std::to_string(::getpid()), url = "udpm://239.255.76.67:7667?ttl=0";
+  {
+    const NameLock lock(name, url);
+    try {
+      const NameLock second(name, "udpm://239.255.76.67:7667?ttl=1&recv_buf_size=9");
+      FAIL() << "two controllers of one name";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(name), HasSubstr("process " + std::to_string(::getpid())),
+                                      HasSubstr("--name"), Not(HasSubstr("\n"))));
+    }
+    const NameLock another_name(name + "b", url), another_address(name, "udpm://239.255.76.67:7668?ttl=0");
+    const NameLock long_name(std::string(200, 'x') + name, url);
+  }
+  const NameLock again(name, url);
 }
 
 }  // namespace

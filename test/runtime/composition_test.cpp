@@ -15,6 +15,7 @@
 #include "runtime/comms.hpp"
 #include "runtime/recorder.hpp"
 #include "runtime/threaded_controller.hpp"
+#include "seal/operator_seal.hpp"
 #include "sil/realtime_run.hpp"
 
 namespace pmg::runtime {
@@ -46,6 +47,11 @@ struct NetworkOperator {
     drive.session = request.session = 1;
     drive.lease_s = 0.5;
     drive.vx_m_s = 0.3;
+    link.subscribe("STATUS", [this](io::Bytes bytes) {
+      const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+      controller = operators.believe("STATUS", heard.value().message_bytes, heard->seal);
+      controller->heard_ns = heard->message.stamp_ns;
+    });
   }
   void speak() {
     drive.stamp_ns = request.stamp_ns = clock.now_ns();
@@ -54,8 +60,9 @@ struct NetworkOperator {
     ++drive.sequence;
     ++request.sequence;
     request.mode = wanted;
-    link.publish("COMMAND", drive);
-    link.publish("MODE", request);
+    const seal::Peer* peer = controller ? &*controller : nullptr;
+    link.send("COMMAND", operators.seal("COMMAND", drive, peer));
+    link.send("MODE", operators.seal("MODE", request, peer));
   }
   io::WallClock clock;
   io::LcmLink& link;
@@ -63,6 +70,8 @@ struct NetworkOperator {
   std::atomic<std::int8_t> wanted{pmg_msgs::mode_t::PASSIVE};
   pmg_msgs::command_t drive{};
   pmg_msgs::mode_t request{};
+  seal::OperatorSeal operators;
+  std::optional<seal::Peer> controller;
 };
 
 TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {

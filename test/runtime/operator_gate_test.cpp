@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "control/command_intake.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 
@@ -18,6 +19,7 @@ using Modes = pmg_msgs::mode_t;
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 
+/// The message alone.
 template <typename Message>
 std::vector<std::uint8_t> encoded(const Message& message) {
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
@@ -37,15 +39,26 @@ class OperatorGateTest : public testing::Test {
   }
 
   void pass_ms(int milliseconds) { clock_.advance_to(clock_.now_ns() + milliseconds * kMillisecond_ns); }
+  /// What an operator without a key sends that hears the controller at this moment.
+  template <typename Message>
+  std::vector<std::uint8_t> sealed(const Message& message) {
+    std::vector<std::uint8_t> bytes = encoded(message);
+    pmg_msgs::seal_t seal{};
+    seal.version = pmg_msgs::seal_t::VERSION;
+    seal.boot = seal_.boot();
+    seal.heard_ns = clock_.now_ns();
+    seal::append(bytes, seal);
+    return bytes;
+  }
   void send_command(const std::string& source) {
     command_.source = source;
     ++command_.sequence;
-    gate_.take_command(encoded(command_));
+    gate_.take_command(sealed(command_));
   }
   void send_mode(const std::string& source, std::int8_t mode) {
     mode_.source = source;
     mode_.mode = mode;
-    gate_.take_mode(encoded(mode_));
+    gate_.take_mode(sealed(mode_));
   }
   /// The commands that the control cycle would take from the inbox, by the names of their sources.
   std::vector<std::string> take_commands() {
@@ -62,7 +75,8 @@ class OperatorGateTest : public testing::Test {
   io::SimulationClock clock_;
   hal::StopLine stop_line_;
   control::OperatorInbox inbox_{stop_line_};
-  OperatorGate gate_{inbox_, "z1", clock_};
+  seal::ControllerSeal seal_;
+  OperatorGate gate_{inbox_, "z1", clock_, seal_};
   pmg_msgs::command_t command_{};
   Modes mode_{};
 };
@@ -78,7 +92,7 @@ TEST_F(OperatorGateTest, ACommandArrivesAsItWasSentWithOurClocksTime) {
   command_.pitch_rad = 0.4;
   command_.roll_rad = 0.5;
   command_.height_m = -0.1;
-  gate_.take_command(encoded(command_));
+  gate_.take_command(sealed(command_));
   control::DriveMessage drive;
   ASSERT_TRUE(inbox_.take(drive));
   EXPECT_EQ(drive.source, control::Source::make("gamepad", 9));
@@ -94,12 +108,12 @@ TEST_F(OperatorGateTest, ForeignMessagesAreCountedByReasonAndIgnored) {
   const auto sent = [&](const std::function<void()>& spoil) {
     const auto [command, mode] = std::pair{command_, mode_};
     spoil();
-    gate_.take_command(encoded(command_));
-    gate_.take_mode(encoded(mode_));
+    gate_.take_command(sealed(command_));
+    gate_.take_mode(sealed(mode_));
     command_ = command;
     mode_ = mode;
   };
-  sent([&] { command_.version = mode_.version = 2; });
+  sent([&] { command_.version = mode_.version = 1; });
   EXPECT_EQ(gate_.counts().other_version, 2);
   sent([&] { command_.robot = mode_.robot = "z2"; });
   sent([&] { command_.robot = mode_.robot = ""; });
@@ -109,12 +123,97 @@ TEST_F(OperatorGateTest, ForeignMessagesAreCountedByReasonAndIgnored) {
   sent([&] { command_.source = mode_.source = "\x1b[2Jgamepad"; });
   sent([&] { command_.source = mode_.source = std::string("game\0pad", 8); });
   EXPECT_EQ(gate_.counts().malformed, 8);
-  gate_.take_command(encoded(mode_));
-  gate_.take_mode(encoded(command_));
+  gate_.take_command(sealed(mode_));
+  gate_.take_mode(sealed(command_));
   EXPECT_EQ(gate_.counts().malformed, 10);
   EXPECT_TRUE(take_commands().empty());
   EXPECT_TRUE(take_requests().empty());
   EXPECT_EQ(stop_line_.pulls(), 0u);
+}
+
+TEST_F(OperatorGateTest, WhatWasRecordedIsRefusedAndCounted) {
+  pass_ms(5000);
+  const std::vector<std::uint8_t> command = sealed(command_), mode = sealed(mode_);
+  seal::ControllerSeal restarted;
+  OperatorGate after_restart(inbox_, "z1", clock_, restarted);
+  after_restart.take_command(command);
+  after_restart.take_mode(mode);
+  EXPECT_EQ(after_restart.counts(), (GateCounts{.not_fresh = 2})) << "of the controller's last run";
+  gate_.take_command(encoded(command_));
+  gate_.take_mode(encoded(mode_));
+  EXPECT_EQ(gate_.counts(), (GateCounts{.not_fresh = 2})) << "without a seal";
+  pass_ms(1001);
+  gate_.take_command(command);
+  gate_.take_mode(mode);
+  EXPECT_EQ(gate_.counts(), (GateCounts{.not_fresh = 4})) << "too old";
+  EXPECT_TRUE(take_commands().empty());
+  EXPECT_TRUE(take_requests().empty());
+}
+
+TEST_F(OperatorGateTest, ARecordingIsRefusedAlsoAfterItsSourceIsForgotten) {
+  control::CommandIntake intake;
+  const auto accepted = [&] {
+    int count = 0;
+    for (control::DriveMessage drive; inbox_.take(drive);) {
+      count += intake.accept(drive, clock_.now_ns()) == control::CommandIntake::DriveVerdict::kAccepted;
+    }
+    return count;
+  };
+  command_.lease_s = 0.01;
+  ++command_.sequence;
+  const std::vector<std::uint8_t> recorded = sealed(command_);
+  gate_.take_command(recorded);
+  EXPECT_EQ(accepted(), 1);
+  int taken = 0;
+  for (int k = 1; k <= 200; ++k) {  // 2 s; every name once, as many as the gate lets in
+    pass_ms(10);
+    send_command("source " + std::to_string(k));
+    accepted();
+    gate_.take_command(recorded);
+    taken += accepted();
+  }
+  EXPECT_EQ(taken, 0) << "while it is fresh its source is remembered; afterwards it is not fresh";
+  EXPECT_GT(gate_.counts().not_fresh, 90);
+}
+
+TEST_F(OperatorGateTest, AStopNeedsNoSealAndWithoutOneItIsNobodysInParticular) {
+  mode_.mode = Modes::DAMPING;
+  gate_.take_mode(encoded(mode_));
+  const std::vector<control::ModeRequest> requests = take_requests();
+  ASSERT_EQ(requests.size(), 1u) << "it is acknowledged";
+  EXPECT_FALSE(requests[0].sealed);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+  send_mode("gamepad", Modes::DAMPING);
+  EXPECT_TRUE(take_requests().at(0).sealed);
+  mode_.reset_fault = 1;
+  gate_.take_mode(encoded(mode_));
+  EXPECT_EQ(gate_.counts().not_fresh, 1) << "a reset is no stop";
+}
+
+TEST_F(OperatorGateTest, AStopOfAnotherVersionStopsToo) {
+  mode_.mode = Modes::DAMPING;
+  for (const int version : {0, 1, 3}) {
+    mode_.version = version;
+    gate_.take_mode(sealed(mode_));
+  }
+  EXPECT_EQ(stop_line_.pulls(), 3u);
+  for (const control::ModeRequest& request : take_requests()) EXPECT_FALSE(request.sealed);
+}
+
+TEST_F(OperatorGateTest, StopsWithoutASealTakeNobodysPlaceOrAllowance) {
+  mode_.mode = Modes::DAMPING;
+  for (int k = 0; k < 100; ++k) {
+    mode_.source = "stranger " + std::to_string(k);
+    gate_.take_mode(encoded(mode_));
+  }
+  mode_.source = "gamepad";
+  for (int k = 0; k < 100; ++k) gate_.take_mode(encoded(mode_));
+  EXPECT_EQ(stop_line_.pulls(), 200u);
+  take_requests();
+  send_command("gamepad");
+  send_mode("gamepad", Modes::DAMPING);
+  EXPECT_EQ(take_commands().size(), 1u);
+  EXPECT_EQ(take_requests().size(), 1u);
 }
 
 TEST_F(OperatorGateTest, AStopForNobodyInParticularIsAStopForThisRobot) {
@@ -230,7 +329,7 @@ TEST_F(OperatorGateTest, RandomBytesEndNothing) {
   std::mt19937 random(20);
   std::uniform_int_distribution<int> byte(0, 255);
   std::uniform_int_distribution<std::size_t> size(0, 300), flips(1, 4);
-  const std::vector<std::uint8_t> command = encoded(command_), mode = encoded(mode_);
+  const std::vector<std::uint8_t> command = sealed(command_), mode = sealed(mode_);
   for (int k = 0; k < 100'000; ++k) {
     std::vector<std::uint8_t> bytes;
     if (k % 3 == 0) {

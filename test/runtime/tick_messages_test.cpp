@@ -158,6 +158,12 @@ TEST_F(TickMessages, AnOperatorsMessagesAreReadBackAsTheyWere) {
   EXPECT_EQ(asked.mode, request.mode);
   EXPECT_TRUE(asked.reset_fault);
   EXPECT_EQ(asked.received_ns, 17);
+  EXPECT_TRUE(asked.sealed);
+  request.sealed = false;
+  fill(request, run_, mode);
+  EXPECT_FALSE(mode_request(mode, 17).sealed) << "a replay must know that a stop came without a seal";
+  mode.version = 1;
+  EXPECT_TRUE(mode_request(mode, 17).sealed) << "logs from before seals";
 }
 
 }  // namespace

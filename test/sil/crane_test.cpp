@@ -122,6 +122,10 @@ class HoistGateTest : public testing::Test {
   void send(const hoist_t& message) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
     message.encode(bytes.data(), 0, message.getEncodedSize());
+    pmg_msgs::seal_t seal{};
+    seal.version = pmg_msgs::seal_t::VERSION;
+    seal.boot = seal_.boot();
+    seal::append(bytes, seal);
     gate_.take(bytes);
   }
   static hoist_t lift(std::int64_t sequence, bool up = true) {
@@ -135,7 +139,9 @@ class HoistGateTest : public testing::Test {
     return message;
   }
   hal::HoistLine line_;
-  runtime::HoistGate gate_{"biped"};
+  io::SimulationClock clock_;
+  seal::ControllerSeal seal_;
+  runtime::HoistGate gate_{"biped", clock_, seal_};
 };
 
 TEST_F(HoistGateTest, AControllerWithoutAHoistCountsAndIgnores) {
@@ -168,7 +174,7 @@ TEST_F(HoistGateTest, WhatIsNotMeantForItIsCountedAndIgnored) {
   message.robot = "other";
   send(message);
   message = lift(1);
-  message.version = 2;
+  message.version = 1;
   send(message);
   message = lift(1);
   message.request = 5;
