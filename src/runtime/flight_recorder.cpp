@@ -205,8 +205,7 @@ fs::path FlightRecorder::stem(const Incident& incident, const fs::path& folder) 
       fmt::format("fault-{}Z-{}", utc(incident.utc_ns, "%Y%m%dT%H%M%S"), to_string(incident.record.result.fault.code));
   fs::path stem = folder / name;
   // Faults of one millisecond, or a computer whose clock was set back.
-  for (int again = 2; fs::exists(stem.string() + ".lcm"); ++again)
-    stem = folder / fmt::format("{}-{}", name, again);
+  for (int again = 2; fs::exists(stem.string() + ".lcm"); ++again) stem = folder / fmt::format("{}-{}", name, again);
   return stem;
 }
 

@@ -218,7 +218,8 @@ void Recorder::give_up_file(const std::string& why) {
   disk_lost_ += std::exchange(unflushed_, 0);
   writer_.reset();
   try_ns_ = clock_.now_ns();  // another folder may take it at once
-  say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on as soon as a folder takes it", why));
+  say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on as soon as a folder takes it",
+                  why));
 }
 
 void Recorder::remove_oldest(const fs::path& folder, int most) {
