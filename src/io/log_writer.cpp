@@ -77,7 +77,8 @@ void LogWriter::flush() {
 }
 
 bool LogWriter::in_place() const noexcept {
-  struct stat named {}, open_file {};
+  struct stat named {
+  }, open_file{};
   return stat(path_.c_str(), &named) == 0 && fstat(file_, &open_file) == 0 && named.st_ino == open_file.st_ino &&
          named.st_dev == open_file.st_dev;
 }

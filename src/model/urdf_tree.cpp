@@ -58,7 +58,8 @@ void check_extent(const UrdfTree& tree) {
     }
     links += rest.starts_with("<link ") ? 1 : 0;
     if (depth > kDeepestElement) {
-      raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth), fmt::format("{} at most", kDeepestElement));
+      raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth),
+            fmt::format("{} at most", kDeepestElement));
     }
     if (links > kMostLinks) {
       raise(place_in(tree, at), "link", fmt::format("is number {}", links), fmt::format("{} at most", kMostLinks));

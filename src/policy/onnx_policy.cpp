@@ -45,7 +45,8 @@ std::string metadata_text(const Ort::Session& session) {
       session.GetModelMetadata().LookupCustomMetadataMapAllocated(kMetadataKey, allocator);
   if (!text) refuse(fmt::format("it has no metadata {}; expected a policy exported by training", kMetadataKey));
   if (const std::size_t bytes = std::strlen(text.get()); bytes > kLargestMetadata_bytes) {
-    refuse(fmt::format("its metadata {} has {} bytes; expected {} at most", kMetadataKey, bytes, kLargestMetadata_bytes));
+    refuse(
+        fmt::format("its metadata {} has {} bytes; expected {} at most", kMetadataKey, bytes, kLargestMetadata_bytes));
   }
   return text.get();
 }

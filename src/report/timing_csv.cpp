@@ -11,7 +11,7 @@ namespace pmg::report {
 namespace {
 constexpr std::uint64_t kLargest_bytes = 1u << 30;  // a day of ticks
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-}
+}  // namespace
 
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
   if (!std::filesystem::exists(file)) return;

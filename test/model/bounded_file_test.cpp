@@ -53,15 +53,13 @@ std::string link(const std::string& name) {
 }
 
 std::string joint(const std::string& parent, const std::string& child) {
-  return "<joint name=\"" + parent + "_" + child + "\" type=\"fixed\"><parent link=\"" + parent +
-         "\"/><child link=\"" + child + "\"/></joint>\n";
+  return "<joint name=\"" + parent + "_" + child + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" +
+         child + "\"/></joint>\n";
 }
 
 TEST_F(BoundedFile, WhatIsNoRegularFileIsNamed) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  const auto read = [](const fs::path& path) {
-    return refusal([&] { read_bounded_text(path, 100, "a YAML file"); });
-  };
+  const auto read = [](const fs::path& path) { return refusal([&] { read_bounded_text(path, 100, "a YAML file"); }); };
   EXPECT_EQ(read("/dev/zero"), "/dev/zero: is a device; expected a YAML file");
   EXPECT_THAT(read(folder_ / "pipe"), HasSubstr("is a pipe; expected a YAML file")) << "without waiting for a writer";
   EXPECT_THAT(read(folder_), HasSubstr("is a folder; expected a YAML file"));
@@ -89,7 +87,8 @@ TEST_F(BoundedFile, ARobotOfTenThousandLinksIsRefusedAtItsFirstLinkTooMany) {
     chain += link(name) + joint("l" + std::to_string(k - 1), name);
     flat += link(name) + joint("l0", name);
   }
-  for (const std::string& robot : {chain, flat}) EXPECT_THAT(urdf_refusal(robot), HasSubstr("link: is number 257; expected 256"));
+  for (const std::string& robot : {chain, flat})
+    EXPECT_THAT(urdf_refusal(robot), HasSubstr("link: is number 257; expected 256"));
 }
 
 TEST_F(BoundedFile, XmlThatIsTooDeepIsRefused) {

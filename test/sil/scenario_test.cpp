@@ -45,7 +45,8 @@ steps:
 )";
 
 TEST_F(ScenarioFile, MoreThanADayOrTenThousandStepsIsRefused) {
-  EXPECT_NE(refusal("name: long\nsteps:\n  - {for_s: 1e9, text: a}\n").find("a day (86400 s) at most"), std::string::npos);
+  EXPECT_NE(refusal("name: long\nsteps:\n  - {for_s: 1e9, text: a}\n").find("a day (86400 s) at most"),
+            std::string::npos);
   std::string many = "name: many\nsteps:\n";
   for (int k = 0; k < 10'001; ++k) many += "  - {for_s: 1, text: a}\n";
   EXPECT_NE(refusal(many).find("steps: has 10001; expected 10000 at most"), std::string::npos);
