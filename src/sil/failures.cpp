@@ -16,9 +16,9 @@ constexpr std::size_t kMost = 100;
 
 /// What a kind needs beside its times.
 struct KindRow {
-  const char* name;
-  bool joint;
-  bool value;
+  const char* name = "";
+  bool joint = false;
+  bool value = false;
   double least = 0.0, most = 0.0;  ///< of the value
 };
 
