@@ -85,7 +85,7 @@ bool allows_sit_down(FaultCode code) noexcept {
 }
 
 Reaction reaction(FaultCode code) noexcept {
-  constexpr CycleRange kNever, kAtOnce{1, 5}, kThreeTicks{11, 15};
+  static constexpr CycleRange kNever{}, kAtOnce{1, 5}, kThreeTicks{11, 15};
   const auto at_once = [](const CycleRange& damping) { return Reaction{kNever, damping}; };
   const auto after_sit_down = [](const CycleRange& found) {
     constexpr int kSitDown = 475;  // SitDownOptions: 0.95 s
