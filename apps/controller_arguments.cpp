@@ -23,7 +23,7 @@ Example:
   pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
 
 Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
-was damped), 2 bad input, or a network, name or log folder that can't be used.)";
+was damped) or something is missing in the log, 2 bad input, or a network, name or log folder that can't be used.)";
 
 nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
   return {{"priority", schedule.priority}, {"cpu", schedule.cpu}};

@@ -155,7 +155,8 @@ ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Con
   }
   recorder.close();
   if (!failure.empty()) spdlog::critical("{}", failure);
-  return failure.empty() ? kOk : kFailed;
+  if (!recorder.complete()) spdlog::critical("something is missing in the log");
+  return failure.empty() && recorder.complete() ? kOk : kFailed;
 }
 
 void report(const Arguments& arguments, const runtime::Controller& controller, const runtime::Recorder& recorder) {

@@ -15,6 +15,8 @@
 #include "runtime/bench_session.hpp"
 #include "runtime/comms.hpp"
 #include "runtime/controller_report.hpp"
+#include "sil/failing_parts.hpp"
+#include "sil/failure_report.hpp"
 #include "sil/film.hpp"
 #include "sil/live_view.hpp"
 #include "sil/lockstep.hpp"
@@ -45,8 +47,9 @@ void require(const fs::path& value, const char* option) {
 struct Played {
   sil::RunOutcome outcome;
   sil::StageTiming timing;
-  nlohmann::ordered_json realtime;  // null in lockstep
-  std::string film_failure;         // empty: none, or no film
+  nlohmann::ordered_json realtime;                // null in lockstep
+  std::string film_failure;                       // empty: none, or no film
+  std::vector<sil::FailureReaction> reactions{};  // one for each failure that was injected
 };
 
 /// What both ways of playing need.
@@ -60,6 +63,8 @@ struct Stage {
   sil::LiveView* view;                      // may be null
   const runtime::BenchSession* bench;       // may be null
   runtime::ExcitationRecorder* excitation;  // null without a bench
+  const std::vector<sil::Failure>& failures;
+  sil::FailureClock& failure_clock;
   bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
 };
@@ -75,7 +80,8 @@ runtime::RunInfo run_info(const Stage& stage) {
 Played play_lockstep(const Stage& stage) {
   const model::RobotModel& robot = stage.loaded.robot;
   const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  sil::SilHal bus(stage.world);
+  sil::SilHal drives(stage.world);
+  sil::FailingBus bus(drives, stage.failures, robot, stage.failure_clock, false);
   sil::WorldPlant plant(stage.world);
   runtime::TickLog log(stage.log_file, robot, run_info(stage), rate_Hz);
   std::optional<sil::Film> film;
@@ -84,6 +90,11 @@ Played play_lockstep(const Stage& stage) {
   sil::Lockstep lockstep(robot, bus, plant, stage.tick, stage.scenario, &log,
                          {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
   lockstep.interrupted = [&stage] { return stage.over(); };
+  if (!stage.failures.empty()) {
+    lockstep.bus_sleeps = [&bus] { return bus.bus_sleeps(); };
+    lockstep.control_sleeps = [&bus] { return bus.control_sleeps(); };
+    lockstep.while_bus_sleeps = [&bus] { bus.idle(); };
+  }
   if (stage.excitation != nullptr) {
     lockstep.after_record = [&stage](const control::TickRecord& record) { stage.excitation->add(record); };
   }
@@ -105,7 +116,7 @@ Played play_lockstep(const Stage& stage) {
     film->close();
     if (!film->failure().empty()) std::cerr << fmt::format("pmg_sil: {}\n", film->failure());
   }
-  return {outcome, lockstep.timing(), nullptr, film ? film->failure() : ""};
+  return {outcome, lockstep.timing(), nullptr, film ? film->failure() : "", bus.reactions()};
 }
 
 /// Who speaks to the controller over the network when no scenario does.
@@ -147,7 +158,8 @@ Played play_realtime(const Stage& stage) {
                                 : stage.arguments.by_operators() ? sil::HoistedBy::kCrane
                                                                  : sil::HoistedBy::kScenario,
                                 true);
-  runtime::Controller controller(robot, simulated, stage.tick);
+  sil::FailingBus bus(simulated, stage.failures, robot, stage.failure_clock, true);
+  runtime::Controller controller(robot, bus, stage.tick);
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
   runtime::RunInfo info = run_info(stage);
   info.session = std::chrono::system_clock::now().time_since_epoch().count();
@@ -172,7 +184,7 @@ Played play_realtime(const Stage& stage) {
   };
   const sil::RunOutcome outcome = run.run();
   progress.clear();
-  return {outcome, run.timing(), runtime::punctuality_json(controller), ""};
+  return {outcome, run.timing(), runtime::punctuality_json(controller), "", bus.reactions()};
 }
 
 int simulate(Arguments arguments) {
@@ -198,6 +210,13 @@ int simulate(Arguments arguments) {
   const sil::Scenario scenario = benching ? sil::bench_scenario(bench->joint().name, bench->duration_s())
                                  : arguments.by_operators() ? sil::endless_scenario()
                                                             : sil::load_scenario(arguments.scenario);
+  sil::FailureClock failure_clock;
+  std::vector<sil::Failure> failures;
+  if (!arguments.inject.empty()) {
+    failures = sil::load_failures(arguments.inject, loaded.robot);
+    loaded.policy =
+        std::make_unique<sil::FailingPolicy>(std::move(loaded.policy), failures, failure_clock, arguments.realtime);
+  }
   if (arguments.print_config) {
     std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
     return kOk;
@@ -228,7 +247,9 @@ int simulate(Arguments arguments) {
                     *tick,
                     view ? &*view : nullptr,
                     bench ? &*bench : nullptr,
-                    recorder ? &*recorder : nullptr};
+                    recorder ? &*recorder : nullptr,
+                    failures,
+                    failure_clock};
 
   const std::int64_t start_ns = wall_clock.now_ns();
   const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);
@@ -241,6 +262,7 @@ int simulate(Arguments arguments) {
                         played.outcome, played.timing, loaded.robot);
   if (!played.realtime.is_null()) summary["punctuality"] = played.realtime;
   if (bench) summary["bench"] = bench->write(*recorder);
+  if (!failures.empty()) summary["injected"] = sil::failures_json(failures, played.reactions, played.outcome.faults);
   if (!played.film_failure.empty()) summary["film_failure"] = played.film_failure;
   sil::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
@@ -248,7 +270,9 @@ int simulate(Arguments arguments) {
   } else if (bench) {
     std::cout << fmt::format("{}; results in {}\n", summary["bench"].get<std::string>(), arguments.out.string());
   } else {
-    std::cout << sil::run_text(played.outcome, summary) << fmt::format("results in {}\n", arguments.out.string());
+    std::cout << sil::run_text(played.outcome, summary);
+    if (!failures.empty()) std::cout << sil::failures_text(summary["injected"]);
+    std::cout << fmt::format("results in {}\n", arguments.out.string());
   }
   const sil::RunOutcome& outcome = played.outcome;
   if (outcome.interrupted && !arguments.by_operators()) return kInterrupted;

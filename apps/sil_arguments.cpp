@@ -46,6 +46,8 @@ void SilArguments::declare(CLI::App& app) {
   app.add_option(
       "--motor", motor,
       "motor.yaml of pmg_calibrate_motor: how the drives really are; robot.yaml's if not given, none for none");
+  app.add_option("--inject", inject,
+                 "inject the failures of this file (YAML); the report tells what each led to, in bus cycles");
   app.add_flag("--gantry", gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--vary", vary,
                  "draw the simulated robot, its ground and its noise from these ranges (YAML) by the seed");
@@ -77,6 +79,7 @@ nlohmann::ordered_json config_json(const SilArguments& arguments, const control:
   json["gantry"] = arguments.gantry;
   if (bench != nullptr) json["bench"] = bench->json();
   if (!arguments.vary.empty()) json["vary"] = arguments.vary.string();
+  if (!arguments.inject.empty()) json["inject"] = arguments.inject.string();
   if (!arguments.motor.empty()) json["motor"] = arguments.motor.string();
   json["sensor_noise"] = {{"gyro_rad_s", sil::kGyroNoise_rad_s},
                           {"encoder_rad", sil::kEncoderNoise_rad},

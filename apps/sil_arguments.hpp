@@ -14,7 +14,7 @@ namespace pmg::apps {
 
 struct SilArguments {
   control::ControlSetup control;
-  std::filesystem::path scenario, out, export_mjcf, motor, vary, excitation;
+  std::filesystem::path scenario, out, export_mjcf, motor, vary, excitation, inject;
   std::string bench, lcm_url;
   std::uint64_t seed = 0;
   bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -15,26 +16,38 @@ namespace pmg {
 /// against each other. Velocity channels therefore change at their full rate in single support, and at a fraction of it
 /// in double support. A stop does not wait: once all three velocities are commanded to zero, each of them reaches zero
 /// within stop_within_s.
+///
+/// A command that flickers must not make the rate flicker: the joints' reference speeds, and with them the velocity
+/// that the reference realises on the ground, follow the rate and not the command. So a change in one direction takes
+/// away the rate in the other direction, which grows back from zero to its limit within turn_s. A command that rests
+/// before it turns keeps its full rate.
 class CommandLimiter {
  public:
   CommandLimiter() = default;
-  CommandLimiter(const CommandLimits& limits, double double_support_rate, double stop_within_s)
+  /// turn_s: 0 gives the rate in the other direction back at once.
+  CommandLimiter(const CommandLimits& limits, double double_support_rate, double stop_within_s, double turn_s)
       : limits_(limits),
         double_support_rate_(double_support_rate),
         stop_within_s_(stop_within_s),
-        stop_left_s_(stop_within_s) {}
+        turn_s_(turn_s),
+        stop_left_s_(stop_within_s) {
+    reset();
+  }
 
   void reset() noexcept {
     target_ = Command{};
     command_ = Command{};
+    rising_share_.fill(1.0);
+    falling_share_.fill(1.0);
     stop_left_s_ = stop_within_s_;
     limited_ = false;
   }
 
   /// (user, double_support, dt) => (command). double_support in [0, 1] is the product of the feet's contact weights. A
   /// channel that isn't finite keeps its previous target.
-  ///   u += clamp(target - u, -step, step),
-  ///   step = rate dt, for velocities times 1 - (1 - double_support_rate) double_support.
+  ///   u += clamp(target - u, -falling step, rising step),
+  ///   step = rate dt, for velocities times 1 - (1 - double_support_rate) double_support,
+  ///   rising = min(1, rising + dt / turn_s), and 0 once u fell; falling likewise.
   const Command& step(const Command& user, double double_support, double dt_s) noexcept {
     limited_ = false;
     for (std::size_t channel = 0; channel < kChannels; ++channel) set_target(channel, user.u[channel]);
@@ -45,7 +58,7 @@ class CommandLimiter {
       const bool velocity = channel < kVelocityChannels;
       double step = limits_.rate_per_s[channel] * dt_s * (velocity ? rate_factor : 1.0);
       if (velocity && stopping) step = std::max(step, stopping_step(channel, dt_s));
-      command_.u[channel] += std::clamp(target_.u[channel] - command_.u[channel], -step, step);
+      move(channel, step, dt_s);
     }
     if (stopping) stop_left_s_ = std::max(0.0, stop_left_s_ - dt_s);
     return command_;
@@ -64,6 +77,17 @@ class CommandLimiter {
     limited_ = limited_ || target_.u[channel] != user;
   }
 
+  void move(std::size_t channel, double step, double dt_s) noexcept {
+    double &rising = rising_share_[channel], &falling = falling_share_[channel];
+    const double regained = dt_s < turn_s_ ? dt_s / turn_s_ : 1.0;
+    rising = std::min(1.0, rising + regained);
+    falling = std::min(1.0, falling + regained);
+    const double change = std::clamp(target_.u[channel] - command_.u[channel], -falling * step, rising * step);
+    if (change > 0.0) falling = 0.0;
+    if (change < 0.0) rising = 0.0;
+    command_.u[channel] += change;
+  }
+
   /// |u| dt / (time left to stop): reaches zero exactly at the end of that time.
   double stopping_step(std::size_t channel, double dt_s) const noexcept {
     constexpr double kRounding_s = 1e-9;  // stop_left_s_ is a difference of many dt
@@ -74,9 +98,11 @@ class CommandLimiter {
   CommandLimits limits_;
   double double_support_rate_ = 1.0;
   double stop_within_s_ = 0.0;
+  double turn_s_ = 0.0;
   double stop_left_s_ = 0.0;
   Command target_;
   Command command_;
+  std::array<double, kChannels> rising_share_{}, falling_share_{};  ///< of the rate, in [0, 1]
   bool limited_ = false;
 };
 

@@ -50,6 +50,9 @@ struct GeneratorOptions {
   /// From the command of zero velocity to zero gains, in any phase: 0.5 s from the release of a key to rest, minus
   /// 0.05 s until the release arrives.
   double stop_within_s = 0.45;
+  /// A channel that turns gets its rate in the other direction back within this time (CommandLimiter): shorter than a
+  /// driver notices, and a command that flickers every tick of 0.01 s changes its rate by a tenth of the limit.
+  double turn_s = 0.1;
 };
 
 /// q_ref(phi) = q_d + q_s (paper eq. 10) with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand.
@@ -93,7 +96,7 @@ class Generator {
     }
     posture_ = Posture(library.posture, q_stand_);
     limits_ = realisable_limits(directions);
-    limiter_ = CommandLimiter(limits_, options_.double_support_rate, options_.stop_within_s);
+    limiter_ = CommandLimiter(limits_, options_.double_support_rate, options_.stop_within_s, options_.turn_s);
     reset();
   }
 
@@ -164,6 +167,8 @@ class Generator {
     check::require(options_.double_support_rate > 0.0 && options_.double_support_rate <= 1.0,
                    "double_support_rate; expected in (0, 1], or no robot at rest would ever start");
     check::require(options_.stop_within_s > 0.0, "stop_within_s; expected more than 0");
+    check::require(options_.turn_s >= 0.0 && options_.turn_s < options_.stop_within_s,
+                   "turn_s; expected 0 or more and less than stop_within_s");
   }
 
   /// The library's clips, checked; a missing side of vy or omega is mirrored from the other.

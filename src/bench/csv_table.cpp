@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
+#include <sstream>
+
+#include "model/bounded_file.hpp"
 
 namespace pmg::bench {
 
@@ -69,9 +69,7 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream)
-    model::raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a CSV file");
+  std::istringstream stream(model::read_bounded_text(file, model::kLargestTable_bytes, "a CSV file"));
   CsvTable table;
   table.file = file;
   std::string line;
@@ -79,7 +77,7 @@ CsvTable read_csv(const std::filesystem::path& file) {
   if (stream) table.header = cells(line);
   check_header(table);
   while (std::getline(stream, line)) {
-    if (line.empty() && stream.peek() == std::ifstream::traits_type::eof()) break;
+    if (line.empty() && stream.peek() == std::istringstream::traits_type::eof()) break;
     table.rows.push_back(cells(line));
     const std::size_t count = table.rows.back().size();
     if (count == table.header.size()) continue;

@@ -82,6 +82,7 @@ void for_each_option(Options& tick, Visit&& visit) {
     visit("/command/upper/" + channel, limits.upper[i]);
     visit("/command/rate_per_s/" + channel, limits.rate_per_s[i]);
   }
+  visit("/command/turn_s", tick.generator.turn_s);
   visit("/gco/prior_weight", tick.gco.prior_weight);
   visit("/gco/optimise_roll_pitch", tick.gco.optimise_roll_pitch);
   visit("/limiter/target_rate_factor", tick.limiter.target_rate_factor);
@@ -101,6 +102,8 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/change_over/speed_rad_s", tick.change_over.speed_rad_s);
   visit("/change_over/shortest_s", tick.change_over.shortest_s);
   visit("/change_over/longest_s", tick.change_over.longest_s);
+  visit("/sit_down/duration_s", tick.sit_down.duration_s);
+  visit("/sit_down/settle_s", tick.sit_down.settle_s);
   visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
   visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
   visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);
@@ -112,7 +115,7 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/action_monitor/window_ticks", tick.action_monitor.window_ticks);
   auto& faults = tick.supervisor.fault_limits;
   visit("/faults/stale_state_s", faults.stale_state_s);
-  visit("/faults/stale_state_ticks", faults.stale_state_ticks);
+  visit("/faults/stale_state_again_s", faults.stale_state_again_s);
   visit("/faults/temperature_degC", faults.temperature_degC);
   visit("/faults/joint_limit_margin_rad", faults.joint_limit_margin_rad);
   visit("/faults/velocity_factor", faults.velocity_factor);
@@ -174,6 +177,12 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
     const nlohmann::ordered_json::json_pointer pointer(place);
     if (json.is_object() && json.contains(pointer)) value = json[pointer].get<std::decay_t<decltype(value)>>();
   });
+  // A controller that doesn't name these had none: its log is replayed without them.
+  const auto unnamed = [&json](const char* place) {
+    return json.is_object() && !json.empty() && !json.contains(nlohmann::ordered_json::json_pointer(place));
+  };
+  if (unnamed("/command/turn_s")) options.generator.turn_s = 0.0;
+  if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
 }
 
 nlohmann::ordered_json control_json(const LoadedControl& loaded) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace pmg::control {
@@ -20,6 +21,14 @@ policy::DriveGains gains_in_force(const model::RobotModel& robot, const policy::
                                   const hal::GuardOptions& guard) {
   const auto told = policy.gains();
   const policy::DriveGains gains = told ? *told : own_gains(robot);
+  for (Eigen::Index i = 0; told && i < std::min(gains.kp_Nm_per_rad.size(), gains.kd_Nm_s_per_rad.size()); ++i) {
+    if (!(gains.kp_Nm_per_rad[i] > 0.0) || gains.kd_Nm_s_per_rad[i] > 0.0) continue;
+    throw std::invalid_argument(
+        fmt::format("the policy's kd of joint {} is {:g} Nm s/rad beside a kp of {:g} Nm/rad: "
+                    "the joint would swing undamped; expected more than 0",
+                    i < robot.joint_index.size() ? robot.joint_index.name(static_cast<int>(i)) : "?",
+                    gains.kd_Nm_s_per_rad[i], gains.kp_Nm_per_rad[i]));
+  }
   const auto plausible = [&](const JointVector& values, double largest) {
     return values.size() == robot.joint_index.size() && (values.array() >= 0.0).all() &&
            (values.array() <= largest).all();

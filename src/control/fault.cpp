@@ -59,6 +59,70 @@ const Wording& wording(FaultCode code) noexcept { return kWordings[static_cast<s
 
 }  // namespace
 
+bool allows_sit_down(FaultCode code) noexcept {
+  switch (code) {
+    case FaultCode::kTemperature:
+    case FaultCode::kStalePolicy:
+    case FaultCode::kOverrun:
+    case FaultCode::kJointTorque:
+    case FaultCode::kReferenceNotFinite:
+    case FaultCode::kPolicyNotFinite:
+      return true;
+    case FaultCode::kNone:
+    case FaultCode::kBusLost:
+    case FaultCode::kStaleState:
+    case FaultCode::kStateNotFinite:
+    case FaultCode::kControlFrozen:
+    case FaultCode::kCommandNotFinite:
+    case FaultCode::kJointLimit:
+    case FaultCode::kJointVelocity:
+    case FaultCode::kTilt:
+    case FaultCode::kTorsoAttitude:
+    case FaultCode::kActionOutOfRange:
+      return false;
+  }
+  return false;
+}
+
+Reaction reaction(FaultCode code) noexcept {
+  static constexpr CycleRange kNever{}, kAtOnce{1, 5}, kThreeTicks{11, 15};
+  const auto at_once = [](const CycleRange& damping) { return Reaction{kNever, damping}; };
+  const auto after_sit_down = [](const CycleRange& found) {
+    constexpr int kSitDown = 475;  // SitDownOptions: 0.95 s
+    return Reaction{found, {found.least + kSitDown, found.most + kSitDown}};
+  };
+  switch (code) {
+    case FaultCode::kNone:
+      return {};
+    case FaultCode::kBusLost:
+    case FaultCode::kStateNotFinite:
+      return at_once(kAtOnce);
+    case FaultCode::kStaleState:
+      return at_once({16, 20});
+    case FaultCode::kTemperature:
+    case FaultCode::kReferenceNotFinite:
+    case FaultCode::kPolicyNotFinite:
+      return after_sit_down(kAtOnce);
+    case FaultCode::kControlFrozen:
+      return at_once({22, 26});
+    case FaultCode::kCommandNotFinite:
+      return at_once({0, 0});
+    case FaultCode::kStalePolicy:
+    case FaultCode::kJointTorque:
+      return after_sit_down(kThreeTicks);
+    case FaultCode::kOverrun:
+      return after_sit_down({18, 22});
+    case FaultCode::kJointLimit:
+    case FaultCode::kJointVelocity:
+    case FaultCode::kTilt:
+    case FaultCode::kTorsoAttitude:
+      return at_once(kThreeTicks);
+    case FaultCode::kActionOutOfRange:
+      return at_once({96, 100});
+  }
+  return {};
+}
+
 const char* to_string(FaultCode code) noexcept { return wording(code).name; }
 
 const char* unit(FaultCode code) noexcept { return wording(code).unit; }

@@ -46,6 +46,24 @@ inline bool same_incident(const Fault& a, const Fault& b) noexcept {
   return a.code == b.code && a.stamp_ns == b.stamp_ns;
 }
 
+/// The robot may be lowered before the drives damp (control/sit_down.hpp): bus, joints and control thread still answer,
+/// and simulated robots fall more slowly so. A joint that reads a wrong position or speed spoils the way down; a robot
+/// whose policy pulled it far away falls already.
+bool allows_sit_down(FaultCode code) noexcept;
+
+/// Bus cycles of 2 ms, from the first one that carries a cause. most -1: never.
+struct CycleRange {
+  int least = -1, most = -1;
+  friend bool operator==(const CycleRange&, const CycleRange&) = default;
+};
+
+/// When the robot begins to sit down, and when the drives damp. docs/reference/safety.md has the same numbers.
+struct Reaction {
+  CycleRange sit_down, damping;
+};
+/// Of a robot that walks, with its feet on the ground.
+Reaction reaction(FaultCode code) noexcept;
+
 const char* to_string(FaultCode code) noexcept;
 const char* unit(FaultCode code) noexcept;    ///< of value and limit; empty when there are none
 const char* advice(FaultCode code) noexcept;  ///< one sentence: the operator's check before the reset

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pmg::control {
 
@@ -50,17 +51,31 @@ std::optional<Fault> FaultDetector::detect(const FaultEvidence& evidence, Scope 
   return std::nullopt;
 }
 
-Fault FaultDetector::check_state(const FaultEvidence& evidence) noexcept {
-  Fault stale;
+bool FaultDetector::robot_is_sound(const FaultEvidence& evidence) const noexcept {
   const double age_s = static_cast<double>(evidence.now_ns - evidence.state.stamp_ns) * 1e-9;
-  if (age_s > limits_.stale_state_s) {
-    stale = {.code = FaultCode::kStaleState, .value = age_s, .limit = limits_.stale_state_s};
-  }
-  stale = persisting(FaultCode::kStaleState, stale, limits_.stale_state_ticks);
+  return evidence.bus != hal::BusStatus::kLost && evidence.guard_trip == hal::TripCause::kNone &&
+         age_s <= limits_.stale_state_s && !is_fault(check_finite(evidence.state)) &&
+         !is_fault(check_tilt(evidence.state));
+}
+
+Fault FaultDetector::check_state(const FaultEvidence& evidence) noexcept {
+  const Fault stale = check_age(evidence);
   if (evidence.bus == hal::BusStatus::kLost) return {.code = FaultCode::kBusLost};
   if (is_fault(stale)) return stale;
   const Fault broken = check_finite(evidence.state);
   return is_fault(broken) ? broken : check_temperature(evidence.state);
+}
+
+Fault FaultDetector::check_age(const FaultEvidence& evidence) noexcept {
+  const double age_s = static_cast<double>(evidence.now_ns - evidence.state.stamp_ns) * 1e-9;
+  if (age_s <= limits_.stale_state_s) {
+    stale_since_ns_.reset();
+    return {};
+  }
+  if (!stale_since_ns_) stale_since_ns_ = evidence.now_ns;
+  const double known_s = static_cast<double>(evidence.now_ns - *stale_since_ns_) * 1e-9;
+  if (known_s < limits_.stale_state_again_s) return {};
+  return {.code = FaultCode::kStaleState, .value = age_s, .limit = limits_.stale_state_s};
 }
 
 Fault FaultDetector::check_finite(const model::RobotState& state) const noexcept {
@@ -104,8 +119,9 @@ Fault FaultDetector::check_timing(const FaultEvidence& evidence) noexcept {
 
 Fault FaultDetector::check_motion(const FaultEvidence& evidence) noexcept {
   Fault first;
+  const int counts = std::exchange(sample_ns_, evidence.state.stamp_ns) == evidence.state.stamp_ns ? 0 : 1;
   const auto consider = [&](FaultCode code, const Fault& found) {
-    const Fault fault = persisting(code, found, limits_.persist_ticks);
+    const Fault fault = persisting(code, found, limits_.persist_ticks, counts);
     if (!is_fault(first)) first = fault;
   };
   for (const FaultCode code : {FaultCode::kJointLimit, FaultCode::kJointVelocity, FaultCode::kJointTorque}) {
@@ -157,9 +173,9 @@ Fault FaultDetector::check_torso(const FaultEvidence& evidence) noexcept {
   return {.code = FaultCode::kTorsoAttitude, .value = error_rad, .limit = limits_.torso_error_rad};
 }
 
-Fault FaultDetector::persisting(FaultCode code, const Fault& found, int ticks) noexcept {
+Fault FaultDetector::persisting(FaultCode code, const Fault& found, int ticks, int counts) noexcept {
   int& held = held_ticks_[static_cast<std::size_t>(code)];
-  held = is_fault(found) ? std::min(held + 1, ticks) : 0;
+  held = is_fault(found) ? std::min(held + counts, ticks) : 0;
   return held >= ticks ? found : Fault{};
 }
 

@@ -37,6 +37,7 @@ class Limiter {
     kd_[joint] = kd_Nm_s_per_rad;
   }
   void start_from(const JointVector& q) noexcept;  ///< the last tick's targets [rad]
+  const JointVector& last() const noexcept { return previous_; }
 
   /// (state, q_des) => (limited q_des, report), in place and in this order:
   /// rate:   |q_des - q_des of the last tick| <= target_rate_factor velocity_limit dt,

@@ -44,6 +44,9 @@ class Supervisor {
   /// Latches a fault found later in the tick than update().
   void raise(const Fault& fault) noexcept;
 
+  /// See FaultDetector.
+  bool robot_is_sound(const FaultEvidence& evidence) const noexcept { return detector_.robot_is_sound(evidence); }
+
   Mode mode() const noexcept { return mode_; }
   const Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
   /// (user's command) => (command for the generator): all channels in Walk, posture alone while the robot comes to a

@@ -59,6 +59,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       change_over_(options.change_over),
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
+      sit_down_(robot, library, options.sit_down),
       target_(robot.q_stand()) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();
@@ -99,7 +100,8 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   }
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
-  if (!upright(result_.mode)) release(input.state);
+  sit_down(input, before);
+  if (!upright(result_.mode) && !result_.sitting) release(input.state);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
@@ -113,6 +115,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
 }
 
 void Tick::take_messages(const TickInput& input) noexcept {
+  stop_asked_ = input.stop;
   if (input.stop) {
     supervisor_.stop();
     intake_.stop(input.now_ns);
@@ -124,7 +127,10 @@ void Tick::take_messages(const TickInput& input) noexcept {
     const bool refused = excitation_ && request.mode == Mode::kWalk && !request.reset_fault;
     if (judgement.fresh && !refused) supervisor_.request(request);
     // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.
-    if (request.stops() && judgement.verdict == Verdict::kTaken) supervisor_.stop();
+    if (request.stops() && judgement.verdict == Verdict::kTaken) {
+      supervisor_.stop();
+      stop_asked_ = true;
+    }
     result_.acks[result_.ack_count++] = {.source = request.source,
                                          .sequence = request.sequence,
                                          .verdict = refused ? Verdict::kNoMode : judgement.verdict};
@@ -134,13 +140,17 @@ void Tick::take_messages(const TickInput& input) noexcept {
   result_.driving = intake_.driving(input.now_ns);
 }
 
+FaultEvidence Tick::evidence(const TickInput& input) const noexcept {
+  return {.state = input.state,
+          .bus = input.bus,
+          .guard_trip = input.guard_trip,
+          .late_ns = input.late_ns,
+          .policy_late = input.policy_late,
+          .now_ns = input.now_ns};
+}
+
 SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
-  SupervisorInput known{.evidence = {.state = input.state,
-                                     .bus = input.bus,
-                                     .guard_trip = input.guard_trip,
-                                     .late_ns = input.late_ns,
-                                     .policy_late = input.policy_late,
-                                     .now_ns = input.now_ns},
+  SupervisorInput known{.evidence = evidence(input),
                         .command_age_s = result_.command_age_s,
                         .entry_done = entry_.done(),
                         .at_rest = motion_.reference().gain == 0.0,
@@ -200,6 +210,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   entry_.start(state.q, target_);
   change_over_.finish();
   limiter_.start_from(state.q);
+  set_limiter_gains(gains_);
   if (feet_) {
     feet_->start();
     take_footing();
@@ -271,6 +282,29 @@ Fault Tick::ask_policy(const model::RobotState& state) noexcept {
   }
   target_ = q_des;
   return action_monitor_.watch(target_, result_.reference.q);
+}
+
+void Tick::sit_down(const TickInput& input, Mode before) noexcept {
+  result_.sitting = false;
+  const bool sound =
+      result_.mode == Mode::kFault && !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
+  if (sound && upright(before) && entry_.done() && !policy_waits() && allows_sit_down(result_.fault.code)) {
+    sit_down_.start(input.state.q, limiter_.last(), gains_.kp_Nm_per_rad, input.now_ns);
+    set_limiter_gains(sit_down_.gains());
+  } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != FaultCode::kJointTorque) {
+    feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
+  }
+  if (!sound || feet_->footing() == Footing::kHangs) sit_down_.stop();
+  if (!sit_down_.active(input.now_ns)) return;
+  sit_down_.step(dt_s_, result_.command);
+  result_.limited = limiter_.apply(input.state, result_.command.q);
+  result_.sitting = true;
+}
+
+void Tick::set_limiter_gains(const policy::DriveGains& gains) noexcept {
+  for (Eigen::Index i = 0; i < target_.size(); ++i) {
+    limiter_.set_gains(i, gains.kp_Nm_per_rad[i], gains.kd_Nm_s_per_rad[i]);
+  }
 }
 
 void Tick::release(const model::RobotState& state) noexcept {

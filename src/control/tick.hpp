@@ -15,6 +15,7 @@
 #include "control/foot_load_watch.hpp"
 #include "control/limiter.hpp"
 #include "control/mode.hpp"
+#include "control/sit_down.hpp"
 #include "control/supervisor.hpp"
 #include "gco/motion_composition.hpp"
 #include "hal/command_guard.hpp"
@@ -39,6 +40,7 @@ struct TickOptions {
   /// because a robot that is set down must be balanced.
   EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
   ActionMonitorOptions action_monitor;
+  SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
   int late_policy_ticks = 3;  ///< after so many ticks in a row without a result of the policy: a fault; before, its
@@ -83,6 +85,8 @@ struct TickResult {
   bool hanging = false;
   /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
   bool footing_unknown = false;
+  /// In Fault: the robot is lowered before the drives damp.
+  bool sitting = false;
   /// Load of each foot over the robot's weight; nullopt before Stand, and with a policy that needs no ground.
   std::optional<PerFoot<double>> foot_load;
   LimitReport limited;
@@ -124,6 +128,10 @@ class Tick {
   Fault make_reference() noexcept;
   void excite(model::JointCommand& command) noexcept;
   Fault ask_policy(const model::RobotState& state) noexcept;
+  /// In Fault: begins, goes on with or ends the sit-down.
+  void sit_down(const TickInput& input, Mode before) noexcept;
+  FaultEvidence evidence(const TickInput& input) const noexcept;
+  void set_limiter_gains(const policy::DriveGains& gains) noexcept;
   void release(const model::RobotState& state) noexcept;
 
   const io::Clock& stopwatch_;
@@ -141,7 +149,9 @@ class Tick {
   std::optional<ExcitationPlayer> excitation_;
   Limiter limiter_;
   ActionMonitor action_monitor_;
-  JointVector target_;  // the policy's last good one, before ramp and limits
+  SitDown sit_down_;
+  bool stop_asked_ = false;  // in this tick, by anybody
+  JointVector target_;       // the policy's last good one, before ramp and limits
   int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
   TickResult result_;
 };

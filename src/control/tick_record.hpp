@@ -11,7 +11,7 @@ namespace pmg::control {
 /// Wall-clock times of one cycle of a periodic thread. Zero in lockstep, where logs are reproducible.
 struct CycleTiming {
   std::int64_t planned_ns = 0, woke_ns = 0, done_ns = 0;
-  std::int64_t missed = 0;  ///< cycles skipped since the start because the thread woke more than a period late
+  std::int64_t missed = 0;  ///< cycles left out since the start (runtime/periodic_schedule.hpp)
 };
 
 struct TickRecord {

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <stdexcept>
 
 #include "io/whole_file.hpp"
+#include "model/bounded_file.hpp"
 #include "model/number_table.hpp"
 
 namespace pmg::diagnosis {
@@ -53,8 +52,7 @@ std::string runs_csv(const std::vector<std::string>& header, const NextExcitatio
 }
 
 std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return model::read_bounded_text(file, model::kLargestYaml_bytes, "a YAML file");
 }
 
 }  // namespace

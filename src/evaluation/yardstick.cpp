@@ -44,7 +44,7 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
   const GeneratorOptions options = gco::generator_options(robot);
   StepMeasure nothing(robot, scenario), follower(robot, scenario);
   IdealRobot still(robot.standing_height_m), moving(robot.standing_height_m);
-  CommandLimiter limiter(options.limits, options.double_support_rate, options.stop_within_s);
+  CommandLimiter limiter(options.limits, options.double_support_rate, options.stop_within_s, options.turn_s);
   double double_support = 1.0;
   const auto judge = [&](const sil::RunProgress& now, sim::World&) {
     const Command asked = now.result.mode == control::Mode::kWalk ? now.step.command : Command{};

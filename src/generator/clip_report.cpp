@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "generator/joint_roles.hpp"
+#include "model/bounded_file.hpp"
 #include "model/config_error.hpp"
 #include "model/leg_kinematics.hpp"
 
@@ -131,7 +131,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// One column of a norms file without its last row, because 100 % is 0 % again.
 std::vector<double> read_column(const std::filesystem::path& file, const std::string& name) {
-  std::ifstream in(file);
+  std::istringstream in(model::read_bounded_text(file, model::kLargestTable_bytes, "a file of norms"));
   std::vector<double> values;
   std::ptrdiff_t column = -1;
   for (std::string line; std::getline(in, line);) {

@@ -1,6 +1,7 @@
 #include "io/log_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -73,6 +74,13 @@ void LogWriter::flush() {
   }
   flushed_bytes_ += static_cast<std::int64_t>(done);
   buffer_.clear();
+}
+
+bool LogWriter::in_place() const noexcept {
+  struct stat named {
+  }, open_file{};
+  return stat(path_.c_str(), &named) == 0 && fstat(file_, &open_file) == 0 && named.st_ino == open_file.st_ino &&
+         named.st_dev == open_file.st_dev;
 }
 
 void LogWriter::sync() {

@@ -35,6 +35,9 @@ class LogWriter {
   void flush();
   void sync();  ///< flush(); the events survive a power cut too
 
+  /// The path still names the file that is written: nobody deleted, moved or replaced it.
+  bool in_place() const noexcept;
+
   std::int64_t bytes() const { return flushed_bytes_ + static_cast<std::int64_t>(buffer_.size()); }
   const std::filesystem::path& path() const { return path_; }
 

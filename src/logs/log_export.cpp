@@ -11,6 +11,7 @@
 
 #include "io/log_series.hpp"
 #include "io/mcap_writer.hpp"
+#include "io/plain_text.hpp"
 #include "logs/message_fields.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 
@@ -60,11 +61,11 @@ ExportReport for_each_message(const std::vector<fs::path>& files, const work::Pr
   return report;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  return quoted + "\"";
+/// Numbers as they are, also negative ones; text that another program chose made harmless.
+std::string cell(const Field::Value& value) {
+  const bool number = std::holds_alternative<std::int64_t>(value) || std::holds_alternative<double>(value) ||
+                      std::holds_alternative<bool>(value);
+  return number ? to_text(value) : io::csv_text(to_text(value));
 }
 
 /// One channel's file.
@@ -72,7 +73,7 @@ class CsvFile {
  public:
   CsvFile(const fs::path& path, const std::vector<Field>& fields) : path_(path), file_(path) {
     std::string header = "time_s";
-    for (const Field& field : fields) header += "," + quoted(field.path());
+    for (const Field& field : fields) header += "," + io::csv_text(field.path());
     columns_ = fields.size();
     file_ << header << '\n';
   }
@@ -81,7 +82,7 @@ class CsvFile {
       throw std::runtime_error(path_.string() +
                                ": the logs are of robots with different joints; name those of one run");
     std::string line = fmt::format("{:.6f}", row.time_s);
-    for (const Field& field : row.fields) line.append(",").append(quoted(to_text(field.value)));
+    for (const Field& field : row.fields) line.append(",").append(cell(field.value));
     file_ << line << '\n';
     if (!file_) throw std::runtime_error(path_.string() + ": can't be written");
   }

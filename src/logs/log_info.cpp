@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/log_series.hpp"
+#include "io/plain_text.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
@@ -74,6 +75,7 @@ class Summariser {
     next_tick_.reset();
     driver_.clear();
     told_faults_.clear();
+    latched_before_ = 0;
     timings_ns_ = {};
   }
 
@@ -92,6 +94,10 @@ class Summariser {
   void take_info(const io::LogReader& event) {
     auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) return;
+    for (std::string* text : {&info->robot, &info->model, &info->software, &info->policy, &info->backend}) {
+      *text = io::plain_text(*text);
+    }
+    for (std::string& text : info->refused) text = io::plain_text(text);
     const bool another =
         run_ && run_->info && (info->session != run_->info->session || info->robot != run_->info->robot);
     // Lockstep runs have no session; their clocks begin anew.
@@ -113,18 +119,28 @@ class Summariser {
     const auto status = event.decode<pmg_msgs::status_t>();
     if (!status) return;
     if (!driver_.empty()) run_->driven_s[driver_] += static_cast<double>(event.stamp_ns() - status_ns_) * 1e-9;
-    driver_ = status->driving_source;
+    driver_ = io::plain_text(status->driving_source);
     status_ns_ = event.stamp_ns();
     std::string mode = mode_name(status->mode) + (status->hanging ? ", hanging" : "");
+    if (run_->modes.empty() && status->fault_code != 0) begin_in_fault(*status, event.stamp_ns());
     if (!run_->modes.empty() && run_->modes.back().text == mode) return;
     run_->modes.push_back({seconds(event.stamp_ns()), std::move(mode)});
+  }
+
+  /// The FAULT message of a fault that was latched before the log's first tick is in an earlier file.
+  void begin_in_fault(const pmg_msgs::status_t& status, std::int64_t stamp_ns) {
+    if (!told_faults_.empty()) return;
+    latched_before_ = status.fault_code;
+    run_->faults.push_back({seconds(stamp_ns), "latched before this log: " + io::plain_text(status.fault)});
   }
 
   void take_fault(const io::LogReader& event) {
     const auto fault = event.decode<pmg_msgs::fault_t>();
     if (!fault || !told_faults_.emplace(fault->code, fault->stamp_ns).second) return;
+    // Latched in the log's first tick: its message follows that tick's STATUS.
+    if (std::exchange(latched_before_, 0) == fault->code && run_->ticks <= 1) run_->faults.pop_back();
     // The message's own stamp: a flight recorder's file begins with its fault.
-    run_->faults.push_back({seconds(fault->stamp_ns), fault->text});
+    run_->faults.push_back({seconds(fault->stamp_ns), io::plain_text(fault->text)});
   }
 
   void take_timing(const io::LogReader& event) {
@@ -145,6 +161,7 @@ class Summariser {
   std::string driver_;  // at status_ns_; empty: none
   std::int64_t status_ns_ = 0;
   std::set<std::pair<std::int32_t, std::int64_t>> told_faults_;
+  std::int32_t latched_before_ = 0;  // fault code of the log's first STATUS, until a FAULT names it
   std::array<std::vector<std::int64_t>, kTimings.size()> timings_ns_;
 };
 

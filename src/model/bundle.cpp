@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "model/bounded_file.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/config_reader.hpp"
 
@@ -43,6 +44,7 @@ class Sha256 {
 };
 
 void add_file(const fs::path& path, Sha256& hash) {
+  expect_bounded_file(path, kLargestTable_bytes, "a file of a robot");
   std::ifstream file(path, std::ios::binary);
   std::array<char, 65536> block{};
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 
+#include "model/bounded_file.hpp"
 #include "model/nearest_name.hpp"
 
 namespace pmg::model {
@@ -59,18 +56,9 @@ NumberCheck in_range(double lower, double upper) {
 }
 
 ConfigReader ConfigReader::from_file(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    const int error = errno;
-    const std::filesystem::path meant = error == ENOENT ? nearest_file(file) : "";
-    if (!meant.empty()) {
-      throw ConfigError(fmt::format("{}: there is no such file; did you mean {}?", file.string(), meant.string()));
-    }
-    raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(error)), "a YAML file");
-  }
+  const std::string text = read_bounded_text(file, kLargestYaml_bytes, "a YAML file");
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text.str());
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() != 1) {
       raise({file.string()}, "", fmt::format("holds {} YAML documents", documents.size()), "one");
     }

@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
+#include <sstream>
 #include <string_view>
+
+#include "model/bounded_file.hpp"
 
 namespace pmg::model {
 namespace {
@@ -63,12 +63,10 @@ void strip_carriage_return(std::string& text) {
 
 NumberTable read_number_table(const std::filesystem::path& file, const std::vector<std::string>& expected,
                               const std::string& which_they_are) {
-  errno = 0;
-  std::ifstream stream(file);
+  std::istringstream stream(read_bounded_text(file, kLargestTable_bytes, "a CSV file with a header"));
   std::string line;
-  if (!stream || !std::getline(stream, line)) {
-    raise({file.string()}, "", fmt::format("cannot be read ({})", errno != 0 ? std::strerror(errno) : "it is empty"),
-          "a CSV file with a header");
+  if (!std::getline(stream, line)) {
+    raise({file.string()}, "", "cannot be read (it is empty)", "a CSV file with a header");
   }
   strip_carriage_return(line);
   NumberTable table;

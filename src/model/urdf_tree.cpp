@@ -6,12 +6,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <sstream>
+#include <string_view>
+
+#include "model/bounded_file.hpp"
 
 namespace pmg::model {
 namespace {
@@ -34,6 +34,46 @@ Place place_in(const UrdfTree& tree, std::size_t at) {
   const auto lines = std::count(tree.text.begin(), tree.text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   return {tree.file.string(), static_cast<int>(lines) + 1,
           static_cast<int>(newline == std::string::npos ? at : at - newline - 1) + 1};
+}
+
+constexpr std::ptrdiff_t kMostLinks = 256;  // a humanoid with two hands of 25 joints each has some 90
+constexpr int kDeepestElement = 32;         // URDF's own nest five deep
+
+/// Bounds what parsers recurse over or search again and again: links, joints, and the nesting of elements.
+void check_extent(const UrdfTree& tree) {
+  int depth = 0;
+  std::ptrdiff_t links = 0;
+  for (std::size_t at = tree.text.find('<'); at != std::string::npos; at = tree.text.find('<', at + 1)) {
+    const std::string_view rest = std::string_view(tree.text).substr(at);
+    if (rest.starts_with("<!--")) {
+      at = std::min(tree.text.find("-->", at), tree.text.size() - 1);
+      continue;
+    }
+    if (rest.starts_with("<!") || rest.starts_with("<?")) continue;
+    const std::size_t end = tree.text.find('>', at);
+    if (rest.starts_with("</")) {
+      --depth;
+    } else if (end != std::string::npos && tree.text[end - 1] != '/') {
+      ++depth;
+    }
+    links += rest.starts_with("<link ") ? 1 : 0;
+    if (depth > kDeepestElement) {
+      raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth),
+            fmt::format("{} at most", kDeepestElement));
+    }
+    if (links > kMostLinks) {
+      raise(place_in(tree, at), "link", fmt::format("is number {}", links), fmt::format("{} at most", kMostLinks));
+    }
+  }
+}
+
+/// Links in a cycle of their own hang on no root; urdfdom takes them without a word.
+void check_all_reached(const UrdfTree& tree) {
+  for (const auto& [name, link] : tree.urdf->links_) {
+    if (tree.link_pose.contains(name)) continue;
+    raise(tree.place("link", name), "link " + name, "is not connected to the root link",
+          fmt::format("a chain of joints from {}", tree.urdf->getRoot()->name));
+  }
 }
 
 /// Checks the numbers in the text: urdfdom accepts `nan`, and reports other slips without their place.
@@ -149,12 +189,8 @@ Place UrdfTree::place(const std::string& element, const std::string& name) const
 UrdfTree read_urdf(const std::filesystem::path& file) {
   UrdfTree tree;
   tree.file = file;
-  std::ifstream stream(file);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    raise({file.string()}, "", fmt::format("cannot be read ({})", std::strerror(errno)), "a URDF file");
-  }
-  tree.text = text.str();
+  tree.text = read_bounded_text(file, kLargestUrdf_bytes, "a URDF file");
+  check_extent(tree);
   check_numbers(tree);
 
   Listener listener;
@@ -169,6 +205,7 @@ UrdfTree read_urdf(const std::filesystem::path& file) {
   tree.root_inertia = to_kdl(*root.inertial);
   tree.link_pose[root.name] = KDL::Frame::Identity();
   add_children(tree, root);
+  check_all_reached(tree);
   return tree;
 }
 

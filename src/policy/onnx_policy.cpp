@@ -5,10 +5,13 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "model/bounded_file.hpp"
+#include "model/config_error.hpp"
 #include "policy/observation.hpp"
 
 namespace pmg::policy {
@@ -18,6 +21,7 @@ namespace {
 constexpr const char* kInput = "observation";
 constexpr const char* kOutput = "action";
 constexpr const char* kMetadataKey = "pmg_policy";
+constexpr std::size_t kLargestMetadata_bytes = 4 << 20;  // ours has 0.1 MiB
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -40,6 +44,10 @@ std::string metadata_text(const Ort::Session& session) {
   const Ort::AllocatedStringPtr text =
       session.GetModelMetadata().LookupCustomMetadataMapAllocated(kMetadataKey, allocator);
   if (!text) refuse(fmt::format("it has no metadata {}; expected a policy exported by training", kMetadataKey));
+  if (const std::size_t bytes = std::strlen(text.get()); bytes > kLargestMetadata_bytes) {
+    refuse(
+        fmt::format("its metadata {} has {} bytes; expected {} at most", kMetadataKey, bytes, kLargestMetadata_bytes));
+  }
   return text.get();
 }
 
@@ -124,6 +132,11 @@ struct OnnxPolicy::Impl {
 
 OnnxPolicy::OnnxPolicy(const std::filesystem::path& file, const model::RobotModel& robot,
                        const std::string& clip_library_sha256, double control_rate_Hz) {
+  try {
+    model::expect_bounded_file(file, model::kLargestPolicy_bytes, "an ONNX policy");
+  } catch (const model::ConfigError& error) {  // it names the file
+    throw std::invalid_argument(error.what());
+  }
   try {
     impl_ = std::make_unique<Impl>(file, robot, clip_library_sha256, control_rate_Hz);
   } catch (const std::exception& error) {

@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kFormat = 1;
 constexpr double kLargestGoldenTolerance = 0.01;  // for actions of order one; with more the pairs would prove nothing
-constexpr double kPostureTolerance_rad = 1e-6;    // the same number after writing and reading as text
+constexpr double kLargestAction_rad = 3.14159265358979;  // farther than any joint of a robot moves
+constexpr double kPostureTolerance_rad = 1e-6;           // the same number after writing and reading as text
 
 [[noreturn]] void refuse_metadata(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -123,6 +124,10 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   metadata.action_limit = json.at("action_limit").get<double>();
   if (!(metadata.action_limit > 0.0) || !std::isfinite(metadata.action_limit)) {
     refuse_metadata(fmt::format("action_limit is {}; expected a positive number", metadata.action_limit));
+  }
+  if (metadata.action_scale * metadata.action_limit > kLargestAction_rad) {
+    refuse_metadata(fmt::format("action_scale {} times action_limit {} is more than {:.2f} rad, half a turn: no bound",
+                                metadata.action_scale, metadata.action_limit, kLargestAction_rad));
   }
   metadata.gains = {joint_values(json, "kp_Nm_per_rad", robot), joint_values(json, "kd_Nm_s_per_rad", robot)};
   metadata.golden_tolerance = json.at("golden_tolerance").get<double>();

@@ -1,18 +1,21 @@
 #include "report/timing_csv.hpp"
 
 #include <array>
-#include <fstream>
 #include <limits>
 #include <sstream>
+
+#include "model/bounded_file.hpp"
 
 namespace pmg::report {
 
 namespace {
+constexpr std::uint64_t kLargest_bytes = 1u << 30;  // a day of ticks
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-}
+}  // namespace
 
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
-  std::ifstream in(file);
+  if (!std::filesystem::exists(file)) return;
+  std::istringstream in(model::read_bounded_text(file, kLargest_bytes, "times of a run"));
   std::string line;
   std::getline(in, line);
   if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;

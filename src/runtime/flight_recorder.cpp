@@ -83,6 +83,7 @@ void FlightRecorder::note_fault(const control::TickRecord& record) {
   const control::Mode mode_before = std::exchange(last_mode_, record.result.mode);
   if (!latched) return;
   if (waiting_.size() == kWaiting) {
+    ++lost_;
     say_(fmt::format("flight recorder: {} incidents wait for the disk; this fault's records are not kept: {}", kWaiting,
                      describe(fault, robot_)));
     return;
@@ -113,13 +114,23 @@ void FlightRecorder::close() {
 
 bool FlightRecorder::try_writing(Incident& incident) {
   if (rows_of(incident).empty()) {  // no memory to rescue them, and the ring moved on
+    ++lost_;
     say_("flight recorder: the records of a fault are lost: " + describe(incident.record.result.fault, robot_));
     return true;
   }
-  const fs::path file = stem(incident);
   try {
-    remove_oldest();
-    write(incident, file);
+    try {
+      write_in(directory_, incident);
+    } catch (const std::exception& error) {
+      const fs::path other = other_log_folder(run_);
+      try {
+        write_in(other, incident);
+      } catch (const std::exception&) {
+        std::error_code ignored;
+        fs::remove(other, ignored);  // only if it is empty
+        throw std::runtime_error(error.what());
+      }
+    }
   } catch (const std::exception& error) {
     incident.try_ns = clock_.now_ns() + io::nanoseconds(options_.retry_s);
     if (!std::exchange(incident.refused, true)) {
@@ -128,9 +139,23 @@ bool FlightRecorder::try_writing(Incident& incident) {
     }
     return false;
   }
+  return true;
+}
+
+/// Makes the folder if it is gone. Throws when the disk refuses; then nothing is left there.
+void FlightRecorder::write_in(const fs::path& folder, const Incident& incident) {
+  fs::create_directories(folder);
+  remove_oldest(folder);
+  const fs::path file = stem(incident, folder);
+  try {
+    write(incident, file);
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    fs::remove(file.string() + ".txt", ignored);
+    throw;
+  }
   ++written_;
   say_(fmt::format("flight recorder: {}.lcm and .txt written", file.string()));
-  return true;
 }
 
 std::vector<const FlightRecorder::Row*> FlightRecorder::rows_of(const Incident& incident) const {
@@ -175,19 +200,18 @@ void FlightRecorder::write(const Incident& incident, const fs::path& file) const
   fs::rename(part, named(".lcm"));
 }
 
-fs::path FlightRecorder::stem(const Incident& incident) const {
+fs::path FlightRecorder::stem(const Incident& incident, const fs::path& folder) {
   const std::string name =
       fmt::format("fault-{}Z-{}", utc(incident.utc_ns, "%Y%m%dT%H%M%S"), to_string(incident.record.result.fault.code));
-  fs::path stem = directory_ / name;
+  fs::path stem = folder / name;
   // Faults of one millisecond, or a computer whose clock was set back.
-  for (int again = 2; fs::exists(stem.string() + ".lcm"); ++again)
-    stem = directory_ / fmt::format("{}-{}", name, again);
+  for (int again = 2; fs::exists(stem.string() + ".lcm"); ++again) stem = folder / fmt::format("{}-{}", name, again);
   return stem;
 }
 
-void FlightRecorder::remove_oldest() const {
+void FlightRecorder::remove_oldest(const fs::path& folder) const {
   std::vector<fs::path> logs;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory_)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("fault-") && entry.path().extension() == ".lcm") logs.push_back(entry.path());
   }

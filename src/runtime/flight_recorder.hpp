@@ -42,6 +42,7 @@ class FlightRecorder {
   void close();
 
   int written() const { return written_; }
+  int lost() const { return lost_; }  ///< faults whose records are nowhere
   int waiting() const { return static_cast<int>(waiting_.size()); }
 
  private:
@@ -68,8 +69,9 @@ class FlightRecorder {
   std::vector<const Row*> rows_of(const Incident& incident) const;
   std::string text(const Incident& incident, const std::vector<const Row*>& rows,
                    const std::filesystem::path& stem) const;
-  std::filesystem::path stem(const Incident& incident) const;
-  void remove_oldest() const;
+  static std::filesystem::path stem(const Incident& incident, const std::filesystem::path& folder);
+  void write_in(const std::filesystem::path& folder, const Incident& incident);
+  void remove_oldest(const std::filesystem::path& folder) const;
 
   std::filesystem::path directory_;
   const model::RobotModel& robot_;
@@ -83,7 +85,7 @@ class FlightRecorder {
   control::Fault last_fault_;
   control::Mode last_mode_ = control::Mode::kPassive;
   std::vector<Incident> waiting_;
-  int written_ = 0;
+  int written_ = 0, lost_ = 0;
 };
 
 }  // namespace pmg::runtime

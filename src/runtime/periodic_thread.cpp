@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/clock.hpp"
+#include "runtime/periodic_schedule.hpp"
 
 namespace pmg::runtime {
 
@@ -63,21 +64,16 @@ void PeriodicThread::prepare() {
 
 void PeriodicThread::loop() noexcept {
   const io::WallClock clock;
-  control::CycleTiming timing;
-  timing.planned_ns = first_ns_;
+  PeriodicSchedule schedule(first_ns_, period_ns_);
   while (true) {
-    if (!stopping_.load()) sleep_until(timing.planned_ns);
+    if (!stopping_.load()) sleep_until(schedule.planned_ns());
     if (stopping_.load()) return;
+    control::CycleTiming timing{.planned_ns = schedule.planned_ns(), .missed = schedule.missed()};
     timing.woke_ns = clock.now_ns();
     cycle_(timing);
     timing.done_ns = clock.now_ns();
     statistics_.add(timing);
-    // A cycle whose whole period has passed is left out rather than made up for: a burst of stale cycles helps no
-    // robot.
-    const std::int64_t skipped = (timing.done_ns - timing.planned_ns - period_ns_) / period_ns_;
-    timing.missed += skipped > 0 ? skipped : 0;
-    timing.planned_ns += period_ns_ * (1 + (skipped > 0 ? skipped : 0));
-    timing.done_ns = 0;
+    schedule.advance(timing.woke_ns, timing.done_ns);
   }
 }
 

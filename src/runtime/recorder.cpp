@@ -40,7 +40,7 @@ Recorder::Recorder(control::ControllerOutbox& outbox, const model::RobotModel& r
       bus_cycles_(outbox) {
   const auto earlier = io::rotated_log_files(options_.directory);
   if (!earlier.empty()) next_number_ = earlier.rbegin()->first + 1;
-  if (options_.log) begin_file(clock_.now_ns());
+  if (options_.log) begin_file_in(options_.directory, clock_.now_ns());
 }
 
 Recorder::~Recorder() { close(); }
@@ -67,6 +67,7 @@ void Recorder::guarded(Action&& action) noexcept {
 }
 
 void Recorder::drain() noexcept {
+  guarded([this] { notice_deletion(); });
   guarded([this] { take_records(); });
   guarded([this] { flush(); });
   guarded([this] { flight_.pass(); });
@@ -79,6 +80,7 @@ void Recorder::close() noexcept {
   guarded([this] {
     if (writer_) writer_->sync();
   });
+  guarded([this] { notice_deletion(); });
   writer_.reset();
   if (lost() > 0) say(fmt::format("log: {} ticks are missing in it", lost()));
 }
@@ -130,6 +132,7 @@ void Recorder::flush() {
   if (!writer_) return;
   try {
     writer_->flush();
+    in_file_ += unflushed_;
     written_ += std::exchange(unflushed_, 0);
   } catch (const std::exception& error) {
     give_up_file(error.what());
@@ -140,12 +143,32 @@ void Recorder::begin_next_file_if_due() {
   if (!writer_ || writer_->bytes() < options_.file_bytes) return;
   writer_->sync();
   written_ += std::exchange(unflushed_, 0);
-  begin_file(record_.now_ns);
+  begin_file_in(file_.parent_path(), record_.now_ns);
+}
+
+/// In the log's folder, or else elsewhere. Throws when neither takes it.
+void Recorder::begin_file(std::int64_t stamp_ns) {
+  try {
+    begin_file_in(options_.directory, stamp_ns);
+  } catch (const std::exception& error) {
+    const fs::path other = other_log_folder(run_);
+    try {
+      begin_file_in(other, stamp_ns);
+    } catch (const std::exception&) {
+      std::error_code ignored;
+      fs::remove(other, ignored);  // only if it is empty
+      throw std::runtime_error(error.what());
+    }
+  }
 }
 
 /// Throws when the disk refuses it; the old file stays in use then.
-void Recorder::begin_file(std::int64_t stamp_ns) {
-  const fs::path path = options_.directory / fmt::format("log-{:04d}.lcm", next_number_);
+void Recorder::begin_file_in(const fs::path& folder, std::int64_t stamp_ns) {
+  made(folder);
+  if (writer_ == nullptr && log_ && fs::space(folder).available < static_cast<std::uintmax_t>(options_.spare_bytes)) {
+    throw std::runtime_error(folder.string() + ": no room");
+  }
+  const fs::path path = folder / fmt::format("log-{:04d}.lcm", next_number_);
   auto writer = std::make_unique<io::LogWriter>(path);
   try {
     if (log_) {
@@ -162,15 +185,15 @@ void Recorder::begin_file(std::int64_t stamp_ns) {
   }
   writer_ = std::move(writer);
   file_ = path;
+  in_file_ = 0;
   ++next_number_;
-  guarded([this] { remove_oldest(); });
+  guarded([&] { remove_oldest(folder, options_.files); });
 }
 
 void Recorder::try_again() {
   if (clock_.now_ns() < try_ns_) return;
   try_ns_ = clock_.now_ns() + io::nanoseconds(options_.retry_s);
   try {
-    if (fs::space(options_.directory).available < static_cast<std::uintmax_t>(options_.spare_bytes)) return;
     begin_file(record_.now_ns);
   } catch (const std::exception&) {  // was told when it began
     return;
@@ -179,17 +202,29 @@ void Recorder::try_again() {
                   disk_lost_ - lost_before_refusal_));
 }
 
+/// What was written into a file that is gone is lost; the next record begins a new one.
+void Recorder::notice_deletion() {
+  if (!writer_ || writer_->in_place()) return;
+  written_ -= in_file_;
+  const std::int64_t before = disk_lost_;
+  disk_lost_ += std::exchange(in_file_, 0);
+  give_up_file(file_.string() + " was deleted or replaced");
+  lost_before_refusal_ = before;
+  try_ns_ = clock_.now_ns();
+}
+
 void Recorder::give_up_file(const std::string& why) {
   lost_before_refusal_ = disk_lost_;
   disk_lost_ += std::exchange(unflushed_, 0);
   writer_.reset();
-  try_ns_ = clock_.now_ns() + io::nanoseconds(options_.retry_s);
-  say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on when there is room", why));
+  try_ns_ = clock_.now_ns();  // another folder may take it at once
+  say(fmt::format("LOG STOPPED: {}. The robot is controlled as before; the log goes on as soon as a folder takes it",
+                  why));
 }
 
-void Recorder::remove_oldest() const {
-  auto files = io::rotated_log_files(options_.directory);
-  while (std::ssize(files) > std::max(options_.files, 1)) {
+void Recorder::remove_oldest(const fs::path& folder, int most) {
+  auto files = io::rotated_log_files(folder);
+  while (std::ssize(files) > std::max(most, 1)) {
     fs::remove(files.begin()->second);
     files.erase(files.begin());
   }

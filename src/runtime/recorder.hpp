@@ -32,7 +32,8 @@ struct RecorderOptions {
 
 /// One consumer thread. Takes every record of the outbox and writes DIRECTORY/log-NNNN.lcm, numbered on from what is
 /// there; each file begins with ROBOT_INFO and stands alone. Whatever the disk does, drain() returns and the control
-/// thread never waits. TIMING.dropped_records counts lost ticks.
+/// thread never waits. A folder that is deleted, or made read-only, in mid-run is said at once; the log goes on in the
+/// folder made anew, or else in the system's folder for temporary files. TIMING.dropped_records counts lost ticks.
 class Recorder {
  public:
   /// Sentences for people about a failure and its end. Called from the threads that call the recorder.
@@ -56,6 +57,8 @@ class Recorder {
   /// The last pass, after the real-time threads have ended. Once more does nothing.
   void close() noexcept;
 
+  /// Nothing was lost: neither a tick that belongs in the log nor the records of a fault.
+  bool complete() const { return (!options_.log || lost() == 0) && flight_.lost() == 0 && flight_.waiting() == 0; }
   std::int64_t written() const { return written_; }               ///< records on the disk
   std::int64_t lost() const { return queue_lost_ + disk_lost_; }  ///< records that the log doesn't have
   const std::filesystem::path& file() const { return file_; }     ///< the newest log file; empty: none yet
@@ -68,10 +71,12 @@ class Recorder {
   void log_record();
   void flush();
   void begin_file(std::int64_t stamp_ns);
+  void begin_file_in(const std::filesystem::path& folder, std::int64_t stamp_ns);
+  void notice_deletion();
   void begin_next_file_if_due();
   void try_again();
   void give_up_file(const std::string& why);
-  void remove_oldest() const;
+  static void remove_oldest(const std::filesystem::path& folder, int files);
   void say(const std::string& text) noexcept;
   template <typename Action>
   void guarded(Action&& action) noexcept;
@@ -90,6 +95,7 @@ class Recorder {
   control::TickRecord record_;
   BusTiming bus_;
   BusCycleReader bus_cycles_;
+  std::int64_t in_file_ = 0;  // records on the disk in the file that is open
   std::int64_t unflushed_ = 0, written_ = 0, queue_lost_ = 0, disk_lost_ = 0;
   std::int64_t told_lost_ = 0, lost_before_refusal_ = 0;
   std::int64_t try_ns_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,9 @@ struct RunInfo {
   bool realtime = false;                                     ///< every thread got the scheduling that it needs
   std::vector<std::string> refused{};                        ///< the real-time scheduling that the system refused
 };
+
+/// Where logs go on when their own folder can't be used any more: below the system's folder for temporary files.
+std::filesystem::path other_log_folder(const RunInfo& run);
 
 /// Version of this software, for logs and --version.
 const char* software_version() noexcept;

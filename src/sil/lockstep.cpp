@@ -1,8 +1,13 @@
 #include "sil/lockstep.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pmg::sil {
+
+namespace {
+constexpr std::int64_t kReservedTicks = 60'000;  // ten minutes; a longer run grows
+}
 
 void hold_for_one_tick(sim::World& world, const model::JointCommand& command) noexcept {
   for (int cycle = 0; cycle < control::ControlCycle::kBusCycles; ++cycle) world.step(command);
@@ -26,7 +31,7 @@ Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, 
 RunOutcome Lockstep::run() {
   const auto ticks =
       static_cast<std::int64_t>(std::ceil(scenario_.duration_s() / control::ControlCycle::kPeriod_s - 1e-9));
-  timing_.reserve(static_cast<std::size_t>(ticks));
+  timing_.reserve(static_cast<std::size_t>(std::min(ticks, kReservedTicks)));
   bool ended_early = false;
   for (std::int64_t k = 0; k < ticks; ++k) {
     ended_early = interrupted && interrupted();
@@ -47,7 +52,11 @@ RunOutcome Lockstep::run() {
 void Lockstep::advance() {
   for (int cycle = 0; cycle < control::ControlCycle::kBusCycles; ++cycle) {
     clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
-    bus_cycle_.run();
+    if (bus_sleeps && bus_sleeps()) {
+      while_bus_sleeps();
+    } else {
+      bus_cycle_.run();
+    }
   }
 }
 
@@ -55,7 +64,7 @@ void Lockstep::control(double time_s) {
   player_.step(time_s, clock_.now_ns());
   inbox_.put(player_.drive());
   inbox_.put(player_.request());
-  control_cycle_.run(clock_.now_ns());
+  if (!control_sleeps || !control_sleeps()) control_cycle_.run(clock_.now_ns());
   timing_.add(time_s, tick_.result().times);
   if (log_ != nullptr) {
     scenario_log_->write(clock_.now_ns(), player_.number());

@@ -38,6 +38,9 @@ class Lockstep {
   std::function<void(const RunProgress&)> after_tick;
   /// Called after every tick, with all of it.
   std::function<void(const control::TickRecord&)> after_record;
+  /// In cycles in which its thread sleeps, a cycle is left out. While the bus sleeps the world goes on without it.
+  std::function<bool()> bus_sleeps, control_sleeps;
+  std::function<void()> while_bus_sleeps;
   /// Asked before every tick: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 

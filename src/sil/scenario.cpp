@@ -9,6 +9,9 @@ namespace pmg::sil {
 
 namespace {
 
+constexpr double kLongest_s = 86'400.0;
+constexpr std::size_t kMostSteps = 10'000;
+
 const std::vector<std::string> kModeNames = {"passive", "damping", "stand", "walk"};
 
 control::Mode mode_named(const std::string& name) {
@@ -65,6 +68,12 @@ Scenario load_scenario(const std::filesystem::path& file) {
     step.steady_without_policy = entry.optional<bool>("steady_without_policy", step.steady_without_policy);
     entry.finish();
     scenario.steps.push_back(step);
+  }
+  if (scenario.steps.size() > kMostSteps) {
+    reader.fail("steps", "has " + std::to_string(scenario.steps.size()), std::to_string(kMostSteps) + " at most");
+  }
+  if (!scenario.steps.empty() && scenario.duration_s() > kLongest_s) {
+    reader.fail("steps", "last " + std::to_string(scenario.duration_s()) + " s together", "a day (86400 s) at most");
   }
   if (scenario.steps.empty()) reader.fail("steps", "is empty", "at least one step");
   reader.finish();

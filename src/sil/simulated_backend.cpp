@@ -27,7 +27,9 @@ class SimulatedBackend final : public hal::Backend {
     values.at("gantry") = gantry_;
     return values;
   }
-  hal::BackendLimits limits() const override { return limits_on_shared_host(); }
+  hal::BackendLimits limits() const override {
+    return option<bool>("robot-limits") ? hal::BackendLimits{} : limits_on_shared_host();
+  }
 
   hal::Hal& connect(const std::function<bool()>& /*interrupted*/) override {
     world_.emplace(setup_.robot, world_options_);
@@ -62,12 +64,12 @@ void register_backend(hal::BackendFactory& factory) {
   factory.add(
       {.name = "sil",
        .summary = "MuJoCo in their place",
-       .options = {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands",
-                    false},
-                   {"viewer", "a window with the robot, whose keys drive it", false},
-                   {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none",
-                    std::string()},
-                   {"seed", "of the sensor noise", std::uint64_t{0}}},
+       .options =
+           {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands", false},
+            {"viewer", "a window with the robot, whose keys drive it", false},
+            {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none", std::string()},
+            {"robot-limits", "judge old states and late ticks as on a robot, not as on a shared computer", false},
+            {"seed", "of the sensor noise", std::uint64_t{0}}},
        .make = [](const hal::BackendSetup& setup) { return std::make_unique<SimulatedBackend>(setup); }});
 }
 

@@ -11,6 +11,7 @@
 #include "control/fixtures.hpp"
 #include "control/operator_inbox.hpp"
 #include "hal/bus_cycle.hpp"
+#include "runtime/periodic_schedule.hpp"
 
 namespace pmg::test {
 
@@ -74,11 +75,15 @@ class ControlRig {
   /// 2 ms of the world, and the control cycle when it is due.
   void cycle() {
     world();
-    if (clock.now_ns() < planned_ns_ + control_delay_cycles * hal::BusCycle::kPeriod_ns) return;
+    wake_control();
+  }
+  /// The control cycle, when it is due: on the schedule of the robot's thread.
+  void wake_control() {
+    const std::int64_t woke_ns = clock.now_ns();
+    if (woke_ns < schedule_.planned_ns() + control_delay_cycles * hal::BusCycle::kPeriod_ns) return;
     if (!silent) speak();
-    if (!control_frozen) control_cycle.run(planned_ns_);
-    do planned_ns_ += control::ControlCycle::kPeriod_ns;
-    while (planned_ns_ + control::ControlCycle::kPeriod_ns <= clock.now_ns());
+    if (!control_frozen) control_cycle.run(schedule_.planned_ns());
+    schedule_.advance(woke_ns, clock.now_ns());
   }
   /// 2 ms of the world without the control thread, which is busy or asleep.
   void world() {
@@ -113,17 +118,30 @@ class ControlRig {
     run(0.5);
   }
 
-  /// Bus cycles from the first one after inject() to the first damping command of the drives; -1: none within a second.
-  int cycles_to_damping(const std::function<void()>& inject) {
+  /// Bus cycles from the first one after inject() to the drives' first command of a sit-down, and to their first
+  /// damping command; -1: none within two seconds.
+  struct Reaction {
+    int to_sit_down = -1, to_damping = -1;
+  };
+  Reaction reaction_to(const std::function<void()>& inject) {
     const int first_cycle = cycles + 1;
     inject();
-    int damped_in = 0;
+    Reaction reaction;
     after_cycle = [&] {
-      if (damped_in == 0 && bus.damping()) damped_in = cycles;
+      if (reaction.to_damping >= 0) return;
+      if (bus.damping()) reaction.to_damping = cycles - first_cycle;
+      if (reaction.to_sit_down < 0 && sits()) reaction.to_sit_down = cycles - first_cycle;
     };
-    for (int k = 0; k < 500 && damped_in == 0; ++k) cycle();
+    for (int k = 0; k < 1000 && reaction.to_damping < 0; ++k) cycle();
     after_cycle = nullptr;
-    return damped_in > 0 ? damped_in - first_cycle : -1;
+    return reaction;
+  }
+  int cycles_to_damping(const std::function<void()>& inject) { return reaction_to(inject).to_damping; }
+
+  /// The drives' last command lowers the robot.
+  bool sits() const {
+    const control::TickResult& result = tick.result();
+    return result.sitting && bus.last_command.bus_sample == result.command.bus_sample;
   }
 
   control::Mode mode() const { return tick.result().mode; }
@@ -150,7 +168,7 @@ class ControlRig {
     inbox.put(drive);
   }
 
-  std::int64_t planned_ns_ = control::ControlCycle::kPeriod_ns;
+  runtime::PeriodicSchedule schedule_{control::ControlCycle::kPeriod_ns, control::ControlCycle::kPeriod_ns};
   std::int64_t request_sequence_ = 0;
 };
 

@@ -39,16 +39,119 @@ TEST(Degradation, AFrozenBusFindsADampingCommandWhenItReturns) {
   }
 }
 
+/// Lengths of a stall of the host: half a tick up to what no robot stands.
+constexpr double kStalls_s[] = {0.005, 0.05, 0.25, 1.0, 10.0};
+
+/// Both threads sleep for so long; the control thread wakes before the bus and runs whatever its schedule makes due.
+void stall_host(ControlRig& rig, double stall_s, int delay_us) {
+  rig.clock.advance_to(rig.clock.now_ns() + io::nanoseconds(stall_s) + delay_us * 1000);
+  for (int wake = 0; wake < 3; ++wake) {
+    rig.wake_control();
+    rig.clock.advance_to(rig.clock.now_ns() + 70'000);  // how long a tick takes
+  }
+}
+
 TEST(Degradation, AHostThatStopsEverythingForAWhileIsNoFault) {
+  for (const Mode mode : {Mode::kStand, Mode::kWalk}) {
+    for (const double stall_s : kStalls_s) {
+      for (int moment = 0; moment < 10; ++moment) {
+        SCOPED_TRACE(testing::Message() << to_string(mode) << ", stall of " << stall_s << " s, moment " << moment);
+        ControlRig rig(test::biped());
+        rig.reach_walk();
+        rig.ask(mode);
+        rig.run(1.0);
+        rig.align(moment % kCyclesPerTick);
+        stall_host(rig, stall_s, 977 * moment);
+        rig.run(0.5);
+        EXPECT_EQ(rig.mode(), mode);
+      }
+    }
+  }
+}
+
+TEST(Degradation, AfterAStallNoTwoTicksSeeOneOldSample) {
+  for (const double stall_s : kStalls_s) {
+    for (int moment = 0; moment < 10; ++moment) {
+      ControlRig rig(test::biped());
+      rig.reach_walk();
+      rig.align(moment % kCyclesPerTick);
+      std::int64_t last_sample_ns = 0, last_tick = -1;
+      int repeated = 0;
+      const auto look = [&] {
+        const TickRecord& record = rig.control_cycle.record();
+        if (record.tick == last_tick) return;
+        const bool old = record.now_ns - record.state.stamp_ns > hal::BusCycle::kPeriod_ns;
+        repeated += old && record.state.stamp_ns == last_sample_ns ? 1 : 0;
+        last_sample_ns = record.state.stamp_ns;
+        last_tick = record.tick;
+      };
+      rig.policy->meanwhile = look;  // within a tick: the record of the one before
+      stall_host(rig, stall_s, 977 * moment);
+      rig.run(0.1);
+      EXPECT_EQ(repeated, 0) << "stall of " << stall_s << " s, moment " << moment;
+    }
+  }
+}
+
+TEST(Degradation, AControlThreadThatStallsAloneIsDampedFromThePagesLengthOn) {
+  // docs/reference/safety.md: up to 40 ms nothing happens; from 52 ms on the guard damps.
+  for (int cycles = 1; cycles <= 35; ++cycles) {
+    for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+      ControlRig rig(test::biped());
+      rig.reach_walk();
+      rig.align(moment);
+      for (int cycle = 0; cycle < cycles; ++cycle) rig.world();
+      rig.run(0.1);
+      SCOPED_TRACE(testing::Message() << cycles << " cycles from moment " << moment);
+      if (cycles <= 20) {
+        EXPECT_EQ(rig.mode(), Mode::kWalk);
+      }
+      if (cycles >= 26) {
+        EXPECT_EQ(rig.fault(), FaultCode::kControlFrozen);
+      }
+    }
+  }
+}
+
+TEST(Degradation, ABusThreadThatStallsAloneIsAFaultFromThePagesLengthOn) {
+  // docs/reference/safety.md: up to 20 ms nothing happens; from 40 ms on the first command afterwards is damping.
+  for (int cycles = 1; cycles <= 30; ++cycles) {
+    for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+      ControlRig rig(test::biped());
+      rig.reach_walk();
+      rig.align(moment);
+      rig.bus_frozen = true;
+      for (int cycle = 0; cycle < cycles; ++cycle) rig.cycle();
+      rig.bus_frozen = false;
+      rig.cycle();
+      SCOPED_TRACE(testing::Message() << cycles << " cycles from moment " << moment);
+      if (cycles <= 10) {
+        EXPECT_EQ(rig.mode(), Mode::kWalk);
+      }
+      if (cycles >= 20) {
+        EXPECT_EQ(rig.fault(), FaultCode::kStaleState);
+      }
+      if (cycles >= 20) {
+        EXPECT_TRUE(rig.bus.damping());
+      }
+    }
+  }
+}
+
+TEST(Degradation, AGlitchThatTwoTicksSeeIsStillOneGlitch) {
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
     ControlRig rig(test::biped());
     rig.reach_walk();
     rig.align(moment);
-    rig.clock.advance_to(rig.clock.now_ns() + 150'000'000);
-    // The control thread may wake before the bus thread.
+    rig.bus.spoil = [](auto& state) { state.dq[3] = 1.6 * test::biped().joints[3].velocity_limit_rad_s; };
+    rig.run(kCycle_s);
+    rig.bus_frozen = true;  // for three ticks, all of which see this sample
+    rig.run(8 * kCycle_s);
     rig.control_cycle.run(rig.clock.now_ns());
-    rig.run(0.5);
-    EXPECT_EQ(rig.mode(), Mode::kWalk);
+    rig.bus_frozen = false;
+    rig.bus.spoil = nullptr;
+    rig.run(0.1);
+    EXPECT_EQ(rig.mode(), Mode::kWalk) << moment;
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <ostream>
 #include <sstream>
@@ -126,22 +125,22 @@ void heal(ControlRig& rig) {
   rig.drive.command = Command{};
 }
 
-struct Range {
-  int least = std::numeric_limits<int>::max(), most = 0;
-  friend bool operator==(const Range&, const Range&) = default;
-};
+void include(int cycles, CycleRange& range) {
+  range.least = range.most < 0 ? cycles : std::min(range.least, cycles);
+  range.most = std::max(range.most, cycles);
+}
 
 /// Reactions over all moments between two ticks at which the cause may appear.
-Range reaction_of(const InjectedFault& row) {
-  Range range;
+Reaction reaction_of(const InjectedFault& row) {
+  Reaction range;
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
     ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
     rig.reach_walk();
     rig.align(moment);
-    const int cycles = rig.cycles_to_damping([&] { row.inject(rig); });
-    EXPECT_GE(cycles, 0) << row.name << ": no reaction";
-    range.least = std::min(range.least, cycles);
-    range.most = std::max(range.most, cycles);
+    const ControlRig::Reaction measured = rig.reaction_to([&] { row.inject(rig); });
+    EXPECT_GE(measured.to_damping, 0) << row.name << ": no reaction";
+    include(measured.to_damping, range.damping);
+    if (measured.to_sit_down >= 0) include(measured.to_sit_down, range.sit_down);
   }
   return range;
 }
@@ -154,33 +153,42 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// The fault table (six columns) of docs/reference/safety.md: code -> bus cycles, "1 to 5" or "0".
-std::map<std::string, Range> documented_reactions() {
-  constexpr std::size_t kColumns = 6, kCode = 1, kCycles = 5;  // the first cell is the text before the first bar
+/// "1 to 5", "0", or "-" for never.
+CycleRange range_in(const std::string& cell) {
+  CycleRange range;
+  std::string to;
+  std::istringstream cycles(cell);
+  if (!(cycles >> range.least)) return {};
+  range.most = range.least;
+  cycles >> to;
+  if (to == "to") cycles >> range.most;
+  return range;
+}
+
+/// The fault table (seven columns) of docs/reference/safety.md: code -> bus cycles.
+std::map<std::string, Reaction> documented_reactions() {
+  constexpr std::size_t kColumns = 7, kCode = 1, kSitDown = 5, kDamping = 6;  // the first cell is before the first bar
   std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/reference/safety.md");
-  std::map<std::string, Range> reactions;
+  std::map<std::string, Reaction> reactions;
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != kColumns + 1 || !cells[kCode].starts_with(" `")) continue;
     const std::string code = cells[kCode].substr(2, cells[kCode].rfind('`') - 2);
-    Range range;
-    std::string to;
-    std::istringstream cycles(cells[kCycles]);
-    cycles >> range.least >> to;
-    range.most = range.least;
-    if (to == "to") cycles >> range.most;
-    EXPECT_TRUE(reactions.emplace(code, range).second) << code << " has two rows";
+    const Reaction told{range_in(cells[kSitDown]), range_in(cells[kDamping])};
+    EXPECT_TRUE(reactions.emplace(code, told).second) << code << " has two rows";
   }
   return reactions;
 }
 
 TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
-  std::map<std::string, Range> documented = documented_reactions();
+  std::map<std::string, Reaction> documented = documented_reactions();
   for (std::size_t k = 1; k < kFaultCodes; ++k) {
     const auto code = static_cast<FaultCode>(k);
     const std::vector<InjectedFault> all = rows();
     EXPECT_TRUE(std::ranges::any_of(all, [&](const InjectedFault& row) { return row.code == code; }))
         << to_string(code);
+    EXPECT_EQ(documented[to_string(code)].sit_down, reaction(code).sit_down) << to_string(code);
+    EXPECT_EQ(documented[to_string(code)].damping, reaction(code).damping) << to_string(code);
     EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/reference/safety.md";
     EXPECT_NE(std::string(advice(code)), "") << to_string(code);
   }
@@ -191,10 +199,17 @@ class FaultInjection : public testing::TestWithParam<InjectedFault> {};
 
 TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
   const InjectedFault& row = GetParam();
-  const Range measured = reaction_of(row);
-  const Range documented = documented_reactions()[to_string(row.code)];
-  EXPECT_EQ(measured.least, documented.least) << row.name;
-  EXPECT_EQ(measured.most, documented.most) << row.name;
+  const Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
+  EXPECT_EQ(measured.damping.least, documented.damping.least) << row.name;
+  EXPECT_EQ(measured.damping.most, documented.damping.most) << row.name;
+}
+
+TEST_P(FaultInjection, TheRobotSitsDownFirstWithinTheDocumentedBusCycles) {
+  const InjectedFault& row = GetParam();
+  const Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
+  EXPECT_EQ(measured.sit_down.least, documented.sit_down.least) << row.name;
+  EXPECT_EQ(measured.sit_down.most, documented.sit_down.most) << row.name;
+  EXPECT_EQ(measured.sit_down.most >= 0, allows_sit_down(row.code)) << row.name;
 }
 
 TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {

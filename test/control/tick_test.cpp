@@ -140,8 +140,9 @@ TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
     const TickResult& result = driven.step();
     EXPECT_EQ(result.mode, Mode::kFault);
     EXPECT_EQ(result.fault.code, FaultCode::kPolicyNotFinite);
-    EXPECT_EQ(result.command.kp.sum(), 0.0) << "in the very tick that failed";
+    EXPECT_TRUE(result.sitting) << "in the very tick that failed";
     EXPECT_TRUE(result.command.q.allFinite());
+    EXPECT_LT((result.command.q - driven.state.q).cwiseAbs().maxCoeff(), 0.05) << "it goes on from where it is";
   }
 }
 
@@ -184,7 +185,7 @@ TEST(Tick, TorqueIsLimitedWithTheGainsInForce) {
   const int knee = robot.joint_index.at("left_knee");
   const double effort_Nm = robot.joints[static_cast<std::size_t>(knee)].effort_limit_Nm;
   auto policy = std::make_unique<test::BreakablePolicy>();
-  policy->own_gains = policy::DriveGains{JointVector::Constant(n, 2000.0), JointVector::Zero(n)};
+  policy->own_gains = policy::DriveGains{JointVector::Constant(n, 2000.0), JointVector::Constant(n, 1.0)};
   test::DrivenTick driven(robot, std::move(policy));
   driven.request.mode = Mode::kStand;
   driven.run(1.5);
@@ -209,6 +210,7 @@ TEST(Tick, RefusesGainsThatDoNotFitTheRobot) {
   expect_refusal(n, -1.0, 0.0);
   expect_refusal(n, 90.0, 101.0);
   expect_refusal(n, std::nan(""), 0.0);
+  expect_refusal(n, 90.0, 0.0);  // undamped
 }
 
 TEST(Tick, GainsAreCheckedAgainstTheGuardInForce) {

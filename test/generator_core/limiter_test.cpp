@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class CommandLimiterTest : public ::testing::Test {
  protected:
   CommandLimits limits = make_options().limits;
-  CommandLimiter limiter{limits, 0.15, 0.5};
+  CommandLimiter limiter{limits, 0.15, 0.5, 0.1};
 
   Command hold(const Command& user, double double_support, double duration_s) {
     Command command;
@@ -61,7 +61,7 @@ TEST_F(CommandLimiterTest, VelocityHardlyChangesWhileBothFeetAreLoadedAndPosture
 
 TEST_F(CommandLimiterTest, StopReachesExactlyZeroWithinHalfASecondEvenWhereTheRateIsSlowAndBothFeetAreLoaded) {
   limits.rate_per_s = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1};
-  limiter = CommandLimiter(limits, 0.15, 0.5);
+  limiter = CommandLimiter(limits, 0.15, 0.5, 0.1);
   hold(make_command(0.8, -0.35, 0.8), 0.0, 20.0);
   Command previous = limiter.step(make_command(0.8, -0.35, 0.8), 0.0, kDt_s);
   ASSERT_NEAR(previous[kVx], 0.8, 1e-12);
@@ -83,6 +83,41 @@ TEST_F(CommandLimiterTest, OneChannelBackToZeroWhileAnotherMovesIsNoStop) {
   hold(make_command(0.8, 0.35, 0), 0.0, 3.0);
   const Command command = hold(make_command(0.8, 0, 0), 1.0, 0.5);
   EXPECT_NEAR(command[kVy], 0.35 - 0.15 * 0.5 * 0.5, 1e-12);
+}
+
+TEST_F(CommandLimiterTest, ACommandThatFlickersChangesItsRateByATenthOfTheLimit) {
+  const Command one = make_command(0.8, -0.35, 0.8, 0.5, -0.25, 0.02),
+                other = make_command(-0.5, 0.35, -0.8, -0.15, 0.25, -0.2);
+  Command previous = hold(one, 0.0, 0.3);
+  limiter.step(other, 0.0, kDt_s);
+  previous = limiter.step(one, 0.0, kDt_s);
+  for (int tick = 0; tick < 500; ++tick) {
+    const Command command = limiter.step(tick % 2 == 0 ? other : one, 0.0, kDt_s);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      // dt / turn_s of the limit, each way.
+      ASSERT_LE(std::abs(command.u[c] - previous.u[c]), 0.1 * limits.rate_per_s[c] * kDt_s + 1e-12) << tick;
+    }
+    previous = command;
+  }
+}
+
+TEST_F(CommandLimiterTest, ACommandThatTurnsHasItsFullRateBackAfterATenthOfASecond) {
+  hold(make_command(0.8, 0, 0), 0.0, 0.5);
+  hold(make_command(-0.5, 0, 0), 0.0, 0.1);
+  const double before = limiter.step(make_command(-0.5, 0, 0), 0.0, kDt_s)[kVx];
+  EXPECT_NEAR(limiter.step(make_command(-0.5, 0, 0), 0.0, kDt_s)[kVx], before - 0.8 * kDt_s, 1e-12);
+}
+
+TEST_F(CommandLimiterTest, ACommandThatRestedBeforeItTurnsHasItsFullRateAtOnce) {
+  const double before = hold(make_command(0.3, 0, 0), 0.0, 1.0)[kVx];
+  EXPECT_NEAR(limiter.step(make_command(-0.5, 0, 0), 0.0, kDt_s)[kVx], before - 0.8 * kDt_s, 1e-12);
+}
+
+TEST_F(CommandLimiterTest, AStopInTheMiddleOfARiseStillReachesZeroWithinItsTime) {
+  limits.rate_per_s = {0.8, 0.5, 1.0, 0.1, 0.1, 0.1};
+  hold(make_command(0.8, -0.35, 0.8), 0.0, 0.6);
+  const Command stopped = hold(Command{}, 1.0, 0.5);
+  for (const Channel channel : {kVx, kVy, kOmega}) EXPECT_EQ(stopped[channel], 0.0);
 }
 
 TEST_F(CommandLimiterTest, ChannelThatIsNotFiniteKeepsItsLastTarget) {

@@ -76,6 +76,40 @@ TEST_F(LogInfo, LostTicksAreCountedByTheirNumbers) {
   EXPECT_EQ(summarise_logs({folder_ / "holed.lcm"}).runs.front().lost_ticks, 3);
 }
 
+TEST_F(LogInfo, ALogThatBeginsAfterItsFaultStillTellsIt) {
+  bool faulted = false;
+  test::copy_log(log_, folder_ / "late.lcm", [&faulted](test::LogEvent& event) {
+    if (event.channel == "FAULT") {
+      faulted = true;
+      return false;
+    }
+    return faulted || event.channel == "ROBOT_INFO";
+  });
+  const RunSummary run = summarise_logs({folder_ / "late.lcm"}).runs.front();
+  ASSERT_EQ(run.faults.size(), 1u);
+  EXPECT_THAT(run.faults[0].text, HasSubstr("latched before this log: temperature"));
+  EXPECT_EQ(run.modes.front().text, "fault");
+}
+
+TEST_F(LogInfo, ALogThatBeginsWithItsFaultTellsItOnce) {
+  // From the tick on that latched the fault: its STATUS is before its FAULT.
+  std::int64_t faults = 0;
+  std::vector<std::size_t> first_of_tick;
+  std::size_t index = 0, from = 0;
+  test::copy_log(log_, folder_ / "counted.lcm", [&](test::LogEvent& event) {
+    if (event.channel == "STATE") first_of_tick.push_back(index);
+    if (event.channel == "FAULT" && faults++ == 0) from = first_of_tick.back();
+    ++index;
+    return true;
+  });
+  index = 0;
+  test::copy_log(log_, folder_ / "from.lcm",
+                 [&](test::LogEvent& event) { return index++ >= from || event.channel == "ROBOT_INFO"; });
+  const RunSummary run = summarise_logs({folder_ / "from.lcm"}).runs.front();
+  ASSERT_EQ(run.faults.size(), 1u);
+  EXPECT_EQ(run.faults[0].text.find("temperature"), 0u);
+}
+
 TEST_F(LogInfo, PercentilesAreNearestRanksOfTiming) {
   {
     io::LogWriter writer(folder_ / "timing.lcm");

@@ -108,6 +108,8 @@ TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
   EXPECT_THAT(refusal_after("\"action_limit\"", "\"aktion_limit\""), HasSubstr("action_limit"));
   EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": 0.0"), HasSubstr("action_limit is 0"));
   EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": -1 "), HasSubstr("action_limit is -1"));
+  EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": 9.0"), HasSubstr("half a turn: no bound"));
+  EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": 1e9"), HasSubstr("half a turn: no bound"));
   EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": NaN"), HasSubstr("metadata can't be read"));
   EXPECT_THAT(refusal_after("\"action_scale\": 0.", "\"action_scale\": -0"), HasSubstr("metadata can't be read"));
   EXPECT_THAT(refusal_after("\"action_scale\": 0", "\"action_scale\":-1"), HasSubstr("action_scale is -1"));

@@ -248,6 +248,49 @@ TEST_F(RecorderTest, AFolderThatCannotBeMadeIsAnErrorAtTheStart) {
   EXPECT_THROW(recorder(options()), std::runtime_error) << "nothing can be logged from the first tick on";
 }
 
+TEST_F(RecorderTest, AFolderThatIsDeletedIsToldAtOnceAndMadeAnew) {
+  const auto recorder = this->recorder(options());
+  run(10, *recorder);
+  fs::remove_all(folder_);
+  run(20, *recorder);
+  ASSERT_GE(said_.size(), 2u);
+  EXPECT_THAT(said_[0], HasSubstr("log-0000.lcm was deleted or replaced"));
+  EXPECT_THAT(said_[1], HasSubstr("writing again, into " + (folder_ / "log-0001.lcm").string()));
+  recorder->close();
+  EXPECT_EQ(read("log-0001.lcm").ticks, range(10, 30)) << "no tick after the deletion is missing";
+  EXPECT_EQ(recorder->lost(), 10) << "those before it went with the folder";
+  EXPECT_FALSE(recorder->complete());
+}
+
+TEST_F(RecorderTest, AFolderThatCannotBeMadeAnewIsReplacedByAnother) {
+  run_.session = getpid();
+  const fs::path other = other_log_folder(run_);
+  const auto recorder = this->recorder(options());
+  run(10, *recorder);
+  fs::remove_all(folder_);
+  std::ofstream(folder_) << "no folder any more";
+  run(10, *recorder);
+  source_.fault(control::FaultCode::kTilt);
+  run(300, *recorder);
+  recorder->close();
+  EXPECT_EQ(recorder->file(), other / "log-0001.lcm");
+  EXPECT_EQ(recorder->lost(), 10);
+  EXPECT_EQ(recorder->flight().written(), 1) << "the flight recorder too";
+  EXPECT_TRUE(std::ranges::any_of(said_, [&](const std::string& text) {
+    return text.find("flight recorder: " + other.string()) != std::string::npos;
+  }));
+  fs::remove_all(other);
+}
+
+TEST_F(RecorderTest, WhatIsDeletedAtTheVeryEndIsMissed) {
+  const auto recorder = this->recorder(options());
+  run(10, *recorder);
+  EXPECT_TRUE(recorder->complete());
+  fs::remove(folder_ / "log-0000.lcm");
+  recorder->close();
+  EXPECT_FALSE(recorder->complete());
+}
+
 TEST_F(RecorderTest, AConsoleThatThrowsEndsNothing) {
   Recorder recorder(*outbox_, robot_, run_, source_.clock, options(),
                     [](const std::string&) { throw std::runtime_error("no console"); });

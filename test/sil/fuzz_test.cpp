@@ -193,7 +193,9 @@ class Watch {
     const bool in_fault =
         mode_ == control::Mode::kFault && rig_.mode() == control::Mode::kFault && rig_.cycles > fault_since_;
     const bool foreign = chaos_.corrupted_in >= fault_since_;  // a command that no tick gave
-    if (in_fault && !foreign && !rig_.bus_frozen && !rig_.bus.damping()) ++undamped;
+    if (in_fault && !foreign && !rig_.bus_frozen && !rig_.bus.damping() && !rig_.sits()) ++undamped;
+    sat_cycles_ = in_fault && !rig_.bus.damping() ? sat_cycles_ + 1 : 0;
+    if (sat_cycles_ > kLongestSitDown) ++sat_too_long;
   }
   void after_tick() {
     const control::Mode now = rig_.mode();
@@ -209,7 +211,7 @@ class Watch {
     ++modes[static_cast<std::size_t>(now)];
   }
 
-  int not_finite = 0, beyond_clamps = 0, undamped = 0, unlatched = 0;
+  int not_finite = 0, beyond_clamps = 0, undamped = 0, unlatched = 0, sat_too_long = 0;
   std::array<int, control::kFaultCodes> faults{};
   std::array<int, 5> modes{};
 
@@ -229,6 +231,9 @@ class Watch {
   Chaos& chaos_;
   JointVector lower_, upper_, speed_, effort_;
   control::Mode mode_ = control::Mode::kPassive;
+  static constexpr int kLongestSitDown =
+      520;  // 0.95 s, a late tick, and what the guard needs when the control thread freezes
+  int sat_cycles_ = 0;
   int fault_since_ = 0;  // cycle after which the tick latched
 };
 
@@ -266,6 +271,7 @@ TEST(Fuzz, CommandsStayFiniteAndWithinTheirClampsAndFaultsStayLatched) {
   EXPECT_EQ(watch.beyond_clamps, 0);
   EXPECT_EQ(watch.undamped, 0);
   EXPECT_EQ(watch.unlatched, 0);
+  EXPECT_EQ(watch.sat_too_long, 0);
   EXPECT_GE(std::ranges::count_if(watch.faults, [](int count) { return count > 0; }), 10) << "kinds: it must bite";
   for (const int count : watch.modes) EXPECT_GT(count, 100) << "and visit every mode";
 }

@@ -44,6 +44,14 @@ steps:
   - {for_s: 0.5, text: stop}
 )";
 
+TEST_F(ScenarioFile, MoreThanADayOrTenThousandStepsIsRefused) {
+  EXPECT_NE(refusal("name: long\nsteps:\n  - {for_s: 1e9, text: a}\n").find("a day (86400 s) at most"),
+            std::string::npos);
+  std::string many = "name: many\nsteps:\n";
+  for (int k = 0; k < 10'001; ++k) many += "  - {for_s: 1, text: a}\n";
+  EXPECT_NE(refusal(many).find("steps: has 10001; expected 10000 at most"), std::string::npos);
+}
+
 TEST_F(ScenarioFile, ModesAndHoistHoldOnWhileCommandsDoNot) {
   const Scenario scenario = load(kGood);
   EXPECT_EQ(scenario.name, "short");

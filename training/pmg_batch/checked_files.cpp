@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "model/bounded_file.hpp"
 #include "model/robot_model.hpp"
 #include "sil/scenario.hpp"
 #include "sim/motor_file.hpp"
@@ -44,7 +45,7 @@ ordered_json json_of(const YAML::Node& node) {
 
 std::string randomization_json(const std::filesystem::path& file) {
   sim::check_training_ranges(file);
-  return json_of(YAML::LoadFile(file)).dump();
+  return json_of(YAML::Load(model::read_bounded_text(file, model::kLargestYaml_bytes, "a YAML file"))).dump();
 }
 
 std::string motors_json(const std::filesystem::path& robot, const std::filesystem::path& file) {
