@@ -57,6 +57,11 @@ class CanBackend final : public hal::Backend {
     return *hal_;
   }
 
+  std::string news() override {
+    BusTrouble change;
+    return hal_ && hal_->take_change(change) ? describe(change, setup_) : std::string();
+  }
+
  private:
   const model::RobotModel& robot_;
   hal::OptionValues options_;

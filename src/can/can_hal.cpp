@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <ctime>
 
@@ -48,8 +49,9 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot,
     : robot_(robot), incoming_(kIncoming) {
   buses_.reserve(setup.buses.size());
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-    Bus bus{
-        .setup = &setup.buses[b], .link = std::move(links.at(b)), .motors = {}, .outgoing = {}, .motor_of_node = {}};
+    Bus bus;
+    bus.setup = &setup.buses[b];
+    bus.link = std::move(links.at(b));
     bus.motor_of_node.fill(-1);
     for (const drives::MotorSetup& motor : setup.buses[b].motors) {
       bus.motor_of_node[static_cast<std::size_t>(motor.node)] = static_cast<int>(bus.motors.size());
@@ -58,6 +60,10 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot,
                             .monitor = drives::MotorMonitor(motor.limits)});
     }
     bus.outgoing.resize(bus.motors.size());
+    bus.wanted.resize(bus.motors.size());
+    bus.readings.resize(bus.motors.size());
+    for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back(at_zero(linked));
+    for (const auto& linked : setup.buses[b].parallel) bus.parallel.push_back(at_zero(linked));
     waits_ = waits_ || bus.link->descriptor() >= 0;
     buses_.push_back(std::move(bus));
   }
@@ -65,11 +71,6 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot,
 
 hal::BusStatus CanHal::exchange(const model::JointCommand& command, model::RobotState& state) noexcept {
   send(command);
-  if (waits_) {
-    const io::WallClock clock;
-    const std::int64_t deadline_ns = clock.now_ns() + kWait_ns;
-    while (!all_answered() && wait(deadline_ns)) drain();
-  }
   return receive(state);
 }
 
@@ -83,11 +84,15 @@ void CanHal::send(const model::JointCommand& command) noexcept {
   imu_.begin_cycle();
   for (Bus& bus : buses_) {
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+      bus.wanted[m] = joint_command(command, bus.motors[m].setup->index);
+    }
+    for (const auto& linked : bus.four_bars) command_cranks(bus, linked);
+    for (const auto& linked : bus.parallel) command_cranks(bus, linked);
+    for (std::size_t m = 0; m < bus.motors.size(); ++m) {
       Motor& motor = bus.motors[m];
       if (paused) motor.monitor.interrupt();
       const bool enabling = !motor.monitor.enabled() && !stiff_;
-      const drives::MotorCommand wanted =
-          motor.setup->transmission.to_motor(joint_command(command, motor.setup->index));
+      const drives::MotorCommand wanted = motor.setup->transmission.to_motor(bus.wanted[m]);
       bus.outgoing[m] = Frame::of(static_cast<std::uint32_t>(motor.setup->node),
                                   enabling ? drives::kMitEnable : motor.protocol.command(wanted, motor.setup->limits),
                                   bus.setup->data_bitrate != 0);
@@ -99,15 +104,20 @@ void CanHal::send(const model::JointCommand& command) noexcept {
 
 hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   drain();
+  const io::WallClock clock;
+  const std::int64_t deadline_ns = clock.now_ns() + kWait_ns;
+  while (waits_ && !all_answered() && wait(deadline_ns)) drain();
+  for (Bus& bus : buses_) read_joints(bus);
   trouble_ = judge();
+  tell();
   ++cycles_;
   if (trouble_.status != hal::BusStatus::kOk) return trouble_.status;
   const int joints = robot_.joint_index.size();
   for (JointVector* values : {&state.q, &state.dq, &state.tau, &state.temperature_degC}) values->resize(joints);
   for (const Bus& bus : buses_) {
-    for (const Motor& motor : bus.motors) {
-      const drives::MotorReading joint = motor.setup->transmission.to_joint(motor.monitor.reading());
-      const int index = motor.setup->index;
+    for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+      const drives::MotorReading& joint = bus.readings[m];
+      const int index = bus.motors[m].setup->index;
       state.q[index] = joint.q_rad;
       state.dq[index] = joint.dq_rad_s;
       state.tau[index] = joint.torque_Nm;
@@ -117,6 +127,68 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   imu_.read(state);
   state.bus_sample = cycles_;
   return trouble_.status;
+}
+
+// Cranks of motors that are limp get no torque: the joints' gains are zero.
+template <int N>
+void CanHal::command_cranks(Bus& bus, const Linked<N>& linked) noexcept {
+  typename drives::RodLinkage<N>::Commands joints{};
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = bus.wanted[linked.setup->motors[i]];
+  const auto cranks = linked.setup->linkage.to_motors(joints, linked.q_rad, linked.dq_rad_s, linked.theta_rad);
+  for (std::size_t i = 0; i < joints.size(); ++i) bus.wanted[linked.setup->motors[i]] = cranks[i];
+}
+
+// (crank angles, speeds, torques) => (the joints'): q by Newton from the last sample, dq = J^-1 dtheta,
+// torque_q = J^T torque_theta.
+template <int N>
+void CanHal::read_joints(Bus& bus, Linked<N>& linked) noexcept {
+  typename drives::RodLinkage<N>::Angles theta, dtheta, torque;
+  for (int i = 0; i < N; ++i) {
+    const drives::MotorReading& crank = bus.readings[linked.setup->motors[static_cast<std::size_t>(i)]];
+    theta[i] = crank.q_rad;
+    dtheta[i] = crank.dq_rad_s;
+    torque[i] = crank.torque_Nm;
+  }
+  const auto q = linked.setup->linkage.joint_angles(theta, linked.q_rad);
+  linked.solved = q.has_value();
+  if (!q) return;
+  const auto J = linked.setup->linkage.jacobian(theta, *q);
+  linked.q_rad = *q;
+  linked.theta_rad = theta;
+  linked.dq_rad_s = J.inverse() * dtheta;
+  const typename drives::RodLinkage<N>::Angles joint_torque = J.transpose() * torque;
+  for (int i = 0; i < N; ++i) {
+    drives::MotorReading& joint = bus.readings[linked.setup->motors[static_cast<std::size_t>(i)]];
+    joint.q_rad = linked.q_rad[i];
+    joint.dq_rad_s = linked.dq_rad_s[i];
+    joint.torque_Nm = joint_torque[i];
+  }
+}
+
+void CanHal::read_joints(Bus& bus) noexcept {
+  for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+    bus.readings[m] = bus.motors[m].setup->transmission.to_joint(bus.motors[m].monitor.reading());
+  }
+  for (auto& linked : bus.four_bars) read_joints(bus, linked);
+  for (auto& linked : bus.parallel) read_joints(bus, linked);
+}
+
+// Motor angles that no joint angles belong to: a reading is wrong. The first such motor; -1: none.
+int CanHal::unsolved(const Bus& bus) noexcept {
+  for (const auto& linked : bus.four_bars) {
+    if (!linked.solved) return static_cast<int>(linked.setup->motors[0]);
+  }
+  for (const auto& linked : bus.parallel) {
+    if (!linked.solved) return static_cast<int>(linked.setup->motors[0]);
+  }
+  return -1;
+}
+
+// A late answer alone is no news.
+void CanHal::tell() noexcept {
+  if (trouble_.status == hal::BusStatus::kStale || trouble_ == told_) return;
+  told_ = trouble_;
+  changes_.put(told_);
 }
 
 void CanHal::drain() noexcept {
@@ -184,6 +256,13 @@ BusTrouble CanHal::judge() const noexcept {
           .health = bus.link->health()};
       if (trouble.status == hal::BusStatus::kLost) return trouble;
       if (late.status == hal::BusStatus::kOk) late = trouble;
+    }
+    if (const int motor = unsolved(bus); motor >= 0) {
+      return {.status = hal::BusStatus::kLost,
+              .bus = at,
+              .motor = motor,
+              .trouble = drives::Trouble::kPositionJump,
+              .health = bus.link->health()};
     }
     if (!bus.setup->imu || imu_.age_cycles() <= XsensImu::kLateCycles) continue;
     const bool silent = imu_.age_cycles() > XsensImu::kSilentCycles;

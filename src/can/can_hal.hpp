@@ -11,6 +11,7 @@
 #include "drives/drive_setup.hpp"
 #include "drives/motor_monitor.hpp"
 #include "hal/hal.hpp"
+#include "io/mailbox.hpp"
 
 namespace pmg::can {
 
@@ -56,6 +57,8 @@ class CanHal final : public hal::Hal {
   hal::BusStatus receive(model::RobotState& state) noexcept;
 
   const BusTrouble& trouble() const noexcept { return trouble_; }  ///< of the last cycle
+  /// A loss that began, another one, or its end, since the last call. For one other thread, wait-free.
+  bool take_change(BusTrouble& change) noexcept { return changes_.take(change); }
   const drives::MotorMonitor& motor(std::size_t bus, std::size_t motor) const noexcept {
     return buses_[bus].motors[motor].monitor;
   }
@@ -70,19 +73,45 @@ class CanHal final : public hal::Hal {
     drives::MitProtocol protocol;
     drives::MotorMonitor monitor;
   };
+  template <int N>
+  struct Linked {
+    const drives::LinkedMotors<N>* setup;
+    typename drives::RodLinkage<N>::Angles q_rad, dq_rad_s, theta_rad;  // of the last sample
+    bool solved;  // the joint angles belong to the last motor angles
+  };
   struct Bus {
-    const drives::BusSetup* setup;
+    const drives::BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
     std::vector<Motor> motors;
-    std::vector<Frame> outgoing;  // one a motor
-    std::array<int, 256> motor_of_node;
+    std::vector<Frame> outgoing;                 // one a motor
+    std::vector<drives::MotorCommand> wanted;    // one a motor, before its transmission: at the joint, or at the crank
+    std::vector<drives::MotorReading> readings;  // one a motor, of its joint
+    std::vector<Linked<1>> four_bars;
+    std::vector<Linked<2>> parallel;
+    std::array<int, 256> motor_of_node{};
   };
+  template <int N>
+  static Linked<N> at_zero(const drives::LinkedMotors<N>& setup) {
+    using Angles = typename drives::RodLinkage<N>::Angles;
+    return {.setup = &setup,
+            .q_rad = Angles::Zero(),
+            .dq_rad_s = Angles::Zero(),
+            .theta_rad = Angles::Zero(),
+            .solved = true};
+  }
+  template <int N>
+  static void command_cranks(Bus& bus, const Linked<N>& linked) noexcept;
+  template <int N>
+  static void read_joints(Bus& bus, Linked<N>& linked) noexcept;
+  static void read_joints(Bus& bus) noexcept;
+  static int unsolved(const Bus& bus) noexcept;
   void drain() noexcept;
   void drain(Bus& bus) noexcept;
   void hear(Bus& bus, const Frame& frame) noexcept;
   bool all_answered() const noexcept;
   bool wait(std::int64_t deadline_ns) noexcept;
   BusTrouble judge() const noexcept;
+  void tell() noexcept;
 
   const model::RobotModel& robot_;
   std::vector<Bus> buses_;
@@ -91,7 +120,8 @@ class CanHal final : public hal::Hal {
   bool stiff_ = false, waits_ = false;
   std::int64_t last_send_ns_ = 0;
   std::uint64_t cycles_ = 0, strangers_ = 0, unreadable_ = 0;
-  BusTrouble trouble_;
+  BusTrouble trouble_, told_;
+  io::Mailbox<BusTrouble> changes_;
 };
 
 }  // namespace pmg::can

@@ -160,38 +160,80 @@ auto RodLinkage<N>::to_motors(const Commands& joints, const Angles& q_rad, const
 }
 
 template <int N>
-void RodLinkage<N>::check_ranges(const Angles& lower_rad, const Angles& upper_rad) const {
-  constexpr int second = N == 2 ? kGrid : 1;
+template <typename Visit>
+void RodLinkage<N>::for_grid(const Angles& lower_rad, const Angles& upper_rad, Visit&& visit) {
+  constexpr int kSecond = N == 2 ? kGrid : 1;
   for (int m = 0; m < kGrid; ++m) {
-    for (int n = 0; n < second; ++n) {
-      Angles q;
-      q[0] = lower_rad[0] + (upper_rad[0] - lower_rad[0]) * m / (kGrid - 1);
-      if constexpr (N == 2) q[1] = lower_rad[1] + (upper_rad[1] - lower_rad[1]) * n / (kGrid - 1);
-      const std::string where =
-          fmt::format("at joint angle{}", N == 2 ? fmt::format("s {:.3f} and {:.3f} rad", q[0], q[N - 1])
-                                                 : fmt::format(" {:.3f} rad", q[0]));
-      const std::optional<Angles> theta = motor_angles(q);
-      if (!theta)
-        throw std::invalid_argument(where + " a rod doesn't reach; expected a linkage that covers the joints' ranges");
-      for (int i = 0; i < N; ++i) {
-        const double value = sine(motors_[static_cast<std::size_t>(i)], (*theta)[i], q);
-        if (std::abs(value) >= kLeastSine) continue;
-        throw std::invalid_argument(
-            fmt::format("{} crank and rod of motor {} are nearly in line (sine {:.2f}); expected {} or more within the "
-                        "joints' ranges",
-                        where, i, value, kLeastSine));
-      }
-      const Jacobian J = jacobian(*theta, q);
-      // Singular values of a 2 x 2 matrix: s^2 = (t +- sqrt(t^2 - 4 d^2)) / 2 with t = |J|^2, d = det J.
-      const double t = J.squaredNorm(), d = std::abs(J.determinant());
-      const double largest = N == 1 ? d : std::sqrt(0.5 * (t + std::sqrt(std::max(0.0, t * t - 4.0 * d * d))));
-      const double condition = N == 1 ? 1.0 : largest * largest / d;
-      if (condition <= kMostCondition && largest * kMostCondition >= 1.0) continue;
-      throw std::invalid_argument(
-          fmt::format("{} the linkage is nearly singular (condition {:.1f}, largest ratio {:.3f}); expected at most {}",
-                      where, condition, largest, kMostCondition));
+    for (int n = 0; n < kSecond; ++n) {
+      Angles share;
+      share[0] = static_cast<double>(m) / (kGrid - 1);
+      if constexpr (N == 2) share[1] = static_cast<double>(n) / (kGrid - 1);
+      visit(Angles(lower_rad + share.cwiseProduct(upper_rad - lower_rad)));
     }
   }
+}
+
+template <int N>
+void RodLinkage<N>::check_ranges(const Angles& lower_rad, const Angles& upper_rad) const {
+  for_grid(lower_rad, upper_rad, [this](const Angles& q) {
+    const std::string where =
+        fmt::format("at joint angle{}",
+                    N == 2 ? fmt::format("s {:.3f} and {:.3f} rad", q[0], q[N - 1]) : fmt::format(" {:.3f} rad", q[0]));
+    const std::optional<Angles> theta = motor_angles(q);
+    if (!theta)
+      throw std::invalid_argument(where + " a rod doesn't reach; expected a linkage that covers the joints' ranges");
+    for (int i = 0; i < N; ++i) {
+      const double value = sine(motors_[static_cast<std::size_t>(i)], (*theta)[i], q);
+      if (std::abs(value) >= kLeastSine) continue;
+      throw std::invalid_argument(
+          fmt::format("{} crank and rod of motor {} are nearly in line (sine {:.2f}); expected {} or more", where, i,
+                      value, kLeastSine));
+    }
+    const Jacobian J = jacobian(*theta, q);
+    // Singular values of a 2 x 2 matrix: s^2 = (t +- sqrt(t^2 - 4 d^2)) / 2 with t = |J|^2, d = det J.
+    const double t = J.squaredNorm(), d = std::abs(J.determinant());
+    const double largest = N == 1 ? d : std::sqrt(0.5 * (t + std::sqrt(std::max(0.0, t * t - 4.0 * d * d))));
+    const double condition = N == 1 ? 1.0 : largest * largest / d;
+    if (condition <= kMostCondition && largest * kMostCondition >= 1.0) return;
+    throw std::invalid_argument(
+        fmt::format("{} the linkage is nearly singular (condition {:.1f}, largest ratio {:.3f}); expected at most {}",
+                    where, condition, largest, kMostCondition));
+  });
+}
+
+template <int N>
+auto RodLinkage<N>::needs(const std::array<MotorLimits, kN>& joints, const Commands& gains) const
+    -> std::array<Needs, kN> {
+  Angles lower, upper, dq, torque, kp, kd;
+  for (int j = 0; j < N; ++j) {
+    const MotorLimits& joint = joints[static_cast<std::size_t>(j)];
+    lower[j] = joint.q_lower_rad;
+    upper[j] = joint.q_upper_rad;
+    dq[j] = joint.dq_rad_s;
+    torque[j] = joint.torque_Nm;
+    kp[j] = gains[static_cast<std::size_t>(j)].kp_Nm_per_rad;
+    kd[j] = gains[static_cast<std::size_t>(j)].kd_Nm_s_per_rad;
+  }
+  std::array<Needs, kN> needs{};
+  bool first = true;
+  for_grid(lower, upper, [&](const Angles& q) {
+    const Angles theta = *motor_angles(q);
+    const Jacobian J = jacobian(theta, q), inverse = J.inverse();
+    const Angles speeds = J.cwiseAbs() * dq, torques = inverse.transpose().cwiseAbs() * torque;
+    const Jacobian stiffness = inverse.transpose() * kp.asDiagonal() * inverse,
+                   damping = inverse.transpose() * kd.asDiagonal() * inverse;
+    for (int i = 0; i < N; ++i) {
+      Needs& need = needs[static_cast<std::size_t>(i)];
+      need.limits.q_lower_rad = first ? theta[i] : std::min(need.limits.q_lower_rad, theta[i]);
+      need.limits.q_upper_rad = first ? theta[i] : std::max(need.limits.q_upper_rad, theta[i]);
+      need.limits.dq_rad_s = std::max(need.limits.dq_rad_s, speeds[i]);
+      need.limits.torque_Nm = std::max(need.limits.torque_Nm, torques[i]);
+      need.gains.kp_Nm_per_rad = std::max(need.gains.kp_Nm_per_rad, stiffness(i, i));
+      need.gains.kd_Nm_s_per_rad = std::max(need.gains.kd_Nm_s_per_rad, damping(i, i));
+    }
+    first = false;
+  });
+  return needs;
 }
 
 template class RodLinkage<1>;

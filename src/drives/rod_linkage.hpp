@@ -60,7 +60,19 @@ class RodLinkage {
   /// closer than the bounds above. The text says where.
   void check_ranges(const Angles& lower_rad, const Angles& upper_rad) const;
 
+  /// What a motor needs for the joints' ranges, speeds, torques and gains, over a grid of the ranges:
+  ///   max |J| dq, max |J^-T| torque, max diagonal of J^-T K J^-1. For ranges that check_ranges() has taken.
+  struct Needs {
+    MotorLimits limits;
+    MotorCommand gains;  ///< kp and kd
+  };
+  std::array<Needs, kN> needs(const std::array<MotorLimits, kN>& joints, const Commands& gains) const;
+
  private:
+  /// Calls visit(q) for each point of a grid over the ranges.
+  template <typename Visit>
+  static void for_grid(const Angles& lower_rad, const Angles& upper_rad, Visit&& visit);
+
   struct Motor {
     CrankAndRod at_zero;
     Eigen::Vector3d arm_m;  // from the crank's centre to its end, across the axis, at theta = 0

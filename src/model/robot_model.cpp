@@ -209,6 +209,7 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   for (const char* section : {"drives", "buses"}) {
     if (reader.has(section)) reader.map(section);  // read by drives/drive_setup.hpp
   }
+  if (reader.has("linkages")) reader.maps("linkages");  // likewise
   robot.urdf = tree.urdf;
   robot.tree = tree.tree;
   robot.base_inertia = tree.root_inertia;

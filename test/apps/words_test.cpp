@@ -56,9 +56,10 @@ class Words : public testing::Test {
 };
 
 const std::vector<std::string> kPrograms = {
-    "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips",    "pmg_controller",
-    "pmg_diagnose",        "pmg_eval",           "pmg_keyboard", "pmg_log",
-    "pmg_report",          "pmg_send",           "pmg_sil",      "pmg_watch"};
+    "pmg_bus",        "pmg_calibrate_motor", "pmg_calibrate_zero", "pmg_clips",
+    "pmg_controller", "pmg_diagnose",        "pmg_eval",           "pmg_keyboard",
+    "pmg_log",        "pmg_report",          "pmg_send",           "pmg_sil",
+    "pmg_watch"};
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {
@@ -164,13 +165,13 @@ TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
 }
 
 TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {
-  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("the one backend of this build"));
-  expect_line("pmg_controller --hal can",
-              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("can, drives on CAN buses"));
+  expect_line("pmg_controller --hal ethercat",
+              "pmg_controller: --hal ethercat: this build has no EtherCAT backend; expected one of sil, can");
   expect_line("pmg_controller --hal sli", "pmg_controller: --hal: 'sli' isn't known; did you mean sil?");
   EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("sil: hang the robot in a gantry"));
   expect_line("pmg_controller --hal can --gantry",
-              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+              "pmg_controller: --gantry: is an option of --hal sil; expected none with --hal can");
   expect_line("pmg_controller --hal sil --seed many",
               "pmg_controller: --seed: 'many' isn't a whole number of at least 0");
 }

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <numbers>
 #include <optional>
@@ -74,6 +77,7 @@ class Drives : public testing::Test {
   std::string trouble() const { return describe(hal_->trouble(), z1_drives()); }
   test::DriveEmulator& knee() { return drives_->drive(0, 3); }
 
+  std::array<std::optional<drives::MotorCommand>, 2> last_;
   std::vector<MemoryLink*> host_;
   std::optional<CanHal> hal_;
   std::optional<test::EmulatedDrives> drives_;
@@ -109,6 +113,22 @@ TEST_F(Drives, ASilentMotorIsLateInTheSecondCycleAndLostInTheSixth) {
   EXPECT_EQ(trouble(), "left_knee (can0, node 4) answers late");
   EXPECT_EQ(cycle(standing_), BusStatus::kLost);
   EXPECT_EQ(trouble(), "left_knee (can0, node 4) does not answer");
+}
+
+TEST_F(Drives, ALossAndItsEndAreToldOnce) {
+  BusTrouble change;
+  stand();
+  while (hal_->take_change(change)) {
+  }
+  knee().silent = true;
+  for (int k = 0; k < 20; ++k) cycle(standing_);
+  ASSERT_TRUE(hal_->take_change(change));
+  EXPECT_EQ(describe(change, z1_drives()), "left_knee (can0, node 4) does not answer");
+  EXPECT_FALSE(hal_->take_change(change));
+  knee().silent = false;
+  for (int k = 0; k < 3; ++k) cycle(limp());
+  ASSERT_TRUE(hal_->take_change(change));
+  EXPECT_EQ(describe(change, z1_drives()), "the drives answer");
 }
 
 TEST_F(Drives, AWrongIdIsASilentMotorAndAStranger) {
@@ -308,6 +328,75 @@ TEST_F(Drives, ACycleAllocatesNothing) {
   for (int k = 0; k < 100; ++k) cycle(standing_);
   if (before < 0) GTEST_SKIP() << "sanitizers bring their own malloc";
   EXPECT_EQ(test::allocation_count(), before);
+}
+
+/// Z1's left ankle with two motors in the shank, as robot.yaml's `linkages` describes it.
+TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
+  drives::DriveSetup setup = z1_drives();
+  const auto rod = [](double y, double z) {
+    return drives::CrankAndRod{.crank_centre_m = {0.0, y, z},
+                               .axis = {0.0, 1.0, 0.0},
+                               .crank_end_m = {-0.04, y, z},
+                               .rod_end_m = {-0.045, y, -0.01}};
+  };
+  const drives::RodLinkage<2> ankle({Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()},
+                                    {rod(0.035, 0.20), rod(-0.035, 0.28)});
+  setup.buses[0].parallel.push_back({.motors = {4, 5}, .linkage = ankle});
+  for (const std::size_t m : {4, 5})
+    setup.buses[0].motors[m].limits = {.q_lower_rad = -2.0, .q_upper_rad = 2.0, .dq_rad_s = 20.0, .torque_Nm = 150.0};
+  auto [host, far] = MemoryLink::pair();
+  setup.buses.resize(1);
+  std::vector<std::unique_ptr<Link>> links;
+  links.push_back(std::move(host));
+  CanHal hal(setup, z1(), std::move(links));
+  const drives::MitProtocol protocol(setup.buses[0].motors[4].ranges);
+
+  const Eigen::Vector2d q(-0.2, 0.1), dq(0.8, -0.5), torque(12.0, -3.0);
+  const Eigen::Vector2d theta = *ankle.motor_angles(q);
+  const Eigen::Matrix2d J = ankle.jacobian(theta, q);
+  const Eigen::Vector2d dtheta = J * dq, crank_torque = J.transpose().inverse() * torque;
+  const auto answer = [&] {
+    std::array<Frame, 32> got;
+    const std::size_t count = far->receive(got);
+    for (const Frame& frame : std::span(got).first(count)) {
+      drives::MitReply reply{.node = static_cast<std::uint8_t>(frame.id), .reading = {}};
+      const int crank = static_cast<int>(frame.id) - 5;  // nodes 5 and 6
+      if (crank >= 0)
+        reply.reading = {.q_rad = theta[crank], .dq_rad_s = dtheta[crank], .torque_Nm = crank_torque[crank]};
+      const Frame sent = Frame::of(kReplyId, protocol.reply(reply));
+      far->send(std::span(&sent, 1));
+      if (crank >= 0)
+        last_[static_cast<std::size_t>(crank)] = protocol.command([&frame] {
+          drives::MitFrame bytes{};
+          std::copy_n(frame.data.begin(), 8, bytes.begin());
+          return bytes;
+        }());
+    }
+  };
+  for (int k = 0; k < 3; ++k) {
+    hal.send(k == 0 ? limp() : standing_);
+    answer();
+    const BusStatus status = hal.receive(state_);
+    ASSERT_TRUE(k == 0 || status == BusStatus::kOk) << describe(hal.trouble(), setup);
+  }
+  const int pitch = z1().joint_index.at("left_ankle_pitch"), roll = z1().joint_index.at("left_ankle_roll");
+  // Half a step at a crank: 0.1 mrad, 7 mrad/s, 0.04 Nm. Pitch has ratio 1 to the cranks; roll some 2.
+  EXPECT_NEAR(state_.q[pitch], q[0], 5e-4);
+  EXPECT_NEAR(state_.q[roll], q[1], 1e-3);
+  EXPECT_NEAR(state_.dq[pitch], dq[0], 0.05);
+  EXPECT_NEAR(state_.tau[pitch], torque[0], 0.1);
+  Eigen::Vector2d given, wanted;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(last_[static_cast<std::size_t>(i)]);
+    const drives::MotorCommand& crank = *last_[static_cast<std::size_t>(i)];
+    given[i] = crank.kp_Nm_per_rad * (crank.q_rad - theta[i]) + crank.kd_Nm_s_per_rad * (crank.dq_rad_s - dtheta[i]) +
+               crank.torque_Nm;
+    const int joint = i == 0 ? pitch : roll;
+    wanted[i] = standing_.kp[joint] * (standing_.q[joint] - q[i]) + standing_.kd[joint] * (standing_.dq[joint] - dq[i]);
+  }
+  // Rounding: 700 Nm/rad times half a step of 0.2 mrad, 12 Nm s/rad times half of 15 mrad/s, half of 0.08 Nm, twice.
+  EXPECT_LT((J.transpose() * given - wanted).norm(), 0.8)
+      << (J.transpose() * given).transpose() << " for " << wanted.transpose();
 }
 
 TEST_F(Drives, TheRollCallNamesEveryProblem) {

@@ -1,6 +1,10 @@
 // Every drive of a robot and its IMU, behind links.
 #pragma once
 
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -24,6 +28,10 @@ class EmulatedDrives {
 
   /// Answers what has arrived; the IMU speaks once.
   void serve() noexcept {
+    answer();
+    speak();
+  }
+  void answer() noexcept {
     for (std::size_t b = 0; b < buses_.size(); ++b) {
       std::array<can::Frame, 32> frames;
       while (const std::size_t count = links_[b]->receive(frames)) {
@@ -35,6 +43,10 @@ class EmulatedDrives {
           }
         }
       }
+    }
+  }
+  void speak() noexcept {
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
       if (setup_.buses[b].imu && !imu_silent) links_[b]->send(can::imu_frames(sensed_));
     }
   }
@@ -64,6 +76,23 @@ class EmulatedDrives {
             drives::MotorReading{.q_rad = state.q[index], .dq_rad_s = state.dq[index], .torque_Nm = state.tau[index]}));
       }
     }
+  }
+
+  long heard() const noexcept {
+    long sum = 0;
+    for (const auto& bus : buses_) {
+      for (const DriveEmulator& drive : bus) sum += drive.heard;
+    }
+    return sum;
+  }
+  /// Waits until something arrives. False: these links have no kernel behind them, where everything is there at once.
+  bool wait_ms(int most) noexcept {
+    std::array<pollfd, 16> polled{};
+    const std::size_t count = std::min(links_.size(), polled.size());
+    for (std::size_t b = 0; b < count; ++b) polled[b] = {.fd = links_[b]->descriptor(), .events = POLLIN, .revents = 0};
+    if (polled[0].fd < 0) return false;
+    poll(polled.data(), count, most);
+    return true;
   }
 
   DriveEmulator& drive(std::size_t bus, std::size_t motor) { return buses_[bus][motor]; }

@@ -9,6 +9,7 @@
 #include "can/can_hal.hpp"
 #include "can/emulated_drives.hpp"
 #include "hal/hal.hpp"
+#include "io/clock.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::test {
@@ -23,6 +24,7 @@ class EmulatedRobot final : public hal::Hal {
                 Links drives)
       : world_(world), hal_(setup, robot, std::move(host)), drives_(setup, std::move(drives)) {
     acting_.q = acting_.dq = acting_.kp = acting_.kd = acting_.tau_ff = JointVector::Zero(robot.joint_index.size());
+    for (std::size_t b = 0; b < drives_.buses(); ++b) motors_ += static_cast<long>(drives_.motors(b));
     world_.read(sensed_);
     drives_.feel(sensed_);
   }
@@ -30,9 +32,16 @@ class EmulatedRobot final : public hal::Hal {
   hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
     ++cycles;
     if (before) before(cycles);
+    const std::int64_t start_ns = clock_.now_ns();
     if (!frozen) hal_.send(command);
+    const std::int64_t sent_ns = clock_.now_ns();
+    if (!frozen) asked_ += motors_;
+    // A kernel may deliver frames a moment after send().
+    for (int wait = 0; wait < 20 && drives_.heard() < asked_ && drives_.wait_ms(1); ++wait) drives_.answer();
     drives_.serve();
+    const std::int64_t served_ns = clock_.now_ns();
     const hal::BusStatus status = frozen ? hal::BusStatus::kStale : hal_.receive(state);
+    if (costs_ns.size() < costs_ns.capacity()) costs_ns.push_back(clock_.now_ns() - served_ns + sent_ns - start_ns);
     drives_.tick(acting_);
     world_.step(acting_);
     world_.read(sensed_);
@@ -54,13 +63,16 @@ class EmulatedRobot final : public hal::Hal {
   std::function<void(int, hal::BusStatus)> after;  ///< each exchange
   bool frozen = false;                             ///< the host sends nothing
   int cycles = 0;
+  std::vector<std::int64_t> costs_ns;  ///< of the host's part of each cycle, as many as were reserved
 
  private:
+  io::WallClock clock_;
   sim::World& world_;
   can::CanHal hal_;
   EmulatedDrives drives_;
   model::JointCommand acting_;
   model::RobotState sensed_;
+  long motors_ = 0, asked_ = 0;
 };
 
 /// Ends of buses without a kernel: the host's, then the drives'.

@@ -83,5 +83,32 @@ TEST_F(DriveSetupFile, EveryBusIsDescribedAndOneHasTheImu) {
   EXPECT_THAT(refusal(), testing::HasSubstr("'can4' isn't described; expected a bus of `buses`"));
 }
 
+TEST_F(DriveSetupFile, AnAnkleOfTwoMotorsHasItsLinkageAndItsMotorsNeeds) {
+  const std::string ankle =
+      "linkages:\n"
+      "  - joints: [left_ankle_pitch, left_ankle_roll]\n"
+      "    motors:\n"
+      "      - {crank_centre_m: [0, 0.035, 0.20], axis: [0, 1, 0], crank_end_m: [-0.05, 0.035, 0.20], rod_end_m: "
+      "[-0.05, 0.035, -0.01]}\n"
+      "      - {crank_centre_m: [0, -0.035, 0.28], axis: [0, 1, 0], crank_end_m: [-0.05, -0.035, 0.28], rod_end_m: "
+      "[-0.05, -0.035, -0.01]}\n";
+  text_ += ankle;
+  EXPECT_THAT(refusal(),
+              testing::HasSubstr(
+                  "the drive 'leg' covers a velocity_rad_s of 30 and left_ankle_pitch's speed limit needs 48.5"));
+  replace("position_rad: 6.3, velocity_rad_s: 30, torque_Nm: 160",
+          "position_rad: 6.3, velocity_rad_s: 60, torque_Nm: 300");
+  EXPECT_EQ(refusal(), "taken");
+  const DriveSetup setup = load_drives(model::load_robot(folder_));
+  ASSERT_EQ(setup.buses[0].parallel.size(), 1u);
+  EXPECT_EQ(setup.buses[0].parallel[0].motors, (std::array<std::size_t, 2>{4, 5}));
+  EXPECT_NE(setup.buses[0].motors[4].limits.torque_Nm, test::z1().joints[4].effort_limit_Nm)
+      << "its crank's, not the joint's";
+  replace("crank_end_m: [-0.05, 0.035, 0.20]", "crank_end_m: [0, 0.035, 0.15]");
+  EXPECT_THAT(refusal(), testing::ContainsRegex("linkages.*motors: at joint angles .* expected"));
+  replace("joints: [left_ankle_pitch, left_ankle_roll]", "joints: [left_ankle_pitch, right_ankle_roll]");
+  EXPECT_THAT(refusal(), testing::HasSubstr("their drives are on two buses; expected one bus"));
+}
+
 }  // namespace
 }  // namespace pmg::drives
