@@ -29,7 +29,7 @@ std::vector<std::uint32_t> awaited(const drives::BusSetup& bus) {
 class CanBackend final : public hal::Backend {
  public:
   explicit CanBackend(const hal::BackendSetup& setup)
-      : robot_(setup.robot), options_(setup.options), setup_(drives::load_drives(setup.robot)) {
+      : robot_(setup.robot), clock_(setup.clock), options_(setup.options), setup_(drives::load_drives(setup.robot)) {
     check_load(setup_);
   }
 
@@ -53,7 +53,7 @@ class CanBackend final : public hal::Backend {
     for (const drives::BusSetup& bus : setup_.buses)
       links.push_back(std::make_unique<SocketLink>(bus.name, awaited(bus), bus.data_bitrate != 0));
     call_roll(setup_, links, interrupted);
-    hal_ = std::make_unique<CanHal>(setup_, robot_, std::move(links));
+    hal_ = std::make_unique<CanHal>(setup_, robot_, clock_, std::move(links));
     return *hal_;
   }
 
@@ -64,6 +64,7 @@ class CanBackend final : public hal::Backend {
 
  private:
   const model::RobotModel& robot_;
+  const io::Clock& clock_;
   hal::OptionValues options_;
   drives::DriveSetup setup_;
   std::unique_ptr<CanHal> hal_;

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <ctime>
 
-#include "io/clock.hpp"
-
 namespace pmg::can {
 
 namespace {
@@ -44,9 +42,9 @@ std::string describe(const BusTrouble& trouble, const drives::DriveSetup& setup)
   return text + drives::to_string(trouble.trouble);
 }
 
-CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot,
+CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
                std::vector<std::unique_ptr<Link>> links)
-    : robot_(robot), incoming_(kIncoming) {
+    : robot_(robot), clock_(clock), incoming_(kIncoming) {
   buses_.reserve(setup.buses.size());
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     Bus bus;
@@ -76,9 +74,8 @@ hal::BusStatus CanHal::exchange(const model::JointCommand& command, model::Robot
 
 void CanHal::send(const model::JointCommand& command) noexcept {
   drain();  // late answers belong to the cycle before
-  const io::WallClock clock;
-  const std::int64_t now_ns = clock.now_ns();
-  const bool paused = waits_ && last_send_ns_ != 0 && now_ns - last_send_ns_ > kPause_ns;
+  const std::int64_t now_ns = clock_.now_ns();
+  const bool paused = last_send_ns_ != 0 && now_ns - last_send_ns_ > kPause_ns;
   last_send_ns_ = now_ns;
   stiff_ = stiff(command);
   imu_.begin_cycle();

@@ -11,6 +11,7 @@
 #include "drives/drive_setup.hpp"
 #include "drives/motor_monitor.hpp"
 #include "hal/hal.hpp"
+#include "io/clock.hpp"
 #include "io/mailbox.hpp"
 
 namespace pmg::can {
@@ -40,8 +41,9 @@ class CanHal final : public hal::Hal {
   /// A pause of the bus thread after which the drives' watchdogs may have acted. They are to be set to 20 ms or more.
   static constexpr std::int64_t kPause_ns = 20'000'000;
 
-  /// One link a bus, in the order of setup.buses. Keeps references to setup and robot.
-  CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, std::vector<std::unique_ptr<Link>> links);
+  /// One link a bus, in the order of setup.buses. Keeps references; clock is the run's, on which a pause is counted.
+  CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
+         std::vector<std::unique_ptr<Link>> links);
 
   /// Sends every motor its command, or the request to enable it, and receives for kWait_ns at most.
   /// - kOk: every motor answered this cycle's command or the one before, and the IMU spoke within 10 ms.
@@ -114,6 +116,7 @@ class CanHal final : public hal::Hal {
   void tell() noexcept;
 
   const model::RobotModel& robot_;
+  const io::Clock& clock_;
   std::vector<Bus> buses_;
   std::vector<Frame> incoming_;
   XsensImu imu_;

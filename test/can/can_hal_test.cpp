@@ -43,7 +43,7 @@ class Drives : public testing::Test {
       host.push_back(std::move(here));
       far.push_back(std::move(there));
     }
-    hal_.emplace(z1_drives(), z1(), std::move(host));
+    hal_.emplace(z1_drives(), z1(), clock_, std::move(host));
     drives_.emplace(z1_drives(), std::move(far));
     truth_.q = z1().q_stand();
     truth_.dq = truth_.tau = JointVector::Zero(truth_.q.size());
@@ -78,6 +78,7 @@ class Drives : public testing::Test {
   test::DriveEmulator& knee() { return drives_->drive(0, 3); }
 
   std::array<std::optional<drives::MotorCommand>, 2> last_;
+  io::SimulationClock clock_;
   std::vector<MemoryLink*> host_;
   std::optional<CanHal> hal_;
   std::optional<test::EmulatedDrives> drives_;
@@ -233,6 +234,18 @@ TEST_F(Drives, EveryFaultThatADriveReportsIsLostAtOnce) {
   }
 }
 
+TEST_F(Drives, APauseLongerThanTheDrivesWatchdogsEndsUnderDamping) {
+  clock_.advance_to(1'000'000);
+  stand();
+  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns);
+  EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "not longer";
+  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns + 1);
+  EXPECT_EQ(cycle(standing_), BusStatus::kLost);
+  EXPECT_EQ(trouble(), "left_hip_pitch (can0, node 1) is not enabled");
+  cycle(limp());
+  EXPECT_EQ(cycle(standing_), BusStatus::kOk);
+}
+
 TEST_F(Drives, AHotMotorIsReadByTheControlThread) {
   stand();
   knee().temperature_degC = 95.0;
@@ -348,7 +361,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   setup.buses.resize(1);
   std::vector<std::unique_ptr<Link>> links;
   links.push_back(std::move(host));
-  CanHal hal(setup, z1(), std::move(links));
+  CanHal hal(setup, z1(), clock_, std::move(links));
   const drives::MitProtocol protocol(setup.buses[0].motors[4].ranges);
 
   const Eigen::Vector2d q(-0.2, 0.1), dq(0.8, -0.5), torque(12.0, -3.0);

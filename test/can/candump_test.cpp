@@ -59,7 +59,8 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
     links.push_back(std::move(here));
     far.push_back(std::move(there));
   }
-  CanHal hal(setup, z1(), std::move(links));
+  const io::SimulationClock clock;
+  CanHal hal(setup, z1(), clock, std::move(links));
   const drives::MitProtocol protocol(setup.buses[0].motors[3].ranges);
   std::string recording;
   for (int k = 0; k < 5; ++k) {

@@ -46,7 +46,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     links.push_back(std::move(here));
     far.push_back(std::move(there));
   }
-  can::CanHal hal(robot.setup, robot.model, std::move(links));
+  const io::SimulationClock clock;
+  can::CanHal hal(robot.setup, robot.model, clock, std::move(links));
   model::RobotState state;
   // Records of 12 bytes: bus, flags and length, identifier (2), data (8). A set high bit of the bus ends the cycle.
   for (std::size_t at = 0; at + 12 <= size; at += 12) {

@@ -22,7 +22,7 @@ class EmulatedRobot final : public hal::Hal {
  public:
   EmulatedRobot(const drives::DriveSetup& setup, const model::RobotModel& robot, sim::World& world, Links host,
                 Links drives)
-      : world_(world), hal_(setup, robot, std::move(host)), drives_(setup, std::move(drives)) {
+      : world_(world), hal_(setup, robot, still_, std::move(host)), drives_(setup, std::move(drives)) {
     acting_.q = acting_.dq = acting_.kp = acting_.kd = acting_.tau_ff = JointVector::Zero(robot.joint_index.size());
     for (std::size_t b = 0; b < drives_.buses(); ++b) motors_ += static_cast<long>(drives_.motors(b));
     world_.read(sensed_);
@@ -67,6 +67,7 @@ class EmulatedRobot final : public hal::Hal {
 
  private:
   io::WallClock clock_;
+  io::SimulationClock still_;  // a lockstep doesn't pause, however slow its computer is
   sim::World& world_;
   can::CanHal hal_;
   EmulatedDrives drives_;

@@ -48,6 +48,7 @@ TEST_F(FirstLight, AKneeMovesAndItsLoadTellsTheDirection) {
   const Wiggle result = wiggle(knee(), {.by_rad = 0.1, .gain_share = 0.5});
   EXPECT_GT(result.moved_rad, 0.5 * result.asked_rad);
   EXPECT_LT(result.moved_rad, 1.5 * result.asked_rad);
+  tick();  // the last frame arrives
   EXPECT_FALSE(drives_->drive(0, 3).enabled()) << "switched off afterwards";
   for (std::size_t m = 0; m < 6; ++m) EXPECT_EQ(drives_->drive(0, m).enabled(), false) << "no other drive was ever on";
   EXPECT_FALSE(verdict(result).empty());
