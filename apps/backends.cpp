@@ -1,5 +1,7 @@
 #include "backends.hpp"
 
+#include "can/can_backend.hpp"
+
 #ifdef PMG_SIL
 #include "sil/simulated_backend.hpp"
 #endif
@@ -13,7 +15,7 @@ hal::BackendFactory backends() {
 #else
   factory.lacks("sil", "simulated robot");
 #endif
-  factory.lacks("can", "CAN backend");
+  can::register_backend(factory);
   factory.lacks("ethercat", "EtherCAT backend");
   return factory;
 }

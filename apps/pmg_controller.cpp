@@ -98,9 +98,10 @@ void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant v
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
 }
 
-/// Waits until somebody or something ends the run. window: may be null.
+/// Waits until somebody or something ends the run.
 void supervise(runtime::Controller& controller, const EndSignals& signals, const Arguments& arguments,
-               hal::Window* window, Console& console, const std::atomic<bool>& bench_over) {
+               hal::Backend& backend, Console& console, const std::atomic<bool>& bench_over) {
+  hal::Window* const window = backend.window();
   constexpr long kPoll_ms = 20, kKeys_ms = 5;
   if (window != nullptr) window->show();
   const auto start = std::chrono::steady_clock::now();
@@ -112,6 +113,7 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   while (!signalled && !expired() && !bench_over && controller.failure().empty()) {
     signalled = signals.wait_ms(window == nullptr ? kPoll_ms : kKeys_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
+    if (const std::string news = backend.news(); !news.empty()) spdlog::warn("drives: {}", news);
     if (window == nullptr) continue;
     window->listen();
     if (!window->closed()) continue;
@@ -136,7 +138,7 @@ runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedContr
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
              runtime::Comms& comms, std::optional<runtime::HeldClaim> claim, runtime::Recorder& recorder,
-             hal::Window* window, Console& console, const std::atomic<bool>& bench_over) {
+             hal::Backend& backend, Console& console, const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
     const auto speak = [&] {
@@ -145,7 +147,7 @@ ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Con
     };
     controller.start(speak, [&] { recorder.drain(); });
     spdlog::info("mode: passive");
-    supervise(controller, signals, arguments, window, console, bench_over);
+    supervise(controller, signals, arguments, backend, console, bench_over);
     failure = controller.failure();
     spdlog::info("{}: damping, then closing", failure.empty() ? "asked to end" : "can't run on");
     if (!controller.stop()) spdlog::error("the control thread did not confirm damping; the bus damped without it");
@@ -241,7 +243,7 @@ int run_controller(Arguments& arguments) {
   };
   Console console(loaded.robot, arguments.name);
   const ExitCode code =
-      run(arguments, signals, controller, comms, std::move(claim), recorder, backend->window(), console, bench_over);
+      run(arguments, signals, controller, comms, std::move(claim), recorder, *backend, console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
   report(arguments, controller, recorder);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;

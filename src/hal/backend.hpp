@@ -72,6 +72,10 @@ class Backend {
   /// std::runtime_error: one line.
   virtual Hal& connect(const std::function<bool()>& interrupted) = 0;
 
+  /// What has changed with the drives since the last call, one line for people ("left_knee (can0, node 4) does not
+  /// answer"); empty: nothing. For one thread, after connect().
+  virtual std::string news() { return {}; }
+
   virtual HoistLine* hoist() noexcept { return nullptr; }  ///< null: nothing carries the robot
   virtual Window* window() noexcept { return nullptr; }    ///< null: none was asked for
   /// The truth of this bus cycle; null: unknown. For one thread; older samples are given up.

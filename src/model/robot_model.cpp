@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <limits>
 
@@ -52,6 +53,11 @@ BusAddress read_bus(ConfigReader reader) {
   BusAddress bus;
   bus.bus = reader.required<std::string>("name");
   bus.node = reader.required<int>("node", non_negative());
+  bus.drive = reader.optional<std::string>("drive", "");
+  bus.direction = reader.optional<int>("direction", 1);
+  if (std::abs(bus.direction) != 1) reader.fail("direction", fmt::format("is {}", bus.direction), "1 or -1");
+  bus.gear = reader.optional<double>("gear", 1.0, positive());
+  bus.zero_offset_rad = reader.optional<double>("zero_offset_rad", 0.0);
   reader.finish();
   return bus;
 }
@@ -200,6 +206,10 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   const UrdfTree tree = read_urdf(directory / reader.required<std::string>("urdf"));
   if (reader.has("policy")) reader.required<std::string>("policy");  // read by src/control
   if (reader.has("motor")) reader.required<std::string>("motor");    // read by sim/motors_in_force.hpp
+  for (const char* section : {"drives", "buses"}) {
+    if (reader.has(section)) reader.map(section);  // read by drives/drive_setup.hpp
+  }
+  if (reader.has("linkages")) reader.maps("linkages");  // likewise
   robot.urdf = tree.urdf;
   robot.tree = tree.tree;
   robot.base_inertia = tree.root_inertia;

@@ -20,10 +20,15 @@
 
 namespace pmg::model {
 
-/// Address of a drive: a bus and a node on it.
+/// Address of a drive, a bus and a node on it, and how its motor turns the joint:
+///   q_motor = direction gear (q_joint + zero_offset).
 struct BusAddress {
   std::string bus;  ///< "can0", "ethercat", ...
   int node = 0;
+  std::string drive;             ///< its entry in robot.yaml's `drives` (src/drives); empty: none
+  int direction = 1;             ///< 1 or -1
+  double gear = 1.0;             ///< turns of the drive's output a turn of the joint
+  double zero_offset_rad = 0.0;  ///< the joint's reading minus its true angle, as zero.yaml has it
 };
 
 struct Joint {

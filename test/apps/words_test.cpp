@@ -55,7 +55,8 @@ class Words : public testing::Test {
                            ("words_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
-const std::vector<std::string> kPrograms = {"pmg_calibrate_motor",
+const std::vector<std::string> kPrograms = {"pmg_bus",
+                                            "pmg_calibrate_motor",
                                             "pmg_calibrate_zero",
                                             "pmg_clips",
                                             "pmg_controller",
@@ -173,13 +174,13 @@ TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
 }
 
 TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {
-  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("the one backend of this build"));
-  expect_line("pmg_controller --hal can",
-              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+  EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("can, drives on CAN buses"));
+  expect_line("pmg_controller --hal ethercat",
+              "pmg_controller: --hal ethercat: this build has no EtherCAT backend; expected one of sil, can");
   expect_line("pmg_controller --hal sli", "pmg_controller: --hal: 'sli' isn't known; did you mean sil?");
   EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("sil: hang the robot in a gantry"));
   expect_line("pmg_controller --hal can --gantry",
-              "pmg_controller: --hal can: this build has no CAN backend; expected sil, the one that it has");
+              "pmg_controller: --gantry: is an option of --hal sil; expected none with --hal can");
   expect_line("pmg_controller --hal sil --seed many",
               "pmg_controller: --seed: 'many' isn't a whole number of at least 0");
 }

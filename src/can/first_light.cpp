@@ -1,0 +1,190 @@
+#include "can/first_light.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "can/can_hal.hpp"
+#include "drives/motor_monitor.hpp"
+#include "hal/bus_cycle.hpp"
+#include "model/hanging_load.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::can {
+
+namespace {
+
+constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
+constexpr int kSettleCycles = 100;   // 0.2 s at each end
+constexpr int kAnswerCycles = 50;    // 0.1 s for the first answer
+constexpr double kLeastShare = 0.5;  // of the way asked for, with soft gains and dry friction
+
+/// One motor and the frames that it exchanges.
+class OneMotor {
+ public:
+  OneMotor(const drives::MotorSetup& setup, Link& link, bool fd, const std::function<void()>& tick)
+      : setup_(setup), protocol_(setup.ranges), monitor_(setup.limits), link_(link), fd_(fd), tick_(tick) {}
+  ~OneMotor() { send(drives::kMitDisable); }
+  OneMotor(const OneMotor&) = delete;
+  OneMotor& operator=(const OneMotor&) = delete;
+
+  void exchange(const drives::MitFrame& frame, bool enabling = false) {
+    send(frame);
+    monitor_.ask(enabling);
+    tick_();
+    std::array<Frame, 32> frames;
+    while (const std::size_t count = link_.receive(frames)) {
+      for (const Frame& got : std::span(frames).first(count)) {
+        if (got.extended || got.id != kReplyId || got.length != 8 || got.data[0] != setup_.node) continue;
+        if (const auto reply = protocol_.reply(got.bytes())) monitor_.hear(reply->reading);
+      }
+    }
+  }
+  void exchange(const drives::MotorCommand& joint) {
+    exchange(protocol_.command(setup_.transmission.to_motor(joint), setup_.limits));
+  }
+  drives::MotorReading joint() const { return setup_.transmission.to_joint(monitor_.reading()); }
+  const drives::MotorMonitor& monitor() const { return monitor_; }
+
+ private:
+  void send(const drives::MitFrame& bytes) {
+    const Frame frame = Frame::of(static_cast<std::uint32_t>(setup_.node), bytes, fd_);
+    link_.send(std::span(&frame, 1));
+  }
+  const drives::MotorSetup& setup_;
+  drives::MitProtocol protocol_;
+  drives::MotorMonitor monitor_;
+  Link& link_;
+  bool fd_;
+  const std::function<void()>& tick_;
+};
+
+}  // namespace
+
+Wiggle wiggle(const model::RobotModel& robot, const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
+              const WiggleOptions& options, const std::function<void()>& tick,
+              const std::function<bool()>& interrupted) {
+  const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
+  const std::string who = fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
+  OneMotor one(motor, link, bus.data_bitrate != 0, tick);
+  for (int k = 0; k < kAnswerCycles && !one.monitor().answered(); ++k) one.exchange(drives::kMitDisable);
+  if (!one.monitor().answered())
+    throw std::runtime_error(who + " does not answer; expected a powered drive with this node number");
+  const double start_rad = one.joint().q_rad;
+  if (start_rad < joint.lower_rad || start_rad > joint.upper_rad) {
+    throw std::runtime_error(
+        fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: set its zero first", who,
+                    start_rad, joint.lower_rad, joint.upper_rad));
+  }
+  for (int k = 0; k < kAnswerCycles && !one.monitor().enabled(); ++k) one.exchange(drives::kMitEnable, true);
+
+  double target_rad = start_rad;
+  const auto go_to = [&](double end_rad, double& q_rad, double& torque_Nm) {
+    double q_sum = 0.0, torque_sum = 0.0;
+    const double end = std::clamp(end_rad, joint.lower_rad, joint.upper_rad);
+    for (int settled = 0; settled < kSettleCycles;) {
+      if (interrupted && interrupted()) throw std::runtime_error("interrupted; the motor is switched off");
+      target_rad += std::clamp(end - target_rad, -options.speed_rad_s * kCycle_s, options.speed_rad_s * kCycle_s);
+      one.exchange(drives::MotorCommand{.q_rad = target_rad,
+                                        .kp_Nm_per_rad = options.gain_share * joint.kp_Nm_per_rad,
+                                        .kd_Nm_s_per_rad = options.gain_share * joint.kd_Nm_s_per_rad});
+      if (one.monitor().condition(true) == drives::Condition::kLost) {
+        const drives::Trouble trouble = one.monitor().trouble(true);
+        throw std::runtime_error(who + " " +
+                                 (trouble == drives::Trouble::kFault
+                                      ? std::string("reports ") + drives::to_string(one.monitor().reading().fault)
+                                      : std::string(drives::to_string(trouble))) +
+                                 "; it is switched off");
+      }
+      if (target_rad != end) continue;
+      ++settled;
+      if (2 * settled <= kSettleCycles) continue;  // the second half is at rest
+      q_sum += one.joint().q_rad;
+      torque_sum += one.joint().torque_Nm;
+    }
+    q_rad = q_sum / (kSettleCycles / 2);
+    torque_Nm = torque_sum / (kSettleCycles / 2);
+  };
+  double q_up = 0.0, q_down = 0.0, q_back = 0.0, torque_up = 0.0, torque_down = 0.0, torque_back = 0.0;
+  const double up = std::min(start_rad + options.by_rad, joint.upper_rad);
+  go_to(up, q_up, torque_up);
+  go_to(start_rad - options.by_rad, q_down, torque_down);
+  go_to(start_rad, q_back, torque_back);
+
+  const model::HangingLoad load = model::hanging_load(robot, motor.joint);
+  Wiggle result;
+  result.asked_rad = up - start_rad;
+  result.moved_rad = q_up - start_rad;
+  result.held_Nm = 0.5 * (torque_up + torque_down);  // dry friction takes opposite signs on the two ways
+  result.model_Nm = load.gravity_Nm * std::sin(0.5 * (q_up + q_down) - load.hangs_at_rad);
+  result.friction_Nm = joint.friction_Nm + drives::MitProtocol(motor.ranges).torque().step();
+  return result;
+}
+
+std::string way_of(const model::RobotModel& robot, const std::string& joint, double by_rad) {
+  const auto centre = [&](const JointVector& q) {
+    // Centre of mass of the links beyond the joint, base upright: each link's frame from the base, by its own chain.
+    KDL::Vector sum = KDL::Vector::Zero();
+    double mass = 0.0;
+    for (const auto& [name, element] : robot.tree.getSegments()) {
+      KDL::Chain chain;
+      if (!robot.tree.getChain(robot.base_link, name, chain)) continue;
+      bool beyond = false;
+      KDL::Frame frame = KDL::Frame::Identity();
+      for (const KDL::Segment& segment : chain.segments) {
+        const bool moves = segment.getJoint().getType() != KDL::Joint::Fixed;
+        beyond = beyond || segment.getJoint().getName() == joint;
+        frame = frame * segment.pose(moves ? q[robot.joint_index.at(segment.getJoint().getName())] : 0.0);
+      }
+      if (!beyond) continue;
+      const KDL::RigidBodyInertia inertia = GetTreeElementSegment(element).getInertia();
+      sum += inertia.getMass() * (frame * inertia.getCOG());
+      mass += inertia.getMass();
+    }
+    return sum / mass;
+  };
+  JointVector q = robot.q_stand();
+  const KDL::Vector before = centre(q);
+  q[robot.joint_index.at(joint)] += by_rad;
+  const KDL::Vector way_mm = 1e3 * (centre(q) - before);
+  constexpr std::array<std::array<const char*, 2>, 3> kWays = {
+      {{"forward", "backward"}, {"to the left", "to the right"}, {"up", "down"}}};
+  std::vector<std::pair<double, std::string>> parts;
+  for (int i = 0; i < 3; ++i) {
+    const double length_mm = std::abs(way_mm(i));
+    if (length_mm < 0.5) continue;
+    parts.emplace_back(-length_mm, fmt::format("{:.0f} mm {}", length_mm,
+                                               kWays[static_cast<std::size_t>(i)][way_mm(i) > 0.0 ? 0 : 1]));
+  }
+  if (parts.empty()) return "turns in place";
+  std::ranges::sort(parts);
+  std::vector<std::string> texts;
+  for (const auto& part : parts) texts.push_back(part.second);
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string verdict(const Wiggle& wiggle) {
+  if (wiggle.moved_rad < kLeastShare * wiggle.asked_rad) {
+    return wiggle.moved_rad < 0.0
+               ? "it moved the other way than its own drive was told: position and torque of the drive have opposite "
+                 "signs"
+               : "it moved less than half the way: a brake, a stop, too much friction, or another joint's motor";
+  }
+  const double sure_Nm = 3.0 * wiggle.friction_Nm;
+  if (std::abs(wiggle.model_Nm) < sure_Nm)
+    return "its load is too small to tell the direction: compare the way with the eye";
+  if (wiggle.held_Nm * wiggle.model_Nm < 0.0)
+    return "the load pulls the other way than the model's: `direction` in robot.yaml is wrong";
+  const double ratio = wiggle.held_Nm / wiggle.model_Nm;
+  if (ratio < 0.5 || ratio > 2.0)
+    return fmt::format(
+        "the drive holds {:.1f} times the model's load: look at `gear` and at the drive's torque constant", ratio);
+  return "direction and gear agree with the model";
+}
+
+}  // namespace pmg::can

@@ -1,0 +1,33 @@
+// The way to one CAN bus.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "can/frame.hpp"
+
+namespace pmg::can {
+
+/// Counts since the link was opened.
+struct LinkCounts {
+  std::uint64_t sent = 0, received = 0;
+  std::uint64_t not_sent = 0;      ///< frames that the queue had no room for, or that a dead interface refused
+  std::uint64_t error_frames = 0;  ///< reports of the CAN controller, ACK errors among them
+  std::uint64_t ack_errors = 0;
+  std::uint64_t bus_offs = 0;
+};
+
+/// None of these allocates, locks, throws or waits.
+class Link {
+ public:
+  virtual ~Link() = default;
+  /// Frames in the order in which they go out; as many as there is room for, the others are counted and dropped.
+  virtual void send(std::span<const Frame> frames) noexcept = 0;
+  /// What has arrived, at most as many as there is room for; 0: nothing more.
+  virtual std::size_t receive(std::span<Frame> frames) noexcept = 0;
+  virtual BusHealth health() const noexcept = 0;
+  virtual const LinkCounts& counts() const noexcept = 0;
+  virtual int descriptor() const noexcept { return -1; }  ///< for poll(); -1: none
+};
+
+}  // namespace pmg::can

@@ -1,0 +1,34 @@
+// Who answers on the buses, asked of drives that are switched off.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "can/link.hpp"
+#include "drives/drive_setup.hpp"
+
+namespace pmg::can {
+
+/// One answer to the request to disable, which every drive gives without a torque.
+struct Answer {
+  int node = 0;
+  int count = 0;                 ///< answers to one request; 2: two drives have this node
+  drives::MotorReading reading;  ///< at the drive's output shaft; zero for a node without a known kind of drive
+};
+
+/// Asks every motor of the bus a few times, waiting for 0.2 s at most. Answers by node, those of strangers included.
+std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const std::function<bool()>& interrupted);
+
+/// What is wrong with these answers, one text a problem: a motor that doesn't answer, two drives of one node, a node
+/// that robot.yaml doesn't have, a fault that a drive reports, a joint more than 0.2 rad beyond its range (a wrong
+/// zero, direction or gear, or a lost turn).
+std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector<Answer>& answers);
+
+/// Disables and asks every motor of every bus. Throws std::runtime_error with the first problem and the number of
+/// others.
+void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links,
+               const std::function<bool()>& interrupted);
+
+}  // namespace pmg::can

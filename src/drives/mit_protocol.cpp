@@ -1,0 +1,88 @@
+#include "drives/mit_protocol.hpp"
+
+#include <cmath>
+
+namespace pmg::drives {
+
+namespace {
+
+constexpr double kTemperatureOffset_degC = 40.0;  // a byte covers -40 to 215 degC
+
+bool finite(const MotorCommand& command) noexcept {
+  return std::isfinite(command.q_rad) && std::isfinite(command.dq_rad_s) && std::isfinite(command.kp_Nm_per_rad) &&
+         std::isfinite(command.kd_Nm_s_per_rad) && std::isfinite(command.torque_Nm);
+}
+
+constexpr std::uint8_t byte(std::uint32_t bits) noexcept { return static_cast<std::uint8_t>(bits & 0xFFU); }
+
+constexpr DriveFault fault(std::uint8_t code) noexcept {
+  return code < static_cast<std::uint8_t>(DriveFault::kOther) ? DriveFault{code} : DriveFault::kOther;
+}
+
+}  // namespace
+
+MitProtocol::MitProtocol(const MitRanges& ranges) noexcept
+    : position_(-ranges.position_rad, ranges.position_rad, 16),
+      velocity_(-ranges.velocity_rad_s, ranges.velocity_rad_s, 12),
+      kp_(0.0, ranges.kp_Nm_per_rad, 12),
+      kd_(0.0, ranges.kd_Nm_s_per_rad, 12),
+      torque_(-ranges.torque_Nm, ranges.torque_Nm, 12) {}
+
+MitFrame MitProtocol::command(const MotorCommand& asked, const MotorLimits& limits) const noexcept {
+  const MotorCommand command = finite(asked) ? asked : MotorCommand{};
+  const std::uint32_t q = position_.code(command.q_rad, limits.q_lower_rad, limits.q_upper_rad);
+  const std::uint32_t dq = velocity_.code(command.dq_rad_s, -limits.dq_rad_s, limits.dq_rad_s);
+  const std::uint32_t kp = kp_.code(command.kp_Nm_per_rad, 0.0, kp_.value(kp_.most_code()));
+  const std::uint32_t kd = kd_.code(command.kd_Nm_s_per_rad, 0.0, kd_.value(kd_.most_code()));
+  std::uint32_t torque = torque_.code(command.torque_Nm, -limits.torque_Nm, limits.torque_Nm);
+  // Seven bytes of ones and FC, FD or FE in the last would switch the drive. The torque's highest code but three is
+  // below all of them, and within the limits because codes above it are.
+  if (q == 0xFFFFU && dq == 0xFFFU && kp == 0xFFFU && kd == 0xFFFU && torque >= 0xFFCU) torque = 0xFFBU;
+  return {byte(q >> 8U),
+          byte(q),
+          byte(dq >> 4U),
+          byte(dq << 4U | kp >> 8U),
+          byte(kp),
+          byte(kd >> 4U),
+          byte(kd << 4U | torque >> 8U),
+          byte(torque)};
+}
+
+std::optional<MotorCommand> MitProtocol::command(const MitFrame& frame) const noexcept {
+  if (frame == kMitEnable || frame == kMitDisable || frame == kMitZero) return std::nullopt;
+  return MotorCommand{.q_rad = position_.value(frame[0] << 8U | frame[1]),
+                      .dq_rad_s = velocity_.value(frame[2] << 4U | frame[3] >> 4U),
+                      .kp_Nm_per_rad = kp_.value((frame[3] & 0xFU) << 8U | frame[4]),
+                      .kd_Nm_s_per_rad = kd_.value(frame[5] << 4U | frame[6] >> 4U),
+                      .torque_Nm = torque_.value((frame[6] & 0xFU) << 8U | frame[7])};
+}
+
+std::optional<MitReply> MitProtocol::reply(std::span<const std::uint8_t> bytes) const noexcept {
+  if (bytes.size() != 8) return std::nullopt;
+  return MitReply{.node = bytes[0],
+                  .reading = {.q_rad = position_.value(bytes[1] << 8U | bytes[2]),
+                              .dq_rad_s = velocity_.value(bytes[3] << 4U | bytes[4] >> 4U),
+                              .torque_Nm = torque_.value((bytes[4] & 0xFU) << 8U | bytes[5]),
+                              .temperature_degC = bytes[6] - kTemperatureOffset_degC,
+                              .fault = fault(bytes[7])}};
+}
+
+MitFrame MitProtocol::reply(const MitReply& reply) const noexcept {
+  const MotorReading& reading = reply.reading;
+  const auto whole = [](const FixedPoint& field, double value) {
+    return field.code(value, field.value(0), field.value(field.most_code()));
+  };
+  const std::uint32_t q = whole(position_, reading.q_rad), dq = whole(velocity_, reading.dq_rad_s),
+                      torque = whole(torque_, reading.torque_Nm);
+  const FixedPoint temperature(-kTemperatureOffset_degC, 255.0 - kTemperatureOffset_degC, 8);
+  return {reply.node,
+          byte(q >> 8U),
+          byte(q),
+          byte(dq >> 4U),
+          byte(dq << 4U | torque >> 8U),
+          byte(torque),
+          byte(whole(temperature, reading.temperature_degC)),
+          static_cast<std::uint8_t>(reading.fault)};
+}
+
+}  // namespace pmg::drives

@@ -1,0 +1,111 @@
+// Every drive of a robot and its IMU, behind links.
+#pragma once
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "can/drive_emulator.hpp"
+#include "can/link.hpp"
+#include "can/xsens_imu.hpp"
+#include "model/robot_io.hpp"
+
+namespace pmg::test {
+
+class EmulatedDrives {
+ public:
+  /// One link a bus, in the order of setup.buses. Keeps a reference to setup.
+  EmulatedDrives(const drives::DriveSetup& setup, std::vector<std::unique_ptr<can::Link>> links)
+      : setup_(setup), links_(std::move(links)) {
+    for (const drives::BusSetup& bus : setup.buses) {
+      auto& drives = buses_.emplace_back();
+      for (const drives::MotorSetup& motor : bus.motors) drives.emplace_back(motor);
+    }
+  }
+
+  /// Answers what has arrived; the IMU speaks once.
+  void serve() noexcept {
+    answer();
+    speak();
+  }
+  void answer() noexcept {
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
+      std::array<can::Frame, 32> frames;
+      while (const std::size_t count = links_[b]->receive(frames)) {
+        for (const can::Frame& frame : std::span(frames).first(count)) {
+          for (DriveEmulator& drive : buses_[b]) {
+            std::array<can::Frame, 2> replies;
+            const int answers = drive.hear(frame, replies);
+            links_[b]->send(std::span(replies).first(static_cast<std::size_t>(answers)));
+          }
+        }
+      }
+    }
+  }
+  void speak() noexcept {
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
+      if (setup_.buses[b].imu && !imu_silent) links_[b]->send(can::imu_frames(sensed_));
+    }
+  }
+
+  /// 2 ms pass: watchdogs; the drives' commands, joint by joint.
+  void tick(model::JointCommand& command) noexcept {
+    for (auto& bus : buses_) {
+      for (DriveEmulator& drive : bus) {
+        drive.tick();
+        const drives::MotorCommand joint = drive.setup().transmission.to_joint(drive.command());
+        const int index = drive.setup().index;
+        command.q[index] = joint.q_rad;
+        command.dq[index] = joint.dq_rad_s;
+        command.kp[index] = joint.kp_Nm_per_rad;
+        command.kd[index] = joint.kd_Nm_s_per_rad;
+        command.tau_ff[index] = joint.torque_Nm;
+      }
+    }
+  }
+
+  void feel(const model::RobotState& state) noexcept {
+    sensed_ = state;
+    for (auto& bus : buses_) {
+      for (DriveEmulator& drive : bus) {
+        const int index = drive.setup().index;
+        drive.feel(drive.setup().transmission.to_motor(
+            drives::MotorReading{.q_rad = state.q[index], .dq_rad_s = state.dq[index], .torque_Nm = state.tau[index]}));
+      }
+    }
+  }
+
+  long heard() const noexcept {
+    long sum = 0;
+    for (const auto& bus : buses_) {
+      for (const DriveEmulator& drive : bus) sum += drive.heard;
+    }
+    return sum;
+  }
+  /// Waits until something arrives. False: these links have no kernel behind them, where everything is there at once.
+  bool wait_ms(int most) noexcept {
+    std::array<pollfd, 16> polled{};
+    const std::size_t count = std::min(links_.size(), polled.size());
+    for (std::size_t b = 0; b < count; ++b) polled[b] = {.fd = links_[b]->descriptor(), .events = POLLIN, .revents = 0};
+    if (polled[0].fd < 0) return false;
+    poll(polled.data(), count, most);
+    return true;
+  }
+
+  DriveEmulator& drive(std::size_t bus, std::size_t motor) { return buses_[bus][motor]; }
+  can::Link& link(std::size_t bus) { return *links_[bus]; }
+  std::size_t buses() const { return buses_.size(); }
+  std::size_t motors(std::size_t bus) const { return buses_[bus].size(); }
+  bool imu_silent = false;
+
+ private:
+  const drives::DriveSetup& setup_;
+  std::vector<std::unique_ptr<can::Link>> links_;
+  std::vector<std::vector<DriveEmulator>> buses_;
+  model::RobotState sensed_;
+};
+
+}  // namespace pmg::test

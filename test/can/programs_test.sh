@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# pmg_bus and pmg_controller --hal can as a user runs them, against emulated drives on real CAN interfaces. Run by test/can/canrun.
+# Usage: programs_test.sh BIN
+set -uo pipefail
+bin=$1
+failed=0
+check() { # what, expected exit code, pattern, command...
+  local what=$1 expected=$2 pattern=$3 out code
+  shift 3
+  out=$("$@" 2>&1)
+  code=$?
+  if [ "$code" != "$expected" ] || ! grep -qE "$pattern" <<<"$out"; then
+    printf 'FAILED: %s: exit code %s, expected %s; no line has "%s" in:\n%s\n' "$what" "$code" "$expected" "$pattern" "$out"
+    failed=1
+  fi
+}
+check "no drive answers" 1 'left_hip_pitch \(can0, node 1\) does not answer' "$bin/pmg_bus" scan --robot z1
+check "the controller refuses" 2 '^pmg_controller: left_hip_pitch \(can0, node 1\) does not answer.*\(30 more: pmg_bus scan\)' \
+  "$bin/pmg_controller" --hal can --robot z1 --lcm-url memq:// --no-log --no-realtime
+"$bin/pmg_emulated_drives" --robot z1 --gantry >/run/drives.out 2>&1 &
+drives=$!
+until grep -q answer /run/drives.out; do sleep 0.1; kill -0 $drives || { cat /run/drives.out; exit 1; }; done
+check "every drive answers" 0 'left_knee +can0 +4 .*no fault' "$bin/pmg_bus" scan --robot z1
+check "one drive is enabled" 0 'left_knee was enabled without a command and disabled again' "$bin/pmg_bus" enable left_knee --robot z1
+check "zero needs a yes" 2 'expected --yes' "$bin/pmg_bus" zero left_knee --robot z1
+check "zero" 0 'left_elbow: was .* deg, is -?0.0. deg now' "$bin/pmg_bus" zero left_elbow --yes --robot z1
+check "an unknown joint" 2 "^pmg_bus: 'left_kne' isn't a joint; did you mean left_knee" "$bin/pmg_bus" enable left_kne --robot z1
+("$bin/pmg_bus" scan --robot z1 >/dev/null; "$bin/pmg_bus" scan --robot z1 >/dev/null) &
+check "a recording" 0 '^\([0-9]+\.[0-9]{6}\) can4 021#[0-9A-F]{16}$' "$bin/pmg_bus" dump --for 1 --robot z1
+wait $!
+ip link set can2 down
+check "a bus that is down" 2 '^pmg_bus: can2: is down; expected it up' "$bin/pmg_bus" scan --robot z1
+ip link del can2
+check "a missing interface" 2 '^pmg_controller: can2: no such interface' "$bin/pmg_controller" --hal can --robot z1 --lcm-url memq:// --no-log --no-realtime
+kill $drives
+wait $drives
+[ $failed = 0 ] && echo "all programs did as promised"
+exit $failed

@@ -1,0 +1,110 @@
+// SocketLink against a kernel's CAN. Without the interfaces can0 to can4 these tests are skipped: test/can/canrun makes
+// them.
+#include "can/socket_link.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "can/frame.hpp"
+#include "generator_core/allocation_count.hpp"
+
+namespace pmg::can {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const std::string& interface, bool fd = false) {
+  try {
+    const SocketLink link(interface, {}, fd);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "opened";
+}
+
+class Sockets : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (if_nametoindex("can4") == 0) GTEST_SKIP() << "this kernel has no interface can4: run test/can/canrun";
+  }
+  /// So many frames, which the kernel may deliver a moment after send(); fewer if they don't come within 1 s.
+  static std::vector<Frame> receive(SocketLink& link, std::size_t expected = 0) {
+    std::vector<Frame> frames(256);
+    std::size_t count = link.receive(frames);
+    pollfd polled{.fd = link.descriptor(), .events = POLLIN, .revents = 0};
+    while (count < expected && poll(&polled, 1, 1000) > 0) count += link.receive(std::span(frames).subspan(count));
+    frames.resize(count);
+    return frames;
+  }
+};
+
+TEST(SocketsOrNone, AKernelWithoutCanOrAMissingInterfaceIsOneLine) {
+  EXPECT_THAT(
+      refusal("can99"),
+      testing::AnyOf("can99: this kernel has no CAN; expected one with the modules can and can_raw (modprobe can_raw)",
+                     "can99: no such interface; expected a CAN interface (ip link show type can)"));
+}
+
+TEST_F(Sockets, WhatIsNoCanInterfaceOrIsDownIsRefused) {
+  EXPECT_EQ(refusal("lo"), "lo: isn't a CAN interface; expected one of `ip link show type can`");
+  EXPECT_THAT(refusal("a-name-that-is-too-long"), HasSubstr("isn't the name of an interface"));
+  ASSERT_EQ(std::system("ip link set can4 down"), 0);  // NOLINT: a test's own kernel
+  EXPECT_THAT(refusal("can4"), HasSubstr("can4: is down; expected it up: ip link set can4 up"));
+  SocketLink open("can3", {}, false);
+  ASSERT_EQ(std::system("ip link set can3 down"), 0);  // NOLINT
+  const Frame frame = Frame::of(1, std::array<std::uint8_t, 2>{1, 2});
+  open.send(std::span(&frame, 1));
+  receive(open);
+  EXPECT_EQ(open.health(), BusHealth::kOff);
+  EXPECT_EQ(open.counts().not_sent, 1u);
+  ASSERT_EQ(std::system("ip link set can3 up; ip link set can4 up"), 0);  // NOLINT
+}
+
+TEST_F(Sockets, FramesArriveWholeInOrderAndThroughTheFilter) {
+  SocketLink host("can0", {0x10, 0x7FF}, true), drives("can0", {}, true);
+  std::vector<Frame> sent;
+  for (int i = 0; i < 70; ++i) {  // three batches
+    std::array<std::uint8_t, 64> data{};
+    for (std::size_t k = 0; k < data.size(); ++k) data[k] = static_cast<std::uint8_t>(i + static_cast<int>(k));
+    sent.push_back(Frame::of(i % 2 == 0 ? 0x10 : 0x11, std::span(data).first(i % 3 == 0 ? 64 : 8), i % 3 == 0));
+  }
+  drives.send(sent);
+  EXPECT_EQ(drives.counts().sent, 70u);
+  const std::vector<Frame> got = receive(host, 35);
+  ASSERT_EQ(got.size(), 35u) << "0x11 isn't awaited";
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    const Frame& wanted = sent[2 * i];
+    EXPECT_EQ(got[i].id, wanted.id);
+    EXPECT_EQ(got[i].fd, wanted.fd);
+    ASSERT_EQ(got[i].length, wanted.length);
+    EXPECT_TRUE(std::ranges::equal(got[i].bytes(), wanted.bytes()));
+  }
+  EXPECT_TRUE(receive(drives).empty()) << "its own frames don't come back";
+}
+
+TEST_F(Sockets, SendingAndReceivingAllocatesNothing) {
+  SocketLink host("can1", {}, false), drives("can1", {}, false);
+  std::array<Frame, 64> buffer;
+  const std::array<Frame, 7> frames{};
+  const long before = test::allocation_count();
+  for (int k = 0; k < 50; ++k) {
+    host.send(frames);
+    pollfd polled{.fd = drives.descriptor(), .events = POLLIN, .revents = 0};
+    for (std::size_t got = 0; got < frames.size() && poll(&polled, 1, 1000) > 0;) got += drives.receive(buffer);
+  }
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(drives.counts().received, 350u);
+}
+
+}  // namespace
+}  // namespace pmg::can

@@ -1,0 +1,114 @@
+#include "drives/drive_setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "../model/robots.hpp"
+#include "model/config_error.hpp"
+
+namespace pmg::drives {
+namespace {
+
+/// A copy of Z1 whose robot.yaml can be changed.
+class DriveSetupFile : public testing::Test {
+ protected:
+  DriveSetupFile() {
+    std::filesystem::create_directories(folder_);
+    std::filesystem::copy(std::filesystem::path(test::kZ1Folder) / "z1.urdf", folder_ / "z1.urdf");
+    std::ifstream file(std::filesystem::path(test::kZ1Folder) / "robot.yaml");
+    text_ = std::string(std::istreambuf_iterator<char>(file), {});
+  }
+  ~DriveSetupFile() override { std::filesystem::remove_all(folder_); }
+
+  void replace(const std::string& what, const std::string& by) {
+    const std::size_t at = text_.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text_.replace(at, what.size(), by);
+  }
+  std::string refusal() {
+    std::ofstream(folder_ / "robot.yaml") << text_;
+    try {
+      load_drives(model::load_robot(folder_));
+    } catch (const model::ConfigError& error) {
+      return error.what();
+    }
+    return "taken";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("pmg_drive_setup_test_" + std::to_string(getpid()));
+  std::string text_;
+};
+
+TEST(DriveSetup, Z1HasThirtyOneMotorsOnFiveBuses) {
+  const DriveSetup setup = load_drives(test::z1());
+  ASSERT_EQ(setup.buses.size(), 5u);
+  EXPECT_EQ(setup.buses[0].name, "can0");
+  EXPECT_EQ(setup.buses[0].motors[3].joint, "left_knee");
+  EXPECT_EQ(setup.buses[0].motors[3].node, 4);
+  EXPECT_EQ(setup.buses[0].motors[3].limits.torque_Nm, 120.0);
+}
+
+TEST_F(DriveSetupFile, WhatADriveCantDoIsRefusedWithItsPlace) {
+  EXPECT_EQ(refusal(), "taken");
+  replace("node: 4, drive: leg", "node: 4, drive: arm");
+  EXPECT_THAT(
+      refusal(),
+      testing::HasSubstr(
+          "joints.left_knee.bus: the drive 'arm' covers a torque_Nm of 40 and left_knee's effort needs 120 at the "
+          "motor; expected a drive whose torque_Nm is 120 or more"));
+  replace("node: 4, drive: arm", "node: 4, drive: arm, gear: 3");
+  EXPECT_THAT(refusal(), testing::HasSubstr("covers a position_rad of 6.3 and left_knee's range needs 7.2"));
+  replace("node: 4, drive: arm, gear: 3", "node: 4, drive: legs");
+  EXPECT_THAT(refusal(), testing::HasSubstr("'legs' isn't a drive; expected the name of an entry of `drives`"));
+  replace("node: 4, drive: legs", "node: 4");
+  EXPECT_THAT(refusal(), testing::HasSubstr("joints.left_knee.bus: has no `drive`"));
+  replace("node: 4}", "node: 200, drive: leg}");
+  EXPECT_THAT(refusal(), testing::HasSubstr("node is 200; expected 1 to 127"));
+  replace("node: 200, drive: leg", "node: 4, drive: leg, direction: 2");
+  EXPECT_THAT(refusal(), testing::HasSubstr("joints.left_knee.bus.direction: is 2; expected 1 or -1"));
+}
+
+TEST_F(DriveSetupFile, EveryBusIsDescribedAndOneHasTheImu) {
+  replace(", imu: xsens_can", "");
+  EXPECT_THAT(refusal(),
+              testing::HasSubstr("buses: 0 buses with drives have the IMU; expected one bus with `imu: xsens_can`"));
+  replace("  can4: {bitrate: 1000000}\n", "");
+  EXPECT_THAT(refusal(), testing::HasSubstr("'can4' isn't described; expected a bus of `buses`"));
+}
+
+TEST_F(DriveSetupFile, AnAnkleOfTwoMotorsHasItsLinkageAndItsMotorsNeeds) {
+  const std::string ankle =
+      "linkages:\n"
+      "  - joints: [left_ankle_pitch, left_ankle_roll]\n"
+      "    motors:\n"
+      "      - {crank_centre_m: [0, 0.035, 0.20], axis: [0, 1, 0], crank_end_m: [-0.05, 0.035, 0.20], rod_end_m: "
+      "[-0.05, 0.035, -0.01]}\n"
+      "      - {crank_centre_m: [0, -0.035, 0.28], axis: [0, 1, 0], crank_end_m: [-0.05, -0.035, 0.28], rod_end_m: "
+      "[-0.05, -0.035, -0.01]}\n";
+  text_ += ankle;
+  EXPECT_THAT(refusal(),
+              testing::HasSubstr(
+                  "the drive 'leg' covers a velocity_rad_s of 30 and left_ankle_pitch's speed limit needs 48.5"));
+  replace("position_rad: 6.3, velocity_rad_s: 30, torque_Nm: 160",
+          "position_rad: 6.3, velocity_rad_s: 60, torque_Nm: 300");
+  EXPECT_EQ(refusal(), "taken");
+  const DriveSetup setup = load_drives(model::load_robot(folder_));
+  ASSERT_EQ(setup.buses[0].parallel.size(), 1u);
+  EXPECT_EQ(setup.buses[0].parallel[0].motors, (std::array<std::size_t, 2>{4, 5}));
+  EXPECT_NE(setup.buses[0].motors[4].limits.torque_Nm, test::z1().joints[4].effort_limit_Nm)
+      << "its crank's, not the joint's";
+  replace("crank_end_m: [-0.05, 0.035, 0.20]", "crank_end_m: [0, 0.035, 0.15]");
+  EXPECT_THAT(refusal(), testing::ContainsRegex("linkages.*motors: at joint angles .* expected"));
+  replace("joints: [left_ankle_pitch, left_ankle_roll]", "joints: [left_ankle_pitch, right_ankle_roll]");
+  EXPECT_THAT(refusal(), testing::HasSubstr("their drives are on two buses; expected one bus"));
+}
+
+}  // namespace
+}  // namespace pmg::drives
