@@ -11,7 +11,7 @@
 
 #include "bench/csv_table.hpp"
 #include "bench/excitation.hpp"
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 #include "model/robot_model.hpp"
 #include "option_checks.hpp"
 
@@ -43,7 +43,7 @@ class ExcitationCommand {
 
   bool wanted() const { return wanted_; }
 
-  /// Writes the bench; says what it is. Throws std::invalid_argument, model::ConfigError or std::runtime_error.
+  /// Writes the bench; says what it is. Throws std::invalid_argument, files::ConfigError or std::runtime_error.
   std::string run(const std::string& joint, const std::filesystem::path& out, unsigned seed) const {
     bench::ExcitationLimits limits = limits_;
     std::vector<bench::ExcitationGains> gains;
@@ -74,7 +74,7 @@ class ExcitationCommand {
     const auto index = robot.joint_index.find(name);
     if (!index)
       throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint; {}", name, robot.name,
-                                              model::expected_name(name, robot.joint_index.names())));
+                                              files::expected_name(name, robot.joint_index.names())));
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(*index)];
     limits = bench::excitation_limits(joint, limits);
     gains = bench::excitation_gains(joint);

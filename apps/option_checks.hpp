@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 namespace pmg::apps {
 
@@ -50,7 +50,7 @@ inline CLI::Validator in_range(double lower, double upper) {
 inline CLI::Validator one_of(const std::vector<std::string>& names) {
   return {[names](std::string& text) {
             const bool known = std::ranges::find(names, text) != names.end();
-            return known ? std::string() : fmt::format("'{}' isn't known; {}", text, model::expected_name(text, names));
+            return known ? std::string() : fmt::format("'{}' isn't known; {}", text, files::expected_name(text, names));
           },
           fmt::format("{}", fmt::join(names, "|"))};
 }

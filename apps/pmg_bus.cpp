@@ -20,7 +20,7 @@
 #include "can/first_light.hpp"
 #include "can/roll_call.hpp"
 #include "can/socket_link.hpp"
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
 #include "program.hpp"
@@ -128,7 +128,7 @@ OneMotor find(Buses& buses, const std::string& joint) {
     }
   }
   throw std::invalid_argument(
-      fmt::format("'{}' isn't a joint; {}", joint, model::expected_name(joint, buses.robot.joint_index.names())));
+      fmt::format("'{}' isn't a joint; {}", joint, files::expected_name(joint, buses.robot.joint_index.names())));
 }
 
 /// One frame to one motor, and its answer within 0.1 s.

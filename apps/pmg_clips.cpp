@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 
+#include "files/config_error.hpp"
 #include "gco/make_command_inverse.hpp"
 #include "gco/steady_walk.hpp"
 #include "generator/clip_report.hpp"
@@ -23,7 +24,6 @@
 #include "model/clip_library_file.hpp"
 #include "model/clip_library_writer.hpp"
 #include "model/command_inverse_file.hpp"
-#include "model/config_error.hpp"
 #include "model/robot_model.hpp"
 #include "option_checks.hpp"
 #include "pmg/blending.hpp"

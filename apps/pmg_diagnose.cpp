@@ -14,8 +14,8 @@
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/next_excitation_files.hpp"
 #include "diagnosis/report.hpp"
+#include "files/nearest_name.hpp"
 #include "io/whole_file.hpp"
-#include "model/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "robot_diagnosis.hpp"
@@ -82,7 +82,7 @@ sim::ActuatorParameters given_model(Arguments& arguments) {
   std::vector<std::string> names;
   for (const auto& [name, actuator] : joints) names.push_back(name);
   throw std::invalid_argument(fmt::format("{}: no joint '{}' for --joint; {}", arguments.model.string(),
-                                          arguments.joint, model::expected_name(arguments.joint, names)));
+                                          arguments.joint, files::expected_name(arguments.joint, names)));
 }
 
 std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench::Bench& bench) {

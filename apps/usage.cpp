@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 namespace pmg::apps {
 
@@ -67,7 +67,7 @@ std::string unknown_option(const std::vector<const CLI::App*>& chain, const std:
   }
   std::vector<std::string> known;
   for (const CLI::App* given : chain) std::ranges::copy(option_names(*given), std::back_inserter(known));
-  const std::string nearest = model::nearest_name(option, known);
+  const std::string nearest = files::nearest_name(option, known);
   return nearest.empty() ? fmt::format("{}: unknown option ({} --help lists all)", option, name_of(chain))
                          : fmt::format("{}: unknown option; did you mean {}?", option, nearest);
 }
@@ -80,7 +80,7 @@ std::string unknown_word(const CLI::App& app, const std::vector<const CLI::App*>
   const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
   const std::vector<std::string> commands = names_of(commands_of(*chain.back()));
   if (!commands.empty() && !is_option(words.front())) {
-    return fmt::format("{}: unknown command; {}", words.front(), model::expected_name(words.front(), commands));
+    return fmt::format("{}: unknown command; {}", words.front(), files::expected_name(words.front(), commands));
   }
   const auto option = std::ranges::find_if(words, is_option);
   if (option != words.end()) return unknown_option(chain, *option);

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 #include "pmg/types.hpp"
 
 namespace pmg::bench {
 
 namespace {
 
-using model::ConfigReader;
+using files::ConfigReader;
 
 constexpr double kPresliding_m = 1e-5;  // of guides and screws; a joint's milliradian would be a millimetre
 
@@ -20,8 +20,8 @@ constexpr double kPresliding_m = 1e-5;  // of guides and screws; a joint's milli
 std::optional<double> known_number(ConfigReader& reader, const std::string& key) {
   if (!reader.has(key)) return std::nullopt;
   try {
-    return reader.required<double>(key, model::positive());
-  } catch (const model::ConfigError&) {
+    return reader.required<double>(key, files::positive());
+  } catch (const files::ConfigError&) {
     if (reader.required<std::string>(key) == "unknown") return std::nullopt;
     reader.fail(key, "is '" + reader.required<std::string>(key) + "'", "a number above 0, or unknown");
   }
@@ -42,17 +42,17 @@ void read_servo(Bench& bench, ConfigReader& drive) {
   take(bench, drive, "kt_V_s_per_rad", "drive.back_emf_s_per_rad");
   if (!drive.has("bus_V")) return;
   try {  // a number, or the remarks of whoever recorded it
-    bench.supply_V = drive.required<double>("bus_V", model::positive());
-  } catch (const model::ConfigError&) {
+    bench.supply_V = drive.required<double>("bus_V", files::positive());
+  } catch (const files::ConfigError&) {
     drive.map("bus_V");
   }
 }
 
 void read_cascade(Bench& bench, ConfigReader& drive, const std::string& length) {
-  const double kp_per_s = drive.required<double>("kp_per_s", model::positive());
-  bench.kd_of_law = drive.required<double>("kv_V_s_per_" + length, model::positive());
+  const double kp_per_s = drive.required<double>("kp_per_s", files::positive());
+  bench.kd_of_law = drive.required<double>("kv_V_s_per_" + length, files::positive());
   bench.kp_of_law = kp_per_s * bench.kd_of_law;
-  bench.known.drive.limit = drive.optional<double>("limit_V", 10.0, model::positive());
+  bench.known.drive.limit = drive.optional<double>("limit_V", 10.0, files::positive());
   bench.known.command.hold_s = 1.0 / bench.sample_rate_hz;  // a digital loop: command and position of the same instant
   take(bench, drive, length == "m" ? "gtau_N_per_V" : "gtau_Nm_per_V", "drive.torque_per_unit_Nm");
 }
@@ -83,14 +83,14 @@ void read_drive(Bench& bench, ConfigReader drive) {
 
 BenchLoad read_load(ConfigReader reader, bool hangs) {
   BenchLoad load;
-  load.mass_kg = reader.required<double>("mass_kg", model::positive());
-  load.length_m = reader.optional<double>("length_m", 0.0, model::non_negative());
+  load.mass_kg = reader.required<double>("mass_kg", files::positive());
+  load.length_m = reader.optional<double>("length_m", 0.0, files::non_negative());
   const auto inertia = known_number(reader, "inertia_kg_m2"), gravity = known_number(reader, "gravity_Nm");
   load.inertia_known = inertia.has_value();
   load.gravity_known = gravity.has_value();
   const double point = load.length_m > 0.0 ? load.mass_kg * load.length_m * load.length_m : load.mass_kg;
   load.load.inertia_kg_m2 = inertia.value_or(point);
-  load.load.hangs_at_rad = reader.optional<double>("hangs_at_rad", 0.0, model::any_number());
+  load.load.hangs_at_rad = reader.optional<double>("hangs_at_rad", 0.0, files::any_number());
   load.load.gravity_Nm = hangs ? gravity.value_or(load.mass_kg * kGravity_m_s2 * load.length_m) : 0.0;
   reader.finish();
   return load;
@@ -114,7 +114,7 @@ std::optional<double> number(const CsvTable& table, std::size_t row, const std::
   const auto text = cell(table, row, column);
   if (!text) return std::nullopt;
   const auto value = to_number(*text);
-  if (!value || !std::isfinite(*value)) model::raise(table.place(row), column, "is '" + *text + "'", "a finite number");
+  if (!value || !std::isfinite(*value)) files::raise(table.place(row), column, "is '" + *text + "'", "a finite number");
   return value;
 }
 
@@ -128,13 +128,13 @@ JointLoad load_of(const Bench& bench, std::size_t row) {
     const bool same_length = !length || std::abs(*length - load.length_m) <= 1e-6 + 2e-3 * load.length_m;
     if (same_mass && same_length) return load.load;
   }
-  model::raise(bench.runs.place(row), "load_mass_kg", "no such load in bench.yaml", "one of `loads`");
+  files::raise(bench.runs.place(row), "load_mass_kg", "no such load in bench.yaml", "one of `loads`");
 }
 
 BenchRun describe(const Bench& bench, std::size_t row) {
   BenchRun run;
   const auto file = cell(bench.runs, row, "file"), trajectory = cell(bench.runs, row, "trajectory");
-  if (!file) model::raise(bench.runs.place(row), "file", "is missing", "a file of runs/");
+  if (!file) files::raise(bench.runs.place(row), "file", "is missing", "a file of runs/");
   run.file = *file;
   run.trajectory = trajectory.value_or("");
   run.repeat = static_cast<int>(number(bench.runs, row, "repeat").value_or(0.0));
@@ -162,7 +162,7 @@ Bench read_bench(const std::filesystem::path& folder) {
               : rig == "robot"  ? Rig::kRobot
                                 : Rig::kHorizontal;
   if (bench.rig == Rig::kLinear) bench.known.friction.presliding_rad = kPresliding_m;
-  bench.sample_rate_hz = reader.required<double>("sample_rate_hz", model::positive());
+  bench.sample_rate_hz = reader.required<double>("sample_rate_hz", files::positive());
   if (reader.has("units")) check_units(reader.map("units"), bench.rig == Rig::kLinear);
   if (reader.has("command_hold")) bench.linear_hold = reader.one_of("command_hold", {"hold", "linear"}) == "linear";
   read_drive(bench, reader.map("drive"));

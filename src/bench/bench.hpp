@@ -57,13 +57,13 @@ struct Bench {
   CsvTable runs;
 
   /// The rows that the filter keeps, read and checked; those read so far where progress is over. Throws
-  /// model::ConfigError, std::invalid_argument when none is.
+  /// files::ConfigError, std::invalid_argument when none is.
   std::vector<BenchRun> read_runs(const RowFilter& filter, const work::Progress& progress = {}) const;
   /// What motor.yaml calls the joint unless told otherwise: bench.yaml's joint, or the folder's name.
   std::string joint_name() const;
 };
 
-/// Throws model::ConfigError on whatever is missing, unknown or implausible.
+/// Throws files::ConfigError on whatever is missing, unknown or implausible.
 Bench read_bench(const std::filesystem::path& folder);
 
 }  // namespace pmg::bench

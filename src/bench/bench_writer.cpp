@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "files/number_table.hpp"
 #include "io/whole_file.hpp"
-#include "model/number_table.hpp"
 
 namespace pmg::bench {
 
@@ -25,7 +25,7 @@ std::string recording(const WrittenRun& run) {
     names.push_back(name);
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k].push_back((*values)[k]);
   }
-  return model::format_number_table(names, rows);
+  return files::format_number_table(names, rows);
 }
 
 }  // namespace

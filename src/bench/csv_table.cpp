@@ -7,7 +7,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
 namespace pmg::bench {
 
@@ -28,10 +28,10 @@ std::vector<std::string> cells(std::string line) {
 void check_header(const CsvTable& table) {
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
-    const model::Place place{table.file.string(), table.header_line};
-    if (name.empty()) model::raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
+    const files::Place place{table.file.string(), table.header_line};
+    if (name.empty()) files::raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
     if (std::count(table.header.begin(), table.header.end(), name) > 1) {
-      model::raise(place, name, "is there twice", "it once");
+      files::raise(place, name, "is there twice", "it once");
     }
   }
 }
@@ -54,14 +54,14 @@ std::optional<std::size_t> CsvTable::find(const std::string& column) const {
 
 std::vector<double> CsvTable::numbers(const std::string& column) const {
   const std::optional<std::size_t> c = find(column);
-  if (!c) model::raise({file.string(), header_line}, column, "is missing", "a column of that name");
+  if (!c) files::raise({file.string(), header_line}, column, "is missing", "a column of that name");
   std::vector<double> values;
   values.reserve(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const std::string& text = rows[r][*c];
     const std::optional<double> value = to_number(text);
     if (!value || !std::isfinite(*value)) {
-      model::raise(place(r), column, text.empty() ? "is empty" : "is '" + text + "'", "a finite number");
+      files::raise(place(r), column, text.empty() ? "is empty" : "is '" + text + "'", "a finite number");
     }
     values.push_back(*value);
   }
@@ -69,7 +69,7 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& file) {
-  std::istringstream stream(model::read_bounded_text(file, model::kLargestTable_bytes, "a CSV file"));
+  std::istringstream stream(files::read_bounded_text(file, files::kLargestTable_bytes, "a CSV file"));
   CsvTable table;
   table.file = file;
   std::string line;
@@ -81,10 +81,10 @@ CsvTable read_csv(const std::filesystem::path& file) {
     table.rows.push_back(cells(line));
     const std::size_t count = table.rows.back().size();
     if (count == table.header.size()) continue;
-    model::raise(table.place(table.rows.size() - 1), "", fmt::format("{} cells", count),
+    files::raise(table.place(table.rows.size() - 1), "", fmt::format("{} cells", count),
                  fmt::format("{} as in the header", table.header.size()));
   }
-  if (table.rows.empty()) model::raise({file.string()}, "", "no rows below the header", "at least one");
+  if (table.rows.empty()) files::raise({file.string()}, "", "no rows below the header", "at least one");
   return table;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::bench {
 
@@ -17,13 +17,13 @@ struct CsvTable {
   std::vector<std::vector<std::string>> rows;  ///< each of header.size() cells, one a line below the header
 
   std::optional<std::size_t> find(const std::string& column) const;
-  model::Place place(std::size_t row) const { return {file.string(), header_line + 1 + static_cast<int>(row)}; }
-  /// Throws model::ConfigError on a missing column and on what isn't a finite number.
+  files::Place place(std::size_t row) const { return {file.string(), header_line + 1 + static_cast<int>(row)}; }
+  /// Throws files::ConfigError on a missing column and on what isn't a finite number.
   std::vector<double> numbers(const std::string& column) const;
 };
 
 /// A comma between cells, no quoting, "\n" or "\r\n"; lines above the header that begin with # are passed over. Throws
-/// model::ConfigError on a file that can't be read, an empty or repeated column name, a row of another length, and a
+/// files::ConfigError on a file that can't be read, an empty or repeated column name, a row of another length, and a
 /// table without rows.
 CsvTable read_csv(const std::filesystem::path& file);
 

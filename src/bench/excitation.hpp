@@ -61,7 +61,7 @@ Excitation make_excitation(const ExcitationLimits& limits, const std::vector<Exc
 /// a bench already.
 void write_excitation(const std::filesystem::path& folder, const Excitation& excitation, const std::string& design);
 
-/// Reads back runs.csv and commands/. Throws model::ConfigError on what is missing, unknown or not evenly timed.
+/// Reads back runs.csv and commands/. Throws files::ConfigError on what is missing, unknown or not evenly timed.
 Excitation read_excitation(const std::filesystem::path& folder);
 
 /// model::files_sha256 of what read_excitation reads of this excitation's folder.

@@ -9,9 +9,9 @@
 
 #include "bench/csv_table.hpp"
 #include "bench/excitation.hpp"
+#include "files/number_table.hpp"
 #include "io/whole_file.hpp"
 #include "model/bundle.hpp"
-#include "model/number_table.hpp"
 
 namespace pmg::bench {
 
@@ -21,15 +21,15 @@ namespace fs = std::filesystem;
 
 /// "rate_hz" isn't told by runs.csv: the commands' times say it.
 ExcitationTrajectory read_trajectory(const fs::path& file, const std::string& name, double& rate_hz) {
-  const model::NumberTable table = model::read_number_table(file, {"t_s", "q_cmd_rad"}, "of a command over time");
+  const files::NumberTable table = files::read_number_table(file, {"t_s", "q_cmd_rad"}, "of a command over time");
   const std::size_t time = table.columns.front() == "t_s" ? 0 : 1;
-  if (table.rows.size() < 2) model::raise({file.string()}, "", "is too short", "at least two rows");
+  if (table.rows.size() < 2) files::raise({file.string()}, "", "is too short", "at least two rows");
   const double step_s = table.rows[1][time] - table.rows[0][time];
   ExcitationTrajectory trajectory{name, {}};
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     const double due_s = table.rows[0][time] + static_cast<double>(k) * step_s;
     if (!(step_s > 0.0) || std::abs(table.rows[k][time] - due_s) > 0.1 * step_s) {
-      model::raise(table.place(k), "t_s", fmt::format("is {}", table.rows[k][time]), "evenly spaced, growing times");
+      files::raise(table.place(k), "t_s", fmt::format("is {}", table.rows[k][time]), "evenly spaced, growing times");
     }
     trajectory.q_cmd_rad.push_back(table.rows[k][1 - time]);
   }
@@ -40,10 +40,10 @@ ExcitationTrajectory read_trajectory(const fs::path& file, const std::string& na
 
 double finite_number(const CsvTable& table, std::size_t row, const std::string& column) {
   const auto at = table.find(column);
-  if (!at) model::raise({table.file.string(), table.header_line}, column, "is missing", "a column of an excitation");
+  if (!at) files::raise({table.file.string(), table.header_line}, column, "is missing", "a column of an excitation");
   const auto value = to_number(table.rows[row][*at]);
   if (!value || !std::isfinite(*value)) {
-    model::raise(table.place(row), column, "is '" + table.rows[row][*at] + "'", "a finite number");
+    files::raise(table.place(row), column, "is '" + table.rows[row][*at] + "'", "a finite number");
   }
   return *value;
 }
@@ -61,7 +61,7 @@ void write_excitation(const fs::path& folder, const Excitation& excitation, cons
       rows.push_back({static_cast<double>(k) / excitation.rate_hz, trajectory.q_cmd_rad[k]});
     }
     io::write_whole_file(folder / "commands" / (trajectory.name + ".csv"),
-                         model::format_number_table({"t_s", "q_cmd_rad"}, rows));
+                         files::format_number_table({"t_s", "q_cmd_rad"}, rows));
   }
   std::string runs = "file,trajectory,repeat,kp_Nm_per_rad,kd_Nm_s_per_rad\n";
   for (const ExcitationRow& row : excitation.rows) {
@@ -91,7 +91,7 @@ Excitation read_excitation(const fs::path& folder) {
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto text = [&](const std::string& column) {
       const auto at = table.find(column);
-      if (!at || table.rows[row][*at].empty()) model::raise(table.place(row), column, "is missing", "a name");
+      if (!at || table.rows[row][*at].empty()) files::raise(table.place(row), column, "is missing", "a name");
       return table.rows[row][*at];
     };
     ExcitationRow found{text("file"),
@@ -99,14 +99,14 @@ Excitation read_excitation(const fs::path& folder) {
                         static_cast<int>(finite_number(table, row, "repeat")),
                         {finite_number(table, row, "kp_Nm_per_rad"), finite_number(table, row, "kd_Nm_s_per_rad")}};
     if (!files.insert(found.file).second)
-      model::raise(table.place(row), "file", found.file + " is there twice", "one row a file");
-    if (fs::path(found.file).filename() != found.file) model::raise(table.place(row), "file", "has a folder", "a name");
+      files::raise(table.place(row), "file", found.file + " is there twice", "one row a file");
+    if (fs::path(found.file).filename() != found.file) files::raise(table.place(row), "file", "has a folder", "a name");
     if (!rate_hz.contains(found.trajectory)) {
       excitation.trajectories.push_back(read_trajectory(folder / "commands" / (found.trajectory + ".csv"),
                                                         found.trajectory, rate_hz[found.trajectory]));
     }
     if (rate_hz[found.trajectory] != rate_hz.begin()->second) {
-      model::raise(table.place(row), "trajectory", "has another rate than those before", "one rate for all");
+      files::raise(table.place(row), "trajectory", "has another rate than those before", "one rate for all");
     }
     excitation.rows.push_back(std::move(found));
   }

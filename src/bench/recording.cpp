@@ -24,19 +24,19 @@ void check_times(const CsvTable& table, const std::vector<double>& t_s, double s
   for (std::size_t k = 1; k < t_s.size(); ++k) {
     steps_s.push_back(t_s[k] - t_s[k - 1]);
     if (steps_s.back() == 0.0)
-      model::raise(table.place(k), "t_s", fmt::format("{} is there twice", t_s[k]), "times that increase");
+      files::raise(table.place(k), "t_s", fmt::format("{} is there twice", t_s[k]), "times that increase");
     if (steps_s.back() < 0.0) {
-      model::raise(table.place(k), "t_s", fmt::format("{} after {}", t_s[k], t_s[k - 1]), "times that increase");
+      files::raise(table.place(k), "t_s", fmt::format("{} after {}", t_s[k], t_s[k - 1]), "times that increase");
     }
   }
   const double usual_s = fitting::median(steps_s);
   if (usual_s > 2.0 * step_s || usual_s < 0.5 * step_s) {
-    model::raise({table.file.string()}, "t_s", fmt::format("steps of {:.4g}", usual_s),
+    files::raise({table.file.string()}, "t_s", fmt::format("steps of {:.4g}", usual_s),
                  fmt::format("seconds, {:.4g} apart as sample_rate_hz of bench.yaml says", step_s));
   }
   for (std::size_t k = 1; k < t_s.size(); ++k) {
     if (steps_s[k - 1] <= kLongestGap_samples * step_s) continue;
-    model::raise(table.place(k), "t_s", fmt::format("a gap of {:.4g} s", steps_s[k - 1]),
+    files::raise(table.place(k), "t_s", fmt::format("a gap of {:.4g} s", steps_s[k - 1]),
                  fmt::format("at most {:.4g} s between samples", kLongestGap_samples * step_s));
   }
 }
@@ -45,7 +45,7 @@ void check_positions(const CsvTable& table, const std::string& column, const std
   const double most = linear ? kLargestPosition_m : kLargestAngle_rad;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (std::abs(values[k]) <= most) continue;
-    model::raise(table.place(k), column, fmt::format("is {}", values[k]),
+    files::raise(table.place(k), column, fmt::format("is {}", values[k]),
                  fmt::format("{} within +-{}; is it in {}?", linear ? "metres" : "radians", most,
                              linear ? "millimetres" : "degrees"));
   }
@@ -95,7 +95,7 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
     if (table.find(name)) return table.numbers(name);
     for (const std::string& other : table.header) {
       if (other.starts_with(quantity + "_") && !other.ends_with("_raw")) {
-        model::raise({file.string(), table.header_line}, other, "is in another unit", name);
+        files::raise({file.string(), table.header_line}, other, "is in another unit", name);
       }
     }
     return table.numbers(name);
@@ -117,7 +117,7 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   for (const double on : if_there("enabled")) recording.enabled.push_back(on != 0.0);
 
   if (table.rows.size() < kFewestSamples) {
-    model::raise({file.string()}, "", fmt::format("{} samples", table.rows.size()),
+    files::raise({file.string()}, "", fmt::format("{} samples", table.rows.size()),
                  fmt::format("at least {}", kFewestSamples));
   }
   check_times(table, recording.t_s, format.sample_rate_hz);
@@ -127,15 +127,15 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
     return values.empty() || std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
   };
   if (format.commanded && constant(recording.q_cmd_rad) && constant(recording.tau_ff_Nm)) {
-    model::raise({file.string()}, "q_cmd" + unit, "never changes", "a command that excites the joint");
+    files::raise({file.string()}, "q_cmd" + unit, "never changes", "a command that excites the joint");
   }
   if (!format.commanded && constant(recording.torque_Nm)) {
-    model::raise({file.string()}, "torque" + force, "is missing or never changes", "the torque that drove the joint");
+    files::raise({file.string()}, "torque" + force, "is missing or never changes", "the torque that drove the joint");
   }
   mend_bus(recording.bus_V);
   recording.valid = find_valid(recording.q_rad);
   if (recording.dropouts() > table.rows.size() / 50) {
-    model::raise({file.string()}, "q" + unit, fmt::format("the sensor drops out in {} samples", recording.dropouts()),
+    files::raise({file.string()}, "q" + unit, fmt::format("the sensor drops out in {} samples", recording.dropouts()),
                  "at most one in 50");
   }
   return recording;

@@ -23,7 +23,7 @@ struct RecordingFormat {
   bool commanded = true;          ///< positions are commanded; false where the recorded torque is the input
 };
 
-/// Throws model::ConfigError that names file, line and column, on: missing columns or columns in another unit, NaN,
+/// Throws files::ConfigError that names file, line and column, on: missing columns or columns in another unit, NaN,
 /// times that stand still or run backwards, gaps, a rate other than bench.yaml's (milliseconds?), angles that look like
 /// degrees, too few samples, and a command that never changes.
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format);

@@ -11,7 +11,7 @@
 
 #include "calib/joint_runs.hpp"
 #include "calib/rollout_residuals.hpp"
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 #include "work/parallel.hpp"
 
 namespace pmg::calib {
@@ -112,7 +112,7 @@ std::vector<std::string> effect_parameters(const std::string& word) {
     if (word == p.name) return {word};
     known.emplace_back(p.name);
   }
-  if (const std::string nearest = model::nearest_name(word, known); !nearest.empty()) {
+  if (const std::string nearest = files::nearest_name(word, known); !nearest.empty()) {
     throw std::invalid_argument(fmt::format("'{}' isn't an effect; did you mean {}?", word, nearest));
   }
   throw std::invalid_argument(fmt::format("'{}' isn't an effect; expected one of {}, or a parameter of motor.yaml",

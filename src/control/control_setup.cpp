@@ -9,11 +9,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "files/config_reader.hpp"
+#include "files/nearest_name.hpp"
 #include "hal/bus_cycle.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
-#include "model/config_reader.hpp"
-#include "model/nearest_name.hpp"
 #include "policy/onnx_policy.hpp"
 
 namespace pmg::control {
@@ -40,7 +40,7 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   fs::path file =
       fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
   if (!fs::exists(file)) {
-    const std::string meant = model::nearest_name(name, policy_names(robot));
+    const std::string meant = files::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
         meant.empty() ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none",
                                     named_by, name, file.string())
@@ -57,7 +57,7 @@ std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file,
 
 /// The one that runs unless another is asked for; none where robot.yaml names none.
 std::string robots_own_policy(const model::RobotModel& robot) {
-  model::ConfigReader reader = model::ConfigReader::from_file(robot.directory / "robot.yaml");
+  files::ConfigReader reader = files::ConfigReader::from_file(robot.directory / "robot.yaml");
   return reader.has("policy") ? reader.required<std::string>("policy") : "none";
 }
 

@@ -35,7 +35,7 @@ struct LoadedControl {
   std::vector<std::pair<std::string, std::string>> files;  ///< likewise
 };
 
-/// Throws model::ConfigError or std::invalid_argument.
+/// Throws files::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);
 
 /// (limits of a backend, options) => the options of a tick whose commands go to that backend.

@@ -28,7 +28,7 @@ struct DiagnosedRuns {
 };
 
 /// (bench, options) => (diagnosis; runs, unless null). After an interruption the result holds the findings so far. The
-/// same input and seed give the same result. Throws std::invalid_argument and model::ConfigError on bad input.
+/// same input and seed give the same result. Throws std::invalid_argument and files::ConfigError on bad input.
 Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs = nullptr,
                    const work::Progress& progress = {});
 

@@ -6,9 +6,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "files/bounded_file.hpp"
+#include "files/number_table.hpp"
 #include "io/whole_file.hpp"
-#include "model/bounded_file.hpp"
-#include "model/number_table.hpp"
 
 namespace pmg::diagnosis {
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 std::string command_csv(const bench::Bench& bench, const NextRun& run) {
   std::vector<std::vector<double>> rows;
   for (std::size_t k = 0; k < run.t_s.size(); ++k) rows.push_back({run.t_s[k], run.q_cmd_rad[k]});
-  return model::format_number_table({"t_s", bench.rig == bench::Rig::kLinear ? "q_cmd_m" : "q_cmd_rad"}, rows);
+  return files::format_number_table({"t_s", bench.rig == bench::Rig::kLinear ? "q_cmd_m" : "q_cmd_rad"}, rows);
 }
 
 /// The row's known cells, by column.
@@ -52,7 +52,7 @@ std::string runs_csv(const std::vector<std::string>& header, const NextExcitatio
 }
 
 std::string text_of(const fs::path& file) {
-  return model::read_bounded_text(file, model::kLargestYaml_bytes, "a YAML file");
+  return files::read_bounded_text(file, files::kLargestYaml_bytes, "a YAML file");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 namespace pmg::drives {
 
@@ -15,22 +15,22 @@ namespace {
 
 constexpr int kMostNode = 127;  // CANopen's; MIT-derived drives take it too
 
-MitRanges read_ranges(model::ConfigReader reader) {
+MitRanges read_ranges(files::ConfigReader reader) {
   reader.one_of("protocol", {"mit"});
-  const MitRanges ranges = {.position_rad = reader.required<double>("position_rad", model::positive()),
-                            .velocity_rad_s = reader.required<double>("velocity_rad_s", model::positive()),
-                            .torque_Nm = reader.required<double>("torque_Nm", model::positive()),
-                            .kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", model::positive()),
-                            .kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", model::positive())};
+  const MitRanges ranges = {.position_rad = reader.required<double>("position_rad", files::positive()),
+                            .velocity_rad_s = reader.required<double>("velocity_rad_s", files::positive()),
+                            .torque_Nm = reader.required<double>("torque_Nm", files::positive()),
+                            .kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", files::positive()),
+                            .kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", files::positive())};
   reader.finish();
   return ranges;
 }
 
-BusSetup read_bus(model::ConfigReader reader, const std::string& name) {
+BusSetup read_bus(files::ConfigReader reader, const std::string& name) {
   BusSetup bus;
   bus.name = name;
-  bus.bitrate = reader.required<int>("bitrate", model::in_range(10'000, 1'000'000));
-  bus.data_bitrate = reader.optional<int>("data_bitrate", 0, model::in_range(bus.bitrate, 8'000'000));
+  bus.bitrate = reader.required<int>("bitrate", files::in_range(10'000, 1'000'000));
+  bus.data_bitrate = reader.optional<int>("data_bitrate", 0, files::in_range(bus.bitrate, 8'000'000));
   if (reader.has("imu")) bus.imu = reader.one_of("imu", {"xsens_can"}) == "xsens_can";
   reader.finish();
   return bus;
@@ -38,7 +38,7 @@ BusSetup read_bus(model::ConfigReader reader, const std::string& name) {
 
 /// Throws when a field of the drive's frames doesn't cover what the joint needs.
 void check_covers(const MitRanges& ranges, const MotorSetup& motor, const MotorCommand& gains, const std::string& drive,
-                  model::ConfigReader& reader) {
+                  files::ConfigReader& reader) {
   const struct {
     const char *field, *what;
     double needs, covers;
@@ -75,13 +75,13 @@ MotorCommand gains_of(const model::Joint& joint) {
 
 /// limits and gains: at the joint, or at the crank of a linkage.
 void cover(MotorSetup& motor, const MotorLimits& limits, const MotorCommand& gains, const std::string& drive,
-           model::ConfigReader& reader) {
+           files::ConfigReader& reader) {
   motor.limits = motor.transmission.to_motor(limits);
   check_covers(motor.ranges, motor, motor.transmission.to_motor(gains), drive, reader);
 }
 
 MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<std::string, MitRanges>& kinds,
-                      model::ConfigReader& reader) {
+                      files::ConfigReader& reader) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(index)];
   if (joint.bus.drive.empty()) reader.fail("bus", "has no `drive`", "the name of an entry of `drives`");
   const auto kind = kinds.find(joint.bus.drive);
@@ -98,7 +98,7 @@ MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<
           .limits = {}};
 }
 
-Eigen::Vector3d vector3(model::ConfigReader& reader, const std::string& key) {
+Eigen::Vector3d vector3(files::ConfigReader& reader, const std::string& key) {
   const std::vector<double> v = reader.numbers(key, 3);
   return {v[0], v[1], v[2]};
 }
@@ -106,7 +106,7 @@ Eigen::Vector3d vector3(model::ConfigReader& reader, const std::string& key) {
 template <int N>
 LinkedMotors<N> link(const model::RobotModel& robot, BusSetup& bus,
                      const std::array<std::size_t, static_cast<std::size_t>(N)>& motors,
-                     std::vector<model::ConfigReader> entries, model::ConfigReader& reader) {
+                     std::vector<files::ConfigReader> entries, files::ConfigReader& reader) {
   constexpr std::size_t kN = N;
   std::array<Eigen::Vector3d, kN> axes;
   std::array<CrankAndRod, kN> rods;
@@ -137,7 +137,7 @@ LinkedMotors<N> link(const model::RobotModel& robot, BusSetup& bus,
     }
     return linked;
   } catch (const std::invalid_argument& error) {
-    model::raise(reader.place(), reader.path("motors"), error.what(), "");
+    files::raise(reader.place(), reader.path("motors"), error.what(), "");
   }
 }
 
@@ -146,7 +146,7 @@ struct Found {
   std::size_t bus, motor;
 };
 
-Found find_motor(const DriveSetup& setup, const std::string& joint, model::ConfigReader& reader) {
+Found find_motor(const DriveSetup& setup, const std::string& joint, files::ConfigReader& reader) {
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     const auto motor = std::ranges::find(setup.buses[b].motors, joint, &MotorSetup::joint);
     if (motor != setup.buses[b].motors.end())
@@ -155,9 +155,9 @@ Found find_motor(const DriveSetup& setup, const std::string& joint, model::Confi
   reader.fail("joints", "'" + joint + "' isn't a joint", "names of `joints`");
 }
 
-void read_linkage(const model::RobotModel& robot, DriveSetup& setup, model::ConfigReader reader) {
+void read_linkage(const model::RobotModel& robot, DriveSetup& setup, files::ConfigReader reader) {
   const auto joints = reader.required<std::vector<std::string>>("joints");
-  std::vector<model::ConfigReader> motors = reader.maps("motors");
+  std::vector<files::ConfigReader> motors = reader.maps("motors");
   if (joints.empty() || joints.size() > 2 || joints.size() != motors.size()) {
     reader.fail("joints", fmt::format("{} joints and {} motors", joints.size(), motors.size()),
                 "one of each, or two of each");
@@ -183,19 +183,19 @@ bool linked(const BusSetup& bus, std::size_t motor) {
 }  // namespace
 
 DriveSetup load_drives(const model::RobotModel& robot) {
-  model::ConfigReader reader = model::ConfigReader::from_file(robot.directory / "robot.yaml");
+  files::ConfigReader reader = files::ConfigReader::from_file(robot.directory / "robot.yaml");
   std::map<std::string, MitRanges> kinds;
-  model::ConfigReader drives = reader.map("drives");
+  files::ConfigReader drives = reader.map("drives");
   for (const std::string& name : drives.keys()) kinds[name] = read_ranges(drives.map(name));
-  model::ConfigReader buses = reader.map("buses");
+  files::ConfigReader buses = reader.map("buses");
   std::map<std::string, BusSetup> known;
   for (const std::string& name : buses.keys()) known[name] = read_bus(buses.map(name), name);
 
   DriveSetup setup;
-  model::ConfigReader joints = reader.map("joints");
+  files::ConfigReader joints = reader.map("joints");
   for (int index = 0; index < robot.joint_index.size(); ++index) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(index)];
-    model::ConfigReader entry = joints.map(joint.name);
+    files::ConfigReader entry = joints.map(joint.name);
     const auto bus = known.find(joint.bus.bus);
     if (bus == known.end()) entry.fail("bus", "'" + joint.bus.bus + "' isn't described", "a bus of `buses`");
     auto found = std::ranges::find(setup.buses, joint.bus.bus, &BusSetup::name);
@@ -203,13 +203,13 @@ DriveSetup load_drives(const model::RobotModel& robot) {
     found->motors.push_back(make_motor(robot, index, kinds, entry));
   }
   if (reader.has("linkages")) {
-    for (const model::ConfigReader& linkage : reader.maps("linkages")) read_linkage(robot, setup, linkage);
+    for (const files::ConfigReader& linkage : reader.maps("linkages")) read_linkage(robot, setup, linkage);
   }
   for (BusSetup& bus : setup.buses) {
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
       MotorSetup& motor = bus.motors[m];
       const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
-      model::ConfigReader entry = joints.map(joint.name);
+      files::ConfigReader entry = joints.map(joint.name);
       if (!linked(bus, m)) cover(motor, limits_of(joint), gains_of(joint), joint.bus.drive, entry);
     }
   }

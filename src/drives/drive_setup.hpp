@@ -46,7 +46,7 @@ struct DriveSetup {
   std::vector<BusSetup> buses;  ///< those that joints name, in their order
 };
 
-/// Reads robot.directory/robot.yaml. Throws model::ConfigError when a joint has no drive, when a field of its drive's
+/// Reads robot.directory/robot.yaml. Throws files::ConfigError when a joint has no drive, when a field of its drive's
 /// frames doesn't cover the joint's range, speed, effort or gains, when a bus isn't described, or when the number of
 /// buses with the IMU isn't one, when the joints of a linkage have drives on two buses, or when a linkage is close to a
 /// singularity within its joints' ranges.

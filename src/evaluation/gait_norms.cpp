@@ -18,7 +18,7 @@ std::vector<double> means(const bench::CsvTable& table, const std::string& begin
   for (const std::string& name : table.header) {
     if (name.starts_with(begin) && name.ends_with("_mean")) return table.numbers(name);
   }
-  model::raise({table.file.string(), table.header_line}, begin + "..._mean", "is missing", "a column of that name");
+  files::raise({table.file.string(), table.header_line}, begin + "..._mean", "is missing", "a column of that name");
 }
 
 /// Linear interpolation of equal steps from 0 to 100 % of the cycle at kCyclePoints.
@@ -49,7 +49,7 @@ GaitNorms built_in_norms() {
 GaitNorms load_norms(const std::filesystem::path& file) {
   const bench::CsvTable table = bench::read_csv(file);
   if (table.rows.size() < kFewestRows) {
-    model::raise({file.string()}, "", fmt::format("{} rows", table.rows.size()),
+    files::raise({file.string()}, "", fmt::format("{} rows", table.rows.size()),
                  fmt::format("at least {}, from 0 to 100 % of the cycle", kFewestRows));
   }
   GaitNorms norms{.source = file.filename().string(), .deg = {}};

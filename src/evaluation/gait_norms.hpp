@@ -25,7 +25,7 @@ GaitNorms built_in_norms();
 
 /// CSV with a header line; lines that begin with # are skipped. Columns hip_flexion..._mean, knee_flexion..._mean,
 /// ankle_dorsiflexion..._mean and pelvis_tilt..._mean in degrees, at equal steps from 0 to 100 % of the cycle. Throws
-/// model::ConfigError.
+/// files::ConfigError.
 GaitNorms load_norms(const std::filesystem::path& file);
 
 }  // namespace pmg::evaluation

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "calib/motor_fit.hpp"
+#include "files/config_reader.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
-#include "model/config_reader.hpp"
 #include "model/hanging_load.hpp"
 #include "sil/lockstep.hpp"
 #include "sil/sil_hal.hpp"
@@ -28,8 +28,8 @@ constexpr int kBenchRuns = 4;
 constexpr double kAmplitude_rad = 0.3;
 constexpr double kWeight_kg = 4.0, kArm_m = 0.3;  // on the joint, in half of the runs
 
-sim::Range range(model::ConfigReader& reader, const std::string& key) {
-  const std::vector<double> ends = reader.numbers(key, 2, model::non_negative());
+sim::Range range(files::ConfigReader& reader, const std::string& key) {
+  const std::vector<double> ends = reader.numbers(key, 2, files::non_negative());
   if (ends[0] > ends[1]) reader.fail(key, "runs backwards", "[lower, upper]");
   return {ends[0], ends[1]};
 }
@@ -108,10 +108,10 @@ bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::pat
 }  // namespace
 
 PlantRanges load_plant_ranges(const std::filesystem::path& file) {
-  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  files::ConfigReader reader = files::ConfigReader::from_file(file);
   PlantRanges ranges;
-  ranges.plants = reader.required<int>("plants", model::positive());
-  ranges.seed = reader.required<int>("seed", model::non_negative());
+  ranges.plants = reader.required<int>("plants", files::positive());
+  ranges.seed = reader.required<int>("seed", files::non_negative());
   ranges.coulomb_Nm = range(reader, "coulomb_Nm");
   ranges.viscous_Nm_s_per_rad = range(reader, "viscous_Nm_s_per_rad");
   ranges.armature_factor = range(reader, "armature_factor");

@@ -21,7 +21,7 @@ struct PlantRanges {
       backlash_rad, stiffness_Nm_per_rad, load_friction;
 };
 
-/// Throws model::ConfigError.
+/// Throws files::ConfigError.
 PlantRanges load_plant_ranges(const std::filesystem::path& file);
 
 /// Actuators of the policy's joints. The same ranges, robot and number give the same plant on every machine.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "files/bounded_file.hpp"
+#include "files/config_error.hpp"
 #include "generator/joint_roles.hpp"
-#include "model/bounded_file.hpp"
-#include "model/config_error.hpp"
 #include "model/leg_kinematics.hpp"
 
 namespace pmg::generator {
@@ -131,7 +131,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// One column of a norms file without its last row, because 100 % is 0 % again.
 std::vector<double> read_column(const std::filesystem::path& file, const std::string& name) {
-  std::istringstream in(model::read_bounded_text(file, model::kLargestTable_bytes, "a file of norms"));
+  std::istringstream in(files::read_bounded_text(file, files::kLargestTable_bytes, "a file of norms"));
   std::vector<double> values;
   std::ptrdiff_t column = -1;
   for (std::string line; std::getline(in, line);) {
@@ -146,7 +146,7 @@ std::vector<double> read_column(const std::filesystem::path& file, const std::st
     }
   }
   if (values.size() != 101) {
-    throw model::ConfigError(file.string() + ": " + name + ": " + std::to_string(values.size()) +
+    throw files::ConfigError(file.string() + ": " + name + ": " + std::to_string(values.size()) +
                              " values; expected a column of 101, 0 to 100 % of the cycle");
   }
   values.pop_back();

@@ -40,7 +40,7 @@ struct NormReport {
 };
 
 /// norms: CSV of 101 rows (0 .. 100 % of the cycle) with columns hip_flexion_mean, knee_flexion_mean,
-/// ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean, in degrees. Throws model::ConfigError.
+/// ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean, in degrees. Throws files::ConfigError.
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms);
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "files/config_error.hpp"
 #include "generator/gait_measure.hpp"
 #include "generator/gait_residuals.hpp"
-#include "model/config_error.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -255,7 +255,7 @@ RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles) {
   for (std::size_t role = 0; role < kLegJoints; ++role) {
     const auto left = static_cast<std::size_t>(roles.leg[kLeft][role]);
     if (robot.mirror.partner[left] != roles.leg[kRight][role]) {
-      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": " + robot.joints[left].name +
+      throw files::ConfigError((robot.directory / "robot.yaml").string() + ": " + robot.joints[left].name +
                                ": its mirror image isn't the right leg's joint; expected symmetric legs");
     }
     legs.mirror_sign[static_cast<Eigen::Index>(role)] = robot.mirror.sign[left];

@@ -16,7 +16,7 @@ struct RobotLegs {
   double standing_height_m = 0.0;  ///< base above the soles
 };
 
-/// Throws model::ConfigError if the legs aren't mirror images.
+/// Throws files::ConfigError if the legs aren't mirror images.
 RobotLegs robot_legs(const model::RobotModel& robot, const JointRoles& roles);
 
 struct GaitSolution {

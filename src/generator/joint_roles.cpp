@@ -1,6 +1,6 @@
 #include "generator/joint_roles.hpp"
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -11,7 +11,7 @@ int leg_joint(const model::RobotModel& robot, std::size_t foot, const char* role
   const std::string name = std::string(kSide[foot]) + role;
   const std::optional<int> joint = robot.joint_index.find(name);
   if (!joint) {
-    throw model::ConfigError((robot.directory / "robot.yaml").string() + ": " + name +
+    throw files::ConfigError((robot.directory / "robot.yaml").string() + ": " + name +
                              ": no such joint; expected legs with hip_pitch, hip_roll, hip_yaw, knee, ankle_pitch and "
                              "ankle_roll, which clips are made for");
   }
@@ -27,7 +27,7 @@ JointRoles find_joint_roles(const model::RobotModel& robot) {
       roles.leg[foot][role] = leg_joint(robot, foot, kLegRoleNames[role]);
     }
     if (robot.leg_joints[foot].size() != kLegJoints) {
-      throw model::ConfigError((robot.directory / "robot.yaml").string() + ": feet: the leg to " +
+      throw files::ConfigError((robot.directory / "robot.yaml").string() + ": feet: the leg to " +
                                robot.feet[foot].link + " has " + std::to_string(robot.leg_joints[foot].size()) +
                                " joints; expected " + std::to_string(kLegJoints));
     }

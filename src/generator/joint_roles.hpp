@@ -22,7 +22,7 @@ struct JointRoles {
   PerFoot<std::optional<int>> shoulder_pitch, shoulder_roll, elbow;
 };
 
-/// Throws model::ConfigError if a leg lacks one of the six roles or has another moving joint.
+/// Throws files::ConfigError if a leg lacks one of the six roles or has another moving joint.
 JointRoles find_joint_roles(const model::RobotModel& robot);
 
 }  // namespace pmg::generator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -40,7 +40,7 @@ LegGeometry leg_geometry(const model::RobotModel& robot, const JointRoles& roles
     }
     const auto role = std::find(roles.leg[foot].begin(), roles.leg[foot].end(), robot.joint_index.at(joint->name));
     if (role == roles.leg[foot].end() || found == leg.segments.size()) {
-      throw model::ConfigError(
+      throw files::ConfigError(
           (robot.directory / "robot.yaml").string() + ": " + joint->name +
           ": has no part in a leg; expected hip_pitch, hip_roll, hip_yaw, knee, ankle_pitch or ankle_roll");
     }

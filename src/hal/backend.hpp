@@ -22,7 +22,7 @@ using OptionValue = std::variant<bool, std::uint64_t, double, std::string>;
 using OptionValues = std::map<std::string, OptionValue>;  ///< by option name
 
 /// What every backend is made from. A backend with a configuration file has an option that names the file, or finds it
-/// in robot.directory; it reads the file through model::ConfigReader.
+/// in robot.directory; it reads the file through files::ConfigReader.
 struct BackendSetup {
   const model::RobotModel& robot;  ///< outlives the backend
   const io::Clock& clock;          ///< of the run; outlives the backend
@@ -57,7 +57,7 @@ class Window {
   virtual void let_go() = 0;        ///< velocity to zero, then Stand; returns when that is so, after seconds at most
 };
 
-/// Its constructor reads and checks the configuration and touches neither bus nor screen. It throws model::ConfigError
+/// Its constructor reads and checks the configuration and touches neither bus nor screen. It throws files::ConfigError
 /// or std::invalid_argument. The main thread makes, connects and destroys it.
 class Backend {
  public:

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 namespace pmg::hal {
 
@@ -61,7 +61,7 @@ const BackendKind& BackendFactory::kind(const std::string& name) const {
   const std::vector<std::string> here = names_of(kinds_);
   const std::string expected = here.empty()       ? "it has no other backend either"
                                : here.size() == 1 ? fmt::format("expected {}, the one that it has", here.front())
-                                                  : model::expected_name(name, here);
+                                                  : files::expected_name(name, here);
   throw std::invalid_argument(fmt::format("--hal {}: this build has no {}; {}", name, what, expected));
 }
 

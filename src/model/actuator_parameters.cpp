@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 namespace pmg::model {
 
@@ -72,7 +72,7 @@ const ActuatorParameter& actuator_parameter(std::string_view name) {
     names.emplace_back(parameter.name);
   }
   throw std::invalid_argument("no actuator parameter is called '" + std::string(name) + "'; " +
-                              model::expected_name(name, names));
+                              files::expected_name(name, names));
 }
 
 }  // namespace pmg::model

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
+#include "files/config_reader.hpp"
 #include "model/clip_library_file.hpp"
-#include "model/config_reader.hpp"
 
 namespace pmg::model {
 
@@ -44,13 +44,13 @@ class Sha256 {
 };
 
 void add_file(const fs::path& path, Sha256& hash) {
-  expect_bounded_file(path, kLargestTable_bytes, "a file of a robot");
+  files::expect_bounded_file(path, files::kLargestTable_bytes, "a file of a robot");
   std::ifstream file(path, std::ios::binary);
   std::array<char, 65536> block{};
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
     hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
   }
-  if (!file.is_open() || file.bad()) raise({path.string()}, "", "can't be read", "a readable file");
+  if (!file.is_open() || file.bad()) files::raise({path.string()}, "", "can't be read", "a readable file");
 }
 
 std::string hash_of_file(const fs::path& path) {
@@ -70,7 +70,7 @@ std::vector<fs::path> regular_files(const fs::path& directory) {
 
 /// Reads only this key: load_robot has checked the file already.
 std::string urdf_name(const fs::path& robot_yaml) {
-  return ConfigReader::from_file(robot_yaml).required<std::string>("urdf");
+  return files::ConfigReader::from_file(robot_yaml).required<std::string>("urdf");
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files/config_reader.hpp"
 #include "model/clip_table.hpp"
 #include "model/command_inverse_file.hpp"
-#include "model/config_reader.hpp"
 #include "pmg/blending.hpp"
 #include "pmg/library_check.hpp"
 
@@ -30,13 +30,13 @@ void check_limits(const ClipTable& table, const RobotModel& robot) {
     for (const Joint& joint : robot.joints) {
       const double angle = table.q[row][robot.joint_index.at(joint.name)];
       if (angle >= joint.lower_rad && angle <= joint.upper_rad) continue;
-      raise(table.place(row), joint.name, fmt::format("is {} rad", angle),
-            fmt::format("{} to {}, its limits", joint.lower_rad, joint.upper_rad));
+      files::raise(table.place(row), joint.name, fmt::format("is {} rad", angle),
+                   fmt::format("{} to {}, its limits", joint.lower_rad, joint.upper_rad));
     }
   }
 }
 
-void read_mean_velocity(DynamicClip& clip, ConfigReader reader, const Corner& corner) {
+void read_mean_velocity(DynamicClip& clip, files::ConfigReader reader, const Corner& corner) {
   for (std::size_t i = 0; i < kVelocityChannels; ++i) {
     clip.mean_velocity[i] = reader.required<double>(kChannelNames[i]);
     if (corner.sign[i] != 0 && !(clip.mean_velocity[i] * corner.sign[i] > 0.0)) {
@@ -50,15 +50,15 @@ void read_mean_velocity(DynamicClip& clip, ConfigReader reader, const Corner& co
 DynamicClip read_dynamic(const fs::path& directory, const std::string& name, const RobotModel& robot,
                          const Corner& corner) {
   DynamicClip clip;
-  ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
+  files::ConfigReader reader = files::ConfigReader::from_file(yaml(directory, name));
   reader.one_of("kind", {"dynamic"});
   reader.required<std::string>("source");
-  clip.period_s = reader.required<double>("period_s", positive());
-  ConfigReader contact = reader.map("contact");
+  clip.period_s = reader.required<double>("period_s", files::positive());
+  files::ConfigReader contact = reader.map("contact");
   for (const Foot foot : {kLeft, kRight}) {
-    ConfigReader side = contact.map(kFootNames[foot]);
-    clip.contact_center[foot] = side.required<double>("center", in_range(0.0, std::nextafter(1.0, 0.0)));
-    clip.duty_factor[foot] = side.required<double>("duty_factor", in_range(1e-3, 1.0));
+    files::ConfigReader side = contact.map(kFootNames[foot]);
+    clip.contact_center[foot] = side.required<double>("center", files::in_range(0.0, std::nextafter(1.0, 0.0)));
+    clip.duty_factor[foot] = side.required<double>("duty_factor", files::in_range(1e-3, 1.0));
     side.finish();
   }
   contact.finish();
@@ -67,8 +67,8 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
 
   const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, false);
   if (table.q.size() < check::kMinSamples || table.q.size() > kMaxSamples) {
-    raise({table.file.string()}, "", fmt::format("has {} samples", table.q.size()),
-          fmt::format("{} to {}", check::kMinSamples, kMaxSamples));
+    files::raise({table.file.string()}, "", fmt::format("has {} samples", table.q.size()),
+                 fmt::format("{} to {}", check::kMinSamples, kMaxSamples));
   }
   check_limits(table, robot);
   clip.q = table.q;
@@ -81,8 +81,8 @@ void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
   std::size_t above = 0;
   while (above < table.command.size() && table.command[above] < 0.0) ++above;
   if (above == table.command.size() || (above == 0 && table.command[0] > 0.0)) {
-    raise({table.file.string()}, "command",
-          fmt::format("goes from {} to {}", table.command.front(), table.command.back()), "0 in its range");
+    files::raise({table.file.string()}, "command",
+                 fmt::format("goes from {} to {}", table.command.front(), table.command.back()), "0 in its range");
   }
   const std::size_t below = table.command[above] == 0.0 ? above : above - 1;
   const double span = table.command[above] - table.command[below];
@@ -91,26 +91,28 @@ void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
     const int i = robot.joint_index.at(joint.name);
     const double angle = (1.0 - share) * table.q[below][i] + share * table.q[above][i];
     if (std::abs(angle - joint.stand_rad) > kSamePosture_rad) {
-      raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", angle),
-            fmt::format("{}, the standing posture", joint.stand_rad));
+      files::raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", angle),
+                   fmt::format("{}, the standing posture", joint.stand_rad));
     }
   }
 }
 
 StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot,
                        std::size_t channel) {
-  ConfigReader reader = ConfigReader::from_file(yaml(directory, name));
+  files::ConfigReader reader = files::ConfigReader::from_file(yaml(directory, name));
   reader.one_of("kind", {"static"});
   reader.required<std::string>("source");
   reader.one_of("channel", {kChannelNames[channel]});
   reader.finish();
 
   const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, true);
-  if (table.q.size() < 2) raise({table.file.string()}, "", fmt::format("has {} rows", table.q.size()), "2 or more");
+  if (table.q.size() < 2)
+    files::raise({table.file.string()}, "", fmt::format("has {} rows", table.q.size()), "2 or more");
   for (std::size_t row = 1; row < table.command.size(); ++row) {
     if (!(table.command[row] > table.command[row - 1])) {
-      raise(table.place(row), "command", fmt::format("is {} after {}", table.command[row], table.command[row - 1]),
-            "strictly increasing ones");
+      files::raise(table.place(row), "command",
+                   fmt::format("is {} after {}", table.command[row], table.command[row - 1]),
+                   "strictly increasing ones");
     }
   }
   check_limits(table, robot);
@@ -151,7 +153,7 @@ void check_contact_centers(const fs::path& directory, const ClipLibrary& library
         if (circular_distance(clip.contact_center[foot], other.contact_center[foot]) <= check::kMaxContactCenterSpread)
           continue;
         const fs::path file = yaml(directory, clip.name);
-        ConfigReader reader = ConfigReader::from_file(file);
+        files::ConfigReader reader = files::ConfigReader::from_file(file);
         reader.map("contact")
             .map(kFootNames[foot])
             .fail("center",
@@ -167,7 +169,7 @@ void check_total(const fs::path& directory, const ClipLibrary& library) {
   const auto add = [&](const DynamicClip& clip, const std::string& name) {
     total_s += clip.period_s;
     if (total_s < kMaxDynamicTotal_s) return;
-    ConfigReader::from_file(yaml(directory, name))
+    files::ConfigReader::from_file(yaml(directory, name))
         .fail("period_s", fmt::format("brings the dynamic clips to {} s", total_s),
               fmt::format("less than {} s in total", kMaxDynamicTotal_s));
   };
@@ -182,7 +184,7 @@ fs::path library_yaml(const fs::path& directory) { return directory / "library.y
 
 Blend read_blend(const fs::path& directory) {
   if (!fs::exists(library_yaml(directory))) return Blend::kGain;
-  ConfigReader reader = ConfigReader::from_file(library_yaml(directory));
+  files::ConfigReader reader = files::ConfigReader::from_file(library_yaml(directory));
   const std::string name = reader.one_of("blend", {kBlendNames.begin(), kBlendNames.end()});
   reader.finish();
   return static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
@@ -241,7 +243,7 @@ std::vector<fs::path> clip_library_files(const fs::path& directory) {
 }
 
 ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot) {
-  if (!fs::is_directory(directory)) raise({directory.string()}, "", "isn't a directory", "a directory of clips");
+  if (!fs::is_directory(directory)) files::raise({directory.string()}, "", "isn't a directory", "a directory of clips");
   ClipLibrary library;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
     library.positive[channel] =

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <fstream>
 
+#include "files/config_error.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/clip_table.hpp"
-#include "model/config_error.hpp"
 
 namespace pmg::model {
 namespace {
@@ -20,7 +20,7 @@ void write_file(const fs::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
+  if (!stream) files::raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
 }
 
 void write_clip(const fs::path& directory, const std::string& name, const std::string& csv, const std::string& yaml) {
@@ -47,7 +47,7 @@ void require_writable(const fs::path& directory) {
     existing = existing.parent_path();
   }
   if (!fs::is_directory(existing, error) || access(existing.c_str(), W_OK | X_OK) != 0) {
-    throw model::ConfigError(directory.string() +
+    throw files::ConfigError(directory.string() +
                              ": can't be written to; expected a directory, or a place to make one in");
   }
 }

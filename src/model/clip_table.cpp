@@ -1,6 +1,6 @@
 #include "model/clip_table.hpp"
 
-#include "model/number_table.hpp"
+#include "files/number_table.hpp"
 
 namespace pmg::model {
 namespace {
@@ -16,7 +16,7 @@ std::vector<std::string> clip_columns(const JointIndex& joints, bool with_comman
 }  // namespace
 
 ClipTable read_clip_table(const std::filesystem::path& file, const JointIndex& joints, bool with_command) {
-  const NumberTable numbers = read_number_table(
+  const files::NumberTable numbers = files::read_number_table(
       file, clip_columns(joints, with_command),
       with_command ? "`command` and every joint of the robot" : "every joint of the robot, by its name");
   ClipTable table{numbers.file, {}, {}, numbers.line};
@@ -41,7 +41,7 @@ std::string format_clip_table(const JointIndex& joints, const std::vector<double
     rows.emplace_back(q[row].data(), q[row].data() + q[row].size());
     if (!command.empty()) rows.back().insert(rows.back().begin(), command[row]);
   }
-  return format_number_table(clip_columns(joints, !command.empty()), rows);
+  return files::format_number_table(clip_columns(joints, !command.empty()), rows);
 }
 
 }  // namespace pmg::model

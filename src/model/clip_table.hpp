@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "model/joint_index.hpp"
 #include "pmg/types.hpp"
 
@@ -17,7 +17,7 @@ struct ClipTable {
   std::vector<JointVector> q;   ///< one per row, in the robot's joint order [rad]
   std::vector<int> line;        ///< line number of each row
 
-  Place place(std::size_t row) const { return {file.string(), line[row]}; }
+  files::Place place(std::size_t row) const { return {file.string(), line[row]}; }
 };
 
 /// The columns are every joint by name and, if with_command, `command`, in any order. Throws ConfigError on a missing,

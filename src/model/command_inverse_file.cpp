@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "model/number_table.hpp"
+#include "files/number_table.hpp"
 
 namespace pmg::model {
 namespace {
@@ -27,7 +27,7 @@ std::vector<std::string> inverse_columns() {
 }
 
 /// For each of inverse_columns(), its position in the file.
-std::array<std::size_t, 2 * kAxes> places(const NumberTable& table) {
+std::array<std::size_t, 2 * kAxes> places(const files::NumberTable& table) {
   std::array<std::size_t, 2 * kAxes> place{};
   const std::vector<std::string> names = inverse_columns();
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -50,9 +50,9 @@ std::array<double, kAxes> node_at(const std::array<std::vector<double>, kAxes>& 
 std::filesystem::path command_inverse_file(const std::filesystem::path& directory) { return directory / "inverse.csv"; }
 
 CommandInverse read_command_inverse(const std::filesystem::path& directory) {
-  const NumberTable table =
-      read_number_table(command_inverse_file(directory), inverse_columns(),
-                        "each of " + std::to_string(kAxes) + " commands and of their corrections");
+  const files::NumberTable table =
+      files::read_number_table(command_inverse_file(directory), inverse_columns(),
+                               "each of " + std::to_string(kAxes) + " commands and of their corrections");
   const auto place = places(table);
   std::array<std::vector<double>, kAxes> axis;
   for (std::size_t a = 0; a < kAxes; ++a) {
@@ -63,16 +63,16 @@ CommandInverse read_command_inverse(const std::filesystem::path& directory) {
   std::size_t nodes = 1;
   for (const std::vector<double>& values : axis) nodes = std::min(nodes * values.size(), table.rows.size() + 1);
   if (nodes != table.rows.size() || nodes == 0) {
-    raise({table.file.string()}, "", fmt::format("has {} rows", table.rows.size()),
-          "one for every combination of its commands");
+    files::raise({table.file.string()}, "", fmt::format("has {} rows", table.rows.size()),
+                 "one for every combination of its commands");
   }
   std::vector<CommandInverse::Node> correction(nodes);
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto node = node_at(axis, i);
     for (std::size_t a = 0; a < kAxes; ++a) {
       if (table.rows[i][place[a]] != node[a]) {
-        raise(table.place(i), inverse_columns()[a], fmt::format("is {}", table.rows[i][place[a]]),
-              fmt::format("{}: the full grid, sorted", node[a]));
+        files::raise(table.place(i), inverse_columns()[a], fmt::format("is {}", table.rows[i][place[a]]),
+                     fmt::format("{}: the full grid, sorted", node[a]));
       }
       correction[i][a] = table.rows[i][place[kAxes + a]];
     }
@@ -90,9 +90,9 @@ void write_command_inverse(const std::filesystem::path& directory, const Command
   const std::filesystem::path file = command_inverse_file(directory);
   errno = 0;
   std::ofstream stream(file, std::ios::binary);
-  stream << format_number_table(inverse_columns(), rows);
+  stream << files::format_number_table(inverse_columns(), rows);
   stream.close();
-  if (!stream) raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
+  if (!stream) files::raise({file.string()}, "", fmt::format("cannot be written ({})", std::strerror(errno)), "");
 }
 
 }  // namespace pmg::model

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "model/config_error.hpp"
-#include "model/nearest_name.hpp"
+#include "files/config_error.hpp"
+#include "files/nearest_name.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::model {
@@ -33,7 +33,8 @@ std::filesystem::path find_robot(const std::string& name) {
     }
   }
   std::sort(known.begin(), known.end());
-  throw ConfigError(fmt::format("robot '{}' is neither known nor a folder; {}", name, expected_name(name, known)));
+  throw files::ConfigError(
+      fmt::format("robot '{}' is neither known nor a folder; {}", name, files::expected_name(name, known)));
 }
 
 }  // namespace pmg::model

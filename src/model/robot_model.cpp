@@ -8,7 +8,7 @@
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <limits>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/mirror.hpp"
 #include "model/urdf_tree.hpp"
@@ -16,27 +16,28 @@
 namespace pmg::model {
 namespace {
 
-Eigen::Vector3d vector3(ConfigReader& reader, const std::string& key, const NumberCheck& check = any_number()) {
+Eigen::Vector3d vector3(files::ConfigReader& reader, const std::string& key,
+                        const files::NumberCheck& check = files::any_number()) {
   const std::vector<double> v = reader.numbers(key, 3, check);
   return {v[0], v[1], v[2]};
 }
 
-std::string link_name(ConfigReader& reader, const std::string& key, const UrdfTree& tree) {
+std::string link_name(files::ConfigReader& reader, const std::string& key, const UrdfTree& tree) {
   const std::string name = reader.required<std::string>(key);
   if (!tree.urdf->getLink(name)) reader.fail(key, "'" + name + "' isn't a link", "a link of " + tree.file.string());
   return name;
 }
 
-FootModel read_foot(ConfigReader reader, const UrdfTree& tree) {
+FootModel read_foot(files::ConfigReader reader, const UrdfTree& tree) {
   FootModel foot;
   foot.link = link_name(reader, "link", tree);
   foot.box_center_F = vector3(reader, "box_center_m");
-  foot.box_half_size_m = 0.5 * vector3(reader, "box_size_m", positive());
+  foot.box_half_size_m = 0.5 * vector3(reader, "box_size_m", files::positive());
   reader.finish();
   return foot;
 }
 
-ImuModel read_imu(ConfigReader reader, const UrdfTree& tree) {
+ImuModel read_imu(files::ConfigReader reader, const UrdfTree& tree) {
   ImuModel imu;
   imu.link = link_name(reader, "link", tree);
   imu.T_LI.translation() = vector3(reader, "position_m");
@@ -49,23 +50,23 @@ ImuModel read_imu(ConfigReader reader, const UrdfTree& tree) {
   return imu;
 }
 
-BusAddress read_bus(ConfigReader reader) {
+BusAddress read_bus(files::ConfigReader reader) {
   BusAddress bus;
   bus.bus = reader.required<std::string>("name");
-  bus.node = reader.required<int>("node", non_negative());
+  bus.node = reader.required<int>("node", files::non_negative());
   bus.drive = reader.optional<std::string>("drive", "");
   bus.direction = reader.optional<int>("direction", 1);
   if (std::abs(bus.direction) != 1) reader.fail("direction", fmt::format("is {}", bus.direction), "1 or -1");
-  bus.gear = reader.optional<double>("gear", 1.0, positive());
+  bus.gear = reader.optional<double>("gear", 1.0, files::positive());
   bus.zero_offset_rad = reader.optional<double>("zero_offset_rad", 0.0);
   reader.finish();
   return bus;
 }
 
-Joint read_joint(ConfigReader reader, const std::string& name, const UrdfTree& tree) {
+Joint read_joint(files::ConfigReader reader, const std::string& name, const UrdfTree& tree) {
   const urdf::JointConstSharedPtr source = tree.urdf->getJoint(name);
   if (!source || source->type == urdf::Joint::FIXED) {
-    raise(reader.place(), "joints." + name, "isn't a moving joint", "one of " + tree.file.string());
+    files::raise(reader.place(), "joints." + name, "isn't a moving joint", "one of " + tree.file.string());
   }
   Joint joint;
   joint.name = name;
@@ -74,29 +75,29 @@ Joint read_joint(ConfigReader reader, const std::string& name, const UrdfTree& t
   joint.upper_rad = source->limits->upper;
   joint.velocity_limit_rad_s = source->limits->velocity;
   joint.effort_limit_Nm = source->limits->effort;
-  joint.stand_rad = reader.required<double>("stand_rad", in_range(joint.lower_rad, joint.upper_rad));
-  joint.kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", positive());
-  joint.kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", non_negative());
-  joint.armature_kg_m2 = reader.required<double>("armature_kg_m2", non_negative());
-  joint.damping_Nm_s_per_rad = reader.required<double>("damping_Nm_s_per_rad", non_negative());
-  joint.friction_Nm = reader.required<double>("friction_Nm", non_negative());
+  joint.stand_rad = reader.required<double>("stand_rad", files::in_range(joint.lower_rad, joint.upper_rad));
+  joint.kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", files::positive());
+  joint.kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", files::non_negative());
+  joint.armature_kg_m2 = reader.required<double>("armature_kg_m2", files::non_negative());
+  joint.damping_Nm_s_per_rad = reader.required<double>("damping_Nm_s_per_rad", files::non_negative());
+  joint.friction_Nm = reader.required<double>("friction_Nm", files::non_negative());
   reader.one_of("drive", {"position_pd"});
   joint.bus = read_bus(reader.map("bus"));
   reader.finish();
   return joint;
 }
 
-void read_joints(RobotModel& robot, ConfigReader reader, const UrdfTree& tree) {
+void read_joints(RobotModel& robot, files::ConfigReader reader, const UrdfTree& tree) {
   for (const std::string& name : reader.keys()) robot.joints.push_back(read_joint(reader.map(name), name, tree));
   if (robot.joints.empty() || robot.joints.size() > static_cast<std::size_t>(kMaxJoints)) {
-    raise(reader.place(), "joints", fmt::format("has {} joints", robot.joints.size()),
-          fmt::format("1 to {}", kMaxJoints));
+    files::raise(reader.place(), "joints", fmt::format("has {} joints", robot.joints.size()),
+                 fmt::format("1 to {}", kMaxJoints));
   }
   robot.joint_index = JointIndex(reader.keys());
   for (const auto& [name, joint] : tree.urdf->joints_) {
     if (joint->type != urdf::Joint::FIXED && !robot.joint_index.find(name)) {
-      raise(reader.place(), "joints." + name, "is missing",
-            fmt::format("every moving joint of {}:{}", tree.file.string(), tree.place("joint", name).line));
+      files::raise(reader.place(), "joints." + name, "is missing",
+                   fmt::format("every moving joint of {}:{}", tree.file.string(), tree.place("joint", name).line));
     }
   }
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
@@ -109,23 +110,23 @@ void read_joints(RobotModel& robot, ConfigReader reader, const UrdfTree& tree) {
   }
 }
 
-void read_channel(RobotModel& robot, ConfigReader reader, std::size_t channel) {
+void read_channel(RobotModel& robot, files::ConfigReader reader, std::size_t channel) {
   const std::vector<double> range = reader.numbers("range", 2);
   if (range[0] > 0.0 || range[1] < 0.0 || !(range[0] < range[1])) {
     reader.fail("range", fmt::format("is [{}, {}]", range[0], range[1]), "lower < upper with 0 between them");
   }
   robot.command_limits.lower[channel] = range[0];
   robot.command_limits.upper[channel] = range[1];
-  robot.command_limits.rate_per_s[channel] = reader.required<double>("rate_per_s", positive());
+  robot.command_limits.rate_per_s[channel] = reader.required<double>("rate_per_s", files::positive());
   if (channel < kVelocityChannels) {
-    const std::vector<double> scale = reader.numbers("velocity_scale", 2, positive());
+    const std::vector<double> scale = reader.numbers("velocity_scale", 2, files::positive());
     robot.velocity_scale_negative[channel] = scale[0];
     robot.velocity_scale_positive[channel] = scale[1];
   }
   reader.finish();
 }
 
-void read_policy_joints(RobotModel& robot, ConfigReader& reader) {
+void read_policy_joints(RobotModel& robot, files::ConfigReader& reader) {
   for (const std::string& name : reader.required<std::vector<std::string>>("policy_joints")) {
     const std::optional<int> joint = robot.joint_index.find(name);
     if (!joint) reader.fail("policy_joints", "'" + name + "' isn't a joint", "names of `joints`");
@@ -144,7 +145,7 @@ std::vector<int> find_chain(const RobotModel& robot, const std::string& link, KD
   return joints;
 }
 
-void find_chains(RobotModel& robot, ConfigReader& reader) {
+void find_chains(RobotModel& robot, files::ConfigReader& reader) {
   for (const Foot foot : {kLeft, kRight}) {
     robot.leg_joints[foot] = find_chain(robot, robot.feet[foot].link, robot.leg_chain[foot]);
     const std::size_t count = robot.leg_joints[foot].size();
@@ -199,7 +200,7 @@ JointVector RobotModel::q_upper() const {
 }
 
 RobotModel load_robot(const std::filesystem::path& directory) {
-  ConfigReader reader = ConfigReader::from_file(directory / "robot.yaml");
+  files::ConfigReader reader = files::ConfigReader::from_file(directory / "robot.yaml");
   RobotModel robot;
   robot.directory = directory;
   robot.name = reader.required<std::string>("name");
@@ -220,11 +221,11 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   }
   robot.torso_link = link_name(reader, "torso_link", tree);
   robot.imu = read_imu(reader.map("imu"), tree);
-  ConfigReader feet = reader.map("feet");
+  files::ConfigReader feet = reader.map("feet");
   robot.feet = {read_foot(feet.map("left"), tree), read_foot(feet.map("right"), tree)};
   feet.finish();
   read_joints(robot, reader.map("joints"), tree);
-  ConfigReader command = reader.map("command");
+  files::ConfigReader command = reader.map("command");
   for (std::size_t channel = 0; channel < kChannels; ++channel) {
     read_channel(robot, command.map(kChannelNames[channel]), channel);
   }

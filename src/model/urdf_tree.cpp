@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
 namespace pmg::model {
 namespace {
@@ -29,7 +29,7 @@ class Listener final : public console_bridge::OutputHandler {
   std::string said;
 };
 
-Place place_in(const UrdfTree& tree, std::size_t at) {
+files::Place place_in(const UrdfTree& tree, std::size_t at) {
   const std::size_t newline = at == 0 ? std::string::npos : tree.text.rfind('\n', at - 1);
   const auto lines = std::count(tree.text.begin(), tree.text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   return {tree.file.string(), static_cast<int>(lines) + 1,
@@ -58,11 +58,12 @@ void check_extent(const UrdfTree& tree) {
     }
     links += rest.starts_with("<link ") ? 1 : 0;
     if (depth > kDeepestElement) {
-      raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth),
-            fmt::format("{} at most", kDeepestElement));
+      files::raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth),
+                   fmt::format("{} at most", kDeepestElement));
     }
     if (links > kMostLinks) {
-      raise(place_in(tree, at), "link", fmt::format("is number {}", links), fmt::format("{} at most", kMostLinks));
+      files::raise(place_in(tree, at), "link", fmt::format("is number {}", links),
+                   fmt::format("{} at most", kMostLinks));
     }
   }
 }
@@ -71,8 +72,8 @@ void check_extent(const UrdfTree& tree) {
 void check_all_reached(const UrdfTree& tree) {
   for (const auto& [name, link] : tree.urdf->links_) {
     if (tree.link_pose.contains(name)) continue;
-    raise(tree.place("link", name), "link " + name, "is not connected to the root link",
-          fmt::format("a chain of joints from {}", tree.urdf->getRoot()->name));
+    files::raise(tree.place("link", name), "link " + name, "is not connected to the root link",
+                 fmt::format("a chain of joints from {}", tree.urdf->getRoot()->name));
   }
 }
 
@@ -91,7 +92,7 @@ void check_numbers(const UrdfTree& tree) {
         double value = 0.0;
         const auto [stop, error] = std::from_chars(first, last, value);
         if (error != std::errc() || stop != last || !std::isfinite(value)) {
-          raise(place_in(tree, at + 1), name, fmt::format("is '{}'", text), "finite numbers");
+          files::raise(place_in(tree, at + 1), name, fmt::format("is '{}'", text), "finite numbers");
         }
       }
     }
@@ -122,43 +123,44 @@ KDL::Joint to_kdl(const urdf::Joint& joint, const KDL::Frame& origin) {
 /// Positive mass, and principal moments that obey the triangle inequality. Others belong to no mass distribution, so
 /// they are typing errors.
 void check_inertia(const UrdfTree& tree, const urdf::Link& link) {
-  const Place place = tree.place("link", link.name);
+  const files::Place place = tree.place("link", link.name);
   const std::string key = "link " + link.name + " inertial";
-  if (!link.inertial) raise(place, key, "is missing", "mass, origin and inertia");
+  if (!link.inertial) files::raise(place, key, "is missing", "mass, origin and inertia");
   const urdf::Inertial& body = *link.inertial;
   if (!(body.mass > 0.0) || !std::isfinite(body.mass)) {
-    raise(place, key + " mass", fmt::format("is {}", body.mass), "a mass above 0 kg");
+    files::raise(place, key + " mass", fmt::format("is {}", body.mass), "a mass above 0 kg");
   }
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
-  if (!inertia.allFinite()) raise(place, key + " inertia", "isn't finite", "finite numbers");
+  if (!inertia.allFinite()) files::raise(place, key + " inertia", "isn't finite", "finite numbers");
   const Eigen::Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (moments[0] <= 0.0 || moments[0] + moments[1] < moments[2] * (1.0 - 1e-6)) {
-    raise(place, key + " inertia",
-          fmt::format("has the principal moments {}, {}, {}", moments[0], moments[1], moments[2]),
-          "three positive ones, none above the sum of the others");
+    files::raise(place, key + " inertia",
+                 fmt::format("has the principal moments {}, {}, {}", moments[0], moments[1], moments[2]),
+                 "three positive ones, none above the sum of the others");
   }
 }
 
 void check_joint(const UrdfTree& tree, const urdf::Joint& joint) {
   if (joint.type == urdf::Joint::FIXED) return;
-  const Place place = tree.place("joint", joint.name);
+  const files::Place place = tree.place("joint", joint.name);
   const std::string key = "joint " + joint.name;
-  if (joint.type != urdf::Joint::REVOLUTE) raise(place, key + " type", "isn't supported", "revolute or fixed");
+  if (joint.type != urdf::Joint::REVOLUTE) files::raise(place, key + " type", "isn't supported", "revolute or fixed");
   if (!(std::abs(to_kdl(joint.axis).Norm() - 1.0) < 1e-6)) {
-    raise(place, key + " axis", fmt::format("has the length {}", to_kdl(joint.axis).Norm()), "a unit vector");
+    files::raise(place, key + " axis", fmt::format("has the length {}", to_kdl(joint.axis).Norm()), "a unit vector");
   }
-  if (!joint.limits) raise(place, key + " limit", "is missing", "lower, upper, effort and velocity");
+  if (!joint.limits) files::raise(place, key + " limit", "is missing", "lower, upper, effort and velocity");
   const urdf::JointLimits& limit = *joint.limits;
   if (!(limit.lower < limit.upper) || !std::isfinite(limit.lower) || !std::isfinite(limit.upper)) {
-    raise(place, key + " limit", fmt::format("has lower {} and upper {}", limit.lower, limit.upper), "lower < upper");
+    files::raise(place, key + " limit", fmt::format("has lower {} and upper {}", limit.lower, limit.upper),
+                 "lower < upper");
   }
   if (!(limit.effort > 0.0) || !std::isfinite(limit.effort)) {
-    raise(place, key + " limit effort", fmt::format("is {}", limit.effort), "a number above 0");
+    files::raise(place, key + " limit effort", fmt::format("is {}", limit.effort), "a number above 0");
   }
   if (!(limit.velocity > 0.0) || !std::isfinite(limit.velocity)) {
-    raise(place, key + " limit velocity", fmt::format("is {}", limit.velocity), "a number above 0");
+    files::raise(place, key + " limit velocity", fmt::format("is {}", limit.velocity), "a number above 0");
   }
 }
 
@@ -176,7 +178,7 @@ void add_children(UrdfTree& tree, const urdf::Link& parent) {
 
 }  // namespace
 
-Place UrdfTree::place(const std::string& element, const std::string& name) const {
+files::Place UrdfTree::place(const std::string& element, const std::string& name) const {
   const std::string opening = "<" + element + " ";
   for (std::size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at + 1)) {
     const std::string tag = text.substr(at, text.find('>', at) - at);
@@ -189,15 +191,15 @@ Place UrdfTree::place(const std::string& element, const std::string& name) const
 UrdfTree read_urdf(const std::filesystem::path& file) {
   UrdfTree tree;
   tree.file = file;
-  tree.text = read_bounded_text(file, kLargestUrdf_bytes, "a URDF file");
+  tree.text = files::read_bounded_text(file, files::kLargestUrdf_bytes, "a URDF file");
   check_extent(tree);
   check_numbers(tree);
 
   Listener listener;
   tree.urdf = urdf::parseURDF(tree.text);
   if (!tree.urdf || !tree.urdf->getRoot()) {
-    raise({file.string()}, "", listener.said.empty() ? "isn't a robot" : listener.said,
-          "a URDF robot with one root link");
+    files::raise({file.string()}, "", listener.said.empty() ? "isn't a robot" : listener.said,
+                 "a URDF robot with one root link");
   }
   const urdf::Link& root = *tree.urdf->getRoot();
   check_inertia(tree, root);

@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::model {
 
@@ -22,7 +22,7 @@ struct UrdfTree {
   std::map<std::string, KDL::Frame> link_pose;  ///< each link in the root link's frame, all joints at zero
 
   /// The place where the element (<joint name="..."> or <link name="...">) begins.
-  Place place(const std::string& element, const std::string& name) const;
+  files::Place place(const std::string& element, const std::string& name) const;
 };
 
 /// Reads and checks: every link has a positive mass and a physically possible inertia; every joint is fixed, or

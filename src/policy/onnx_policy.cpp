@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/bounded_file.hpp"
-#include "model/config_error.hpp"
+#include "files/bounded_file.hpp"
+#include "files/config_error.hpp"
 #include "policy/observation.hpp"
 
 namespace pmg::policy {
@@ -133,8 +133,8 @@ struct OnnxPolicy::Impl {
 OnnxPolicy::OnnxPolicy(const std::filesystem::path& file, const model::RobotModel& robot,
                        const std::string& clip_library_sha256, double control_rate_Hz) {
   try {
-    model::expect_bounded_file(file, model::kLargestPolicy_bytes, "an ONNX policy");
-  } catch (const model::ConfigError& error) {  // it names the file
+    files::expect_bounded_file(file, files::kLargestPolicy_bytes, "an ONNX policy");
+  } catch (const files::ConfigError& error) {  // it names the file
     throw std::invalid_argument(error.what());
   }
   try {

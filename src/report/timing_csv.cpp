@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
 namespace pmg::report {
 
@@ -15,7 +15,7 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
   if (!std::filesystem::exists(file)) return;
-  std::istringstream in(model::read_bounded_text(file, kLargest_bytes, "times of a run"));
+  std::istringstream in(files::read_bounded_text(file, kLargest_bytes, "times of a run"));
   std::string line;
   std::getline(in, line);
   if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/bench_writer.hpp"
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 namespace pmg::runtime {
 
@@ -24,7 +24,7 @@ control::ExcitationPlan excitation_plan(const model::RobotModel& robot, const st
   const auto index = robot.joint_index.find(joint);
   if (!index) {
     throw std::invalid_argument(fmt::format("--bench {}: {} has no such joint; {}", joint, robot.name,
-                                            model::expected_name(joint, robot.joint_index.names())));
+                                            files::expected_name(joint, robot.joint_index.names())));
   }
   control::ExcitationPlan plan;
   plan.joint = *index;

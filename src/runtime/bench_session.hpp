@@ -25,7 +25,7 @@ control::ExcitationPlan excitation_plan(const model::RobotModel& robot, const st
 class BenchSession {
  public:
   /// Reads and checks the excitation's folder and that out is no bench yet. Keeps a reference to robot. Throws
-  /// std::invalid_argument or model::ConfigError.
+  /// std::invalid_argument or files::ConfigError.
   BenchSession(const model::RobotModel& robot, const std::string& joint, const std::filesystem::path& excitation,
                const std::filesystem::path& out, const control::TickOptions& options);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 namespace pmg::sil {
 
@@ -50,17 +50,17 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-Failure read_failure(model::ConfigReader& entry, const model::RobotModel& robot) {
+Failure read_failure(files::ConfigReader& entry, const model::RobotModel& robot) {
   Failure failure;
   const std::vector<std::string> names = kind_names();
   const std::string name = entry.one_of("kind", names);
   const auto index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   const KindRow& row = kKinds[index];
   failure.kind = static_cast<FailureKind>(index);
-  failure.at_s = entry.required<double>("at_s", model::in_range(0.0, kLatest_s));
-  failure.for_s = entry.required<double>("for_s", model::in_range(0.0, kLatest_s));
+  failure.at_s = entry.required<double>("at_s", files::in_range(0.0, kLatest_s));
+  failure.for_s = entry.required<double>("for_s", files::in_range(0.0, kLatest_s));
   if (row.joint) failure.joint = robot.joint_index.at(entry.one_of("joint", robot.joint_index.names()));
-  if (row.value) failure.value = entry.required<double>("value", model::in_range(row.least, row.most));
+  if (row.value) failure.value = entry.required<double>("value", files::in_range(row.least, row.most));
   entry.finish();
   return failure;
 }
@@ -70,9 +70,9 @@ Failure read_failure(model::ConfigReader& entry, const model::RobotModel& robot)
 const char* to_string(FailureKind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)].name; }
 
 std::vector<Failure> load_failures(const std::filesystem::path& file, const model::RobotModel& robot) {
-  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  files::ConfigReader reader = files::ConfigReader::from_file(file);
   std::vector<Failure> failures;
-  for (model::ConfigReader& entry : reader.maps("failures")) failures.push_back(read_failure(entry, robot));
+  for (files::ConfigReader& entry : reader.maps("failures")) failures.push_back(read_failure(entry, robot));
   if (failures.empty() || failures.size() > kMost) {
     reader.fail("failures", "has " + std::to_string(failures.size()), "1 to " + std::to_string(kMost));
   }

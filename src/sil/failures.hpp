@@ -45,7 +45,7 @@ struct Failure {
   bool acts(double time_s) const noexcept { return time_s > at_s - 2e-4 && time_s < at_s + for_s - 2e-4; }
 };
 
-/// Reads a list of failures (docs/reference/file-formats.md). Throws model::ConfigError.
+/// Reads a list of failures (docs/reference/file-formats.md). Throws files::ConfigError.
 std::vector<Failure> load_failures(const std::filesystem::path& file, const model::RobotModel& robot);
 
 /// The drives' side of one failure, in bus cycles from the first one that carries it; -1: never.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 namespace pmg::sil {
 
@@ -18,7 +18,7 @@ control::Mode mode_named(const std::string& name) {
   return static_cast<control::Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
 }
 
-Command read_command(model::ConfigReader reader) {
+Command read_command(files::ConfigReader reader) {
   Command command;
   for (std::size_t i = 0; i < kChannels; ++i) command.u[i] = reader.optional<double>(kChannelNames[i], 0.0);
   reader.finish();
@@ -53,13 +53,13 @@ Scenario endless_scenario() {
 }
 
 Scenario load_scenario(const std::filesystem::path& file) {
-  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  files::ConfigReader reader = files::ConfigReader::from_file(file);
   Scenario scenario;
   scenario.name = reader.required<std::string>("name");
   ScenarioStep step;
-  for (model::ConfigReader& entry : reader.maps("steps")) {
+  for (files::ConfigReader& entry : reader.maps("steps")) {
     step.start_s += step.duration_s;
-    step.duration_s = entry.required<double>("for_s", model::positive());
+    step.duration_s = entry.required<double>("for_s", files::positive());
     step.text = entry.required<std::string>("text");
     if (entry.has("mode")) step.mode = mode_named(entry.one_of("mode", kModeNames));
     step.command = entry.has("command") ? read_command(entry.map("command")) : Command{};

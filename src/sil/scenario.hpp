@@ -41,7 +41,7 @@ Scenario bench_scenario(const std::string& joint, double excitation_s);
 Scenario endless_scenario();
 
 /// Reads a scenario (docs/reference/file-formats.md). mode and the gantry's part hold on until a later step changes
-/// them; a command belongs to its step alone. Throws model::ConfigError with file, line and column.
+/// them; a command belongs to its step alone. Throws files::ConfigError with file, line and column.
 Scenario load_scenario(const std::filesystem::path& file);
 
 /// Speaks a scenario as an operator would: in every tick a fresh command and the mode it wants.

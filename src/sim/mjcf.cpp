@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "pages/text.hpp"
 #include "pmg/types.hpp"
 #include "sim/mjcf_geometry.hpp"
@@ -140,7 +140,7 @@ class MjcfText {
     for (const auto& collision : link.collision_array) {
       const auto shape = collision_shape(*collision->geometry);
       if (!shape)
-        throw model::ConfigError(fmt::format("{}: link {}: collision by a mesh; expected box, cylinder or sphere",
+        throw files::ConfigError(fmt::format("{}: link {}: collision by a mesh; expected box, cylinder or sphere",
                                              (robot_.directory / "robot.yaml").string(), link.name));
       line(depth, fmt::format(R"(<geom class="{}" {} {}/>)", foot != nullptr ? "foot_collision" : "collision", *shape,
                               pose_attributes(isometry(collision->origin))));

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
+#include "files/nearest_name.hpp"
 #include "model/constants.hpp"
-#include "model/nearest_name.hpp"
 #include "sim/actuator_model.hpp"
 
 namespace pmg::sim {
@@ -12,13 +12,13 @@ namespace pmg::sim {
 namespace {
 
 /// Reads the groups in the table's order, in which the keys of a group are neighbours.
-ActuatorParameters read_actuator(model::ConfigReader& joint) {
+ActuatorParameters read_actuator(files::ConfigReader& joint) {
   ActuatorParameters parameters;
   const auto table = actuator_parameters();
   for (std::size_t i = 0; i < table.size();) {
     const std::string group(table[i].group());
     const bool there = joint.has(group);
-    std::optional<model::ConfigReader> reader;
+    std::optional<files::ConfigReader> reader;
     if (there) reader = joint.map(group);
     for (; i < table.size() && table[i].group() == group; ++i) {
       const ActuatorParameter& p = table[i];
@@ -27,7 +27,7 @@ ActuatorParameters read_actuator(model::ConfigReader& joint) {
         continue;
       }
       p.in(parameters) = reader->required<double>(std::string(p.key()),
-                                                  p.may_be_negative ? model::any_number() : model::non_negative());
+                                                  p.may_be_negative ? files::any_number() : files::non_negative());
     }
     if (reader)
       reader->finish();
@@ -41,11 +41,11 @@ ActuatorParameters read_actuator(model::ConfigReader& joint) {
 }  // namespace
 
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file) {
-  model::ConfigReader reader = model::ConfigReader::from_file(file);
+  files::ConfigReader reader = files::ConfigReader::from_file(file);
   ActuatorsByJoint actuators;
-  model::ConfigReader joints = reader.map("joints");
+  files::ConfigReader joints = reader.map("joints");
   for (const std::string& name : joints.keys()) {
-    model::ConfigReader joint = joints.map(name);
+    files::ConfigReader joint = joints.map(name);
     const ActuatorParameters parameters = read_actuator(joint);
     try {
       ActuatorModel(parameters, model::kBusPeriod_s);
@@ -62,8 +62,8 @@ ActuatorsByJoint read_motor_file(const std::filesystem::path& file, const model:
   const ActuatorsByJoint actuators = read_motor_file(file);
   for (const auto& [name, parameters] : actuators) {
     if (joints.find(name)) continue;
-    model::ConfigReader reader = model::ConfigReader::from_file(file);
-    const std::string nearest = model::nearest_name(name, joints.names());
+    files::ConfigReader reader = files::ConfigReader::from_file(file);
+    const std::string nearest = files::nearest_name(name, joints.names());
     reader.map("joints").fail(
         name, "isn't a joint of this robot" + (nearest.empty() ? "" : "; did you mean " + nearest + "?"),
         nearest.empty() ? "names of robot.yaml's `joints`" : "");

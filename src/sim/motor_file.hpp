@@ -14,7 +14,7 @@ namespace pmg::sim {
 /// Actuators by joint name. Parameters that a file doesn't give are neutral.
 using ActuatorsByJoint = std::map<std::string, ActuatorParameters>;
 
-/// Throws model::ConfigError with file, line and column on unknown groups and keys, and on numbers that make no sense.
+/// Throws files::ConfigError with file, line and column on unknown groups and keys, and on numbers that make no sense.
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file);
 
 /// The same; every name must also be a joint of the robot.

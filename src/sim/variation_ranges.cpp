@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 namespace pmg::sim {
 
@@ -15,22 +15,22 @@ enum class Missing { kKeepsItsValue, kIsAnError };
 /// One mapping of the file.
 class Keys {
  public:
-  Keys(model::ConfigReader reader, Missing missing) : reader_(std::move(reader)), missing_(missing) {}
+  Keys(files::ConfigReader reader, Missing missing) : reader_(std::move(reader)), missing_(missing) {}
 
-  void range(const char* key, Range& to, const model::NumberCheck& check) {
+  void range(const char* key, Range& to, const files::NumberCheck& check) {
     if (!reads<std::vector<double>>(key)) return;
     const std::vector<double> ends = reader_.numbers(key, 2, check);
     if (ends[0] > ends[1]) reader_.fail(key, "runs backwards", "[lower, upper]");
     to = {ends[0], ends[1]};
   }
   template <typename T>
-  void number(const char* key, T& to, const model::NumberCheck& check) {
+  void number(const char* key, T& to, const files::NumberCheck& check) {
     if (reads<T>(key)) to = reader_.required<T>(key, check);
   }
   /// A mapping of any names to numbers.
-  void numbers(const char* key, const model::NumberCheck& check) {
+  void numbers(const char* key, const files::NumberCheck& check) {
     if (!reads<std::string>(key)) return;
-    model::ConfigReader named = reader_.map(key);
+    files::ConfigReader named = reader_.map(key);
     for (const std::string& name : named.keys()) named.required<double>(name, check);
     named.finish();
   }
@@ -53,7 +53,7 @@ class Keys {
     return false;
   }
 
-  model::ConfigReader reader_;
+  files::ConfigReader reader_;
   Missing missing_;
 };
 
@@ -62,37 +62,37 @@ void check_kicks(Keys& keys) {
   Range range;
   double number = 0.0;
   int iterations = 0;
-  keys.range("every_s", range, model::positive());
+  keys.range("every_s", range, files::positive());
   for (const char* speed : {"linear_m_s", "vertical_m_s", "angular_rad_s"}) {
-    keys.number(speed, number, model::non_negative());
+    keys.number(speed, number, files::non_negative());
   }
-  keys.number("from_share", number, model::in_range(0.0, 1.0));
-  keys.number("ramp_iterations", iterations, model::positive());
+  keys.number("from_share", number, files::in_range(0.0, 1.0));
+  keys.number("ramp_iterations", iterations, files::positive());
 }
 
 void check_upper_body(Keys& keys) {
   Range range;
   double share = 0.0;
-  keys.number("share", share, model::in_range(0.0, 1.0));
-  keys.range("frequency_Hz", range, model::positive());
-  keys.numbers("amplitude_rad", model::non_negative());
+  keys.number("share", share, files::in_range(0.0, 1.0));
+  keys.range("frequency_Hz", range, files::positive());
+  keys.numbers("amplitude_rad", files::non_negative());
 }
 
 VariationRanges read(const std::filesystem::path& file, Missing missing) {
-  Keys keys(model::ConfigReader::from_file(file), missing);
+  Keys keys(files::ConfigReader::from_file(file), missing);
   VariationRanges ranges;
-  const model::NumberCheck any = model::any_number(), positive = model::positive(), some = model::non_negative();
+  const files::NumberCheck any = files::any_number(), positive = files::positive(), some = files::non_negative();
   keys.range("friction", ranges.friction, positive);
   keys.range("torso_mass_kg", ranges.torso_mass_kg, any);
   keys.number("torso_center_of_mass_m", ranges.torso_center_of_mass_m, some);
   keys.range("hand_payload_kg", ranges.hand_payload_kg, some);
-  keys.number("payload_share", ranges.payload_share, model::in_range(0.0, 1.0));
+  keys.number("payload_share", ranges.payload_share, files::in_range(0.0, 1.0));
   keys.range("link_mass_factor", ranges.link_mass_factor, positive);
   keys.range("armature_factor", ranges.armature_factor, positive);
   keys.range("joint_friction_factor", ranges.joint_friction_factor, some);
   keys.range("kp_factor", ranges.kp_factor, positive);
   keys.range("kd_factor", ranges.kd_factor, positive);
-  keys.range("delay_s", ranges.delay_s, model::in_range(0.0, 0.2));
+  keys.range("delay_s", ranges.delay_s, files::in_range(0.0, 0.2));
   keys.number("encoder_offset_rad", ranges.encoder_offset_rad, some);
   keys.group("noise", [&](Keys& noise) {
     noise.number("gyro_rad_s", ranges.gyro_noise_rad_s, some);

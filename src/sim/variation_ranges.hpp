@@ -26,10 +26,10 @@ struct VariationRanges {
 };
 
 /// Reads a YAML of the keys of training/randomization.yaml. A key that the file lacks leaves the model's value. The
-/// groups `kicks` and `upper_body` are checked, but only training uses them. Throws model::ConfigError.
+/// groups `kicks` and `upper_body` are checked, but only training uses them. Throws files::ConfigError.
 VariationRanges load_variation_ranges(const std::filesystem::path& file);
 
-/// The same checks for a training: every key must be in the file. Throws model::ConfigError.
+/// The same checks for a training: every key must be in the file. Throws files::ConfigError.
 void check_training_ranges(const std::filesystem::path& file);
 
 }  // namespace pmg::sim

@@ -39,7 +39,7 @@ struct Rope {
 /// The MJCF text of this robot in this world. Deterministic: same input, same bytes. It also runs in MuJoCo without
 /// World: then its actuators are position servos (ctrl = q_des [rad]) with robot.yaml's gains, and its joints have
 /// MuJoCo's dry friction; World replaces both by the actuator model. The keyframe "stand" is the standing posture on
-/// the ground. Throws model::ConfigError if a link collides by a mesh; visual meshes are left out.
+/// the ground. Throws files::ConfigError if a link collides by a mesh; visual meshes are left out.
 std::string mjcf(const model::RobotModel& robot, const WorldOptions& options);
 
 class World {

@@ -27,7 +27,7 @@ class ExcitationFiles : public testing::Test {
   std::string refusal() const {
     try {
       read_excitation(folder_);
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "";

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "../model/robots.hpp"
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::drives {
 namespace {
@@ -35,7 +35,7 @@ class DriveSetupFile : public testing::Test {
     std::ofstream(folder_ / "robot.yaml") << text_;
     try {
       load_drives(model::load_robot(folder_));
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "taken";

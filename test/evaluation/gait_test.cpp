@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::evaluation {
 namespace {
@@ -66,7 +66,7 @@ class NormsFile : public testing::Test {
   std::string refusal() {
     try {
       load_norms(file_);
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "taken";

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::model {
 namespace {
@@ -117,7 +117,7 @@ TEST_F(BundleTest, SaysWhichFileItCannotRead) {
   try {
     bundle(load_robot(robot), robot / "clips", {robot / "policies/absent.onnx"});
     FAIL();
-  } catch (const ConfigError& error) {
+  } catch (const files::ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("absent.onnx"), std::string::npos) << error.what();
   }
 }

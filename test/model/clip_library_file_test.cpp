@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "files/config_error.hpp"
 #include "model/clip_library_writer.hpp"
-#include "model/config_error.hpp"
 #include "model/robots.hpp"
 #include "temporary_copy.hpp"
 
@@ -100,7 +100,7 @@ class RefusedClips : public ::testing::Test {
   std::string refusal() const {
     try {
       load_clip_library(copy_.file("clips"), robot_);
-    } catch (const ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "nothing was thrown";

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "files/config_error.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
-#include "model/config_error.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {
@@ -22,7 +22,7 @@ class CommandInverseFile : public testing::Test {
   std::string refusal() const {
     try {
       load_clip_library(copy_.file("clips"), robot_);
-    } catch (const ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "nothing was thrown";

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "model/robot_model.hpp"
 #include "temporary_copy.hpp"
 
@@ -18,7 +18,7 @@ class RefusedRobot : public ::testing::Test {
   std::string refusal() const {
     try {
       load_robot(copy_.directory());
-    } catch (const ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "nothing was thrown";

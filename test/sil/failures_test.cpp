@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "sil/failing_parts.hpp"
 #include "sil/failure_report.hpp"
 #include "sil/varied_robot.hpp"
@@ -27,7 +27,7 @@ class FailureFile : public testing::Test {
     std::ofstream(file_) << "failures:\n  - {" << entry << "}\n";
     try {
       load_failures(file_, test::z1());
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "accepted";

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "control/fixtures.hpp"
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
 namespace pmg::sil {
 namespace {
@@ -22,7 +22,7 @@ class ScenarioFile : public testing::Test {
   std::string refusal(const std::string& text) {
     try {
       load(text);
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "accepted";
@@ -87,7 +87,7 @@ TEST_F(ScenarioFile, RefusalsNameFileLineAndKey) {
   expect_refusal("name: x\nsteps: []\n", ":2:", "steps");
   expect_refusal("name: x\nextra: 1\nsteps:\n  - {for_s: 1, text: a}\n", ":2:", "extra");
   expect_refusal("name: x\nsteps: [\n", ":", "");
-  EXPECT_THROW(load_scenario(file_.string() + ".absent"), model::ConfigError);
+  EXPECT_THROW(load_scenario(file_.string() + ".absent"), files::ConfigError);
 }
 
 TEST(Scenarios, ThoseOfTheProjectLoadAndTheTourVisitsEveryChannel) {

@@ -5,7 +5,7 @@
 
 #include "control/control_setup.hpp"
 #include "control/fixtures.hpp"
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::sil {
@@ -71,7 +71,7 @@ TEST_F(SimulatedBackendTest, NoHoistOnAGantryNorOnABench) {
 }
 
 TEST_F(SimulatedBackendTest, AWrongMotorFileIsRefusedBeforeAnythingIsOpened) {
-  EXPECT_THROW(make({{"motor", std::string("test/data/none.yaml")}}), model::ConfigError);
+  EXPECT_THROW(make({{"motor", std::string("test/data/none.yaml")}}), files::ConfigError);
 }
 
 }  // namespace

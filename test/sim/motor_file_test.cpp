@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "files/config_error.hpp"
 #include "generator_core/allocation_count.hpp"
-#include "model/config_error.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
@@ -27,7 +27,7 @@ class MotorFile : public testing::Test {
   std::string refusal() const {
     try {
       read_motor_file(file_, robot_.joint_index);
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "accepted";

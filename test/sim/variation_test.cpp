@@ -8,7 +8,7 @@
 #include <fstream>
 #include <set>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 #include "robots.hpp"
 #include "sim/world.hpp"
 
@@ -247,7 +247,7 @@ class RangesFile : public testing::Test {
     std::ofstream(file_) << yaml;
     try {
       sim::load_variation_ranges(file_);
-    } catch (const model::ConfigError& error) {
+    } catch (const files::ConfigError& error) {
       return error.what();
     }
     return "taken";

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 #include "model/robot_model.hpp"
 #include "sil/scenario.hpp"
 #include "sim/motor_file.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A number as model::ConfigReader reads it; whole ones stay whole.
+/// A number as files::ConfigReader reads it; whole ones stay whole.
 ordered_json number_of(const std::string& text) {
   double value = 0.0;
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -45,7 +45,7 @@ ordered_json json_of(const YAML::Node& node) {
 
 std::string randomization_json(const std::filesystem::path& file) {
   sim::check_training_ranges(file);
-  return json_of(YAML::Load(model::read_bounded_text(file, model::kLargestYaml_bytes, "a YAML file"))).dump();
+  return json_of(YAML::Load(files::read_bounded_text(file, files::kLargestYaml_bytes, "a YAML file"))).dump();
 }
 
 std::string motors_json(const std::filesystem::path& robot, const std::filesystem::path& file) {

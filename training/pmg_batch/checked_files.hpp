@@ -1,5 +1,5 @@
 // Files that training shares with the C++ programs, read by the programs' own readers and handed on as JSON text. Every
-// function throws model::ConfigError with the line that pmg_sil would print.
+// function throws files::ConfigError with the line that pmg_sil would print.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <cstring>
 
-#include "model/config_error.hpp"
-#include "model/nearest_name.hpp"
+#include "files/config_error.hpp"
+#include "files/nearest_name.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::string read_bounded_text(const std::filesystem::path& file, std::uint64_t l
   return text;
 }
 
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -1,4 +1,4 @@
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace pmg::model {
+namespace pmg::files {
 namespace {
 
 using ::testing::HasSubstr;
@@ -117,4 +117,4 @@ TEST_F(Reader, SaysThatAFileIsMissing) {
 }
 
 }  // namespace
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -1,4 +1,4 @@
-#include "model/number_table.hpp"
+#include "files/number_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <string_view>
 
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 namespace {
 
 struct Cell {
@@ -95,4 +95,4 @@ std::string format_number_table(const std::vector<std::string>& columns, const s
   return text;
 }
 
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pmg::model {
+namespace pmg::files {
 
 /// Number of edits that turn one word into the other: a letter inserted, left out or replaced, or two neighbours
 /// swapped. Upper and lower case are the same letter. This is the restricted Damerau-Levenshtein distance ("optimal
@@ -24,4 +24,4 @@ std::filesystem::path nearest_file(const std::filesystem::path& file);
 /// C".
 std::string expected_name(std::string_view name, const std::vector<std::string>& names);
 
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -1,5 +1,5 @@
 // Files that are too much are refused in one line, at once, with little memory.
-#include "model/bounded_file.hpp"
+#include "files/bounded_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@
 #include <functional>
 #include <string>
 
-#include "model/config_error.hpp"
-#include "model/config_reader.hpp"
-#include "model/number_table.hpp"
+#include "files/config_error.hpp"
+#include "files/config_reader.hpp"
+#include "files/number_table.hpp"
 #include "model/urdf_tree.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST_F(BoundedFile, LinksInACycleOfTheirOwnAreNamed) {
 }
 
 }  // namespace
-}  // namespace pmg::model
+}  // namespace pmg::files

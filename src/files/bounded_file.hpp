@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace pmg::model {
+namespace pmg::files {
 
 /// The largest files that are read, by kind [bytes]. Each is ten times the largest that the project knows, or more.
 inline constexpr std::uint64_t kLargestYaml_bytes = 1 << 20, kLargestUrdf_bytes = 4 << 20,
@@ -19,4 +19,4 @@ void expect_bounded_file(const std::filesystem::path& file, std::uint64_t larges
 std::string read_bounded_text(const std::filesystem::path& file, std::uint64_t largest_bytes,
                               const std::string& expected);
 
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pmg::model {
+namespace pmg::files {
 
 /// what() is one line: "FILE:LINE:COLUMN: KEY: what is wrong; expected what". Line and column are missing where the
 /// input has none.
@@ -33,4 +33,4 @@ struct Place {
   throw ConfigError(text);
 }
 
-}  // namespace pmg::model
+}  // namespace pmg::files

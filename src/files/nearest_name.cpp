@@ -1,4 +1,4 @@
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <system_error>
 
-namespace pmg::model {
+namespace pmg::files {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string expected_name(std::string_view name, const std::vector<std::string>&
   return fmt::format("expected one of {}", fmt::join(names, ", "));
 }
 
-}  // namespace pmg::model
+}  // namespace pmg::files

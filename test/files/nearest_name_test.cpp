@@ -1,11 +1,11 @@
 // Proposals for unknown names.
-#include "model/nearest_name.hpp"
+#include "files/nearest_name.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-namespace pmg::model {
+namespace pmg::files {
 namespace {
 
 TEST(EditDistance, CountsLettersInsertedLeftOutReplacedAndSwapped) {
@@ -59,4 +59,4 @@ TEST(NearestFile, LooksInTheSameFolderAtTheSameEnding) {
 }
 
 }  // namespace
-}  // namespace pmg::model
+}  // namespace pmg::files

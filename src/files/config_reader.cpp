@@ -1,4 +1,4 @@
-#include "model/config_reader.hpp"
+#include "files/config_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "model/bounded_file.hpp"
-#include "model/nearest_name.hpp"
+#include "files/bounded_file.hpp"
+#include "files/nearest_name.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 namespace {
 
 Place place_at(const std::string& file, const YAML::Mark& mark) {
@@ -223,4 +223,4 @@ std::vector<std::string> ConfigReader::read(const std::string& key, const YAML::
   return values;
 }
 
-}  // namespace pmg::model
+}  // namespace pmg::files

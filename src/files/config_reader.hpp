@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 
 /// A condition on a number, besides being finite. `expected` completes "expected ..." in the error.
 struct NumberCheck {
@@ -98,4 +98,4 @@ PMG_CONFIG_TYPE(std::vector<double>);
 PMG_CONFIG_TYPE(std::vector<std::string>);
 #undef PMG_CONFIG_TYPE
 
-}  // namespace pmg::model
+}  // namespace pmg::files

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "model/config_error.hpp"
+#include "files/config_error.hpp"
 
-namespace pmg::model {
+namespace pmg::files {
 
 struct NumberTable {
   std::filesystem::path file;
@@ -27,4 +27,4 @@ NumberTable read_number_table(const std::filesystem::path& file, const std::vect
 /// The text from which read_number_table reads the same numbers.
 std::string format_number_table(const std::vector<std::string>& columns, const std::vector<std::vector<double>>& rows);
 
-}  // namespace pmg::model
+}  // namespace pmg::files
