@@ -17,10 +17,10 @@
 #include "controller_arguments.hpp"
 #include "io/lcm_link.hpp"
 #include "program.hpp"
+#include "recording/recorder.hpp"
+#include "recording/run_info.hpp"
 #include "runtime/comms.hpp"
 #include "runtime/controller_report.hpp"
-#include "runtime/recorder.hpp"
-#include "runtime/run_info.hpp"
 #include "seal/controller_seal.hpp"
 
 namespace {
@@ -72,7 +72,7 @@ class Console {
     mode_ = news.mode;
     hanging_ = news.hanging;
     if (news.mode == control::Mode::kFault) {
-      spdlog::error("FAULT, damping: {}", control::describe(news.fault, robot_));
+      spdlog::error("FAULT, damping: {}", faults::describe(news.fault, robot_));
       spdlog::error("{} Then: pmg_send reset --robot {}", control::advice(news.fault.code), name_);
       return;
     }
@@ -88,9 +88,9 @@ class Console {
   bool hanging_ = false;
 };
 
-void announce(const Arguments& arguments, const runtime::RunInfo& run, Variant variant) {
-  spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", runtime::software_version(), run.robot, run.backend,
-               run.bundle.substr(0, 12), run.policy);
+void announce(const Arguments& arguments, const recording::RunInfo& run, Variant variant) {
+  spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", recording::software_version(), run.robot,
+               run.backend, run.bundle.substr(0, 12), run.policy);
   if (run.policy == "none") spdlog::warn("no policy: drives follow the reference, and nothing balances the robot");
   if (variant != Variant::kPmg) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
   spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
@@ -122,8 +122,9 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
   }
 }
 
-runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded, const hal::Backend& backend,
-                          const runtime::Controller& controller, const runtime::BenchSession* bench) {
+recording::RunInfo run_info(const Arguments& arguments, const control::LoadedControl& loaded,
+                            const hal::Backend& backend, const runtime::Controller& controller,
+                            const runtime::BenchSession* bench) {
   return {.robot = arguments.name,
           .session = std::chrono::system_clock::now().time_since_epoch().count(),
           .policy = arguments.control.policy,
@@ -137,7 +138,7 @@ runtime::RunInfo run_info(const Arguments& arguments, const control::LoadedContr
 
 /// What happens between the threads' start and their end; everything that input can spoil has been checked.
 ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Controller& controller,
-             runtime::Comms& comms, std::optional<runtime::HeldClaim> claim, runtime::Recorder& recorder,
+             runtime::Comms& comms, std::optional<runtime::HeldClaim> claim, recording::Recorder& recorder,
              hal::Backend& backend, Console& console, const std::atomic<bool>& bench_over) {
   std::string failure;
   try {
@@ -161,7 +162,7 @@ ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Con
   return failure.empty() && recorder.complete() ? kOk : kFailed;
 }
 
-void report(const Arguments& arguments, const runtime::Controller& controller, const runtime::Recorder& recorder) {
+void report(const Arguments& arguments, const runtime::Controller& controller, const recording::Recorder& recorder) {
   for (const std::string& line : runtime::punctuality_lines(controller)) spdlog::info(line);
   if (recorder.lost() > 0) spdlog::warn("{} ticks are not in the log", recorder.lost());
   if (!arguments.json) return;
@@ -220,7 +221,7 @@ int run_controller(Arguments& arguments) {
   hal::Hal& drives = backend->connect([&signals] { return signals.wait_ms(0); });
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, drives, *tick, arguments.threads);
-  const runtime::RunInfo info = run_info(arguments, loaded, *backend, controller, session);
+  const recording::RunInfo info = run_info(arguments, loaded, *backend, controller, session);
   announce(arguments, info, loaded.variant);
 
   const double rate_Hz = 1.0 / loaded.options.dt_s;
@@ -231,8 +232,9 @@ int run_controller(Arguments& arguments) {
   comms.work(backend->hoist());
   for (const std::string& other : comms.listen_for_others(kListen_s)) spdlog::info("also on this network: {}", other);
   std::optional<runtime::HeldClaim> claim(comms.hold_name());
-  runtime::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
-                             {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz}, warn);
+  recording::Recorder recorder(controller.outbox(), loaded.robot, info, clock,
+                               {.directory = arguments.log, .log = !arguments.no_log, .control_rate_Hz = rate_Hz},
+                               warn);
   std::atomic<bool> bench_over{false};
   recorder.after_record = [&](const control::TickRecord& record) {
     const hal::TruthSample* truth = backend->take_truth(record.state.bus_sample);

@@ -2,29 +2,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "control/control_setup.hpp"
-#include "io/lcm_link.hpp"
 #include "program.hpp"
-#include "progress_line.hpp"
 #include "runtime/bench_session.hpp"
-#include "runtime/comms.hpp"
-#include "runtime/controller_report.hpp"
 #include "sil/failing_parts.hpp"
 #include "sil/failure_report.hpp"
-#include "sil/film.hpp"
 #include "sil/live_view.hpp"
-#include "sil/lockstep.hpp"
-#include "sil/realtime_run.hpp"
 #include "sil/run_text.hpp"
-#include "sil/sil_hal.hpp"
 #include "sil/summary.hpp"
 #include "sil_arguments.hpp"
+#include "sil_play.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/video_writer.hpp"
 
@@ -41,150 +33,6 @@ using Arguments = apps::SilArguments;
 void require(const fs::path& value, const char* option) {
   if (value.empty())
     throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
-}
-
-/// A scenario that was played, either way.
-struct Played {
-  sil::RunOutcome outcome;
-  sil::StageTiming timing;
-  nlohmann::ordered_json realtime;                // null in lockstep
-  std::string film_failure;                       // empty: none, or no film
-  std::vector<sil::FailureReaction> reactions{};  // one for each failure that was injected
-};
-
-/// What both ways of playing need.
-struct Stage {
-  const Arguments& arguments;
-  const control::LoadedControl& loaded;
-  const sil::Scenario& scenario;
-  sim::World& world;
-  io::LogWriter& log_file;
-  control::Tick& tick;
-  sil::LiveView* view;                      // may be null
-  const runtime::BenchSession* bench;       // may be null
-  runtime::ExcitationRecorder* excitation;  // null without a bench
-  const std::vector<sil::Failure>& failures;
-  sil::FailureClock& failure_clock;
-  bool over() const { return apps::interrupt_requested != 0 || (view != nullptr && view->closed()); }
-  bool balanced_by_policy() const { return arguments.control.policy != "none"; }
-};
-
-runtime::RunInfo run_info(const Stage& stage) {
-  return {.robot = stage.loaded.robot.name,
-          .policy = stage.arguments.control.policy,
-          .options = config_json(stage.arguments, stage.loaded, stage.bench).dump(),
-          .bundle = stage.loaded.bundle,
-          .files = stage.loaded.files};
-}
-
-Played play_lockstep(const Stage& stage) {
-  const model::RobotModel& robot = stage.loaded.robot;
-  const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  sil::SilHal drives(stage.world);
-  sil::FailingBus bus(drives, stage.failures, robot, stage.failure_clock, false);
-  sil::WorldPlant plant(stage.world);
-  runtime::TickLog log(stage.log_file, robot, run_info(stage), rate_Hz);
-  std::optional<sil::Film> film;
-  if (stage.arguments.video) film.emplace(stage.world, stage.arguments.out / "video.mp4");
-  apps::ProgressLine progress;
-  sil::Lockstep lockstep(robot, bus, plant, stage.tick, stage.scenario, &log,
-                         {.balanced_by_policy = stage.balanced_by_policy(), .always_hoisted = stage.arguments.gantry});
-  lockstep.interrupted = [&stage] { return stage.over(); };
-  if (!stage.failures.empty()) {
-    lockstep.bus_sleeps = [&bus] { return bus.bus_sleeps(); };
-    lockstep.control_sleeps = [&bus] { return bus.control_sleeps(); };
-    lockstep.while_bus_sleeps = [&bus] { bus.idle(); };
-  }
-  if (stage.excitation != nullptr) {
-    lockstep.after_record = [&stage](const control::TickRecord& record) { stage.excitation->add(record); };
-  }
-  lockstep.after_tick = [&](const sil::RunProgress& now) {
-    if (film) {
-      const bool rolling = film->failure().empty();
-      film->after_tick(now);
-      if (rolling && !film->failure().empty()) {
-        progress.clear();
-        std::cerr << fmt::format("pmg_sil: {}; the run goes on without a film\n", film->failure());
-      }
-    }
-    if (stage.view != nullptr) stage.view->after_tick(now);
-    progress.show(sil::progress_text(now));
-  };
-  const sil::RunOutcome outcome = lockstep.run();
-  progress.clear();
-  if (film && film->failure().empty()) {
-    film->close();
-    if (!film->failure().empty()) std::cerr << fmt::format("pmg_sil: {}\n", film->failure());
-  }
-  return {outcome, lockstep.timing(), nullptr, film ? film->failure() : "", bus.reactions()};
-}
-
-/// Who speaks to the controller over the network when no scenario does.
-class Operators {
- public:
-  /// Keeps references. Throws std::runtime_error when there is no such network, or a controller of this name on it.
-  Operators(const Stage& stage, const runtime::RunInfo& info, runtime::Controller& controller,
-            sil::SimulatedRobot& simulated)
-      : lock_(info.robot, io::choose_lcm_url(stage.arguments.lcm_url)),
-        link_(io::choose_lcm_url(stage.arguments.lcm_url)),
-        comms_(link_, controller.inbox(), controller.outbox(), stage.loaded.robot, info,
-               1.0 / stage.loaded.options.dt_s, clock_) {
-    constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
-    comms_.work(simulated.hoist_line());
-    comms_.on_warning = [](const std::string& text) { std::cerr << text << '\n'; };
-    comms_.listen_for_others(kListen_s, [] { return apps::interrupt_requested != 0; });
-    claim_.emplace(comms_.hold_name());
-    std::cerr << fmt::format("{} hears operators on {}: pmg_keyboard, pmg_send\n", info.robot, link_.url());
-  }
-  void step() {
-    constexpr int kWait_ms = 5;
-    claim_.reset();
-    comms_.step(kWait_ms);
-  }
-
- private:
-  io::WallClock clock_;
-  runtime::NameLock lock_;
-  io::LcmLink link_;
-  runtime::Comms comms_;
-  std::optional<runtime::HeldClaim> claim_;
-};
-
-Played play_realtime(const Stage& stage) {
-  const model::RobotModel& robot = stage.loaded.robot;
-  const double rate_Hz = 1.0 / stage.loaded.options.dt_s;
-  sil::SimulatedRobot simulated(stage.world,
-                                stage.arguments.gantry           ? sil::HoistedBy::kGantry
-                                : stage.arguments.by_operators() ? sil::HoistedBy::kCrane
-                                                                 : sil::HoistedBy::kScenario,
-                                true);
-  sil::FailingBus bus(simulated, stage.failures, robot, stage.failure_clock, true);
-  runtime::Controller controller(robot, bus, stage.tick);
-  for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
-  runtime::RunInfo info = run_info(stage);
-  info.session = std::chrono::system_clock::now().time_since_epoch().count();
-  info.realtime = controller.refused().empty();
-  info.refused = controller.refused();
-  runtime::TickLog log(stage.log_file, robot, info, rate_Hz);
-  apps::ProgressLine progress;
-  sil::RealtimeRun run(robot, simulated, controller, stage.scenario, &log,
-                       !stage.balanced_by_policy() && !stage.arguments.gantry);
-  std::optional<Operators> operators;
-  if (stage.arguments.by_operators()) {
-    operators.emplace(stage, info, controller, simulated);
-    run.operators = [&operators] { operators->step(); };
-  }
-  run.interrupted = [&] {
-    if (stage.view != nullptr) stage.view->draw(simulated);
-    return stage.over();
-  };
-  run.after_tick = [&](const sil::RunProgress& now) {
-    if (stage.view != nullptr) stage.view->note(now);
-    progress.show(sil::progress_text(now));
-  };
-  const sil::RunOutcome outcome = run.run();
-  progress.clear();
-  return {outcome, run.timing(), runtime::punctuality_json(controller), "", bus.reactions()};
 }
 
 int simulate(Arguments arguments) {
@@ -239,20 +87,20 @@ int simulate(Arguments arguments) {
   }
   const io::WallClock wall_clock;
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, wall_clock);
-  const Stage stage{arguments,
-                    loaded,
-                    scenario,
-                    world,
-                    log_file,
-                    *tick,
-                    view ? &*view : nullptr,
-                    bench ? &*bench : nullptr,
-                    recorder ? &*recorder : nullptr,
-                    failures,
-                    failure_clock};
+  const apps::Stage stage{arguments,
+                          loaded,
+                          scenario,
+                          world,
+                          log_file,
+                          *tick,
+                          view ? &*view : nullptr,
+                          bench ? &*bench : nullptr,
+                          recorder ? &*recorder : nullptr,
+                          failures,
+                          failure_clock};
 
   const std::int64_t start_ns = wall_clock.now_ns();
-  const Played played = arguments.realtime ? play_realtime(stage) : play_lockstep(stage);
+  const apps::Played played = arguments.realtime ? apps::play_realtime(stage) : apps::play_lockstep(stage);
   const double wall_s = static_cast<double>(wall_clock.now_ns() - start_ns) * 1e-9;
   log_file.flush();
   played.timing.write_csv(arguments.out / "timing.csv");

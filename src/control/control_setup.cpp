@@ -158,7 +158,7 @@ LoadedControl load_control(const ControlSetup& setup) {
 
 void take_limits(const hal::BackendLimits& limits, TickOptions& options) {
   options.guard = limits.guard;
-  FaultLimits& faults = options.supervisor.fault_limits;
+  faults::FaultLimits& faults = options.supervisor.fault_limits;
   faults.stale_state_s = limits.stale_state_s.value_or(faults.stale_state_s);
   faults.overrun_ticks = limits.overrun_ticks.value_or(faults.overrun_ticks);
 }

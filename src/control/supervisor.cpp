@@ -20,12 +20,13 @@ Mode Supervisor::update(const SupervisorInput& input) noexcept {
   // A limp robot may be carried about, bent and unplugged: nothing of that is a fault until it is to hold itself.
   if (mode_ != Mode::kPassive) {
     // In Fault as well: what was wrong with the robot's motion must be over before a reset.
-    const auto scope = mode_ == Mode::kDamping ? FaultDetector::Scope::kSensing : FaultDetector::Scope::kMotion;
-    const std::optional<Fault> found = detector_.detect(input.evidence, scope);
+    const auto scope =
+        mode_ == Mode::kDamping ? faults::FaultDetector::Scope::kSensing : faults::FaultDetector::Scope::kMotion;
+    const std::optional<faults::Fault> found = detector_.detect(input.evidence, scope);
     if (mode_ == Mode::kFault) {
       if (reset_wanted_ && !found) {
         mode_ = Mode::kDamping;
-        fault_ = Fault{};
+        fault_ = faults::Fault{};
       }
       wanted_.reset();
       reset_wanted_ = stop_wanted_ = false;
@@ -45,7 +46,7 @@ Mode Supervisor::update(const SupervisorInput& input) noexcept {
   return mode_;
 }
 
-void Supervisor::raise(const Fault& fault) noexcept {
+void Supervisor::raise(const faults::Fault& fault) noexcept {
   if (mode_ == Mode::kFault) return;  // the first one is the cause
   mode_ = Mode::kFault;
   fault_ = fault;

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "control/fault_detector.hpp"
 #include "control/mode.hpp"
+#include "faults/fault_detector.hpp"
 
 namespace pmg::control {
 
 struct SupervisorOptions {
-  FaultLimits fault_limits;
+  faults::FaultLimits fault_limits;
   double stale_command_s = 0.2;  ///< an older driving command ends walking
   double stop_within_s = 0.5;    ///< after this time velocity counts as zero, whatever the generator says
   /// So many ticks in a row with a held ground-aware solution end walking: u' is then a second old.
@@ -19,7 +19,7 @@ struct SupervisorOptions {
 
 /// The inputs from which a tick decides its mode.
 struct SupervisorInput {
-  FaultEvidence evidence;
+  faults::FaultEvidence evidence;
   double command_age_s = 0.0;
   bool entry_done = false;    ///< the ramp from the measured posture into Stand has ended
   bool at_rest = false;       ///< the reference moves no foot
@@ -42,13 +42,15 @@ class Supervisor {
   Mode update(const SupervisorInput& input) noexcept;
 
   /// Latches a fault found later in the tick than update().
-  void raise(const Fault& fault) noexcept;
+  void raise(const faults::Fault& fault) noexcept;
 
   /// See FaultDetector.
-  bool robot_is_sound(const FaultEvidence& evidence) const noexcept { return detector_.robot_is_sound(evidence); }
+  bool robot_is_sound(const faults::FaultEvidence& evidence) const noexcept {
+    return detector_.robot_is_sound(evidence);
+  }
 
   Mode mode() const noexcept { return mode_; }
-  const Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
+  const faults::Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
   /// (user's command) => (command for the generator): all channels in Walk, posture alone while the robot comes to a
   /// stop, zero otherwise.
   Command admit(const Command& user) const noexcept;
@@ -61,9 +63,9 @@ class Supervisor {
   void stop_walking_if_due(const SupervisorInput& input) noexcept;
 
   SupervisorOptions options_;
-  FaultDetector detector_;
+  faults::FaultDetector detector_;
   Mode mode_ = Mode::kPassive;
-  Fault fault_;
+  faults::Fault fault_;
   std::optional<Mode> wanted_;
   bool reset_wanted_ = false, stop_wanted_ = false;
   std::optional<std::int64_t> stopping_since_ns_;

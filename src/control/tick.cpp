@@ -1,3 +1,4 @@
+// Longer than 300 lines: the stages of one tick in their order, over one set of members.
 #include "control/tick.hpp"
 
 #include <algorithm>
@@ -6,23 +7,13 @@
 #include <utility>
 
 #include "control/drive_gains.hpp"
+#include "control/released_command.hpp"
 
 namespace pmg::control {
 
 namespace {
 
-/// Time since it began.
-class Lap {
- public:
-  explicit Lap(const io::Clock& stopwatch) : stopwatch_(stopwatch), start_ns_(stopwatch.now_ns()) {}
-  std::int64_t end_ns() noexcept { return stopwatch_.now_ns() - start_ns_; }
-
- private:
-  const io::Clock& stopwatch_;
-  std::int64_t start_ns_;
-};
-
-ActionMonitorOptions monitor_options(ActionMonitorOptions options, const policy::Policy& policy) {
+faults::ActionMonitorOptions monitor_options(faults::ActionMonitorOptions options, const policy::Policy& policy) {
   options.bound_rad = policy.action_bound_rad().value_or(options.bound_rad);
   return options;
 }
@@ -79,7 +70,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
 }
 
 const TickResult& Tick::step(const TickInput& input) noexcept {
-  Lap tick(stopwatch_);
+  const io::Lap tick(stopwatch_);
   result_.times = StageTimes{};
   result_.limited = LimitReport{};
   result_.policy_held = false;
@@ -92,8 +83,8 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.user = supervisor_.admit(intake_.command());
   if (mode == Mode::kStand && before != Mode::kWalk && before != Mode::kStand) enter_stand(input.state);
   if (upright(mode)) {
-    Fault fault = drive(input.state);
-    if (fault.code != FaultCode::kNone) {
+    faults::Fault fault = drive(input.state);
+    if (fault.code != faults::FaultCode::kNone) {
       fault.stamp_ns = input.now_ns;
       supervisor_.raise(fault);
     }
@@ -110,7 +101,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
 
   for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
-  result_.times.tick_ns = tick.end_ns();
+  result_.times.tick_ns = tick.elapsed_ns();
   return result_;
 }
 
@@ -140,7 +131,7 @@ void Tick::take_messages(const TickInput& input) noexcept {
   result_.driving = intake_.driving(input.now_ns);
 }
 
-FaultEvidence Tick::evidence(const TickInput& input) const noexcept {
+faults::FaultEvidence Tick::evidence(const TickInput& input) const noexcept {
   return {.state = input.state,
           .bus = input.bus,
           .guard_trip = input.guard_trip,
@@ -159,7 +150,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
   // On its way from the posture in which it was found the torso may be anywhere.
   if (upright(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
-    known.evidence.torso = RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
+    known.evidence.torso = faults::RollPitchAim{.pitch_rad = aim[kPitch], .roll_rad = aim[kRoll]};
   }
   return known;
 }
@@ -188,13 +179,13 @@ void Tick::change_over() noexcept {
 }
 
 void Tick::take_footing() noexcept {
-  result_.hanging = feet_->footing() == Footing::kHangs;
-  result_.footing_unknown = feet_->footing() == Footing::kUnknown;
+  result_.hanging = feet_->footing() == faults::Footing::kHangs;
+  result_.footing_unknown = feet_->footing() == faults::Footing::kUnknown;
 }
 
-Footing Tick::footing() const noexcept {
-  if (result_.hanging) return Footing::kHangs;
-  return result_.footing_unknown ? Footing::kUnknown : Footing::kStands;
+faults::Footing Tick::footing() const noexcept {
+  if (result_.hanging) return faults::Footing::kHangs;
+  return result_.footing_unknown ? faults::Footing::kUnknown : faults::Footing::kStands;
 }
 
 void Tick::begin_policy() noexcept {
@@ -219,16 +210,16 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   }
 }
 
-Fault Tick::drive(const model::RobotState& state) noexcept {
-  Fault fault = make_reference();
-  if (fault.code == FaultCode::kNone) {
+faults::Fault Tick::drive(const model::RobotState& state) noexcept {
+  faults::Fault fault = make_reference();
+  if (fault.code == faults::FaultCode::kNone) {
     if (policy_waits()) {
       target_ = result_.reference.q;
     } else {
       fault = ask_policy(state);
     }
   }
-  if (fault.code != FaultCode::kNone) return fault;
+  if (fault.code != faults::FaultCode::kNone) return fault;
 
   model::JointCommand& command = result_.command;
   command.q = target_;
@@ -252,33 +243,34 @@ void Tick::excite(model::JointCommand& command) noexcept {
   limiter_.set_gains(joint, told.kp_Nm_per_rad, told.kd_Nm_s_per_rad);
 }
 
-Fault Tick::make_reference() noexcept {
-  Lap generator(stopwatch_);
+faults::Fault Tick::make_reference() noexcept {
+  const io::Lap generator(stopwatch_);
   result_.reference = motion_.advance(result_.user, dt_s_);
-  result_.times.generator_ns = generator.end_ns();
-  if (!finite(result_.reference)) return {.code = FaultCode::kReferenceNotFinite};
+  result_.times.generator_ns = generator.elapsed_ns();
+  if (!finite(result_.reference)) return {.code = faults::FaultCode::kReferenceNotFinite};
 
-  Lap gco(stopwatch_);
+  const io::Lap gco(stopwatch_);
   result_.optimised = motion_.ground();
-  result_.times.gco_ns = gco.end_ns();
-  if (!finite(result_.optimised.command)) return {.code = FaultCode::kReferenceNotFinite};
+  result_.times.gco_ns = gco.elapsed_ns();
+  if (!finite(result_.optimised.command)) return {.code = faults::FaultCode::kReferenceNotFinite};
   gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;
   return {};
 }
 
-Fault Tick::ask_policy(const model::RobotState& state) noexcept {
-  Lap lap(stopwatch_);
+faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
+  const io::Lap lap(stopwatch_);
   JointVector& q_des = result_.command.q;
   const policy::Status status = policy_->act(state, result_.reference, result_.optimised.command, q_des);
-  result_.times.policy_ns = lap.end_ns();
+  result_.times.policy_ns = lap.elapsed_ns();
 
   result_.policy_held = status == policy::Status::kLate;
   if (result_.policy_held) {
-    return ++policy_owes_ticks_ < policy_may_owe_ticks_ ? Fault{} : Fault{.code = FaultCode::kStalePolicy};
+    return ++policy_owes_ticks_ < policy_may_owe_ticks_ ? faults::Fault{}
+                                                        : faults::Fault{.code = faults::FaultCode::kStalePolicy};
   }
   policy_owes_ticks_ = 0;
   if (status != policy::Status::kOk || q_des.size() != target_.size() || !q_des.allFinite()) {
-    return {.code = FaultCode::kPolicyNotFinite};
+    return {.code = faults::FaultCode::kPolicyNotFinite};
   }
   target_ = q_des;
   return action_monitor_.watch(target_, result_.reference.q);
@@ -288,13 +280,13 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
   result_.sitting = false;
   const bool sound =
       result_.mode == Mode::kFault && !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
-  if (sound && upright(before) && entry_.done() && !policy_waits() && allows_sit_down(result_.fault.code)) {
+  if (sound && upright(before) && entry_.done() && !policy_waits() && faults::allows_sit_down(result_.fault.code)) {
     sit_down_.start(input.state.q, limiter_.last(), gains_.kp_Nm_per_rad, input.now_ns);
     set_limiter_gains(sit_down_.gains());
-  } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != FaultCode::kJointTorque) {
+  } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != faults::FaultCode::kJointTorque) {
     feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
   }
-  if (!sound || feet_->footing() == Footing::kHangs) sit_down_.stop();
+  if (!sound || feet_->footing() == faults::Footing::kHangs) sit_down_.stop();
   if (!sit_down_.active(input.now_ns)) return;
   sit_down_.step(dt_s_, result_.command);
   result_.limited = limiter_.apply(input.state, result_.command.q);
@@ -310,22 +302,7 @@ void Tick::set_limiter_gains(const policy::DriveGains& gains) noexcept {
 void Tick::release(const model::RobotState& state) noexcept {
   result_.hanging = result_.footing_unknown = false;
   result_.foot_load.reset();
-  model::JointCommand& command = result_.command;
-  // The drives multiply it by zero; but zero times NaN is NaN, so a broken measurement must not pass through.
-  const bool usable = state.q.size() == target_.size() && state.q.allFinite();
-  if (usable) {
-    command.q = state.q;
-  } else {
-    command.q.setZero(target_.size());
-  }
-  command.dq.setZero();
-  command.kp.setZero();
-  if (result_.mode == Mode::kPassive) {
-    command.kd.setZero();
-  } else {
-    command.kd = brake_kd_;
-  }
-  command.tau_ff.setZero();
+  release_command(state, result_.mode == Mode::kPassive ? nullptr : &brake_kd_, result_.command);
 }
 
 }  // namespace pmg::control

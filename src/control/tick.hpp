@@ -8,15 +8,15 @@
 #include <optional>
 #include <span>
 
-#include "control/action_monitor.hpp"
 #include "control/command_intake.hpp"
 #include "control/entry_ramp.hpp"
 #include "control/excitation_player.hpp"
-#include "control/foot_load_watch.hpp"
 #include "control/limiter.hpp"
 #include "control/mode.hpp"
 #include "control/sit_down.hpp"
 #include "control/supervisor.hpp"
+#include "faults/action_monitor.hpp"
+#include "faults/foot_load_watch.hpp"
 #include "gco/motion_composition.hpp"
 #include "hal/command_guard.hpp"
 #include "hal/hal.hpp"
@@ -35,11 +35,11 @@ struct TickOptions {
   LimiterOptions limiter;
   hal::GuardOptions guard;  ///< of the bus that this tick's commands go to
   EntryRampOptions entry;
-  FootLoadOptions foot_load;
+  faults::FootLoadOptions foot_load;
   /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
   /// because a robot that is set down must be balanced.
   EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
-  ActionMonitorOptions action_monitor;
+  faults::ActionMonitorOptions action_monitor;
   SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
@@ -73,7 +73,7 @@ struct StageTimes {
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
-  Fault fault;                    ///< kNone unless mode is kFault
+  faults::Fault fault;            ///< kNone unless mode is kFault
   Command user;                   ///< the driving source's command as far as the mode admits it
   Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
   gco::Result optimised;          ///< likewise; its command is what the policy observes
@@ -120,17 +120,17 @@ class Tick {
   void enter_stand(const model::RobotState& state) noexcept;
   void change_over() noexcept;
   void take_footing() noexcept;
-  Footing footing() const noexcept;
+  faults::Footing footing() const noexcept;
   bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
   void begin_policy() noexcept;
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
-  Fault drive(const model::RobotState& state) noexcept;
-  Fault make_reference() noexcept;
+  faults::Fault drive(const model::RobotState& state) noexcept;
+  faults::Fault make_reference() noexcept;
   void excite(model::JointCommand& command) noexcept;
-  Fault ask_policy(const model::RobotState& state) noexcept;
+  faults::Fault ask_policy(const model::RobotState& state) noexcept;
   /// In Fault: begins, goes on with or ends the sit-down.
   void sit_down(const TickInput& input, Mode before) noexcept;
-  FaultEvidence evidence(const TickInput& input) const noexcept;
+  faults::FaultEvidence evidence(const TickInput& input) const noexcept;
   void set_limiter_gains(const policy::DriveGains& gains) noexcept;
   void release(const model::RobotState& state) noexcept;
 
@@ -144,11 +144,11 @@ class Tick {
   std::unique_ptr<policy::Policy> policy_;
   CommandIntake intake_;
   Supervisor supervisor_;
-  std::optional<FootLoadWatch> feet_;  // nothing for a policy that needs no ground
+  std::optional<faults::FootLoadWatch> feet_;  // nothing for a policy that needs no ground
   EntryRamp entry_, change_over_;
   std::optional<ExcitationPlayer> excitation_;
   Limiter limiter_;
-  ActionMonitor action_monitor_;
+  faults::ActionMonitor action_monitor_;
   SitDown sit_down_;
   bool stop_asked_ = false;  // in this tick, by anybody
   JointVector target_;       // the policy's last good one, before ramp and limits

@@ -97,7 +97,7 @@ bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::pat
   sil::SilHal bus(world);
   sil::WorldPlant truth(world);
   io::LogWriter file(folder / "log.lcm");
-  runtime::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
+  recording::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
   sil::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
   lockstep.interrupted = stop;
   const bool interrupted = lockstep.run().interrupted;

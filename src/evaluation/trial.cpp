@@ -48,7 +48,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   result.fell_at_s = outcome.fell_at_s;
   result.duration_s = outcome.duration_s;
   measure.report(result);
-  for (const control::Fault& fault : outcome.faults) result.faults.push_back(control::describe(fault, robot));
+  for (const faults::Fault& fault : outcome.faults) result.faults.push_back(faults::describe(fault, robot));
   return result;
 }
 

@@ -34,4 +34,15 @@ class SimulationClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
+/// Time since its construction.
+class Lap {
+ public:
+  explicit Lap(const Clock& stopwatch) noexcept : stopwatch_(stopwatch), start_ns_(stopwatch.now_ns()) {}
+  std::int64_t elapsed_ns() const noexcept { return stopwatch_.now_ns() - start_ns_; }
+
+ private:
+  const Clock& stopwatch_;
+  std::int64_t start_ns_;
+};
+
 }  // namespace pmg::io

@@ -16,7 +16,7 @@
 #include "logs/message_fields.hpp"
 #include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
-#include "runtime/tick_messages.hpp"
+#include "recording/tick_messages.hpp"
 
 namespace pmg::logs {
 
@@ -106,9 +106,9 @@ class Replay {
           fmt::format("the log's robot {} has other joints than {}", info.model, loaded_.robot.directory.string()));
     }
     note_files(info, loaded_, report_.notes);
-    if (info.software != runtime::software_version()) {
+    if (info.software != recording::software_version()) {
       report_.notes.push_back(
-          fmt::format("this is software {}; the log is of {}", runtime::software_version(), info.software));
+          fmt::format("this is software {}; the log is of {}", recording::software_version(), info.software));
     }
     note_options(logged, control::control_json(loaded_), report_.notes);
     control::restore_options(logged, loaded_.options);
@@ -135,7 +135,7 @@ class Replay {
   void take_state(const io::LogReader& event) {
     require_tick();
     const auto state = decoded<pmg_msgs::robot_state_t>(event);
-    if (!runtime::robot_state(state, joint_count_, record_.state))
+    if (!recording::robot_state(state, joint_count_, record_.state))
       throw std::runtime_error("STATE has another number of joints than the robot");
     commands_.clear();
     requests_.clear();
@@ -161,11 +161,11 @@ class Replay {
     record_.policy_late = input.policy_late != 0;
     record_.drive_count = commands_.size();
     for (std::size_t i = 0; i < commands_.size(); ++i) {
-      record_.drives[i] = runtime::drive_message(commands_[i], input.command_received_ns[i]);
+      record_.drives[i] = recording::drive_message(commands_[i], input.command_received_ns[i]);
     }
     record_.request_count = requests_.size();
     for (std::size_t i = 0; i < requests_.size(); ++i) {
-      record_.requests[i] = runtime::mode_request(requests_[i], input.request_received_ns[i]);
+      record_.requests[i] = recording::mode_request(requests_[i], input.request_received_ns[i]);
     }
     record_.result = tick_->step(record_.input());
     has_state_ = false;
@@ -207,9 +207,9 @@ class Replay {
     compare(event, status_);
   }
 
-  void fill_message(pmg_msgs::reference_t& message) { runtime::fill(record_, joint_count_, message); }
-  void fill_message(pmg_msgs::motor_command_t& message) { runtime::fill(record_, joint_count_, message); }
-  void fill_message(pmg_msgs::status_t& message) { runtime::fill(record_, run_, loaded_.robot, message); }
+  void fill_message(pmg_msgs::reference_t& message) { recording::fill(record_, joint_count_, message); }
+  void fill_message(pmg_msgs::motor_command_t& message) { recording::fill(record_, joint_count_, message); }
+  void fill_message(pmg_msgs::status_t& message) { recording::fill(record_, run_, loaded_.robot, message); }
 
   template <typename Message>
   void compare(const io::LogReader& event, Message& replayed) {
@@ -251,7 +251,7 @@ class Replay {
   const work::Progress& progress_;
   const io::SimulationClock stopwatch_;  // a replay measures no times
   control::LoadedControl loaded_;
-  runtime::RunInfo run_;
+  recording::RunInfo run_;
   std::unique_ptr<control::Tick> tick_;
   int joint_count_ = 0;
   std::optional<std::int64_t> first_ns_;

@@ -13,8 +13,8 @@
 #include "pmg_msgs/motor_command_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
-#include "runtime/run_info.hpp"
-#include "runtime/tick_messages.hpp"
+#include "recording/run_info.hpp"
+#include "recording/tick_messages.hpp"
 #include "sil/lockstep.hpp"
 
 namespace pmg::robot_diagnosis {
@@ -87,7 +87,7 @@ class LogTicks {
     const auto message = event.decode<pmg_msgs::robot_state_t>();
     model::RobotState state;
     if (!message) return;
-    if (!runtime::robot_state(*message, robot_.joint_index.size(), state))
+    if (!recording::robot_state(*message, robot_.joint_index.size(), state))
       fail(fmt::format("a STATE with {} joints; expected the {} of {}", message->joint_count, robot_.joint_index.size(),
                        robot_.name));
     if (!finite(state))
@@ -146,11 +146,11 @@ namespace {
 
 void write_ticks(const RobotRecording& recording, const model::RobotModel& robot, const std::filesystem::path& file) {
   io::LogWriter writer(file);
-  runtime::RunInfo run;
+  recording::RunInfo run;
   run.robot = robot.name;
   run.options = nlohmann::json{{"drive_sampling_s", recording.drive.step_s}}.dump();
   pmg_msgs::robot_info_t info;
-  runtime::fill(run, robot, 1.0 / recording.period_s, 0, info);
+  recording::fill(run, robot, 1.0 / recording.period_s, 0, info);
   writer.write("ROBOT_INFO", 0, info);
   const int joints = robot.joint_index.size();
   control::TickRecord record{};
@@ -161,8 +161,8 @@ void write_ticks(const RobotRecording& recording, const model::RobotModel& robot
     record.now_ns = tick.state.stamp_ns;
     record.state = tick.state;
     record.result.command = tick.command;
-    runtime::fill(record, joints, state);
-    runtime::fill(record, joints, command);
+    recording::fill(record, joints, state);
+    recording::fill(record, joints, command);
     writer.write(kState, record.now_ns, state);
     writer.write(kCommand, record.now_ns, command);
   }

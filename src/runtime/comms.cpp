@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pmg_msgs/claim_t.hpp"
-#include "runtime/tick_messages.hpp"
+#include "recording/tick_messages.hpp"
 
 namespace pmg::runtime {
 
@@ -22,8 +22,8 @@ constexpr std::size_t kMostOthers = 16;  // names that are told at start: a floo
 }  // namespace
 
 Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
-             const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock,
-             seal::ControllerSeal seal)
+             const model::RobotModel& robot, const recording::RunInfo& run, double control_rate_Hz,
+             const io::Clock& clock, seal::ControllerSeal seal)
     : link_(link),
       outbox_(outbox),
       robot_(robot),
@@ -163,7 +163,7 @@ void Comms::warn() {
 
 void Comms::publish_acks() {
   outbox_.acks.consume_all([&](const control::ModeAck& ack) {
-    fill(ack, run_, clock_.now_ns(), ack_);
+    recording::fill(ack, run_, clock_.now_ns(), ack_);
     link_.send("ACK", seal_.prove("ACK", ack_));
   });
 }
@@ -172,22 +172,22 @@ void Comms::publish_newest() {
   if (!outbox_.newest.take(newest_)) return;
   hoist_gate_.see(newest_.result);
   const int joint_count = robot_.joint_index.size();
-  fill(newest_, run_, robot_, status_);
+  recording::fill(newest_, run_, robot_, status_);
   link_.send("STATUS", seal_.prove("STATUS", status_));
-  fill(newest_, joint_count, state_);
+  recording::fill(newest_, joint_count, state_);
   link_.publish("STATE", state_);
-  fill(newest_, joint_count, reference_);
+  recording::fill(newest_, joint_count, reference_);
   link_.publish("REFERENCE", reference_);
-  fill(newest_, joint_count, motor_command_);
+  recording::fill(newest_, joint_count, motor_command_);
   link_.publish("MOTOR_COMMAND", motor_command_);
   // The bus cycles go to the recorder, whose TIMING has them.
-  fill(newest_, BusTiming{}, outbox_.dropped(), timing_);
+  recording::fill(newest_, recording::BusTiming{}, outbox_.dropped(), timing_);
   link_.publish("TIMING", timing_);
 
-  const control::Fault& fault = newest_.result.fault;
+  const faults::Fault& fault = newest_.result.fault;
   const bool told = fault.code == published_fault_.code && fault.stamp_ns == published_fault_.stamp_ns;
   if (newest_.result.mode == control::Mode::kFault && !told) {
-    fill(newest_, run_, robot_, fault_);
+    recording::fill(newest_, run_, robot_, fault_);
     link_.publish("FAULT", fault_);
   }
   published_fault_ = fault;
@@ -204,7 +204,7 @@ void Comms::publish_hoist() {
 void Comms::publish_each_second() {
   const std::int64_t now_ns = clock_.now_ns();
   if (const std::string news = seal_.refresh(); !news.empty() && on_warning) on_warning(news);
-  fill(run_, robot_, control_rate_Hz_, now_ns, info_);
+  recording::fill(run_, robot_, control_rate_Hz_, now_ns, info_);
   link_.publish("ROBOT_INFO", info_);
 
   const GateCounts gate = gate_.counts() + hoist_gate_.counts();

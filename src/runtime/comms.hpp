@@ -23,10 +23,10 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
+#include "recording/run_info.hpp"
 #include "runtime/hoist_gate.hpp"
 #include "runtime/name_claim.hpp"
 #include "runtime/operator_gate.hpp"
-#include "runtime/run_info.hpp"
 #include "seal/controller_seal.hpp"
 
 namespace pmg::runtime {
@@ -38,7 +38,7 @@ class Comms {
   /// Keeps references to all of them. control_rate_Hz is told in ROBOT_INFO. Throws std::runtime_error when link can't
   /// subscribe. seal: without keys unless given.
   Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::ControllerOutbox& outbox,
-        const model::RobotModel& robot, const RunInfo& run, double control_rate_Hz, const io::Clock& clock,
+        const model::RobotModel& robot, const recording::RunInfo& run, double control_rate_Hz, const io::Clock& clock,
         seal::ControllerSeal seal = seal::ControllerSeal());
   ~Comms() = default;
   Comms(const Comms&) = delete;
@@ -88,7 +88,7 @@ class Comms {
   io::LcmLink& link_;
   control::ControllerOutbox& outbox_;
   const model::RobotModel& robot_;
-  const RunInfo& run_;
+  const recording::RunInfo& run_;
   double control_rate_Hz_;
   const io::Clock& clock_;
   seal::ControllerSeal seal_;
@@ -101,7 +101,7 @@ class Comms {
   std::int64_t next_second_ns_, next_hoist_ns_, verify_at_ns_ = 0;
 
   control::TickRecord newest_;
-  control::Fault published_fault_;
+  faults::Fault published_fault_;
   pmg_msgs::ack_t ack_;
   pmg_msgs::status_t status_;
   pmg_msgs::robot_state_t state_;

@@ -36,7 +36,7 @@ struct ControllerNews {
   std::int64_t now_ns = 0;
   control::Mode mode = control::Mode::kPassive;
   bool hanging = false;
-  control::Fault fault;
+  faults::Fault fault;
   control::Source driving;
 };
 

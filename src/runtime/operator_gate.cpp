@@ -6,7 +6,7 @@
 #include "control/source_memory.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
-#include "runtime/tick_messages.hpp"
+#include "recording/tick_messages.hpp"
 
 namespace pmg::runtime {
 
@@ -33,7 +33,7 @@ void OperatorGate::take_command(io::Bytes bytes) {
   } else if (sealed->message.robot != robot_) {
     ++counts_.other_robot;
   } else if (counts_.good(seal_.judge("COMMAND", sealed->message_bytes, sealed->seal, now_ns))) {
-    const control::DriveMessage drive = drive_message(sealed->message, now_ns);
+    const control::DriveMessage drive = recording::drive_message(sealed->message, now_ns);
     const bool taken =
         rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
     if (!taken) ++counts_.flooded;
@@ -47,7 +47,7 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     return;
   }
   const pmg_msgs::mode_t& message = sealed->message;
-  control::ModeRequest request = mode_request(message, clock_.now_ns());
+  control::ModeRequest request = recording::mode_request(message, clock_.now_ns());
   if (message.mode < pmg_msgs::mode_t::PASSIVE || message.mode > pmg_msgs::mode_t::WALK) {
     request.mode = control::Mode::kFault;  // answered with NO_MODE
   }

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string range_text(const control::CycleRange& range) {
+std::string range_text(const faults::CycleRange& range) {
   if (range.most < 0) return "-";
   return range.least == range.most ? fmt::format("{}", range.most) : fmt::format("{} to {}", range.least, range.most);
 }
@@ -23,19 +23,18 @@ std::string cycles_text(const ordered_json& cycles) { return cycles.is_null() ? 
 }  // namespace
 
 ordered_json failures_json(std::span<const Failure> failures, std::span<const FailureReaction> reactions,
-                           std::span<const control::Fault> faults) {
+                           std::span<const faults::Fault> faults) {
   ordered_json json = ordered_json::array();
   for (std::size_t i = 0; i < failures.size(); ++i) {
     const Failure& failure = failures[i];
-    const auto fault = std::ranges::find_if(faults, [&](const control::Fault& found) {
-      return static_cast<double>(found.stamp_ns) * 1e-9 >= failure.at_s;
-    });
+    const auto fault = std::ranges::find_if(
+        faults, [&](const faults::Fault& found) { return static_cast<double>(found.stamp_ns) * 1e-9 >= failure.at_s; });
     ordered_json entry = {{"kind", to_string(failure.kind)}, {"at_s", failure.at_s}, {"for_s", failure.for_s}};
     entry["fault"] = fault == faults.end() ? ordered_json(nullptr) : ordered_json(to_string(fault->code));
     entry["cycles_to_sit_down"] = cycles_json(reactions[i].cycles_to_sit_down);
     entry["cycles_to_damping"] = cycles_json(reactions[i].cycles_to_damping);
     if (fault != faults.end()) {
-      const control::Reaction promised = control::reaction(fault->code);
+      const faults::Reaction promised = faults::reaction(fault->code);
       entry["promised_cycles_to_sit_down"] = range_text(promised.sit_down);
       entry["promised_cycles_to_damping"] = range_text(promised.damping);
     }

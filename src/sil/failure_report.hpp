@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "control/fault.hpp"
+#include "faults/fault.hpp"
 #include "sil/failures.hpp"
 
 namespace pmg::sil {
@@ -14,7 +14,7 @@ namespace pmg::sil {
 /// (failures, the drives' reactions, the run's faults with stamps since its start) => (an entry each): the failure, the
 /// first fault from its beginning on, the bus cycles until the sit-down and until the drives damped, and the page's.
 nlohmann::ordered_json failures_json(std::span<const Failure> failures, std::span<const FailureReaction> reactions,
-                                     std::span<const control::Fault> faults);
+                                     std::span<const faults::Fault> faults);
 
 /// The same as lines of text.
 std::string failures_text(const nlohmann::ordered_json& failures);

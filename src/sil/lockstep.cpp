@@ -14,7 +14,7 @@ void hold_for_one_tick(sim::World& world, const model::JointCommand& command) no
 }
 
 Lockstep::Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick,
-                   const Scenario& scenario, runtime::TickLog* log, const LockstepOptions& options)
+                   const Scenario& scenario, recording::TickLog* log, const LockstepOptions& options)
     : plant_(plant),
       tick_(tick),
       scenario_(scenario),

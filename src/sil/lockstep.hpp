@@ -10,7 +10,7 @@
 #include "hal/bus_cycle.hpp"
 #include "io/clock.hpp"
 #include "model/robot_model.hpp"
-#include "runtime/tick_log.hpp"
+#include "recording/tick_log.hpp"
 #include "sil/hoist.hpp"
 #include "sil/plant.hpp"
 #include "sil/run_measure.hpp"
@@ -32,7 +32,7 @@ class Lockstep {
  public:
   /// Keeps references to all of them. log may be null.
   Lockstep(const model::RobotModel& robot, hal::Hal& bus, Plant& plant, control::Tick& tick, const Scenario& scenario,
-           runtime::TickLog* log, const LockstepOptions& options);
+           recording::TickLog* log, const LockstepOptions& options);
 
   /// Called after every tick, for progress and pictures.
   std::function<void(const RunProgress&)> after_tick;
@@ -57,7 +57,7 @@ class Lockstep {
   Plant& plant_;
   control::Tick& tick_;
   const Scenario& scenario_;
-  runtime::TickLog* log_;
+  recording::TickLog* log_;
   std::optional<ScenarioLog> scenario_log_;
   LockstepOptions options_;
   io::SimulationClock clock_;

@@ -14,7 +14,7 @@ constexpr double kReserved_s = 600.0;  // of timing, at most; a run may go on fo
 }  // namespace
 
 RealtimeRun::RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, runtime::Controller& controller,
-                         const Scenario& scenario, runtime::TickLog* log, bool hoists)
+                         const Scenario& scenario, recording::TickLog* log, bool hoists)
     : robot_(robot),
       controller_(controller),
       scenario_(scenario),
@@ -42,7 +42,7 @@ RunOutcome RealtimeRun::run() {
   RunOutcome outcome = measure_.outcome();
   outcome.interrupted = ended_early;
   outcome.diverged = robot_.diverged();
-  for (control::Fault& fault : outcome.faults) fault.stamp_ns -= first_tick_ns_;
+  for (faults::Fault& fault : outcome.faults) fault.stamp_ns -= first_tick_ns_;
   return outcome;
 }
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "io/clock.hpp"
+#include "recording/tick_log.hpp"
 #include "runtime/controller.hpp"
-#include "runtime/tick_log.hpp"
 #include "sil/run_measure.hpp"
 #include "sil/scenario.hpp"
 #include "sil/scenario_log.hpp"
@@ -23,7 +23,7 @@ class RealtimeRun {
   /// Keeps references. robot keeps the truth. log may be null. hoists: the scenario's gantry acts (nobody balances the
   /// robot, and it does not hang already).
   RealtimeRun(const model::RobotModel& model, SimulatedRobot& robot, runtime::Controller& controller,
-              const Scenario& scenario, runtime::TickLog* log, bool hoists);
+              const Scenario& scenario, recording::TickLog* log, bool hoists);
 
   /// Called after every tick, in the recorder's thread.
   std::function<void(const RunProgress&)> after_tick;
@@ -46,7 +46,7 @@ class RealtimeRun {
   SimulatedRobot& robot_;
   runtime::Controller& controller_;
   const Scenario& scenario_;
-  runtime::TickLog* log_;
+  recording::TickLog* log_;
   std::optional<ScenarioLog> scenario_log_;
   const bool hoists_;
   const io::WallClock clock_;
@@ -61,8 +61,8 @@ class RealtimeRun {
   RunMeasure measure_;
   StageTiming timing_;
   control::TickRecord record_;
-  runtime::BusTiming bus_;
-  runtime::BusCycleReader bus_cycles_;
+  recording::BusTiming bus_;
+  recording::BusCycleReader bus_cycles_;
   Command asked_;
   std::int64_t ticks_ = 0, first_tick_ns_ = 0;
   std::atomic<bool> measuring_{true};  // damping at the end is no part of the run

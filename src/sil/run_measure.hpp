@@ -21,7 +21,7 @@ struct RunOutcome {
   bool diverged = false;  ///< the simulation blew up; the run ends there
   bool fell = false;
   double fell_at_s = -1.0;
-  std::vector<control::Fault> faults;
+  std::vector<faults::Fault> faults;
   TrackingSummary tracking;
   gco::SlipSummary reference_slip;
 };

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime/tick_log.hpp"
+#include "recording/tick_log.hpp"
 #include "sil/scenario.hpp"
 
 namespace pmg::sil {
@@ -13,13 +13,13 @@ namespace pmg::sil {
 class ScenarioLog {
  public:
   /// Keeps references to both.
-  ScenarioLog(runtime::TickLog& log, const Scenario& scenario) : log_(log), scenario_(scenario) {}
+  ScenarioLog(recording::TickLog& log, const Scenario& scenario) : log_(log), scenario_(scenario) {}
 
   /// Call it before every tick. Writes when the number of the step, counted from 1, has changed.
   void write(std::int64_t stamp_ns, std::size_t number);
 
  private:
-  runtime::TickLog& log_;
+  recording::TickLog& log_;
   const Scenario& scenario_;
   std::size_t last_ = 0;
 };

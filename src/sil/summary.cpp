@@ -41,7 +41,7 @@ nlohmann::ordered_json reference_slip_json(const gco::SlipSummary& slip) {
 nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& outcome, const StageTiming& timing,
                                     const model::RobotModel& robot) {
   nlohmann::ordered_json faults = nlohmann::ordered_json::array();
-  for (const control::Fault& fault : outcome.faults) {
+  for (const faults::Fault& fault : outcome.faults) {
     faults.push_back({{"t_s", static_cast<double>(fault.stamp_ns) * 1e-9},
                       {"code", to_string(fault.code)},
                       {"text", describe(fault, robot)}});

@@ -16,7 +16,7 @@
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
 #include "policy/policy.hpp"
-#include "runtime/tick_log.hpp"
+#include "recording/tick_log.hpp"
 #include "sil/lockstep.hpp"
 #include "sil/sil_hal.hpp"
 #include "sim/robots.hpp"
@@ -64,7 +64,7 @@ void sil(benchmark::State& state, MakePolicy make_policy) {
     sil::SilHal bus(world);
     sil::WorldPlant plant(world);
     io::LogWriter writer(file);
-    runtime::TickLog log(writer, robot, {.robot = robot.name}, 1.0 / options.dt_s);
+    recording::TickLog log(writer, robot, {.robot = robot.name}, 1.0 / options.dt_s);
     sil::Lockstep lockstep(robot, bus, plant, tick, played, &log, {});
     int ticks = 0;
     long before = 0;

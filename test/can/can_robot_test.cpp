@@ -81,7 +81,7 @@ struct Stage {
   std::optional<sim::World> world;
   drives::DriveSetup setup;
   std::optional<test::EmulatedRobot> robot;
-  control::FaultCode fault = control::FaultCode::kNone;
+  faults::FaultCode fault = faults::FaultCode::kNone;
 };
 
 Scenario walking(double stand_s, double walk_s) {
@@ -175,31 +175,31 @@ struct Row {
   const char* name;
   void (*inject)(test::EmulatedRobot&);
   int least, most;  ///< bus cycles, as in docs/reference/safety.md
-  control::FaultCode code;
+  faults::FaultCode code;
 };
 
 constexpr std::array kRows = {
     Row{"silent motor", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).silent = true; }, 6, 10,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"wrong id", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).node = 99; }, 6, 10,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"two motors of one id", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).twice = true; }, 3, 7,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"lost turn", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).turn_rad = 0.7; }, 3, 7,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"over-temperature in the drive",
         [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).fault = drives::DriveFault::kOverTemperature; }, 1,
-        5, control::FaultCode::kBusLost},
+        5, faults::FaultCode::kBusLost},
     Row{"under-voltage",
         [](test::EmulatedRobot& robot) { robot.drives().drive(1, 0).fault = drives::DriveFault::kUnderVoltage; }, 1, 5,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"over-voltage",
         [](test::EmulatedRobot& robot) { robot.drives().drive(1, 0).fault = drives::DriveFault::kOverVoltage; }, 1, 5,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
     Row{"hot motor", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).temperature_degC = 95.0; }, 1, 5,
-        control::FaultCode::kTemperature},
+        faults::FaultCode::kTemperature},
     Row{"silent IMU", [](test::EmulatedRobot& robot) { robot.drives().imu_silent = true; }, 11, 15,
-        control::FaultCode::kBusLost},
+        faults::FaultCode::kBusLost},
 };
 
 TEST(CanRobot, EachFaultDampsEveryDriveWithinItsCycles) {

@@ -145,7 +145,7 @@ class ControlRig {
   }
 
   control::Mode mode() const { return tick.result().mode; }
-  control::FaultCode fault() const { return tick.result().fault.code; }
+  faults::FaultCode fault() const { return tick.result().fault.code; }
 
   io::SimulationClock clock;
   hal::BusLink link;

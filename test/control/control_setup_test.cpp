@@ -67,7 +67,7 @@ TEST(ControlSetup, EveryVariantRunsAsItsFileSays) {
     double hip_swing_rad = 0.0;
     for (int k = 0; k < 500; ++k) {
       const TickResult& result = robot.step();
-      ASSERT_EQ(result.fault.code, FaultCode::kNone) << describe(result.fault, test::z1());
+      ASSERT_EQ(result.fault.code, faults::FaultCode::kNone) << faults::describe(result.fault, test::z1());
       if (result.mode != Mode::kWalk) continue;
       ++ticks;
       ticks_with_gco += result.optimised.status != gco::Status::kNotAsked;

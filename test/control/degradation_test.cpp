@@ -1,5 +1,6 @@
 // Holding, stopping and braking besides the table of faults: frozen threads, stops from other sources, silent
 // operators, late policies, through bus cycle, guard, control cycle and tick.
+// Longer than 300 lines: every part that may be late or silent, over one rig.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -35,7 +36,7 @@ TEST(Degradation, AFrozenBusFindsADampingCommandWhenItReturns) {
     rig.bus_frozen = false;
     rig.cycle();
     EXPECT_TRUE(rig.bus.damping());
-    EXPECT_EQ(rig.fault(), FaultCode::kStaleState);
+    EXPECT_EQ(rig.fault(), faults::FaultCode::kStaleState);
   }
 }
 
@@ -107,7 +108,7 @@ TEST(Degradation, AControlThreadThatStallsAloneIsDampedFromThePagesLengthOn) {
         EXPECT_EQ(rig.mode(), Mode::kWalk);
       }
       if (cycles >= 26) {
-        EXPECT_EQ(rig.fault(), FaultCode::kControlFrozen);
+        EXPECT_EQ(rig.fault(), faults::FaultCode::kControlFrozen);
       }
     }
   }
@@ -129,7 +130,7 @@ TEST(Degradation, ABusThreadThatStallsAloneIsAFaultFromThePagesLengthOn) {
         EXPECT_EQ(rig.mode(), Mode::kWalk);
       }
       if (cycles >= 20) {
-        EXPECT_EQ(rig.fault(), FaultCode::kStaleState);
+        EXPECT_EQ(rig.fault(), faults::FaultCode::kStaleState);
       }
       if (cycles >= 20) {
         EXPECT_TRUE(rig.bus.damping());
@@ -252,7 +253,7 @@ TEST(Degradation, APolicyThatBlocksIsNamedAndNotTheOverrunThatItCauses) {
   ControlRig rig(test::biped());
   rig.reach_walk();
   ASSERT_GE(rig.cycles_to_damping([&] { block_policy(rig, 100); }), 0);
-  EXPECT_EQ(rig.fault(), FaultCode::kStalePolicy);
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kStalePolicy);
 }
 
 TEST(Degradation, ALatePolicysLastTargetIsHeldFirst) {

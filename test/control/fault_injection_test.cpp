@@ -31,15 +31,15 @@ ClipLibrary overflowing_clips() {
   return library;
 }
 
-TickOptions options_of(FaultCode code) {
+TickOptions options_of(faults::FaultCode code) {
   TickOptions options = tick_options(test::biped());
   // From rest to full speed in one tick, so the overflow comes in the tick of the injection.
-  if (code == FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
+  if (code == faults::FaultCode::kReferenceNotFinite) options.generator.limits.rate_per_s.fill(1e6);
   return options;
 }
 
-ClipLibrary clips_of(FaultCode code) {
-  return code == FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(test::biped());
+ClipLibrary clips_of(faults::FaultCode code) {
+  return code == faults::FaultCode::kReferenceNotFinite ? overflowing_clips() : test::clips(test::biped());
 }
 
 template <typename Spoil>
@@ -68,7 +68,7 @@ void overrun(ControlRig& rig) {
 
 struct InjectedFault {
   const char* name;
-  FaultCode code;
+  faults::FaultCode code;
   std::function<void(ControlRig&)> inject;
   /// The reset is refused while the cause lasts. Otherwise the cause shows only when the robot stands again.
   bool reset_waits;
@@ -78,40 +78,44 @@ struct InjectedFault {
 
 std::vector<InjectedFault> rows() {
   return {
-      {"BusLost", FaultCode::kBusLost, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kLost; }, true},
-      {"StaleState", FaultCode::kStaleState, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kStale; }, true},
-      {"NanInPosition", FaultCode::kStateNotFinite, in_state([](auto& s) { s.q[1] = kNan; }), true},
-      {"NanInOrientation", FaultCode::kStateNotFinite, in_state([](auto& s) { s.orientation_WI.x() = kNan; }), true},
-      {"MissingJoints", FaultCode::kStateNotFinite, in_state([](auto& s) { s.dq.conservativeResize(2); }), true},
-      {"Hot", FaultCode::kTemperature, in_state([](auto& s) { s.temperature_degC[2] = 95.0; }), true},
-      {"ControlFrozen", FaultCode::kControlFrozen, [](ControlRig& rig) { rig.control_frozen = true; }, false},
-      {"CommandNan", FaultCode::kCommandNotFinite, give_the_guard_a_nan, false},
-      {"StalePolicy", FaultCode::kStalePolicy, in_policy(BreakablePolicy::Break::kLate), false},
-      {"Overrun", FaultCode::kOverrun, overrun, false},
-      {"AboveRange", FaultCode::kJointLimit,
+      {"BusLost", faults::FaultCode::kBusLost, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kLost; }, true},
+      {"StaleState", faults::FaultCode::kStaleState, [](ControlRig& rig) { rig.bus.status = hal::BusStatus::kStale; },
+       true},
+      {"NanInPosition", faults::FaultCode::kStateNotFinite, in_state([](auto& s) { s.q[1] = kNan; }), true},
+      {"NanInOrientation", faults::FaultCode::kStateNotFinite, in_state([](auto& s) { s.orientation_WI.x() = kNan; }),
+       true},
+      {"MissingJoints", faults::FaultCode::kStateNotFinite, in_state([](auto& s) { s.dq.conservativeResize(2); }),
+       true},
+      {"Hot", faults::FaultCode::kTemperature, in_state([](auto& s) { s.temperature_degC[2] = 95.0; }), true},
+      {"ControlFrozen", faults::FaultCode::kControlFrozen, [](ControlRig& rig) { rig.control_frozen = true; }, false},
+      {"CommandNan", faults::FaultCode::kCommandNotFinite, give_the_guard_a_nan, false},
+      {"StalePolicy", faults::FaultCode::kStalePolicy, in_policy(BreakablePolicy::Break::kLate), false},
+      {"Overrun", faults::FaultCode::kOverrun, overrun, false},
+      {"AboveRange", faults::FaultCode::kJointLimit,
        in_state([](auto& s) { s.q[3] = test::biped().joints[3].upper_rad + 0.12; }), true},
-      {"BelowRange", FaultCode::kJointLimit,
+      {"BelowRange", faults::FaultCode::kJointLimit,
        in_state([](auto& s) { s.q[3] = test::biped().joints[3].lower_rad - 0.12; }), true},
-      {"TooFast", FaultCode::kJointVelocity,
+      {"TooFast", faults::FaultCode::kJointVelocity,
        in_state([](auto& s) { s.dq[3] = 1.6 * test::biped().joints[3].velocity_limit_rad_s; }), true},
-      {"TooFastBackwards", FaultCode::kJointVelocity,
+      {"TooFastBackwards", faults::FaultCode::kJointVelocity,
        in_state([](auto& s) { s.dq[3] = -1.6 * test::biped().joints[3].velocity_limit_rad_s; }), true},
-      {"Torque", FaultCode::kJointTorque,
+      {"Torque", faults::FaultCode::kJointTorque,
        in_state([](auto& s) { s.tau[3] = 1.3 * test::biped().joints[3].effort_limit_Nm; }), true},
-      {"TorqueBackwards", FaultCode::kJointTorque,
+      {"TorqueBackwards", faults::FaultCode::kJointTorque,
        in_state([](auto& s) { s.tau[3] = -1.3 * test::biped().joints[3].effort_limit_Nm; }), true},
-      {"Tilt", FaultCode::kTilt, in_state([](auto& s) {
+      {"Tilt", faults::FaultCode::kTilt, in_state([](auto& s) {
          s.orientation_WI = Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()) * s.orientation_WI;
        }),
        true},
-      {"TorsoAttitude", FaultCode::kTorsoAttitude, in_state([](auto& s) {
+      {"TorsoAttitude", faults::FaultCode::kTorsoAttitude, in_state([](auto& s) {
          s.orientation_WI = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()) * s.orientation_WI;
        }),
        false},
-      {"Reference", FaultCode::kReferenceNotFinite, [](ControlRig& rig) { rig.drive.command[kVx] = 9.0; }, false},
-      {"PolicyNan", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNotANumber), false},
-      {"PolicyFailed", FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kStatus), false},
-      {"FarAction", FaultCode::kActionOutOfRange, in_policy(BreakablePolicy::Break::kFarAction), false},
+      {"Reference", faults::FaultCode::kReferenceNotFinite, [](ControlRig& rig) { rig.drive.command[kVx] = 9.0; },
+       false},
+      {"PolicyNan", faults::FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kNotANumber), false},
+      {"PolicyFailed", faults::FaultCode::kPolicyNotFinite, in_policy(BreakablePolicy::Break::kStatus), false},
+      {"FarAction", faults::FaultCode::kActionOutOfRange, in_policy(BreakablePolicy::Break::kFarAction), false},
   };
 }
 
@@ -125,14 +129,14 @@ void heal(ControlRig& rig) {
   rig.drive.command = Command{};
 }
 
-void include(int cycles, CycleRange& range) {
+void include(int cycles, faults::CycleRange& range) {
   range.least = range.most < 0 ? cycles : std::min(range.least, cycles);
   range.most = std::max(range.most, cycles);
 }
 
 /// Reactions over all moments between two ticks at which the cause may appear.
-Reaction reaction_of(const InjectedFault& row) {
-  Reaction range;
+faults::Reaction reaction_of(const InjectedFault& row) {
+  faults::Reaction range;
   for (int moment = 0; moment < kCyclesPerTick; ++moment) {
     ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
     rig.reach_walk();
@@ -154,8 +158,8 @@ std::vector<std::string> cells_of(const std::string& line) {
 }
 
 /// "1 to 5", "0", or "-" for never.
-CycleRange range_in(const std::string& cell) {
-  CycleRange range;
+faults::CycleRange range_in(const std::string& cell) {
+  faults::CycleRange range;
   std::string to;
   std::istringstream cycles(cell);
   if (!(cycles >> range.least)) return {};
@@ -166,29 +170,29 @@ CycleRange range_in(const std::string& cell) {
 }
 
 /// The fault table (seven columns) of docs/reference/safety.md: code -> bus cycles.
-std::map<std::string, Reaction> documented_reactions() {
+std::map<std::string, faults::Reaction> documented_reactions() {
   constexpr std::size_t kColumns = 7, kCode = 1, kSitDown = 5, kDamping = 6;  // the first cell is before the first bar
   std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/reference/safety.md");
-  std::map<std::string, Reaction> reactions;
+  std::map<std::string, faults::Reaction> reactions;
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != kColumns + 1 || !cells[kCode].starts_with(" `")) continue;
     const std::string code = cells[kCode].substr(2, cells[kCode].rfind('`') - 2);
-    const Reaction told{range_in(cells[kSitDown]), range_in(cells[kDamping])};
+    const faults::Reaction told{range_in(cells[kSitDown]), range_in(cells[kDamping])};
     EXPECT_TRUE(reactions.emplace(code, told).second) << code << " has two rows";
   }
   return reactions;
 }
 
 TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
-  std::map<std::string, Reaction> documented = documented_reactions();
-  for (std::size_t k = 1; k < kFaultCodes; ++k) {
-    const auto code = static_cast<FaultCode>(k);
+  std::map<std::string, faults::Reaction> documented = documented_reactions();
+  for (std::size_t k = 1; k < faults::kFaultCodes; ++k) {
+    const auto code = static_cast<faults::FaultCode>(k);
     const std::vector<InjectedFault> all = rows();
     EXPECT_TRUE(std::ranges::any_of(all, [&](const InjectedFault& row) { return row.code == code; }))
         << to_string(code);
-    EXPECT_EQ(documented[to_string(code)].sit_down, reaction(code).sit_down) << to_string(code);
-    EXPECT_EQ(documented[to_string(code)].damping, reaction(code).damping) << to_string(code);
+    EXPECT_EQ(documented[to_string(code)].sit_down, faults::reaction(code).sit_down) << to_string(code);
+    EXPECT_EQ(documented[to_string(code)].damping, faults::reaction(code).damping) << to_string(code);
     EXPECT_EQ(documented.erase(to_string(code)), 1u) << to_string(code) << " has no row in docs/reference/safety.md";
     EXPECT_NE(std::string(advice(code)), "") << to_string(code);
   }
@@ -199,17 +203,17 @@ class FaultInjection : public testing::TestWithParam<InjectedFault> {};
 
 TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {
   const InjectedFault& row = GetParam();
-  const Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
+  const faults::Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
   EXPECT_EQ(measured.damping.least, documented.damping.least) << row.name;
   EXPECT_EQ(measured.damping.most, documented.damping.most) << row.name;
 }
 
 TEST_P(FaultInjection, TheRobotSitsDownFirstWithinTheDocumentedBusCycles) {
   const InjectedFault& row = GetParam();
-  const Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
+  const faults::Reaction measured = reaction_of(row), documented = documented_reactions()[to_string(row.code)];
   EXPECT_EQ(measured.sit_down.least, documented.sit_down.least) << row.name;
   EXPECT_EQ(measured.sit_down.most, documented.sit_down.most) << row.name;
-  EXPECT_EQ(measured.sit_down.most >= 0, allows_sit_down(row.code)) << row.name;
+  EXPECT_EQ(measured.sit_down.most >= 0, faults::allows_sit_down(row.code)) << row.name;
 }
 
 TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
@@ -223,7 +227,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
     undamped += rig.bus.damping() ? 0 : 1;
     broken += rig.bus.finite() ? 0 : 1;
   };
-  if (row.code == FaultCode::kControlFrozen) {
+  if (row.code == faults::FaultCode::kControlFrozen) {
     rig.run(1.0);
     EXPECT_EQ(undamped, 0) << "the guard goes on damping alone";
     heal(rig);  // the thread returns
@@ -231,7 +235,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   rig.run(0.1);
   EXPECT_EQ(rig.mode(), Mode::kFault);
   EXPECT_EQ(rig.fault(), row.code);
-  const std::string words = describe(rig.tick.result().fault, test::biped());
+  const std::string words = faults::describe(rig.tick.result().fault, test::biped());
   EXPECT_EQ(words.find(std::string(to_string(row.code)) + ": "), 0u) << words;
   EXPECT_EQ(words.find("nan"), std::string::npos) << words;
 
@@ -250,7 +254,7 @@ TEST_P(FaultInjection, IsLatchedWithItsCauseUntilAResetThatFindsNothingWrong) {
   rig.reset();
   rig.run(0.1);
   EXPECT_EQ(rig.mode(), Mode::kDamping);
-  EXPECT_EQ(rig.fault(), FaultCode::kNone);
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kNone);
   EXPECT_EQ(undamped, 0) << "all the time the drives brake";
   EXPECT_EQ(broken, 0);
   rig.after_cycle = nullptr;

@@ -113,7 +113,7 @@ class BreakablePolicy final : public policy::Policy {
     q_des = reference.q;
     if (how == Break::kNotANumber) q_des[0] = std::numeric_limits<double>::quiet_NaN();
     if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
-    if (how == Break::kFarAction) q_des[3] += control::ActionMonitorOptions{}.bound_rad + 0.1;
+    if (how == Break::kFarAction) q_des[3] += faults::ActionMonitorOptions{}.bound_rad + 0.1;
     if (how == Break::kLate) q_des.setConstant(9.0);  // values left by a late policy must not count
     if (how == Break::kLate) return policy::Status::kLate;
     return how == Break::kStatus ? policy::Status::kNotFinite : policy::Status::kOk;

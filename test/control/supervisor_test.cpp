@@ -42,7 +42,7 @@ class SupervisorTest : public testing::Test {
   model::RobotState state_ = test::standing_state(test::biped());
   hal::BusStatus bus_ = hal::BusStatus::kOk;
   std::int64_t now_ns_ = 0;
-  std::optional<RollPitchAim> torso_ = RollPitchAim{};
+  std::optional<faults::RollPitchAim> torso_ = faults::RollPitchAim{};
   bool frozen_stamp_ = false, entry_done_ = true, at_rest_ = true;
   double command_age_s_ = 0.0;
 };
@@ -130,7 +130,7 @@ TEST_F(SupervisorTest, FaultIsLatchedUntilResetAndThenDamps) {
   reach(Mode::kWalk);
   bus_ = hal::BusStatus::kLost;
   EXPECT_EQ(update(), Mode::kFault);
-  EXPECT_EQ(supervisor_.fault().code, FaultCode::kBusLost);
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kBusLost);
   ask(Mode::kDamping, true);
   EXPECT_EQ(update(), Mode::kFault) << "its cause is still there";
   bus_ = hal::BusStatus::kOk;
@@ -140,7 +140,7 @@ TEST_F(SupervisorTest, FaultIsLatchedUntilResetAndThenDamps) {
   }
   ask(Mode::kDamping, true);
   EXPECT_EQ(update(), Mode::kDamping);
-  EXPECT_EQ(supervisor_.fault().code, FaultCode::kNone);
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kNone);
 }
 
 TEST_F(SupervisorTest, FirstFaultIsKept) {
@@ -149,7 +149,7 @@ TEST_F(SupervisorTest, FirstFaultIsKept) {
   update();
   bus_ = hal::BusStatus::kLost;
   update();
-  EXPECT_EQ(supervisor_.fault().code, FaultCode::kStateNotFinite);
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kStateNotFinite);
   EXPECT_EQ(supervisor_.fault().joint, 2);
 }
 
@@ -163,42 +163,44 @@ TEST_F(SupervisorTest, AFaultCannotBeAskedFor) {
 /// mode.
 struct Row {
   const char* name;
-  FaultCode code;
+  faults::FaultCode code;
   void (*spoil)(model::RobotState&, const model::RobotModel&);
   int ticks;
   bool while_damping;  ///< also a fault when the robot doesn't hold itself
 };
 
 const std::vector<Row> kRows = {
-    {"NanInQ", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.q[1] = kNan; }, 1, true},
-    {"InfInDq", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.dq[1] = std::numeric_limits<double>::infinity(); },
-     1, true},
-    {"NanInTorque", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.tau[0] = kNan; }, 1, true},
-    {"NanInGyro", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.gyro_rad_s.x() = kNan; }, 1, true},
-    {"NanInAcceleration", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.acceleration_m_s2.z() = kNan; }, 1, true},
-    {"NanInOrientation", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.orientation_WI.w() = kNan; }, 1, true},
-    {"ZeroOrientation", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.orientation_WI.coeffs().setZero(); }, 1,
+    {"NanInQ", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.q[1] = kNan; }, 1, true},
+    {"InfInDq", faults::FaultCode::kStateNotFinite,
+     [](auto& s, auto&) { s.dq[1] = std::numeric_limits<double>::infinity(); }, 1, true},
+    {"NanInTorque", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.tau[0] = kNan; }, 1, true},
+    {"NanInGyro", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.gyro_rad_s.x() = kNan; }, 1, true},
+    {"NanInAcceleration", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.acceleration_m_s2.z() = kNan; }, 1,
      true},
-    {"MissingJoints", FaultCode::kStateNotFinite, [](auto& s, auto&) { s.q.conservativeResize(3); }, 1, true},
-    {"Hot", FaultCode::kTemperature, [](auto& s, auto&) { s.temperature_degC[4] = 91.0; }, 1, true},
-    {"NanTemperature", FaultCode::kTemperature, [](auto& s, auto&) { s.temperature_degC[4] = kNan; }, 1, true},
-    {"BeyondUpperLimit", FaultCode::kJointLimit,
+    {"NanInOrientation", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.orientation_WI.w() = kNan; }, 1,
+     true},
+    {"ZeroOrientation", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.orientation_WI.coeffs().setZero(); },
+     1, true},
+    {"MissingJoints", faults::FaultCode::kStateNotFinite, [](auto& s, auto&) { s.q.conservativeResize(3); }, 1, true},
+    {"Hot", faults::FaultCode::kTemperature, [](auto& s, auto&) { s.temperature_degC[4] = 91.0; }, 1, true},
+    {"NanTemperature", faults::FaultCode::kTemperature, [](auto& s, auto&) { s.temperature_degC[4] = kNan; }, 1, true},
+    {"BeyondUpperLimit", faults::FaultCode::kJointLimit,
      [](auto& s, auto& robot) { s.q[3] = robot.joints[3].upper_rad + 0.11; }, 3, false},
-    {"BeyondLowerLimit", FaultCode::kJointLimit,
+    {"BeyondLowerLimit", faults::FaultCode::kJointLimit,
      [](auto& s, auto& robot) { s.q[3] = robot.joints[3].lower_rad - 0.11; }, 3, false},
-    {"TooFast", FaultCode::kJointVelocity,
+    {"TooFast", faults::FaultCode::kJointVelocity,
      [](auto& s, auto& robot) { s.dq[3] = 1.51 * robot.joints[3].velocity_limit_rad_s; }, 3, false},
-    {"TooFastBackwards", FaultCode::kJointVelocity,
+    {"TooFastBackwards", faults::FaultCode::kJointVelocity,
      [](auto& s, auto& robot) { s.dq[3] = -1.51 * robot.joints[3].velocity_limit_rad_s; }, 3, false},
-    {"TooMuchTorque", FaultCode::kJointTorque,
+    {"TooMuchTorque", faults::FaultCode::kJointTorque,
      [](auto& s, auto& robot) { s.tau[3] = 1.21 * robot.joints[3].effort_limit_Nm; }, 3, false},
-    {"TiltedForward", FaultCode::kTilt,
+    {"TiltedForward", faults::FaultCode::kTilt,
      [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(1.01, Eigen::Vector3d::UnitY()) * s.orientation_WI; }, 3,
      false},
-    {"TiltedAside", FaultCode::kTilt,
+    {"TiltedAside", faults::FaultCode::kTilt,
      [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(-1.01, Eigen::Vector3d::UnitX()) * s.orientation_WI; },
      3, false},
-    {"TorsoNotAsCommanded", FaultCode::kTorsoAttitude,
+    {"TorsoNotAsCommanded", faults::FaultCode::kTorsoAttitude,
      [](auto& s, auto&) { s.orientation_WI = Eigen::AngleAxisd(-0.61, Eigen::Vector3d::UnitY()) * s.orientation_WI; },
      3, false},
 };
@@ -215,7 +217,7 @@ TEST_P(FaultRow, LatchesWhileHoldingAfterItsTicks) {
     EXPECT_EQ(update(), Mode::kFault);
     EXPECT_EQ(supervisor_.fault().code, GetParam().code);
     EXPECT_EQ(supervisor_.fault().stamp_ns, now_ns_);
-    EXPECT_EQ(describe(supervisor_.fault(), test::biped()).find(to_string(GetParam().code)), 0u);
+    EXPECT_EQ(faults::describe(supervisor_.fault(), test::biped()).find(to_string(GetParam().code)), 0u);
   }
 }
 
@@ -263,7 +265,7 @@ TEST_F(SupervisorTest, StaleStateIsAFaultInTheSecondTickThatFindsIt) {
   frozen_stamp_ = true;
   EXPECT_EQ(update(3), Mode::kStand) << "10 and 20 ms are no age yet; 30 ms is, but a host may stop for so long";
   EXPECT_EQ(update(), Mode::kFault);
-  EXPECT_EQ(supervisor_.fault().code, FaultCode::kStaleState);
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kStaleState);
 }
 
 TEST_F(SupervisorTest, AHostThatStopsBothThreadsIsNoFault) {
@@ -285,7 +287,7 @@ TEST_F(SupervisorTest, AResetOutsideOfFaultChangesNothing) {
 
 TEST_F(SupervisorTest, TheTorsoIsJudgedAgainstItsCommandAndOnlyWhereItHasOne) {
   reach(Mode::kWalk);
-  torso_ = RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
+  torso_ = faults::RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
   const Eigen::Quaterniond upright = state_.orientation_WI;
   const auto lean = [&](double pitch_rad) {
     // For any heading.
@@ -297,9 +299,9 @@ TEST_F(SupervisorTest, TheTorsoIsJudgedAgainstItsCommandAndOnlyWhereItHasOne) {
   torso_.reset();
   lean(-0.2);
   EXPECT_EQ(update(20), Mode::kWalk);
-  torso_ = RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
+  torso_ = faults::RollPitchAim{.pitch_rad = 0.5, .roll_rad = 0.0};
   EXPECT_EQ(update(3), Mode::kFault) << "upright, but 0.7 rad from where it should be";
-  EXPECT_EQ(supervisor_.fault().code, FaultCode::kTorsoAttitude);
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kTorsoAttitude);
   EXPECT_GT(supervisor_.fault().value, supervisor_.fault().limit);
 }
 

@@ -125,10 +125,10 @@ TEST(Tick, ATorsoThatIsFoundBentMayRiseIntoStand) {
   driven.state.orientation_WI = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) * driven.state.orientation_WI;
   driven.request.mode = Mode::kStand;
   driven.run(3.0);
-  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << describe(driven.tick.result().fault, robot);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << faults::describe(driven.tick.result().fault, robot);
   driven.state.orientation_WI = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY()) * driven.state.orientation_WI;
   driven.run(0.05);
-  EXPECT_EQ(driven.tick.result().fault.code, FaultCode::kTorsoAttitude) << "once it stands it must stay there";
+  EXPECT_EQ(driven.tick.result().fault.code, faults::FaultCode::kTorsoAttitude) << "once it stands it must stay there";
 }
 
 TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
@@ -139,7 +139,7 @@ TEST(Tick, APolicyThatIsNotFiniteNeverReachesTheDrives) {
     driven.policy->how = how;
     const TickResult& result = driven.step();
     EXPECT_EQ(result.mode, Mode::kFault);
-    EXPECT_EQ(result.fault.code, FaultCode::kPolicyNotFinite);
+    EXPECT_EQ(result.fault.code, faults::FaultCode::kPolicyNotFinite);
     EXPECT_TRUE(result.sitting) << "in the very tick that failed";
     EXPECT_TRUE(result.command.q.allFinite());
     EXPECT_LT((result.command.q - driven.state.q).cwiseAbs().maxCoeff(), 0.05) << "it goes on from where it is";
@@ -323,7 +323,7 @@ TEST(Tick, FaultsStayInForceInTheAir) {
   ASSERT_TRUE(driven.tick.result().hanging);
   driven.state.orientation_WI = Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX()) * driven.state.orientation_WI;
   driven.run(0.05);
-  EXPECT_EQ(driven.tick.result().fault.code, FaultCode::kTilt);
+  EXPECT_EQ(driven.tick.result().fault.code, faults::FaultCode::kTilt);
   EXPECT_FALSE(driven.tick.result().hanging) << "a sub-state of Stand and of Walk alone";
   EXPECT_FALSE(driven.tick.result().foot_load.has_value());
 }
@@ -369,7 +369,7 @@ TEST(Tick, WithoutConvergenceTheLastSolutionIsHeldAndThenWalkingEnds) {
   driven.asking = false;  // no one requests walking, but a source still drives: the stop is the controller's own
   const TickResult& result = driven.run(0.6);
   EXPECT_EQ(result.mode, Mode::kStand);
-  EXPECT_EQ(result.fault.code, FaultCode::kNone);
+  EXPECT_EQ(result.fault.code, faults::FaultCode::kNone);
   EXPECT_EQ(result.optimised.status, gco::Status::kConverged) << "at rest it converges again";
 }
 

@@ -134,7 +134,7 @@ TEST_F(LogInfo, PercentilesAreNearestRanksOfTiming) {
 
 TEST_F(LogInfo, FoldersAreReadInTheOrderOfRotationAndRunsAreToldApart) {
   io::LogWriter third(folder_ / "log-10000.lcm"), second(folder_ / "log-9999.lcm");
-  test::record_run(second, [&](runtime::TickLog& log, double time_s) {
+  test::record_run(second, [&](recording::TickLog& log, double time_s) {
     if (time_s == 1.0) log.continue_in(third, 1'000'000'000);
   });
   second.flush();

@@ -12,8 +12,8 @@
 #include "control/control_rig.hpp"
 #include "control/control_setup.hpp"
 #include "io/log_writer.hpp"
-#include "runtime/run_info.hpp"
-#include "runtime/tick_log.hpp"
+#include "recording/run_info.hpp"
+#include "recording/tick_log.hpp"
 
 namespace pmg::test {
 
@@ -23,11 +23,11 @@ inline constexpr double kRecorded_s = 2.6;
 inline constexpr double kRecordedFault_s = 1.6;  // time at which a drive gets hot
 inline constexpr std::int64_t kRecordedSession = 1;
 
-inline runtime::RunInfo recorded_run_info() {
+inline recording::RunInfo recorded_run_info() {
   control::ControlSetup setup;
   setup.robot = kRecordedRobot;
   const control::LoadedControl loaded = control::load_control(setup);
-  runtime::RunInfo run;
+  recording::RunInfo run;
   run.robot = "biped-7";
   run.session = kRecordedSession;
   run.options = control::control_json(loaded).dump();
@@ -37,10 +37,10 @@ inline runtime::RunInfo recorded_run_info() {
 }
 
 /// after_tick gets the elapsed seconds and may redirect the log into another file.
-inline void record_run(io::LogWriter& writer, const std::function<void(runtime::TickLog&, double)>& after_tick = {}) {
+inline void record_run(io::LogWriter& writer, const std::function<void(recording::TickLog&, double)>& after_tick = {}) {
   const model::RobotModel robot = model::load_robot(kRecordedRobot);
   ControlRig rig(robot, false);
-  runtime::TickLog log(writer, robot, recorded_run_info(), 100.0);
+  recording::TickLog log(writer, robot, recorded_run_info(), 100.0);
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 4e-4);
   bool hot = false;

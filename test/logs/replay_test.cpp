@@ -184,7 +184,7 @@ TEST_F(ReplayTest, ACutLogIsReplayedUpToItsEnd) {
 
 TEST_F(ReplayTest, ARotatedLogIsReplayedAsOne) {
   io::LogWriter first(folder_ / "log-0000.lcm"), second(folder_ / "log-0001.lcm");
-  test::record_run(first, [&](runtime::TickLog& log, double time_s) {
+  test::record_run(first, [&](recording::TickLog& log, double time_s) {
     if (time_s == 1.0) log.continue_in(second, 1'000'000'000);
   });
   first.flush();

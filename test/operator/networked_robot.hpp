@@ -36,7 +36,7 @@ struct NetworkedRobot {
 
   bool acks_lost = false;
   const model::RobotModel& robot = biped();
-  runtime::RunInfo run;
+  recording::RunInfo run;
   hal::BusLink bus_link;
   control::OperatorInbox inbox{bus_link.stop};
   control::ControllerOutbox outbox;

@@ -1,4 +1,5 @@
 // Comms: the controller's messages on the network, and other senders under its name.
+// Longer than 300 lines: every channel and every stranger, over one pair of links.
 #include "runtime/comms.hpp"
 
 #include <gmock/gmock.h>
@@ -85,7 +86,7 @@ class CommsTest : public testing::Test {
   hal::StopLine stop_line_;
   control::OperatorInbox inbox_{stop_line_};
   control::ControllerOutbox outbox_;
-  RunInfo run_;
+  recording::RunInfo run_;
   Comms comms_{link_, inbox_, outbox_, robot_, run_, 100.0, clock_};
   control::TickRecord record_;
   std::map<std::string, int> heard_;
@@ -138,15 +139,15 @@ TEST_F(CommsTest, AnswersThatFindTheQueueFullAreCountedAndTheCountIsPublished) {
 TEST_F(CommsTest, AFaultIsToldOnceHoweverLongItIsLatched) {
   for (int k = 0; k < 5; ++k) tick();
   record_.result.mode = control::Mode::kFault;
-  record_.result.fault = {.code = control::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  record_.result.fault = {.code = faults::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
   for (int k = 0; k < 5; ++k) tick();
   EXPECT_EQ(heard_["FAULT"], 1);
   EXPECT_THAT(status_.fault, HasSubstr("tilt"));
   record_.result.mode = control::Mode::kDamping;
-  record_.result.fault = control::Fault{};
+  record_.result.fault = faults::Fault{};
   for (int k = 0; k < 5; ++k) tick();
   record_.result.mode = control::Mode::kFault;
-  record_.result.fault = {.code = control::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
+  record_.result.fault = {.code = faults::FaultCode::kTilt, .value = 1.2, .limit = 1.0, .stamp_ns = clock_.now_ns()};
   for (int k = 0; k < 5; ++k) tick();
   EXPECT_EQ(heard_["FAULT"], 2) << "the same cause again is another fault";
 }
@@ -229,7 +230,7 @@ int winners(int controllers, const std::vector<seal::ControllerKeys>& keys = {})
       hal::StopLine stop_line;
       control::OperatorInbox inbox(stop_line);
       control::ControllerOutbox outbox;
-      const RunInfo run{.robot = "biped", .session = k};
+      const recording::RunInfo run{.robot = "biped", .session = k};
       const auto mine = keys.empty() ? std::nullopt : std::optional(keys[static_cast<std::size_t>(k) % keys.size()]);
       Comms comms(link, inbox, outbox, test::biped(), run, 100.0, clock, seal::ControllerSeal(mine));
       begin.arrive_and_wait();
@@ -271,7 +272,7 @@ TEST(NameClaim, WhoHoldsTheNameKeepsItUntilItsFirstStatus) {
     hal::StopLine stop_line;
     control::OperatorInbox inbox(stop_line);
     control::ControllerOutbox outbox;
-    const RunInfo run{.robot = "biped"};
+    const recording::RunInfo run{.robot = "biped"};
     io::LcmLink first_link("udpm://239.255.76.67:7667?ttl=0"), later_link(first_link.url());
     Comms first(first_link, inbox, outbox, test::biped(), run, 100.0, clock);
     first.listen_for_others(0.0);

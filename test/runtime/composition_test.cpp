@@ -12,8 +12,8 @@
 #include "io/log_reader.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
+#include "recording/recorder.hpp"
 #include "runtime/comms.hpp"
-#include "runtime/recorder.hpp"
 #include "runtime/threaded_controller.hpp"
 #include "seal/operator_seal.hpp"
 #include "sil/realtime_run.hpp"
@@ -76,11 +76,12 @@ struct NetworkOperator {
 
 TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
   ThreadedRobot run(test::z1());
-  const RunInfo info{.robot = "z1", .session = 7, .realtime = run.controller.refused().empty()};
+  const recording::RunInfo info{.robot = "z1", .session = 7, .realtime = run.controller.refused().empty()};
   io::LcmLink link("memq://");
   Comms comms(link, run.controller.inbox(), run.controller.outbox(), test::z1(), info, 100.0, run.clock);
   NetworkOperator human(link);
-  Recorder recorder(run.controller.outbox(), test::z1(), info, run.clock, {.directory = folder_}, [](const auto&) {});
+  recording::Recorder recorder(run.controller.outbox(), test::z1(), info, run.clock, {.directory = folder_},
+                               [](const auto&) {});
   recorder.after_record = [&](const control::TickRecord& record) {
     const hal::TruthSample* truth = run.robot.take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
@@ -116,8 +117,8 @@ TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
       {.start_s = 0.8, .duration_s = 0.7, .text = "walk", .mode = control::Mode::kWalk, .command = {}});
   scenario.steps.back().command[kVx] = 0.4;
   io::LogWriter writer(folder_ / "log.lcm");
-  const RunInfo info{.robot = "z1"};
-  TickLog log(writer, test::z1(), info, 100.0);
+  const recording::RunInfo info{.robot = "z1"};
+  recording::TickLog log(writer, test::z1(), info, 100.0);
   sil::RealtimeRun play(test::z1(), run.robot, run.controller, scenario, &log, false);
   std::atomic<int> observed{0};
   play.after_tick = [&](const sil::RunProgress&) { ++observed; };

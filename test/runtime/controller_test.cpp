@@ -42,7 +42,7 @@ TEST(Controller, ClimbsWalksFaultsIsResetAndEndsDamping) {
   ASSERT_TRUE(run.reach(control::Mode::kWalk));
   run.bus.lost = true;
   ASSERT_TRUE(run.sees(control::Mode::kFault));
-  EXPECT_EQ(run.news.fault.code, control::FaultCode::kBusLost);
+  EXPECT_EQ(run.news.fault.code, faults::FaultCode::kBusLost);
   run.bus.lost = false;
   ASSERT_TRUE(run.reach(control::Mode::kDamping, true));
   ASSERT_TRUE(run.reach(control::Mode::kStand));
@@ -136,7 +136,7 @@ TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
   EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0 && run.bus.last_kd_sum > 0.0; }));
   run.policy->freeze = false;
   EXPECT_TRUE(run.sees(control::Mode::kFault)) << "it does not go on as if nothing had been";
-  EXPECT_EQ(run.news.fault.code, control::FaultCode::kControlFrozen);
+  EXPECT_EQ(run.news.fault.code, faults::FaultCode::kControlFrozen);
   EXPECT_TRUE(run.controller.stop());
   EXPECT_EQ(run.bus.last_kp_sum, 0.0);
   EXPECT_GE(run.controller.bus_cycle().guard().trips(), 1u);

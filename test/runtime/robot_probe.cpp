@@ -1,4 +1,4 @@
 // Links everything that a robot's controller consists of, and runs nothing of it.
-#include "runtime/run_info.hpp"
+#include "recording/run_info.hpp"
 
-int main() { return *pmg::runtime::software_version() == '\0' ? 1 : 0; }
+int main() { return *pmg::recording::software_version() == '\0' ? 1 : 0; }

@@ -120,7 +120,7 @@ class Layers(unittest.TestCase):
             ('#include "../sim/world.hpp"', "../sim/world.hpp"),
             ('#include "nowhere/a.hpp"', "src/nowhere"),
         ):
-            text = f'#include "control/fault.hpp"\n#include <vector>\n{line}\n'
+            text = f'#include "faults/fault.hpp"\n#include <vector>\n{line}\n'
             self.assertEqual(breaches("src/control", self.sees, {tick: text}), [f"src/control/tick.cpp uses {used}"])
         build = {pathlib.Path("src/model/CMakeLists.txt"): "pmg_add_room(model LINK pmg_core pmg_room_sil)"}
         self.assertEqual(breaches("src/model", self.sees, build), ["src/model/CMakeLists.txt uses src/sil"])

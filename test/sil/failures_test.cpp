@@ -17,7 +17,7 @@
 namespace pmg::sil {
 namespace {
 
-using control::FaultCode;
+using faults::FaultCode;
 using ::testing::HasSubstr;
 
 class FailureFile : public testing::Test {
@@ -75,7 +75,7 @@ TEST_P(Injected, LeadsToItsFaultWithinThePromisedCycles) {
   }
   ASSERT_FALSE(outcome.faults.empty());
   EXPECT_EQ(outcome.faults[0].code, row.code) << told.dump();
-  const control::Reaction promised = control::reaction(row.code);
+  const faults::Reaction promised = faults::reaction(row.code);
   const FailureReaction& measured = bus.reactions()[0];
   EXPECT_GE(measured.cycles_to_damping, promised.damping.least) << told.dump();
   EXPECT_LE(measured.cycles_to_damping, promised.damping.most) << told.dump();

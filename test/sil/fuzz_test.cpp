@@ -212,7 +212,7 @@ class Watch {
   }
 
   int not_finite = 0, beyond_clamps = 0, undamped = 0, unlatched = 0, sat_too_long = 0;
-  std::array<int, control::kFaultCodes> faults{};
+  std::array<int, faults::kFaultCodes> faults{};
   std::array<int, 5> modes{};
 
  private:

@@ -137,7 +137,7 @@ struct Ride {
   std::string told() const {
     std::string text = fmt::format("mode {}, {}, fell {} at {:.2f} s", to_string(seen.back().mode),
                                    seen.back().hanging ? "hanging" : "not hanging", outcome.fell, outcome.fell_at_s);
-    for (const control::Fault& fault : outcome.faults) {
+    for (const faults::Fault& fault : outcome.faults) {
       text += fmt::format("; {:.2f} s {}", static_cast<double>(fault.stamp_ns) * 1e-9, describe(fault, test::z1()));
     }
     return text;

@@ -56,7 +56,7 @@ class LockstepRun : public testing::Test {
     WorldPlant plant(world);
     control::Tick tick = make_tick(robot);
     io::LogWriter writer(folder_ / log_name);
-    runtime::TickLog log(writer, robot, {.robot = robot.name}, 100.0);
+    recording::TickLog log(writer, robot, {.robot = robot.name}, 100.0);
     return Lockstep(robot, bus, plant, tick, scenario, &log, {}).run();
   }
 
@@ -86,7 +86,7 @@ TEST_F(LockstepRun, TheBusGuardHasTheTicksOptions) {
   const Scenario scenario = walk(0.5);
   const RunOutcome outcome = Lockstep(robot, bus, plant, tick, scenario, nullptr, {}).run();
   ASSERT_EQ(outcome.faults.size(), 1U);
-  EXPECT_EQ(outcome.faults[0].code, control::FaultCode::kControlFrozen);
+  EXPECT_EQ(outcome.faults[0].code, faults::FaultCode::kControlFrozen);
 }
 
 TEST_F(LockstepRun, OneTickPerFiveBusStepsAndCommandsActFromTheNextStepOn) {
@@ -209,7 +209,7 @@ TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
   RunOutcome outcome;
   {
     io::LogWriter writer(folder_ / "fault.lcm");
-    runtime::TickLog log(writer, robot, {.robot = robot.name}, 100.0);
+    recording::TickLog log(writer, robot, {.robot = robot.name}, 100.0);
     Lockstep lockstep(robot, bus, plant, tick, scenario, &log, {});
     outcome = lockstep.run();
     const auto summary = summary_json({robot.name, scenario.name, "none", 0, 0.1}, outcome, lockstep.timing(), robot);

@@ -122,7 +122,7 @@ TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToThe
   constexpr int kSoundTicks = 300;
   const Outcome outcome = stand_for_10_s(std::make_unique<BreaksDown>(kSoundTicks));
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
-  EXPECT_EQ(outcome.lockstep.faults[0].code, control::FaultCode::kPolicyNotFinite);
+  EXPECT_EQ(outcome.lockstep.faults[0].code, faults::FaultCode::kPolicyNotFinite);
   // Every tick asks the policy except the first ones: the robot isn't standing yet, and then its feet must carry for
   // 0.05 s.
   EXPECT_NEAR(static_cast<double>(outcome.lockstep.faults[0].stamp_ns) * 1e-9, 0.01 * kSoundTicks, 0.1);
@@ -135,7 +135,7 @@ TEST(Sabotage, APolicyThatIsNoNumberInMidRunTripsItsFaultInThatTickAndDampsToThe
 TEST(Sabotage, ThePolicyAsItIsBalances) {
   const Outcome outcome = stand_for_10_s(1.0);
   EXPECT_FALSE(outcome.lockstep.fell) << "at " << outcome.lockstep.fell_at_s << " s";
-  for (const control::Fault& fault : outcome.lockstep.faults) ADD_FAILURE() << describe(fault, test::z1());
+  for (const faults::Fault& fault : outcome.lockstep.faults) ADD_FAILURE() << describe(fault, test::z1());
   EXPECT_EQ(outcome.mode, control::Mode::kStand);
   EXPECT_LT(outcome.lockstep.tracking.pitch_mae_rad, 0.1);
 }
@@ -153,7 +153,7 @@ class Sabotage : public testing::TestWithParam<Sabotaged> {};
 TEST_P(Sabotage, TripsAFaultThatDampsAndStaysLatched) {
   const Outcome outcome = stand_for_10_s(GetParam().action_factor);
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
-  const control::Fault& fault = outcome.lockstep.faults[0];
+  const faults::Fault& fault = outcome.lockstep.faults[0];
   const double fault_s = static_cast<double>(fault.stamp_ns) * 1e-9;
   EXPECT_LT(fault_s, GetParam().within_s) << describe(fault, test::z1());
   EXPECT_EQ(outcome.mode, control::Mode::kFault);
@@ -208,7 +208,7 @@ TEST_P(WalkingSabotage, IsDampedBeforeTheRobotHasGoneFar) {
   const Outcome outcome =
       play(std::make_unique<GoesWild>(std::move(loaded.policy), GetParam().action_factor, 300), scenario);
   ASSERT_EQ(outcome.lockstep.faults.size(), 1u) << "one fault, latched to the end";
-  const control::Fault& fault = outcome.lockstep.faults[0];
+  const faults::Fault& fault = outcome.lockstep.faults[0];
   const double after_s = static_cast<double>(fault.stamp_ns) * 1e-9 - kSpoiltAt_s;
   EXPECT_GT(after_s, 0.0) << "it walked until then";
   EXPECT_LT(after_s, GetParam().within_s) << describe(fault, test::z1());

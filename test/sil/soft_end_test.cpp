@@ -16,7 +16,7 @@
 namespace pmg::sil {
 namespace {
 
-using control::FaultCode;
+using faults::FaultCode;
 using test::kTick_s;
 
 /// Spoils what a fault needs, from a time on: the drives' report or the policy's result.

@@ -13,7 +13,7 @@ namespace {
 
 struct Stalled {
   bool fell = false;
-  control::FaultCode fault = control::FaultCode::kNone;
+  faults::FaultCode fault = faults::FaultCode::kNone;
   control::Mode mode = control::Mode::kPassive;
 };
 
@@ -34,7 +34,7 @@ Stalled after_stall(std::uint64_t seed, double stall_s, bool walks) {
   lockstep.while_bus_sleeps = [&] { bus.idle(); };
   const RunOutcome outcome = lockstep.run();
   return {.fell = outcome.fell,
-          .fault = outcome.faults.empty() ? control::FaultCode::kNone : outcome.faults[0].code,
+          .fault = outcome.faults.empty() ? faults::FaultCode::kNone : outcome.faults[0].code,
           .mode = it.tick->result().mode};
 }
 
@@ -50,7 +50,7 @@ TEST_P(RobotStall, OfUpToFiftyMillisecondsIsStoodByEveryRobot) {
     std::uint64_t stood = 0;
     for (std::uint64_t seed = 1; seed <= robots; ++seed) {
       const Stalled it = after_stall(seed, stall_s, walks);
-      const bool well = !it.fell && it.fault == control::FaultCode::kNone;
+      const bool well = !it.fell && it.fault == faults::FaultCode::kNone;
       stood += well ? 1 : 0;
       EXPECT_TRUE(well || stall_s > 0.05) << "robot " << seed << ", " << to_string(it.fault);
     }

@@ -148,7 +148,7 @@ TEST_P(TickAgreement, ReferenceObservedCommandAndObservationAreTrainingsBitForBi
     const int calls = witness.calls, resets = witness.resets;
     const control::TickResult& result =
         tick.step({.state = state, .now_ns = now_ns, .drives = {&drive, 1}, .requests = {&request, 1}});
-    ASSERT_EQ(result.fault.code, control::FaultCode::kNone) << describe(result.fault, robot);
+    ASSERT_EQ(result.fault.code, faults::FaultCode::kNone) << describe(result.fault, robot);
     if (witness.resets > resets) training.reset();
     if (witness.calls == calls) continue;
     walked += result.mode == control::Mode::kWalk;

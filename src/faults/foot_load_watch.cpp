@@ -1,0 +1,87 @@
+#include "faults/foot_load_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/link_chain.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::faults {
+
+namespace {
+
+double sum(const PerFoot<double>& shares) noexcept { return shares[kLeft] + shares[kRight]; }
+
+int ticks(double time_s, double dt_s) { return std::max(1, static_cast<int>(std::lround(time_s / dt_s))); }
+
+const FootLoadOptions& checked(const FootLoadOptions& options) {
+  if (!(options.lost_share < options.found_share))
+    throw std::invalid_argument("FootLoadWatch: lost_share; expected less than found_share");
+  if (!(options.lost_s > 0.0 && options.found_s > 0.0 && options.filter_s > 0.0 && options.blind_share > 0.0))
+    throw std::invalid_argument("FootLoadWatch: times and blind_share; expected more than 0");
+  return options;
+}
+
+}  // namespace
+
+FootLoadWatch::FootLoadWatch(const model::RobotModel& robot, const FootLoadOptions& options, double dt_s)
+    : loads_(robot),
+      base_to_imu_link_(model::chain_between(robot, robot.base_link, robot.imu.link)),
+      R_LI_(robot.imu.T_LI.linear()),
+      options_(checked(options)),
+      weight_N_(robot.total_mass_kg * kGravity_m_s2),
+      filter_gain_(1.0 - std::exp(-dt_s / options.filter_s)),
+      lost_ticks_needed_(ticks(options.lost_s, dt_s)),
+      found_ticks_needed_(ticks(options.found_s, dt_s)) {}
+
+void FootLoadWatch::start() noexcept {
+  footing_ = Footing::kUnknown;
+  begun_ = false;
+  lost_ticks_ = found_ticks_ = 0;
+  measured_ = asked_ = {};
+  held_ = 0.0;
+}
+
+const PerFoot<double>& FootLoadWatch::share() const noexcept {
+  return sum(measured_) >= sum(asked_) ? measured_ : asked_;
+}
+
+void FootLoadWatch::update(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
+  if (!can_be_judged(state, in_force) || !measure(state, in_force)) return;
+  const double carried = sum(share());
+  lost_ticks_ = carried < options_.lost_share && held_ > options_.held_share ? lost_ticks_ + 1 : 0;
+  found_ticks_ = carried > options_.found_share ? found_ticks_ + 1 : 0;
+  if (lost_ticks_ >= lost_ticks_needed_) footing_ = Footing::kHangs;
+  if (found_ticks_ >= found_ticks_needed_) footing_ = Footing::kStands;
+}
+
+bool FootLoadWatch::can_be_judged(const model::RobotState& state, const model::JointCommand& in_force) const noexcept {
+  const Eigen::Index n = in_force.q.size();
+  return state.q.size() == n && state.dq.size() == n && state.tau.size() == n && state.q.allFinite() &&
+         state.dq.allFinite() && state.tau.allFinite() && state.acceleration_m_s2.allFinite() &&
+         in_force.q.allFinite() && std::abs(state.orientation_WI.norm() - 1.0) < 0.1;  // false of NaN
+}
+
+bool FootLoadWatch::measure(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
+  base_to_imu_link_.compute(state.q);
+  const Eigen::Vector3d gravity_I = state.orientation_WI.conjugate() * -Eigen::Vector3d::UnitZ();
+  loads_.set_posture(state.q, (base_to_imu_link_.R() * (R_LI_ * gravity_I)).normalized());
+  for (const Foot foot : {kLeft, kRight}) {
+    if (!(loads_.friction_N(foot) <= options_.blind_share * weight_N_)) return false;
+  }
+  const JointVector asked_Nm = in_force.kp.cwiseProduct(in_force.q - state.q) +
+                               in_force.kd.cwiseProduct(in_force.dq - state.dq) + in_force.tau_ff;
+  const PerFoot<model::SoleLoad> measured = loads_.of(state.tau), asked = loads_.of(asked_Nm);
+  const double gain = begun_ ? filter_gain_ : 1.0;
+  for (const Foot foot : {kLeft, kRight}) {
+    measured_[foot] += gain * (measured[foot].vertical_N / weight_N_ - measured_[foot]);
+    asked_[foot] += gain * (asked[foot].vertical_N / weight_N_ - asked_[foot]);
+  }
+  const double up_m_s2 = -gravity_I.dot(state.acceleration_m_s2);
+  held_ += gain * (up_m_s2 / kGravity_m_s2 - held_);
+  begun_ = true;
+  return true;
+}
+
+}  // namespace pmg::faults
