@@ -13,6 +13,7 @@
 #include "calib/joint_runs.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
+#include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "shown_progress.hpp"
@@ -229,7 +230,7 @@ int calibrate(const Arguments& arguments) {
   }
   write_results(results, neutral, arguments.out);
   if (arguments.json)
-    std::cout << calib::fit_json(results).dump(2) << '\n';
+    apps::print_json(calib::fit_json(results));
   else
     print_summary(results, arguments.out);
   if (results.fit.interrupted) return kInterrupted;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/whole_file.hpp"
+#include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "shown_progress.hpp"
@@ -99,7 +100,7 @@ int calibrate(const Arguments& arguments) {
   if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // nothing is found yet
   write_results(results, known, arguments.out);
   if (arguments.json) {
-    std::cout << zero::zero_json(results).dump(2) << '\n';
+    apps::print_json(zero::zero_json(results));
   } else {
     for (const std::string& line : zero::zero_text(results)) std::cout << line << '\n';
     std::cout << fmt::format("results in {}\n", arguments.out.string());

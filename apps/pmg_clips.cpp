@@ -21,6 +21,7 @@
 #include "gco/steady_walk.hpp"
 #include "generator/clip_report.hpp"
 #include "generator/synthesis.hpp"
+#include "json_output.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/clip_library_writer.hpp"
 #include "model/command_inverse_file.hpp"
@@ -125,7 +126,7 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
   for (const generator::NormReport& norm : norms) {
     out["norms"][norm.curve] = {{"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}};
   }
-  std::cout << out.dump(2) << "\n";
+  apps::print_json(out);
 }
 
 int show(const ShowOptions& options) {

@@ -1,5 +1,6 @@
 // pmg_controller: the controller on its own host: real-time threads, wall clock, operators over LCM.
 #include <fmt/format.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -16,6 +17,8 @@
 #include "control/mode_text.hpp"
 #include "controller_arguments.hpp"
 #include "io/lcm_link.hpp"
+#include "io/plain_text.hpp"
+#include "json_output.hpp"
 #include "program.hpp"
 #include "recording/recorder.hpp"
 #include "recording/run_info.hpp"
@@ -60,6 +63,16 @@ class EndSignals {
 
  private:
   sigset_t signals_{};
+};
+
+/// A message on the console without what a terminal would act on, whoever chose the names in it.
+class PlainMessage : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/, spdlog::memory_buf_t& to) override {
+    const std::string plain = io::plain_text({message.payload.data(), message.payload.size()});
+    to.append(plain.data(), plain.data() + plain.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PlainMessage>(); }
 };
 
 /// Says what changes, as it happens.
@@ -171,7 +184,7 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
                                  {"logged_ticks", recorder.written()},
                                  {"lost_ticks", recorder.lost()}};
   json.update(runtime::punctuality_json(controller));
-  std::cout << json.dump(2) << '\n';
+  apps::print_json(json);
 }
 
 /// Fills in the arguments that follow from others.
@@ -207,7 +220,7 @@ int run_controller(Arguments& arguments) {
   }
   const runtime::BenchSession* session = bench ? &*bench : nullptr;
   if (arguments.print_config) {
-    std::cout << config_json(arguments, loaded, *backend, session).dump(2) << '\n';
+    apps::print_json(config_json(arguments, loaded, *backend, session));
     return kOk;
   }
 
@@ -260,7 +273,9 @@ int main(int argc, char** argv) {
   arguments.declare(app);
   const auto body = [&]() -> int {
     spdlog::set_default_logger(spdlog::stderr_color_mt("pmg"));
-    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<PlainMessage>('*').set_pattern("%H:%M:%S.%e %^%l%$ %*");
+    spdlog::set_formatter(std::move(formatter));
     return run_controller(arguments);
   };
   return apps::run_program(app, argc, argv, body, [&] { return control::told_bundle(arguments.control); });

@@ -16,6 +16,7 @@
 #include "diagnosis/report.hpp"
 #include "files/nearest_name.hpp"
 #include "io/whole_file.hpp"
+#include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "robot_diagnosis.hpp"
@@ -179,7 +180,7 @@ int diagnose(Arguments arguments) {
                        diagnosis::diagnosis_report(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   if (arguments.json)
-    std::cout << json.dump(2) << '\n';
+    apps::print_json(json);
   else
     print_summary(found, bench, arguments.out, wall_s);
   return apps::interrupt_requested != 0 ? kInterrupted : kOk;

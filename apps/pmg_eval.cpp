@@ -16,6 +16,7 @@
 #include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
 #include "evaluation/table2.hpp"
+#include "json_output.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "sil/summary.hpp"
@@ -93,7 +94,7 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result, bool c
   sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
   page_of(result).write(arguments.out / "report.html");
   if (arguments.json) {
-    std::cout << json.dump(2) << '\n';
+    apps::print_json(json);
   } else {
     for (const std::string& line : text_of(result)) std::cout << line << '\n';
     std::cout << "report in " << (arguments.out / "report.html").string() << '\n';

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "io/log_series.hpp"
+#include "io/plain_text.hpp"
+#include "json_output.hpp"
 #include "logs/log_export.hpp"
 #include "logs/log_info.hpp"
 #include "logs/replay.hpp"
@@ -49,7 +51,7 @@ struct Arguments {
 int info(const Arguments& arguments) {
   const logs::LogSummary summary = logs::summarise_logs(io::log_files(arguments.logs));
   if (arguments.json) {
-    std::cout << to_json(summary).dump(2) << '\n';
+    apps::print_json(to_json(summary));
   } else {
     std::cout << to_text(summary);
   }
@@ -75,7 +77,7 @@ nlohmann::ordered_json replay_json(const logs::ReplayReport& report, bool passed
 }
 
 void print_replay(const logs::ReplayReport& report) {
-  for (const std::string& note : report.notes) std::cout << "note: " << note << '\n';
+  for (const std::string& note : report.notes) std::cout << "note: " << io::plain_text(note) << '\n';
   if (report.cut_short) std::cout << "note: the log's last event is incomplete\n";
   std::cout << fmt::format("{} ticks, {:.2f} s, {} messages compared: ", report.ticks, report.duration_s,
                            report.compared_messages);
@@ -85,17 +87,16 @@ void print_replay(const logs::ReplayReport& report) {
   }
   const logs::Difference& first = *report.first;
   std::cout << fmt::format("{} differ\n", report.different_messages)
-            << fmt::format("first: at {:.2f} s (tick {}) {} {}: logged {}, replayed {}\n", first.time_s, first.tick,
-                           first.channel, first.field, first.logged, first.replayed);
+            << io::plain_text(fmt::format("first: at {:.2f} s (tick {}) {} {}: logged {}, replayed {}", first.time_s,
+                                          first.tick, first.channel, first.field, first.logged, first.replayed))
+            << '\n';
   for (const auto& [field, value] : report.largest) std::cout << fmt::format("largest: {} {:.3g}\n", field, value);
 }
 
 void print_export(const Arguments& arguments, const fs::path& into, const logs::ExportReport& report) {
   if (arguments.json) {
-    std::cout << nlohmann::ordered_json(
-                     {{"file", into.string()}, {"messages", report.messages}, {"left_out", report.unknown}})
-                     .dump(2)
-              << '\n';
+    apps::print_json(
+        nlohmann::ordered_json{{"file", into.string()}, {"messages", report.messages}, {"left_out", report.unknown}});
     return;
   }
   std::int64_t all = 0;
@@ -146,7 +147,7 @@ int replay(const Arguments& arguments) {
   const logs::ReplayReport report = replay_with_progress(arguments);
   const bool passed = report.equal() || (arguments.tolerant && report.largest_difference() <= arguments.tolerance);
   if (arguments.json) {
-    std::cout << replay_json(report, passed).dump(2) << '\n';
+    apps::print_json(replay_json(report, passed));
   } else {
     print_replay(report);
   }

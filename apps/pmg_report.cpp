@@ -6,6 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "json_output.hpp"
 #include "program.hpp"
 #include "report/run_figures.hpp"
 #include "report/run_report.hpp"
@@ -47,7 +48,7 @@ void tell(const Arguments& arguments, const std::vector<report::RunSeries>& runs
   if (arguments.json) {
     nlohmann::ordered_json json = {{"report", arguments.out.string()}, {"runs", nlohmann::ordered_json::array()}};
     for (const report::RunSeries& run : runs) json["runs"].push_back(report::run_json(run));
-    std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    apps::print_json(json);
     return;
   }
   for (const report::RunSeries& run : runs) {

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "io/lcm_link.hpp"
+#include "io/plain_text.hpp"
+#include "json_output.hpp"
 #include "operator/drive.hpp"
 #include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
@@ -205,7 +207,7 @@ class Session {
   void say_whose_lease(const std::string& robot, const std::string& source) {
     if (source.empty() || waiting_said_) return;
     waiting_said_ = true;
-    std::cerr << ops::printable(fmt::format(
+    std::cerr << io::plain_text(fmt::format(
                      "{}: {} drove and fell silent without letting go; waiting until its lease is over", robot, source))
               << '\n';
   }
@@ -217,7 +219,7 @@ class Session {
     const std::string text = taken_.step(news->second, clock_.now_ns(), last);
     if (text.empty()) return;
     limited_ = text;
-    std::cerr << ops::printable(fmt::format("{}: {}", robot, text)) << '\n';
+    std::cerr << io::plain_text(fmt::format("{}: {}", robot, text)) << '\n';
   }
 
   /// Once a second, when somebody watches.
@@ -225,7 +227,8 @@ class Session {
     const auto second = static_cast<int>(drive.driven_s());
     if (!drive.driving() || second == shown_second_ || isatty(STDERR_FILENO) == 0) return;
     shown_second_ = second;
-    std::cerr << fmt::format("{}: walk, {} of {:g} s (Ctrl-C: come to rest)\n", robot, second, arguments_.duration_s);
+    std::cerr << fmt::format("{}: walk, {} of {:g} s (Ctrl-C: come to rest)\n", io::plain_text(robot), second,
+                             arguments_.duration_s);
   }
 
   void report(const std::vector<ops::Answer>& answers, bool reached, double elapsed_s = 0.0) const {
@@ -247,16 +250,16 @@ class Session {
                                   {"mode", answer.mode},
                                   {"text", answer.text}});
       }
-      std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+      apps::print_json(json);
       return;
     }
     for (const ops::Answer& answer : answers) {
       const std::string text = answer.text.empty() ? "" : " (" + answer.text + ")";
       std::ostream& out = reached ? std::cout : std::cerr;
       if (answer.robot.empty()) {
-        out << "pmg_send: " << answer.text << '\n';
+        out << "pmg_send: " << io::plain_text(answer.text) << '\n';
       } else {
-        out << ops::printable(fmt::format("{}: {}{}", answer.robot, answer.mode, text)) << '\n';
+        out << io::plain_text(fmt::format("{}: {}{}", answer.robot, answer.mode, text)) << '\n';
       }
     }
   }

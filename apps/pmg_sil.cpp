@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "control/control_setup.hpp"
+#include "json_output.hpp"
 #include "program.hpp"
 #include "runtime/bench_session.hpp"
 #include "sil/failing_parts.hpp"
@@ -66,7 +67,7 @@ int simulate(Arguments arguments) {
         std::make_unique<sil::FailingPolicy>(std::move(loaded.policy), failures, failure_clock, arguments.realtime);
   }
   if (arguments.print_config) {
-    std::cout << config_json(arguments, loaded, bench ? &*bench : nullptr).dump(2) << '\n';
+    apps::print_json(config_json(arguments, loaded, bench ? &*bench : nullptr));
     return kOk;
   }
   require(arguments.out, "--out");
@@ -114,7 +115,7 @@ int simulate(Arguments arguments) {
   if (!played.film_failure.empty()) summary["film_failure"] = played.film_failure;
   sil::write_json(arguments.out / "summary.json", summary);
   if (arguments.json) {
-    std::cout << summary.dump(2) << '\n';
+    apps::print_json(summary);
   } else if (bench) {
     std::cout << fmt::format("{}; results in {}\n", summary["bench"].get<std::string>(), arguments.out.string());
   } else {

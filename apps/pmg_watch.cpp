@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/lcm_link.hpp"
+#include "json_output.hpp"
 #include "operator/robot_board.hpp"
 #include "operator/robot_text.hpp"
 #include "option_checks.hpp"
@@ -35,7 +36,6 @@ Examples:
 
 Exit codes: 0 ended with Ctrl-C, or with --once a robot was heard; 1 with --once none was; 2 bad input or no network.)";
 
-constexpr auto kReplace = nlohmann::json::error_handler_t::replace;  // strangers' text may be no UTF-8
 constexpr double kNotHeardAfter_s = 2.0;
 
 struct Arguments {
@@ -130,7 +130,7 @@ class Watch {
     for (const ops::RobotNews* news : shown) {
       const double silence_s = board_.silence_s(*news);
       if (arguments_.json) {
-        std::cout << ops::news_json(*news, silence_s).dump(at_length ? 2 : -1, ' ', false, kReplace) << '\n';
+        apps::print_json(ops::news_json(*news, silence_s), at_length ? 2 : -1);
       } else if (at_length && shown.size() == 1) {
         for (const std::string& line : ops::screen(*news, silence_s)) std::cout << line << '\n';
       } else {

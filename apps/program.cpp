@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "io/plain_text.hpp"
 #include "software_version.hpp"
 #include "usage.hpp"
 
@@ -87,7 +88,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     std::cerr << fmt::format("{}: {}: cannot be read or written ({})\n", program_name, error.path1().string(),
                              error.code().message());
   } catch (const std::exception& error) {
-    std::cerr << program_name << ": " << error.what() << '\n';
+    std::cerr << program_name << ": " << io::plain_text(error.what()) << '\n';
   }
   return kBadInput;
 }

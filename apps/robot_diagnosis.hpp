@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/whole_file.hpp"
+#include "json_output.hpp"
 #include "model/clip_library_file.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
 #include "robot_diagnosis/robot_excitation.hpp"
@@ -66,7 +67,11 @@ inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   std::filesystem::create_directories(arguments.out);
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   robot_diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
-  std::cout << (arguments.json ? json.dump(2) + "\n" : robot_diagnosis::robot_diagnosis_text(found));
+  if (arguments.json) {
+    apps::print_json(json);
+  } else {
+    std::cout << robot_diagnosis::robot_diagnosis_text(found);
+  }
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "io/lcm_link.hpp"
+#include "io/plain_text.hpp"
 #include "progress_line.hpp"
 #include "recording/run_info.hpp"
 #include "recording/tick_log.hpp"
@@ -41,7 +42,7 @@ class Operators {
                1.0 / stage.loaded.options.dt_s, clock_) {
     constexpr double kListen_s = 0.5;  // fifty STATUS messages of another controller
     comms_.work(simulated.hoist_line());
-    comms_.on_warning = [](const std::string& text) { std::cerr << text << '\n'; };
+    comms_.on_warning = [](const std::string& text) { std::cerr << io::plain_text(text) << '\n'; };
     comms_.listen_for_others(kListen_s, [] { return interrupt_requested != 0; });
     claim_.emplace(comms_.hold_name());
     std::cerr << fmt::format("{} hears operators on {}: pmg_keyboard, pmg_send\n", info.robot, link_.url());

@@ -6,7 +6,9 @@
 
 namespace pmg::io {
 
-/// Control characters (ESC, newline, ...) and bytes above ASCII as \xNN, backslashes doubled. Printable ASCII stays.
+/// Letters of well-formed UTF-8 stay. The bytes of all else become \xNN: control characters (ESC, newline, ...),
+/// letters without width, those that turn the direction of writing, broken UTF-8. A backslash is doubled, so apply this
+/// once.
 std::string plain_text(std::string_view text);
 
 /// The same as one CSV cell: quoted where it must be, and with ' before a first = + - @, which spreadsheets would take

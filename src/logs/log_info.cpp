@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "io/log_series.hpp"
-#include "io/plain_text.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/tick_input_t.hpp"
@@ -92,10 +91,6 @@ class Summariser {
   void take_info(const io::LogReader& event) {
     auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) return;
-    for (std::string* text : {&info->robot, &info->model, &info->software, &info->policy, &info->backend}) {
-      *text = io::plain_text(*text);
-    }
-    for (std::string& text : info->refused) text = io::plain_text(text);
     const bool another =
         run_ && run_->info && (info->session != run_->info->session || info->robot != run_->info->robot);
     // Lockstep runs have no session; their clocks begin anew.
@@ -117,7 +112,7 @@ class Summariser {
     const auto status = event.decode<pmg_msgs::status_t>();
     if (!status) return;
     if (!driver_.empty()) run_->driven_s[driver_] += static_cast<double>(event.stamp_ns() - status_ns_) * 1e-9;
-    driver_ = io::plain_text(status->driving_source);
+    driver_ = status->driving_source;
     status_ns_ = event.stamp_ns();
     std::string mode = mode_name(status->mode) + (status->hanging ? ", hanging" : "");
     if (run_->modes.empty() && status->fault_code != 0) begin_in_fault(*status, event.stamp_ns());
@@ -129,7 +124,7 @@ class Summariser {
   void begin_in_fault(const pmg_msgs::status_t& status, std::int64_t stamp_ns) {
     if (!told_faults_.empty()) return;
     latched_before_ = status.fault_code;
-    run_->faults.push_back({seconds(stamp_ns), "latched before this log: " + io::plain_text(status.fault)});
+    run_->faults.push_back({seconds(stamp_ns), "latched before this log: " + status.fault});
   }
 
   void take_fault(const io::LogReader& event) {
@@ -138,7 +133,7 @@ class Summariser {
     // Latched in the log's first tick: its message follows that tick's STATUS.
     if (std::exchange(latched_before_, 0) == fault->code && run_->ticks <= 1) run_->faults.pop_back();
     // The message's own stamp: a flight recorder's file begins with its fault.
-    run_->faults.push_back({seconds(fault->stamp_ns), io::plain_text(fault->text)});
+    run_->faults.push_back({seconds(fault->stamp_ns), fault->text});
   }
 
   void take_timing(const io::LogReader& event) {

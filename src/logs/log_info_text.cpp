@@ -3,7 +3,9 @@
 
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "io/plain_text.hpp"
 #include "logs/log_info.hpp"
 
 namespace pmg::logs {
@@ -60,21 +62,27 @@ nlohmann::ordered_json run_json(const RunSummary& run) {
   return json;
 }
 
+/// A line of the summary. Names, texts and channels in it were chosen by other programs.
+template <typename... Values>
+std::string line(fmt::format_string<Values...> format, Values&&... values) {
+  return io::plain_text(fmt::format(format, std::forward<Values>(values)...)) + "\n";
+}
+
 /// Controller, robot and files. hashes_text() gives the hashes.
 std::string info_text(const pmg_msgs::robot_info_t& info) {
-  std::string text = fmt::format("robot      {} (model {}), backend {}, policy {}\n", info.robot, info.model,
-                                 info.backend, info.policy);
-  text += fmt::format("software   {}\n", info.software);
-  if (info.session != 0) text += fmt::format("started    {}\n", utc(info.session));
-  for (const std::string& refused : info.refused) text += fmt::format("refused    {}\n", refused);
+  std::string text =
+      line("robot      {} (model {}), backend {}, policy {}", info.robot, info.model, info.backend, info.policy);
+  text += line("software   {}", info.software);
+  if (info.session != 0) text += line("started    {}", utc(info.session));
+  for (const std::string& refused : info.refused) text += line("refused    {}", refused);
   return text;
 }
 
 std::string hashes_text(const pmg_msgs::robot_info_t& info) {
-  std::string text = info.options.empty() ? "" : fmt::format("options    {}\n", info.options);
-  text += fmt::format("bundle     {}\n", info.bundle.empty() ? "not stamped" : info.bundle);
+  std::string text = info.options.empty() ? "" : line("options    {}", info.options);
+  text += line("bundle     {}", info.bundle.empty() ? "not stamped" : info.bundle);
   for (std::size_t i = 0; i < info.bundle_file.size(); ++i) {
-    text += fmt::format("           {}  {}\n", info.bundle_sha256[i], info.bundle_file[i]);
+    text += line("           {}  {}", info.bundle_sha256[i], info.bundle_file[i]);
   }
   return text;
 }
@@ -82,7 +90,7 @@ std::string hashes_text(const pmg_msgs::robot_info_t& info) {
 std::string drivers_text(const RunSummary& run) {
   std::string text;
   for (const auto& [source, driven_s] : run.driven_s) {
-    text += fmt::format("{:<10} {:9.2f} s  {}\n", text.empty() ? "driven by" : "", driven_s, source);
+    text += line("{:<10} {:9.2f} s  {}", text.empty() ? "driven by" : "", driven_s, source);
   }
   return text.empty() ? "driven by  nobody\n" : text;
 }
@@ -90,34 +98,33 @@ std::string drivers_text(const RunSummary& run) {
 std::string timeline(const char* title, const std::vector<RunSummary::At>& events) {
   std::string text;
   for (const RunSummary::At& event : events) {
-    text += fmt::format("{:<10} {:9.2f} s  {}\n", text.empty() ? title : "", event.time_s, event.text);
+    text += line("{:<10} {:9.2f} s  {}", text.empty() ? title : "", event.time_s, event.text);
   }
-  return text.empty() ? fmt::format("{:<10} none\n", title) : text;
+  return text.empty() ? line("{:<10} none", title) : text;
 }
 
 std::string run_text(const RunSummary& run) {
-  std::string text =
-      fmt::format("duration   {:.2f} s, {} ticks{}\n", run.duration_s, run.ticks,
-                  run.from_the_start ? ", from the controller's first" : ", not from the controller's start");
+  std::string text = line("duration   {:.2f} s, {} ticks{}", run.duration_s, run.ticks,
+                          run.from_the_start ? ", from the controller's first" : ", not from the controller's start");
   text += timeline("faults", run.faults);
   text += drivers_text(run);
   text += timeline("modes", run.modes);
-  text += fmt::format("lost       {} ticks not in the log, {} ticks and {} bus cycles skipped by the controller\n",
-                      run.lost_ticks, run.missed_ticks, run.missed_bus_cycles);
+  text += line("lost       {} ticks not in the log, {} ticks and {} bus cycles skipped by the controller",
+               run.lost_ticks, run.missed_ticks, run.missed_bus_cycles);
   text += run.info ? info_text(*run.info) : "robot      not told: no ROBOT_INFO in this log\n";
   for (const auto& file : run.files) {
-    text += fmt::format("{:<10} {}\n", &file == &run.files.front() ? "files" : "", file.string());
+    text += line("{:<10} {}", &file == &run.files.front() ? "files" : "", file.string());
   }
   std::string messages;
   for (const auto& [channel, count] : run.messages) {
-    messages += fmt::format("{:<10} {:>9}  {}\n", messages.empty() ? "messages" : "", count, channel);
+    messages += line("{:<10} {:>9}  {}", messages.empty() ? "messages" : "", count, channel);
   }
   text += messages;
   if (!run.timing.empty()) {
-    text += fmt::format("timing     {:<14} {:>9} {:>9} {:>9} {:>9}  us\n", "", "p50", "p99", "p99.9", "max");
+    text += line("timing     {:<14} {:>9} {:>9} {:>9} {:>9}  us", "", "p50", "p99", "p99.9", "max");
     for (const TimingSpread& timing : run.timing) {
-      text += fmt::format("           {:<14} {:9.1f} {:9.1f} {:9.1f} {:9.1f}\n", timing.name, timing.p50_us,
-                          timing.p99_us, timing.p999_us, timing.max_us);
+      text += line("           {:<14} {:9.1f} {:9.1f} {:9.1f} {:9.1f}", timing.name, timing.p50_us, timing.p99_us,
+                   timing.p999_us, timing.max_us);
     }
   }
   if (run.info) text += hashes_text(*run.info);

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "io/plain_text.hpp"
 #include "operator/words.hpp"
 
 namespace pmg::ops {
@@ -94,14 +95,14 @@ DrivingTable KeyboardStation::table() const {
 std::string KeyboardStation::why_no_robot() const {
   if (source_.heard().size() < 2) return fmt::format("no controller is heard on {}", link_.url());
   std::string names;
-  for (const auto& [name, heard] : source_.heard()) names += (names.empty() ? "" : ", ") + printable(name);
-  return fmt::format("several robots are heard ({}): say which one with --robot", names);
+  for (const auto& [name, heard] : source_.heard()) names += (names.empty() ? "" : ", ") + name;
+  return io::plain_text(fmt::format("several robots are heard ({}): say which one with --robot", names));
 }
 
 std::string KeyboardStation::last_words() const {
   const HeardRobot* heard = driver_ ? source_.heard(robot_) : nullptr;
   if (heard == nullptr || !heard->mode()) return lines().front();
-  return printable(fmt::format("{}: {}", robot_, mode_name(*heard->mode())));
+  return io::plain_text(fmt::format("{}: {}", robot_, mode_name(*heard->mode())));
 }
 
 }  // namespace pmg::ops

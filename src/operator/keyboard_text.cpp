@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/plain_text.hpp"
 #include "operator/robot_text.hpp"
 #include "operator/words.hpp"
 
@@ -57,20 +58,19 @@ std::vector<Row> head_rows(const KeyboardDriver& driver, const RobotNews* news, 
   const char* mode = news == nullptr       ? "not heard"
                      : silence_s > kGone_s ? "no longer heard"
                                            : mode_name(news->status.mode);
-  return {{printable(driver.robot()) + " " + upper_case(mode), printable(driver.text())}};
+  return {{driver.robot() + " " + upper_case(mode), driver.text()}};
 }
 
 std::vector<Row> status_rows(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
-  const std::string who = status.driving_source.empty() ? "nobody" : printable(status.driving_source);
+  const std::string who = status.driving_source.empty() ? "nobody" : status.driving_source;
   const std::string age =
       status.command_age_s < 0.0 ? "" : fmt::format(", last command {} old", time_words(status.command_age_s));
   std::vector<Row> rows = {{"limited", limits_text(news)},
-                           {"fault", status.fault.empty() ? "none" : printable(status.fault)},
+                           {"fault", status.fault.empty() ? "none" : status.fault},
                            {"driven by", fmt::format("{}{}; heard {} ago", who, age, time_words(silence_s))}};
   if (news.info) {
-    rows.push_back(
-        {"policy", fmt::format("{}, backend {}", printable(news.info->policy), printable(news.info->backend))});
+    rows.push_back({"policy", fmt::format("{}, backend {}", news.info->policy, news.info->backend)});
   }
   return rows;
 }
@@ -95,7 +95,8 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
 
 std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<std::string> lines;
-  for (const Row& row : head_rows(driver, news, silence_s)) lines.push_back(row.label + "   " + row.value);
+  for (const Row& row : head_rows(driver, news, silence_s))
+    lines.push_back(io::plain_text(row.label + "   " + row.value));
   if (news == nullptr) return lines;
   lines.push_back(fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "forwards", "left", "turn", "bend",
                               "lean", "height"));
@@ -103,7 +104,9 @@ std::vector<std::string> driving_lines(const KeyboardDriver& driver, const Robot
       fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
   lines.push_back(command_row("asked", driver.asked().u.data()));
   if (news->reference) lines.push_back(command_row("taken", news->reference->command));
-  for (const Row& row : status_rows(*news, silence_s)) lines.push_back(fmt::format("{:<10}{}", row.label, row.value));
+  for (const Row& row : status_rows(*news, silence_s))
+    lines.push_back(io::plain_text(fmt::format("{:<10}{}", row.label, row.value)));
+
   return lines;
 }
 
@@ -122,8 +125,8 @@ DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, 
   }
   DrivingTable table;
   for (const Row& row : rows) {
-    table.labels += (table.labels.empty() ? "" : "\n") + row.label;
-    table.values += (&row == rows.data() ? "" : "\n") + row.value;
+    table.labels += (table.labels.empty() ? "" : "\n") + io::plain_text(row.label);
+    table.values += (&row == rows.data() ? "" : "\n") + io::plain_text(row.value);
   }
   return table;
 }

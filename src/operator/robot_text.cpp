@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/plain_text.hpp"
 #include "operator/words.hpp"
 #include "pmg/command.hpp"
 #include "pmg/types.hpp"
@@ -30,7 +31,7 @@ std::optional<Hottest> hottest(const RobotNews& news) {
   const auto found = std::ranges::max_element(temperature_degC);
   const auto index = static_cast<std::size_t>(found - temperature_degC.begin());
   const bool named = news.info && index < news.info->joint_names.size();
-  return Hottest{*found, named ? printable(news.info->joint_names[index]) : fmt::format("joint {}", index)};
+  return Hottest{*found, named ? news.info->joint_names[index] : fmt::format("joint {}", index)};
 }
 
 /// The policy's variant (docs/reference/file-formats.md) in the configuration in force; pmg if the configuration has
@@ -51,7 +52,7 @@ std::string mode_text(const pmg_msgs::status_t& status) {
 }
 
 std::string driver(const pmg_msgs::status_t& status) {
-  return status.driving_source.empty() ? "nobody" : printable(status.driving_source);
+  return status.driving_source.empty() ? "nobody" : status.driving_source;
 }
 
 std::string command_text(const double (&u)[kChannels]) {
@@ -99,40 +100,37 @@ std::string limits_text(const RobotNews& news) {
 
 std::string one_line(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
-  std::string line =
-      fmt::format("{:<12} {:<8} driven by {:<16}", printable(status.robot), mode_text(status), driver(status));
+  std::string line = fmt::format("{:<12} {:<8} driven by {:<16}", status.robot, mode_text(status), driver(status));
   if (news.reference) {
     line += fmt::format(" vx {:+.2f} vy {:+.2f} omega {:+.2f}", news.reference->command[kVx],
                         news.reference->command[kVy], news.reference->command[kOmega]);
   }
   if (!news.tick_us.empty()) line += fmt::format(" tick p99 {:.0f} us", news.tick_us.percentile(99));
-  if (!status.fault.empty()) line += "  FAULT " + printable(status.fault);
+  if (!status.fault.empty()) line += "  FAULT " + status.fault;
   if (silence_s > kGone_s) line += fmt::format("  NOT HEARD for {:.0f} s", silence_s);
-  return line;
+  return io::plain_text(line);
 }
 
 std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
   std::vector<std::string> lines;
   const auto add = [&](const char* label, const std::string& text) {
-    lines.push_back(fmt::format("{:<11}{}", label, text));
+    lines.push_back(io::plain_text(fmt::format("{:<11}{}", label, text)));
   };
-  std::string who = printable(status.robot);
+  std::string who = status.robot;
   if (news.info) {
-    who += fmt::format("   model {}   policy {}   backend {}", printable(news.info->model),
-                       printable(news.info->policy), printable(news.info->backend));
+    who += fmt::format("   model {}   policy {}   backend {}", news.info->model, news.info->policy, news.info->backend);
   }
   add("robot", who);
   if (news.info && variant(*news.info) != to_string(Variant::kPmg)) {
-    add("BASELINE",
-        fmt::format("{}: a policy for comparison, not the controller's own", printable(variant(*news.info))));
+    add("BASELINE", fmt::format("{}: a policy for comparison, not the controller's own", variant(*news.info)));
   }
   if (news.info) {
-    add("software", fmt::format("{}   bundle {:.12}", printable(news.info->software), printable(news.info->bundle)));
+    add("software", fmt::format("{}   bundle {:.12}", news.info->software, news.info->bundle));
   }
   add("mode", fmt::format("{}{}", mode_text(status),
                           silence_s > kGone_s ? fmt::format("   NOT HEARD for {:.0f} s", silence_s) : ""));
-  add("fault", status.fault.empty() ? "none" : printable(status.fault));
+  add("fault", status.fault.empty() ? "none" : status.fault);
   add("driven by", status.command_age_s < 0.0
                        ? driver(status) + "   no command yet"
                        : fmt::format("{}   last command {:.2f} s ago", driver(status), status.command_age_s));
@@ -159,7 +157,7 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   add("real-time", status.realtime ? "granted" : "NOT granted");
   if (news.link) add("messages", network_text(*news.link));
   if (news.info) {
-    for (const std::string& refused : news.info->refused) add("refused", printable(refused));
+    for (const std::string& refused : news.info->refused) add("refused", refused);
   }
   if (news.sessions > 2) add("WARNING", "several controllers speak under this name");
   return lines;

@@ -1,8 +1,5 @@
 #include "operator/words.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 
@@ -42,12 +39,6 @@ const char* verdict_words(std::int8_t verdict) noexcept {
     default:
       return "unknown answer";
   }
-}
-
-std::string printable(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }, '?');
-  return text;
 }
 
 }  // namespace pmg::ops

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 namespace pmg::ops {
 
@@ -18,8 +17,5 @@ inline constexpr const char* kNoKey = "it takes only operators with a key, and n
 const char* mode_name(std::int8_t mode) noexcept;         ///< of pmg_msgs::mode_t: "stand"
 bool is_upright(std::int8_t mode) noexcept;               ///< of pmg_msgs::mode_t: Stand or Walk
 const char* verdict_words(std::int8_t verdict) noexcept;  ///< of pmg_msgs::ack_t: why a request was not taken
-
-/// Text from the network for a terminal. Control characters could move the cursor; they become '?'.
-std::string printable(std::string text);
 
 }  // namespace pmg::ops

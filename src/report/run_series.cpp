@@ -10,6 +10,7 @@
 
 #include "control/mode.hpp"
 #include "io/log_series.hpp"
+#include "io/plain_text.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
@@ -34,6 +35,18 @@ namespace {
 std::string short_name(const fs::path& log) {
   const fs::path path = fs::weakly_canonical(log);
   return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
+}
+
+/// The texts that a page shows. A log's names were chosen by other programs.
+pmg_msgs::robot_info_t plain(pmg_msgs::robot_info_t info) {
+  for (std::string* text :
+       {&info.robot, &info.model, &info.software, &info.policy, &info.backend, &info.bundle, &info.options}) {
+    *text = io::plain_text(*text);
+  }
+  for (auto* texts : {&info.refused, &info.joint_names, &info.bundle_file}) {
+    for (std::string& text : *texts) text = io::plain_text(text);
+  }
+  return info;
 }
 
 /// Gathers the events of one run. If the log holds several runs, the last one remains.
@@ -118,7 +131,8 @@ class Gathering {
       ++unreadable_;
       return;
     }
-    const bool another = run_.identified && (info->session != run_.info.session || info->robot != run_.info.robot);
+    const bool another =
+        run_.identified && (info->session != run_.info.session || io::plain_text(info->robot) != run_.info.robot);
     if (first_ns_ && (another || event.stamp_ns() < newest_ns_)) begin_anew();
     if (run_.identified) return;
     if (!first_ns_) info_ns_ = event.stamp_ns();
@@ -127,7 +141,7 @@ class Gathering {
       return;
     }
     run_.identified = true;
-    run_.info = std::move(*info);
+    run_.info = plain(std::move(*info));
     run_.joint_names = run_.info.joint_names;
     judgement_.emplace(run_.info.standing_height_m);
     make_joints();
@@ -166,9 +180,13 @@ class Gathering {
 
   bool step(const pmg_msgs::scenario_step_t& message) {
     end_step();
-    run_.scenario = message.scenario;
-    RunSeries::Step step{
-        .from_s = t_s_, .to_s = t_s_, .number = message.number, .text = message.text, .asked = {}, .tracking = {}};
+    run_.scenario = io::plain_text(message.scenario);
+    RunSeries::Step step{.from_s = t_s_,
+                         .to_s = t_s_,
+                         .number = message.number,
+                         .text = io::plain_text(message.text),
+                         .asked = {},
+                         .tracking = {}};
     std::ranges::copy(message.command, step.asked.begin());
     run_.steps.push_back(std::move(step));
     if (judgement_) before_step_ = judgement_->outcome().tracking;
@@ -199,8 +217,8 @@ class Gathering {
     const auto mode = static_cast<control::Mode>(message.mode);
     const bool was_fault = !run_.modes.empty() && run_.modes.back().text == to_string(control::Mode::kFault);
     if (mode == control::Mode::kFault && !was_fault) {
-      latched_.push_back(
-          {t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code) : message.fault});
+      latched_.push_back({t_s_, message.fault.empty() ? fmt::format("fault code {}", message.fault_code)
+                                                      : io::plain_text(message.fault)});
     }
     if (judgement_) judgement_->status(message);
     append(message, t_s_, run_);
@@ -238,7 +256,7 @@ class Gathering {
   /// and in its place.
   bool fault(const pmg_msgs::fault_t& message) {
     const double latched_s = static_cast<double>(message.stamp_ns - *first_ns_) * 1e-9;
-    const RunSeries::Event told{latched_s >= 0.0 ? latched_s : t_s_, message.text};
+    const RunSeries::Event told{latched_s >= 0.0 ? latched_s : t_s_, io::plain_text(message.text)};
     if (!is_known(told)) run_.faults.push_back(told);
     return true;
   }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "control/mode.hpp"
+#include "io/plain_text.hpp"
 
 namespace pmg::report {
 
@@ -54,7 +55,7 @@ void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run) {
 
 void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run) {
   extend(run.modes, t_s, to_string(static_cast<control::Mode>(message.mode)));
-  extend(run.sources, t_s, message.driving_source);
+  extend(run.sources, t_s, io::plain_text(message.driving_source));
   extend(run.hanging, t_s, message.hanging ? "hanging, no policy" : "");
   run.status.t_s.push_back(t_s);
   run.status.limited_position.push_back(message.limited_position);
