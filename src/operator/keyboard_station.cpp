@@ -1,7 +1,6 @@
 #include "operator/keyboard_station.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <utility>
 
@@ -15,7 +14,7 @@ KeyboardStation::KeyboardStation(io::LcmLink& link, std::string robot, KeyReport
     : link_(link),
       clock_(clock),
       report_(report),
-      source_(link, fmt::format("keyboard.{}", ::getpid()), session, clock, seal),
+      source_(link, seal.source_name("keyboard"), session, clock, seal),
       board_(link, clock, seal),
       robot_(std::move(robot)),
       begin_ns_(clock.now_ns()) {

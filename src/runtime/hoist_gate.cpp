@@ -17,7 +17,8 @@ void HoistGate::take(io::Bytes bytes) {
     ++counts_.other_robot;
   } else if (line_ == nullptr) {
     ++counts_.no_hoist;
-  } else if (counts_.good(seal_.judge("HOIST", sealed->message_bytes, sealed->seal, clock_.now_ns()))) {
+  } else if (counts_.good(
+                 seal_.judge("HOIST", sealed->message.source, sealed->message_bytes, sealed->seal, clock_.now_ns()))) {
     answer_ = true;
     if (overtaken(message->source, message->session, message->sequence)) return;
     source_ = message->source;

@@ -32,7 +32,8 @@ void OperatorGate::take_command(io::Bytes bytes) {
     ++counts_.other_version;
   } else if (sealed->message.robot != robot_) {
     ++counts_.other_robot;
-  } else if (counts_.good(seal_.judge("COMMAND", sealed->message_bytes, sealed->seal, now_ns))) {
+  } else if (counts_.good(
+                 seal_.judge("COMMAND", sealed->message.source, sealed->message_bytes, sealed->seal, now_ns))) {
     const control::DriveMessage drive = recording::drive_message(sealed->message, now_ns);
     const bool taken =
         rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
@@ -61,7 +62,7 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     ++counts_.other_robot;
     return;
   }
-  const auto judgement = seal_.judge("MODE", sealed->message_bytes, sealed->seal, request.received_ns);
+  const auto judgement = seal_.judge("MODE", message.source, sealed->message_bytes, sealed->seal, request.received_ns);
   request.sealed = our_version && judgement == seal::ControllerSeal::Judgement::kGood;
   if (request.stops()) {
     take_stop(request);

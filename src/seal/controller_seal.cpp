@@ -37,7 +37,7 @@ std::string ControllerSeal::refresh() {
   }
 }
 
-ControllerSeal::Judgement ControllerSeal::judge(std::string_view channel, io::Bytes message,
+ControllerSeal::Judgement ControllerSeal::judge(std::string_view channel, std::string_view source, io::Bytes message,
                                                 const std::optional<pmg_msgs::seal_t>& seal,
                                                 std::int64_t now_ns) const {
   if (!seal || seal->version != pmg_msgs::seal_t::VERSION || seal->boot != boot_) return Judgement::kNotFresh;
@@ -45,7 +45,7 @@ ControllerSeal::Judgement ControllerSeal::judge(std::string_view channel, io::By
   if (seal->heard_ns > now_ns || seal->heard_ns < now_ns - kFresh_ns) return Judgement::kNotFresh;
   if (!keys_) return Judgement::kGood;
   const auto found = keys_->operators.find(seal->key);
-  if (found == keys_->operators.end()) return Judgement::kNoKey;
+  if (found == keys_->operators.end() || !may_speak_as(found->first, source)) return Judgement::kNoKey;
   pmg_msgs::seal_t bare = *seal;
   bare.code_size = 0;
   bare.code.clear();

@@ -29,7 +29,7 @@ class ControllerSeal {
   enum class Judgement {
     kGood,
     kNotFresh,  ///< no seal, another version, another start, or sealed too long ago
-    kNoKey,     ///< no key of ours, or its code is wrong
+    kNoKey,     ///< no key of ours, its code is wrong, or the source is not its operator's
   };
 
   /// keys: nothing: everybody on the network may drive. folder: where the keys are, for refresh().
@@ -43,8 +43,9 @@ class ControllerSeal {
   /// read, none is in force. Returns a line that says so, once for each change.
   std::string refresh();
 
-  Judgement judge(std::string_view channel, io::Bytes message, const std::optional<pmg_msgs::seal_t>& seal,
-                  std::int64_t now_ns) const;
+  /// source: the message's.
+  Judgement judge(std::string_view channel, std::string_view source, io::Bytes message,
+                  const std::optional<pmg_msgs::seal_t>& seal, std::int64_t now_ns) const;
 
   /// (message) => message and proof, for LcmLink::send(). Valid until the next call.
   template <typename Message>

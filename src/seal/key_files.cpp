@@ -125,10 +125,13 @@ constexpr const char* kOperatorTitle = "pmg operator key 1";
 
 fs::path shared_file(const fs::path& folder, const std::string& name) { return folder / "operators" / (name + ".key"); }
 
+/// Without a point: behind one a program says which of the operator's it is. "anna.4194304", for the highest process
+/// number, fits into a source's 23 characters.
+constexpr std::size_t kLongestName = 23 - 1 - 7;
+
 bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= 23 && name.front() != '.' && std::ranges::all_of(name, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
-           c == '-';
+  return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
 }
 
@@ -145,6 +148,10 @@ std::vector<fs::path> key_files_in(const fs::path& folder) {
 
 }  // namespace
 
+bool may_speak_as(std::string_view key, std::string_view source) noexcept {
+  return !key.empty() && source.starts_with(key) && (source.size() == key.size() || source[key.size()] == '.');
+}
+
 fs::path controller_folder() { return config_folder() / "controller-keys"; }
 fs::path operator_folder() { return config_folder() / "operator-keys"; }
 
@@ -157,6 +164,7 @@ std::optional<ControllerKeys> read_controller_keys(const fs::path& folder) {
   }
   ControllerKeys keys{.own = bytes_of(own, read_lines(own, kControllerTitle), "private"), .operators = {}};
   for (const fs::path& file : key_files_in(folder / "operators")) {
+    if (!is_name(file.stem().string())) fail(file, "expected an operator's name and .key");
     keys.operators[file.stem().string()] = bytes_of(file, read_lines(file, kSharedTitle), "secret");
   }
   return keys;
@@ -168,6 +176,10 @@ std::vector<OperatorKey> read_operator_keys(const fs::path& folder) {
     const auto lines = read_lines(file, kOperatorTitle);
     const auto name = lines.find("operator");
     if (name == lines.end() || !is_name(name->second)) fail(file, "expected \"operator: \" and a name");
+    if (!keys.empty() && keys.front().name != name->second) {
+      fail(file, fmt::format("a key of operator {} among keys of {}: expected one operator's in a folder", name->second,
+                             keys.front().name));
+    }
     keys.push_back({name->second, bytes_of(file, lines, "controller"), bytes_of(file, lines, "secret")});
   }
   return keys;
@@ -175,7 +187,8 @@ std::vector<OperatorKey> read_operator_keys(const fs::path& folder) {
 
 OperatorKey make_operator_key(const fs::path& folder, const std::string& name) {
   if (!is_name(name)) {
-    throw std::runtime_error(fmt::format("operator \"{}\": expected 1 to 23 letters, digits, '.', '_' or '-'", name));
+    throw std::runtime_error(
+        fmt::format("operator \"{}\": expected 1 to {} letters, digits, '_' or '-'", name, kLongestName));
   }
   make_folder(folder);
   make_folder(folder / "operators");

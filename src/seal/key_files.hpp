@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "seal/authentication.hpp"
@@ -27,6 +28,10 @@ struct ControllerKeys {
   std::map<std::string, Secret> operators;  ///< by name
 };
 
+/// (the name of an operator's key, the source of a message) => whether the key is good for it: NAME, or NAME.anything.
+/// So nobody drives under another's name.
+bool may_speak_as(std::string_view key, std::string_view source) noexcept;
+
 /// XDG_CONFIG_HOME or ~/.config, with pmg/controller-keys and pmg/operator-keys.
 std::filesystem::path controller_folder();
 std::filesystem::path operator_folder();
@@ -36,11 +41,11 @@ std::filesystem::path operator_folder();
 
 /// Nothing if the folder has no controller.key.
 std::optional<ControllerKeys> read_controller_keys(const std::filesystem::path& folder);
-/// Empty if there is no such folder.
+/// Empty if there is no such folder. All are of one operator: its programs have one name for every robot.
 std::vector<OperatorKey> read_operator_keys(const std::filesystem::path& folder);
 
 /// Makes the controller's own key if there is none, and a key for this operator, which it returns. Throws if the
-/// operator has one. name: 1 to 23 of a-z, A-Z, 0-9, '.', '_', '-'.
+/// operator has one. name: 1 to 15 of a-z, A-Z, 0-9, '_', '-'.
 OperatorKey make_operator_key(const std::filesystem::path& folder, const std::string& name);
 void write_operator_key(const std::filesystem::path& file, const OperatorKey& key);      ///< never over another file
 bool revoke_operator_key(const std::filesystem::path& folder, const std::string& name);  ///< false: it had none

@@ -1,6 +1,7 @@
 #include "seal/operator_seal.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <stdexcept>
 #include <utility>
@@ -9,6 +10,10 @@ namespace pmg::seal {
 
 OperatorSeal::OperatorSeal(std::vector<OperatorKey> keys, bool believes_unsigned)
     : keys_(std::move(keys)), believes_unsigned_(believes_unsigned) {}
+
+std::string OperatorSeal::source_name(std::string_view program) const {
+  return fmt::format("{}.{}", keys_.empty() ? program : std::string_view(keys_.front().name), ::getpid());
+}
 
 std::optional<Peer> OperatorSeal::believe(std::string_view channel, io::Bytes message,
                                           const std::optional<pmg_msgs::proof_t>& proof) const {

@@ -30,6 +30,10 @@ class OperatorSeal {
   /// believes_unsigned: take a controller's word without a signature, too.
   OperatorSeal(std::vector<OperatorKey> keys, bool believes_unsigned);
 
+  /// A name for a source of this process that controllers with our key accept: OPERATOR.PROCESS, or without keys
+  /// PROGRAM.PROCESS.
+  std::string source_name(std::string_view program) const;
+
   /// (STATUS, ACK or another message of a controller) => its sender; nothing: not believed. stamp_ns is not set.
   std::optional<Peer> believe(std::string_view channel, io::Bytes message,
                               const std::optional<pmg_msgs::proof_t>& proof) const;

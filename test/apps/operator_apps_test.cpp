@@ -315,6 +315,9 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
     EXPECT_THAT(stranger.err, HasSubstr("it takes only operators with a key"));
     const Finished stand = run("pmg_send stand --keys " + anna + url);
     EXPECT_EQ(stand.exit_code, 0) << stand.err;
+    const Finished watch = run("pmg_watch --once --json --robot z1 --keys " + anna + url);
+    EXPECT_THAT(nlohmann::json::parse(watch.out)["driving_source"].get<std::string>(), testing::StartsWith("anna."))
+        << "STATUS tells whose key drives";
     const Finished stop = run("pmg_send stop" + url);
     EXPECT_EQ(stop.exit_code, 0) << "a stop needs no key: " << stop.err;
     EXPECT_EQ(stop.out, "z1: damping\n");
@@ -339,7 +342,7 @@ TEST_F(OperatorApps, BadKeysAreRefusedInOneLine) {
   const std::string keys = " --keys " + (folder_ / "keys").string(), missing = " --keys " + (folder_ / "none").string();
   for (const auto& [command, complaint] : {
            std::pair{"pmg_key", std::string("a command is missing")},
-           std::pair{"pmg_key new ../anna", std::string("expected 1 to 23 letters")},
+           std::pair{"pmg_key new ../anna", std::string("expected 1 to 15 letters")},
            std::pair{"pmg_key new", std::string("NAME")},
        }) {
     const Finished refused =
@@ -348,12 +351,26 @@ TEST_F(OperatorApps, BadKeysAreRefusedInOneLine) {
     EXPECT_THAT(refused.err + refused.out, HasSubstr(complaint)) << command;
   }
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
-    for (const std::string& command : {"pmg_send stop" + keys, "pmg_watch --once" + keys, "pmg_send stop" + missing}) {
+    for (const std::string& command :
+         {"pmg_send stand" + keys, "pmg_watch --once" + keys, "pmg_send stand" + missing}) {
       const Finished refused = run(command);
       EXPECT_EQ(refused.exit_code, 2) << command;
       EXPECT_THAT(refused.err, HasSubstr(".key")) << command;
       EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
     }
+  });
+}
+
+TEST_F(OperatorApps, AStopGoesOutWhateverTheKeysAre) {
+  fs::create_directories(folder_ / "keys");
+  std::ofstream(folder_ / "keys" / "z1.key") << "not a key\n";
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    const Finished stop = run("pmg_send stop --keys " + (folder_ / "keys").string());
+    EXPECT_EQ(stop.exit_code, 0) << stop.err;
+    EXPECT_EQ(stop.out, "z1: damping\n");
+    EXPECT_THAT(stop.err, AllOf(HasSubstr("z1.key"), HasSubstr("the stop goes out without a key")));
+    EXPECT_EQ(mode_of("z1"), "damping");
   });
 }
 

@@ -403,6 +403,24 @@ TEST_F(KeyedTest, WhoHasAKeyDrivesAndWhoHasNoneStopsOnly) {
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
 }
 
+TEST_F(KeyedTest, NobodyDrivesUnderAnothersName) {
+  OperatorSource as_bob(network_.link, "bob.1", 1, network_.clock, seal::OperatorSeal({key_}, false));
+  for (int k = 0; k < 3; ++k) network_.advance();
+  ModeWish stand(as_bob, "biped", Goal::kStand, 1.0);
+  EXPECT_EQ(network_.finish(stand), Progress::kFailed);
+  const auto command = [&](OperatorSource& source) {
+    for (int k = 0; k < 5; ++k) {
+      source.send_command("biped", Command{}, 0.5);
+      network_.advance();
+    }
+    return std::string(robot_.result().driving.name.data());
+  };
+  EXPECT_EQ(command(as_bob), "") << "a key of anna, and bob's name";
+  EXPECT_EQ(command(anna_), "anna.1");
+  ModeWish stop(as_bob, "biped", Goal::kStop, 2.0);
+  EXPECT_EQ(network_.finish(stop), Progress::kReached) << "a stop is everybody's";
+}
+
 TEST_F(KeyedTest, AForgedAcknowledgementOfAStopIsNotBelieved) {
   network_.control_alive = false;
   forge_acks();

@@ -93,10 +93,22 @@ TEST_F(KeyFiles, ARevokedKeyIsGoneAndASecondOneIsNew) {
 }
 
 TEST_F(KeyFiles, NamesStayInTheFolder) {
-  for (const char* name : {"", "../anna", "a/b", ".anna", "anna\n", "a name", "a-name-of-24-characters."}) {
-    EXPECT_THAT(error_of([&] { make_operator_key(controller_, name); }), HasSubstr("expected 1 to 23 letters")) << name;
+  for (const char* name : {"", "../anna", "a/b", ".anna", "anna\n", "a name", "anna.b", "a-name-of-16-let"}) {
+    EXPECT_THAT(error_of([&] { make_operator_key(controller_, name); }), HasSubstr("expected 1 to 15 letters")) << name;
     EXPECT_FALSE(revoke_operator_key(controller_, name)) << name;
   }
+}
+
+TEST_F(KeyFiles, AFolderIsOfOneOperatorAndAFileOfAName) {
+  fs::create_directories(operator_);
+  write_operator_key(operator_ / "z1.key", make_operator_key(controller_, "anna"));
+  write_operator_key(operator_ / "z2.key", make_operator_key(folder_ / "other", "anna"));
+  EXPECT_EQ(read_operator_keys(operator_).size(), 2u) << "of two controllers";
+  write_operator_key(operator_ / "z3.key", make_operator_key(controller_, "bob"));
+  EXPECT_THAT(error_of([&] { read_operator_keys(operator_); }),
+              AllOf(HasSubstr("z3.key"), HasSubstr("bob"), HasSubstr("anna"), Not(HasSubstr("\n"))));
+  fs::rename(controller_ / "operators/bob.key", controller_ / "operators/anna.bob.key");
+  EXPECT_THAT(error_of([&] { read_controller_keys(controller_); }), HasSubstr("anna.bob.key"));
 }
 
 TEST_F(KeyFiles, WhatIsNoKeyIsSaidInOneLineWithItsFile) {

@@ -27,7 +27,7 @@ class Seal : public testing::Test {
  protected:
   Seal() {
     command_.robot = "z1";
-    command_.source = "gamepad";
+    command_.source = "anna.gamepad";
     command_.vx_m_s = 0.25;
   }
   /// The operator hears a STATUS of this time, and seals a command for it.
@@ -49,7 +49,7 @@ class Seal : public testing::Test {
                          const char* channel = "COMMAND") {
     const auto sealed = decode_sealed<pmg_msgs::command_t, pmg_msgs::seal_t>(bytes);
     if (!sealed) return Judgement::kNotFresh;
-    return controller.judge(channel, sealed->message_bytes, sealed->seal, now_ns);
+    return controller.judge(channel, sealed->message.source, sealed->message_bytes, sealed->seal, now_ns);
   }
 
   pmg_msgs::command_t command_{};
@@ -113,6 +113,19 @@ TEST_F(Seal, AWrongUnknownOrRevokedKeyIsNone) {
   const Bytestring bytes = sealed_command(keyed_, anna_, kSecond_ns);
   keyed_.set_operators({});
   EXPECT_EQ(judge(keyed_, bytes, kSecond_ns), Judgement::kNoKey);
+}
+
+TEST_F(Seal, AKeyIsGoodForItsOperatorsNameOnly) {
+  const auto judged_as = [&](const char* source) {
+    command_.source = source;
+    return judge(keyed_, sealed_command(keyed_, anna_, kSecond_ns), kSecond_ns);
+  };
+  for (const char* source : {"anna", "anna.4711", "anna."}) EXPECT_EQ(judged_as(source), Judgement::kGood) << source;
+  for (const char* source : {"bob", "bob.anna", "annabel", "ann", "Anna", "", ".", "anna\x1b"}) {
+    EXPECT_EQ(judged_as(source), Judgement::kNoKey) << source;
+  }
+  EXPECT_EQ(judged_as(anna_.source_name("gamepad").c_str()), Judgement::kGood);
+  EXPECT_TRUE(OperatorSeal().source_name("gamepad").starts_with("gamepad."));
 }
 
 TEST_F(Seal, ACodeIsGoodOnItsChannelOnly) {
