@@ -86,7 +86,7 @@ class Console {
     hanging_ = news.hanging;
     if (news.mode == control::Mode::kFault) {
       spdlog::error("FAULT, damping: {}", faults::describe(news.fault, robot_));
-      spdlog::error("{} Then: pmg_send reset --robot {}", control::advice(news.fault.code), name_);
+      spdlog::error("{} Then: pmg_send reset --robot {}", faults::advice(news.fault.code), name_);
       return;
     }
     const char* driving = news.driving.name.data();

@@ -265,7 +265,7 @@ std::string FlightRecorder::text(const Incident& incident, const std::vector<con
       "\nWhat you can do\n  {}\n  The drives are damping and stay so. When the cause is gone, reset the fault (the "
       "mode "
       "is then Damping) and ask\n  for Stand.\n",
-      control::advice(fault.code));
+      faults::advice(fault.code));
   text += fmt::format("\nRecords      {}: {} ticks, from {:.2f} s before the fault to {:.2f} s after\n",
                       log.filename().string(), rows.size(), seconds(record.now_ns - rows.front()->record.now_ns),
                       seconds(rows.back()->record.now_ns - record.now_ns));

@@ -28,7 +28,7 @@ class HoistGate {
   }
 
   /// Fills the message for channel HOIST_STATE, all but its stamp. True when it says something new.
-  bool recording::fill(pmg_msgs::hoist_state_t& message);
+  bool fill(pmg_msgs::hoist_state_t& message);
 
   /// Requests that were ignored. Repeated and overtaken ones are not among them: they are acknowledged anew.
   const GateCounts& counts() const noexcept { return counts_; }

@@ -14,7 +14,6 @@
 #include "files/config_error.hpp"
 #include "files/config_reader.hpp"
 #include "files/number_table.hpp"
-#include "model/urdf_tree.hpp"
 
 namespace pmg::files {
 namespace {
@@ -39,23 +38,9 @@ class BoundedFile : public testing::Test {
     }
     return "accepted";
   }
-  std::string urdf_refusal(const std::string& body) const {
-    return refusal([&] { read_urdf(file("<robot name=\"r\">\n" + body + "</robot>\n")); });
-  }
 
   fs::path folder_ = fs::temp_directory_path() / ("pmg_bounded_file_" + std::to_string(getpid()));
 };
-
-std::string link(const std::string& name) {
-  return "<link name=\"" + name +
-         "\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
-         "izz=\"1\"/></inertial></link>\n";
-}
-
-std::string joint(const std::string& parent, const std::string& child) {
-  return "<joint name=\"" + parent + "_" + child + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" +
-         child + "\"/></joint>\n";
-}
 
 TEST_F(BoundedFile, WhatIsNoRegularFileIsNamed) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
@@ -71,37 +56,12 @@ TEST_F(BoundedFile, AFileAboveItsBoundIsNotRead) {
   std::ofstream(sparse) << "";
   fs::resize_file(sparse, std::uintmax_t{1} << 34);  // 16 GiB that the disk doesn't hold
   for (const auto& read : {std::function<void()>([&] { ConfigReader::from_file(sparse); }),
-                           std::function<void()>([&] { read_number_table(sparse, {"a"}, "a"); }),
-                           std::function<void()>([&] { read_urdf(sparse); })}) {
+                           std::function<void()>([&] { read_number_table(sparse, {"a"}, "a"); })}) {
     EXPECT_THAT(refusal(read), HasSubstr("has 1.64e+04 MiB; expected"));
   }
   const fs::path good = file("name: 7\n");
   EXPECT_EQ(read_bounded_text(good, 8, "a YAML file"), "name: 7\n");
   EXPECT_THAT(refusal([&] { read_bounded_text(good, 7, "a YAML file"); }), HasSubstr("at most"));
-}
-
-TEST_F(BoundedFile, ARobotOfTenThousandLinksIsRefusedAtItsFirstLinkTooMany) {
-  std::string chain = link("l0"), flat = link("l0");
-  for (int k = 1; k < 10'000; ++k) {
-    const std::string name = "l" + std::to_string(k);
-    chain += link(name) + joint("l" + std::to_string(k - 1), name);
-    flat += link(name) + joint("l0", name);
-  }
-  for (const std::string& robot : {chain, flat})
-    EXPECT_THAT(urdf_refusal(robot), HasSubstr("link: is number 257; expected 256"));
-}
-
-TEST_F(BoundedFile, XmlThatIsTooDeepIsRefused) {
-  std::string deep;
-  for (int k = 0; k < 100'000; ++k) deep += "<a>";
-  EXPECT_THAT(urdf_refusal(deep), HasSubstr("elements deep; expected 32 at most"));
-  EXPECT_THAT(urdf_refusal("<!-- " + deep + " -->" + link("l0")), HasSubstr("accepted")) << "comments nest nothing";
-}
-
-TEST_F(BoundedFile, LinksInACycleOfTheirOwnAreNamed) {
-  EXPECT_EQ(urdf_refusal(link("root") + link("a") + joint("root", "a")), "accepted");
-  EXPECT_THAT(urdf_refusal(link("root") + link("a") + link("b") + joint("a", "b") + joint("b", "a")),
-              HasSubstr("is not connected to the root link; expected a chain of joints from root"));
 }
 
 }  // namespace

@@ -352,7 +352,7 @@ TEST_F(FlightRecorderTest, TheTextTellsTheOperatorWhatHappenedAndWhatToDo) {
   EXPECT_THAT(first_line, HasSubstr(robot_.joint_index.name(0)));
   EXPECT_THAT(first_line, HasSubstr("95.0"));
   for (const char* part : {"biped-2", "Mode before  walk", "Driven by    nobody", "tester #200: vx 0.40 m/s",
-                           "tester #0: walk", control::advice(faults::FaultCode::kTemperature), "reset",
+                           "tester #0: walk", faults::advice(faults::FaultCode::kTemperature), "reset",
                            "301 ticks, from 2.00 s before the fault to 1.00 s after"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
