@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -272,49 +270,23 @@ TEST(LcmLink, AFloodOfForeignDatagramsDoesNotKeepTheCaller) {
 }
 
 TEST(LcmLink, WithTtl0OnlyThisComputersMessagesAreHeard) {
-  // Another computer: a network namespace of its own, connected by a virtual wire.
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
-    std::array<int, 2> ready{}, send{};
-    ASSERT_EQ(::pipe(ready.data()), 0);
-    ASSERT_EQ(::pipe(send.data()), 0);
-    const pid_t other = ::fork();
-    if (other == 0) {
-      char token = 0;
-      const bool out =
-          ::unshare(CLONE_NEWNET) == 0 && ::write(ready[1], "r", 1) == 1 && ::read(send[0], &token, 1) == 1;
-      ::_exit(out &&
-                      std::system("ip link set lo up && ip addr add 10.9.0.2/24 dev wire1 && ip link set wire1 up && "
-                                  "ip route add 224.0.0.0/4 dev wire1") == 0 &&
-                      [] {
-                        lcm_t* const stock = lcm_create("udpm://239.255.76.67:7667?ttl=1");
-                        for (int k = 0; k < 20; ++k) {
-                          lcm_publish(stock, "COMMAND", "x", 1);
-                          ::usleep(10'000);  // until the wire is up
-                        }
-                        return true;
-                      }()
-                  ? 0
-                  : 1);
-    }
-    char token = 0;
-    ASSERT_EQ(::read(ready[0], &token, 1), 1);
-    const std::string wire = "ip link add wire0 type veth peer name wire1 netns " + std::to_string(other) +
-                             " && ip addr add 10.9.0.1/24 dev wire0 && ip link set wire0 up && "
-                             "ip route del 224.0.0.0/4 dev lo && ip route add 224.0.0.0/4 dev wire0";
-    const bool wired = std::system(wire.c_str()) == 0;
-    if (!wired) {
-      ::kill(other, SIGKILL);
-      ::waitpid(other, nullptr, 0);
+    const SecondComputer other;
+    if (!other.wired()) {
       GTEST_SKIP() << "NOT TESTED: the kernel makes no virtual wire (ip link add ... type veth)";
     }
     LcmLink here("udpm://239.255.76.67:7667?ttl=0"), everywhere("udpm://239.255.76.67:7667?ttl=1");
     int heard_here = 0, heard_everywhere = 0;
     here.subscribe("COMMAND", [&](Bytes) { ++heard_here; });
     everywhere.subscribe("COMMAND", [&](Bytes) { ++heard_everywhere; });
-    ASSERT_EQ(::write(send[1], "s", 1), 1);
-    int status = -1;
-    ::waitpid(other, &status, 0);
-    ASSERT_EQ(status, 0);
+    other.inside([] {
+      lcm_t* const stock = lcm_create("udpm://239.255.76.67:7667?ttl=1");
+      for (int k = 0; k < 20; ++k) {
+        lcm_publish(stock, "COMMAND", "x", 1);
+        ::usleep(10'000);  // until the wire is up
+      }
+      lcm_destroy(stock);
+    });
     here.receive(0);
     everywhere.receive(0);
     EXPECT_GT(heard_everywhere, 0);

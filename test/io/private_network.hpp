@@ -1,6 +1,7 @@
 // A private network for a test: messages on it reach no other robot, test or host.
 #pragma once
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <net/route.h>
@@ -10,8 +11,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <string>
 #include <thread>
 
 namespace pmg::io {
@@ -62,6 +66,46 @@ inline bool route_multicast(int socket) {
   }).join();
   return permitted;
 }
+
+/// Another computer: a network of its own, joined to the calling thread's private network by a virtual wire. Multicast
+/// leaves over the wire on both sides.
+class SecondComputer {
+ public:
+  SecondComputer() {
+    const std::string here = std::to_string(::gettid());
+    bool there = false;
+    std::thread([&] {
+      if (::unshare(CLONE_NEWNET) != 0) return;
+      network_ = ::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC);
+      there = commanded("ip link set lo up && ip link add wire1 type veth peer name wire0 netns " + here +
+                        " && ip addr add 10.9.0.2/24 dev wire1 && ip link set wire1 up && "
+                        "ip route add 224.0.0.0/4 dev wire1");
+    }).join();
+    wired_ = there && commanded(
+                          "ip addr add 10.9.0.1/24 dev wire0 && ip link set wire0 up && "
+                          "ip route replace 224.0.0.0/4 dev wire0");
+  }
+  ~SecondComputer() {
+    if (network_ >= 0) ::close(network_);
+  }
+  SecondComputer(const SecondComputer&) = delete;
+  SecondComputer& operator=(const SecondComputer&) = delete;
+
+  bool wired() const { return wired_; }  ///< false: the kernel makes no virtual wire
+  /// Runs body in a thread on the other computer; processes that body starts are there, too.
+  void inside(const std::function<void()>& body) const {
+    std::thread([&] {
+      ASSERT_EQ(::setns(network_, CLONE_NEWNET), 0) << std::strerror(errno);
+      body();
+    }).join();
+  }
+
+ private:
+  static bool commanded(const std::string& line) { return std::system(line.c_str()) == 0; }
+
+  int network_ = -1;
+  bool wired_ = false;
+};
 
 }  // namespace pmg::io
 
