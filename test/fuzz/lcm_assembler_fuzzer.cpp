@@ -1,5 +1,5 @@
 // libFuzzer on LcmAssembler. The input is a sequence of datagrams, each behind its sender (one byte) and its length
-// (two bytes). scripts/fuzz-receiver builds and runs it.
+// (two bytes). "scripts/fuzz receiver" builds and runs it.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

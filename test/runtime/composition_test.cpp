@@ -10,6 +10,7 @@
 
 #include "io/lcm_link.hpp"
 #include "io/log_reader.hpp"
+#include "io/private_network.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "recording/recorder.hpp"
@@ -105,6 +106,43 @@ TEST_F(Composition, OperatorsOverTheNetworkDriveARobotWhoseEveryTickIsLogged) {
   EXPECT_EQ(logged.at("FAULT"), 1);
   EXPECT_EQ(logged.at("STATUS"), recorder.written());
   EXPECT_EQ(recorder.flight().written(), 1) << "the flight recorder's file";
+}
+
+/// pmg_controller's order: the claim is held while comms hears operators, and until it has spoken; here, longer.
+TEST_F(Composition, ANameIsClaimedByAThreadOfItsOwnUntilCommsSpeaks) {
+  PMG_IN_PRIVATE_NETWORK(io::Multicast::kOnLoopback, [] {
+    ThreadedRobot run(test::z1());
+    const recording::RunInfo info{.robot = "z1", .session = 7};
+    io::LcmLink link(io::kDefaultLcmUrl), listener(io::kDefaultLcmUrl);
+    Comms comms(link, run.controller.inbox(), run.controller.outbox(), test::z1(), info, 100.0, run.clock);
+    int claims = 0, status = 0;
+    listener.subscribe("CLAIM", [&](io::Bytes) { ++claims; });
+    listener.subscribe("STATUS", [&](io::Bytes) { ++status; });
+    std::optional<HeldClaim> claim(comms.hold_name());
+    const auto hears = [&](const int& count, int wanted) {
+      return test::eventually([&, end = count + wanted] {
+        listener.receive(10);
+        return count >= end;
+      });
+    };
+    EXPECT_TRUE(hears(claims, 3)) << "before the first STATUS";
+    EXPECT_EQ(status, 0);
+    std::atomic<bool> let_go{false};
+    run.controller.start(
+        [&] {
+          if (let_go) claim.reset();
+          comms.step(5);
+        },
+        [] {});
+    EXPECT_TRUE(hears(status, 10) && hears(claims, 3)) << "both threads send on one link";
+    let_go = true;
+    EXPECT_TRUE(hears(status, 10));
+    const int before = claims;
+    EXPECT_TRUE(hears(status, 20));
+    EXPECT_LE(claims - before, 1);
+    EXPECT_TRUE(run.controller.stop());
+    EXPECT_EQ(link.publish_errors(), 0);
+  });
 }
 
 TEST_F(Composition, AScenarioIsPlayedByTheWallClockAndMeasured) {
