@@ -353,20 +353,18 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
     EXPECT_THAT(stranger.err, HasSubstr("it takes only operators with a key"));
     const Finished stand = run("pmg_send stand --keys " + anna + url);
     EXPECT_EQ(stand.exit_code, 0) << stand.err;
-    const Finished watch = run("pmg_watch --once --json --robot z1 --keys " + anna + url);
-    EXPECT_THAT(nlohmann::json::parse(watch.out)["driving_source"].get<std::string>(), testing::StartsWith("anna."))
-        << "STATUS tells whose key drives";
     const Finished stop = run("pmg_send stop" + url);
     EXPECT_EQ(stop.exit_code, 0) << "a stop needs no key: " << stop.err;
     EXPECT_EQ(stop.out, "z1: damping\n");
 
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 0);
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 1);
-    const Finished revoked = run("pmg_send stand --timeout 4 --keys " + anna + url);
-    if (revoked.exit_code == 0) {  // the controller looks once a second
+    int revoked = 0;
+    for (int k = 0; k < 100 && revoked == 0; ++k) {  // the controller looks once a second
       EXPECT_EQ(run("pmg_send stop" + url).exit_code, 0);
-      EXPECT_EQ(run("pmg_send stand --timeout 4 --keys " + anna + url).exit_code, 1);
+      revoked = run("pmg_send stand --timeout 4 --keys " + anna + url).exit_code;
     }
+    EXPECT_EQ(revoked, 1);
     EXPECT_EQ(run("pmg_send stand --keys " + bert + url).exit_code, 0);
     EXPECT_EQ(robot.end(SIGINT), 0);
     ::unsetenv("XDG_CONFIG_HOME");
@@ -404,6 +402,7 @@ TEST_F(OperatorApps, AStopGoesOutWhateverTheKeysAre) {
   std::ofstream(folder_ / "keys" / "z1.key") << "not a key\n";
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     const auto robot = controller("z1");
+    EXPECT_EQ(run("pmg_send stand").exit_code, 0);
     const Finished stop = run("pmg_send stop --keys " + (folder_ / "keys").string());
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_EQ(stop.out, "z1: damping\n");
