@@ -259,8 +259,8 @@ TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
   });
 }
 
-/// To LCM's default group.
-void send_datagram(const std::string& bytes) {
+/// To LCM's default group, all from one sender: fragments of several senders are no message.
+void send_datagrams(const std::vector<std::string>& datagrams) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in group{};
   group.sin_family = AF_INET;
@@ -268,7 +268,9 @@ void send_datagram(const std::string& bytes) {
   group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
   sockaddr any{};
   std::memcpy(&any, &group, sizeof(group));
-  EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
+  for (const std::string& bytes : datagrams) {
+    EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
+  }
   ::close(socket);
 }
 
@@ -456,7 +458,7 @@ TEST_F(OperatorApps, ARecordedSessionMovesNoRobot) {
     std::vector<std::string> recorded;
     const auto play = [&] {
       for (const std::string& datagram : recorded) {
-        send_datagram(datagram);
+        send_datagrams({datagram});
         ::usleep(4000);  // slower than the rate limit
       }
     };
@@ -499,11 +501,10 @@ TEST_F(OperatorApps, NoDatagramEndsAProgram) {
     while (lines() < 2 && watch.running()) {
     }
     // An offset that wraps in 32 bits; names whose zero byte is outside the datagram, behind what an earlier one left.
-    send_datagram(fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"));
-    send_datagram(fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x')));
-    for (int k = 0; k < 20; ++k) send_datagram("LC02    " + std::string(52, 'A') + '\0' + "rest");
-    send_datagram(fragment(100, 41, 0, std::string(10, 'A')));
-    send_datagram("LC02    " + std::string(20, 'A'));
+    send_datagrams({fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"),
+                    fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x'))});
+    send_datagrams(std::vector<std::string>(20, "LC02    " + std::string(52, 'A') + '\0' + "rest"));
+    send_datagrams({fragment(100, 41, 0, std::string(10, 'A')), "LC02    " + std::string(20, 'A')});
     const auto before = lines();
     while (lines() < before + 2 && watch.running()) {
     }
