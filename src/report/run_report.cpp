@@ -104,8 +104,7 @@ std::vector<pages::Band> fault_bands(const Runs& runs) {
   std::vector<pages::Band> bands;
   for (const RunSeries& run : runs) {
     for (const RunSeries::Stretch& mode : run.modes) {
-      if (mode.text == to_string(control::Mode::kFault))
-        bands.push_back({mode.from_s, mode.to_s, colour});
+      if (mode.text == to_string(control::Mode::kFault)) bands.push_back({mode.from_s, mode.to_s, colour});
     }
   }
   return bands;
