@@ -6,6 +6,11 @@ if(CCACHE_PROGRAM)
 endif()
 option(PMG_PRECOMPILED_HEADERS "Compile common headers once (default: without a compiler cache)" ${PMG_PRECOMPILE_DEFAULT})
 
+# GCC 12 forgets with precompiled headers that <string> is a system header, and reports copies of std::string in it as out of bounds.
+if(PMG_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(pmg_warnings INTERFACE -Wno-array-bounds)
+endif()
+
 set(PMG_STANDARD_HEADERS <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <numbers> <optional> <random>
   <span> <sstream> <string> <string_view> <utility> <variant> <vector> <Eigen/Dense>)
 

@@ -23,6 +23,11 @@ option(PMG_UNITY "Compile several sources of a target together" ON)
 set(CMAKE_UNITY_BUILD ${PMG_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
 
+# GCC collects its own garbage from 128 MiB on, again and again. A source needs 300 to 900 MiB here; collecting later saves 5 to 13 % of its time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options("SHELL:--param ggc-min-heapsize=600000")  # KiB
+endif()
+
 add_library(pmg_warnings INTERFACE)
 target_compile_options(pmg_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
