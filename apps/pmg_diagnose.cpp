@@ -75,7 +75,7 @@ void declare(CLI::App& app, Arguments& arguments) {
 }
 
 /// The joint of the file that is meant; also sets its name.
-sim::ActuatorParameters given_model(Arguments& arguments) {
+model::ActuatorParameters given_model(Arguments& arguments) {
   const sim::ActuatorsByJoint joints = sim::read_motor_file(arguments.model);
   if (joints.size() == 1 && arguments.joint.empty()) arguments.joint = joints.begin()->first;
   const auto joint = joints.find(arguments.joint);

@@ -121,7 +121,7 @@ class Generator {
     if (!(dt_s > 0.0 && std::isfinite(dt_s))) return reference_;
     const Command& wanted =
         limiter_.step(user, reference_.contact_weight[kLeft] * reference_.contact_weight[kRight], dt_s);
-    const Command asked = ask_for(wanted);
+    const Command asked = apply_inverse(wanted);
     const double posture_share = posture_scale(
         admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
     Mixture mixture = mix(blend_, asked, scale_);
@@ -231,7 +231,7 @@ class Generator {
   }
 
   /// (wanted) => (asked): the inverse's result, clamped to limits_ in the channels that it changed.
-  Command ask_for(const Command& wanted) const noexcept {
+  Command apply_inverse(const Command& wanted) const noexcept {
     Command asked = inverse_.apply(wanted);
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       if (asked.u[channel] == wanted.u[channel]) continue;

@@ -54,7 +54,7 @@ std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<
           covariance.inverse(row, other) / std::sqrt(covariance.inverse(row, row) * covariance.inverse(other, other));
       if (std::abs(correlation) < std::max(kAlike, std::abs(found[d].correlation))) continue;
       found[d].correlation = correlation;
-      found[d].told_apart_badly = problem.parameters()[static_cast<std::size_t>(seen[j])].name;
+      found[d].confounded_with = problem.parameters()[static_cast<std::size_t>(seen[j])].name;
     }
   }
   return found;

@@ -82,7 +82,7 @@ double to_unit(const FitParameter& p, double value) {
 
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
   if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
-  const sim::ActuatorParameter& p = sim::actuator_parameter(name);
+  const model::ActuatorParameter& p = model::actuator_parameter(name);
   // A servo firmware's gain: its unit per radian of error, at a duty of 1.
   if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
   // A linear axis moves kilograms by hundreds of newtons.
@@ -108,7 +108,7 @@ std::vector<std::string> effect_parameters(const std::string& word) {
     if (word == effect.word) return effect.parameters;
   }
   std::vector<std::string> known = effect_words();
-  for (const sim::ActuatorParameter& p : sim::actuator_parameters()) {
+  for (const model::ActuatorParameter& p : model::actuator_parameters()) {
     if (word == p.name) return {word};
     known.emplace_back(p.name);
   }
@@ -142,7 +142,7 @@ std::vector<std::string> basic_parameters(const bench::Bench& bench) {
 double value(const JointModel& model, const std::string& name) {
   if (name == kInertia) return model.inertia_scale;
   if (name == kGravity) return model.gravity_scale;
-  return sim::actuator_parameter(name).value(model.actuator);
+  return model::actuator_parameter(name).value(model.actuator);
 }
 
 void set(JointModel& model, const std::string& name, double value) {
@@ -151,7 +151,7 @@ void set(JointModel& model, const std::string& name, double value) {
   else if (name == kGravity)
     model.gravity_scale = value;
   else
-    sim::actuator_parameter(name).in(model.actuator) = value;
+    model::actuator_parameter(name).in(model.actuator) = value;
 }
 
 FitProblem::FitProblem(std::vector<FitParameter> parameters, JointModel start, std::vector<SingleJoint> runs)

@@ -66,7 +66,7 @@ Json parameter_json(const FitParameter& parameter, double value, const Confidenc
                {"lower", parameter.lower},
                {"upper", parameter.upper},
                {"at_bound", at_bound(parameter, value)}};
-  if (!confidence.told_apart_badly.empty()) json["told_apart_badly_from"] = confidence.told_apart_badly;
+  if (!confidence.confounded_with.empty()) json["told_apart_badly_from"] = confidence.confounded_with;
   return json;
 }
 
@@ -85,7 +85,7 @@ bool at_bound(const FitParameter& parameter, double value) {
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence) {
   if (at_bound(parameter, value)) return "at its range's edge";
   if (!std::isfinite(confidence.deviation)) return "these runs don't show it";
-  if (!confidence.told_apart_badly.empty()) return "hard to tell from " + confidence.told_apart_badly;
+  if (!confidence.confounded_with.empty()) return "hard to tell from " + confidence.confounded_with;
   return "";
 }
 

@@ -175,7 +175,7 @@ class MotorFitRun {
   /// For searches: passes interruptions on, reports nothing.
   work::Progress stopping() {
     return {.told = {}, .interrupted = [this] {
-              if (progress_.over()) stopped_ = true;
+              if (progress_.interrupted_now()) stopped_ = true;
               return stopped_.load();
             }};
   }

@@ -53,7 +53,7 @@ Found search(Method method, const Loss& loss, const std::vector<double>& start, 
   Found best{start, loss(start), 1};
   const Loss watched = [&](const std::vector<double>& point) {
     // Only NLopt's own exceptions can pass through its C core.
-    if (progress.over()) throw nlopt::forced_stop();
+    if (progress.interrupted_now()) throw nlopt::forced_stop();
     const double value = loss(point);
     ++best.evaluations;
     if (value < best.loss) best.loss = value, best.point = point;

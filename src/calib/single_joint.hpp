@@ -12,7 +12,7 @@ namespace pmg::calib {
 
 /// All parameters that a fit can change.
 struct JointModel {
-  sim::ActuatorParameters actuator;
+  model::ActuatorParameters actuator;
   double inertia_scale = 1.0, gravity_scale = 1.0;  ///< of the bench's loads
 };
 

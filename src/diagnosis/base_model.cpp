@@ -33,7 +33,7 @@ constexpr Tolerance kTolerances[] = {
 
 }  // namespace
 
-BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
+BaseModel base_model(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given,
                      const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads) {
   BaseModel base;
   base.model.actuator = given.value_or(bench.known);

@@ -19,7 +19,7 @@ struct BaseModel {
 };
 
 /// given: parameters of motor.yaml. Without them the paper's eta and bench.yaml's unknowns are fitted from scratch.
-BaseModel base_model(const bench::Bench& bench, const std::optional<sim::ActuatorParameters>& given,
+BaseModel base_model(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given,
                      const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads);
 
 }  // namespace pmg::diagnosis

@@ -14,7 +14,7 @@ namespace pmg::diagnosis {
 
 struct DiagnoseOptions {
   std::string fit, score;  ///< filters of runs.csv (bench::RowFilter); with an empty score all runs are fitted
-  std::optional<sim::ActuatorParameters> model;  ///< present model (motor.yaml); without it the basics are fitted
+  std::optional<model::ActuatorParameters> model;  ///< present model (motor.yaml); without it the basics are fitted
   unsigned threads = 1;
   unsigned seed = 1;    ///< of the bootstrap
   double step_s = 0.0;  ///< of the simulation; 0 chooses

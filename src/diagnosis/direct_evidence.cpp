@@ -10,7 +10,7 @@ namespace pmg::diagnosis {
 namespace {
 
 std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks,
-                                           const sim::ActuatorParameters& base, double noise_rms_rad,
+                                           const model::ActuatorParameters& base, double noise_rms_rad,
                                            const JointDiagnosisOptions& options) {
   std::vector<MeasuredCause> found;
   for (const evidence::Signature& check : checks) {
@@ -27,11 +27,11 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
 
 /// True if the base model already contains the effect. A check detects an effect of the joint, not what the model
 /// lacks.
-bool in_base(const std::string& name, const sim::ActuatorParameters& base) {
+bool in_base(const std::string& name, const model::ActuatorParameters& base) {
   const std::vector<std::string>& parameters = effects::effect(name).parameters;
   return std::any_of(parameters.begin(), parameters.end(), [&](const std::string& parameter) {
     if (parameter.starts_with("load.")) return false;
-    const sim::ActuatorParameter& p = sim::actuator_parameter(parameter);
+    const model::ActuatorParameter& p = model::actuator_parameter(parameter);
     return p.value(base) != p.value({});
   });
 }
@@ -44,7 +44,7 @@ bool some_check(const std::vector<evidence::Signature>& checks, const std::strin
 }
 
 std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& checks,
-                                       const sim::ActuatorParameters& base) {
+                                       const model::ActuatorParameters& base) {
   const std::string thermal = "thermal_drift";
   if (!some_check(checks, thermal, evidence::Agreement::kAgrees) || in_base(thermal, base)) return {};
   return {thermal};
@@ -52,7 +52,7 @@ std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& c
 
 /// Effects that are ruled out. Not `load`: its check compares inertia with weight, and a wrong mass changes both alike.
 std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks,
-                                         const sim::ActuatorParameters& base) {
+                                         const model::ActuatorParameters& base) {
   std::vector<std::string> found;
   for (const effects::Effect& one : effects::catalogue()) {
     const bool refuted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
@@ -64,7 +64,7 @@ std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>&
 
 }  // namespace
 
-DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
+DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const model::ActuatorParameters& base,
                                double noise_rms_rad, const JointDiagnosisOptions& options) {
   return {measured_causes(checks, base, noise_rms_rad, options), shown_effects(checks, base),
           refuted_effects(checks, base)};

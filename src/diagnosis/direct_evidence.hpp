@@ -6,7 +6,7 @@
 
 #include "diagnosis/options.hpp"
 #include "evidence/signature.hpp"
-#include "sim/actuator_parameters.hpp"
+#include "model/actuator_parameters.hpp"
 
 namespace pmg::diagnosis {
 
@@ -30,7 +30,7 @@ struct DirectEvidence {
 };
 
 /// noise_rms_rad: deviation of repeats.
-DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const sim::ActuatorParameters& base,
+DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const model::ActuatorParameters& base,
                                double noise_rms_rad, const JointDiagnosisOptions& options);
 
 }  // namespace pmg::diagnosis

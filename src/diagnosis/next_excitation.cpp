@@ -25,7 +25,7 @@ bool are(const std::string& a, const std::string& b, const char* one, const char
 
 /// Dry friction c (1 + a) in one direction and c (1 - a) in the other equals friction c in both and a constant torque
 /// -a c, sliding or sticking, unless c varies with speed, load, temperature or heat.
-bool are_one_torque(const std::string& a, const std::string& b, const sim::ActuatorParameters& model) {
+bool are_one_torque(const std::string& a, const std::string& b, const model::ActuatorParameters& model) {
   const auto& f = model.friction;
   const bool varies = f.stribeck_Nm != 0.0 || f.load_driving != 0.0 || f.load_backdriving != 0.0 ||
                       model.thermal.friction_per_K != 0.0 || model.thermal.friction_per_Nm2_s != 0.0;

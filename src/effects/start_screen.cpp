@@ -27,7 +27,8 @@ StartScreen::StartScreen(const NestedFit& fit, const NestedModel& current)
 
 /// One bounded Gauss-Newton step d of the unknowns that the effect does not set; expected squares
 /// r^T r + 2 g^T d + d^T A d, with g = J^T r and A = J^T J of the current model's Jacobian.
-void StartScreen::follow(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const {
+void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Effect& effect,
+                                 ScreenedStart& start) const {
   start.squares = fitting::sum_of_squares(residuals);
   if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(current_.coordinates.size());
@@ -42,21 +43,21 @@ void StartScreen::follow(const fitting::Residuals& residuals, const Effect& effe
   }
 }
 
-void StartScreen::look(const Effect& effect, const std::vector<double>& values,
-                       std::vector<ScreenedStart>& into) const {
+void StartScreen::screen(const Effect& effect, const std::vector<double>& values,
+                         std::vector<ScreenedStart>& into) const {
   ScreenedStart start{current_.model, 0.0};
   for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
   const fitting::Residuals there = fit_.residuals(start.model);
   if (there.empty()) return;
-  follow(there, effect, start);
+  refit_linearly(there, effect, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  if (values.size() == 1 || effect.name == "load") look_along(effect, values, there, into);
+  if (values.size() == 1 || effect.name == "load") line_search(effect, values, there, into);
 }
 
 /// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
 /// within 0..3. For the load's effect and effects of one parameter, in which rollouts are nearly linear.
-void StartScreen::look_along(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
-                             std::vector<ScreenedStart>& into) const {
+void StartScreen::line_search(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
+                              std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
   for (std::size_t i = 0; i < there.size(); ++i) {
     const Eigen::VectorXd direction = there[i] - residuals_[i];
@@ -74,14 +75,14 @@ void StartScreen::look_along(const Effect& effect, const std::vector<double>& va
   }
   fitting::Residuals moved = there;
   for (std::size_t i = 0; i < there.size(); ++i) moved[i] = residuals_[i] + share * (there[i] - residuals_[i]);
-  follow(moved, effect, scaled);
+  refit_linearly(moved, effect, scaled);
   if (std::isfinite(scaled.squares)) into.push_back(scaled);
 }
 
 /// The response to a small wave over the joint's angle is linear in its sine and cosine parts: two rollouts give the
 /// least-squares amplitude and phase (2 x 2 normal equations).
-void StartScreen::look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase,
-                               double height, const calib::JointModel& flat, std::vector<ScreenedStart>& into) const {
+void StartScreen::screen_wave(const Effect& effect, const std::string& amplitude, const std::string& phase,
+                              double height, const calib::JointModel& flat, std::vector<ScreenedStart>& into) const {
   ScreenedStart start{flat, 0.0};
   calib::set(start.model, amplitude, height);
   calib::set(start.model, phase, 0.0);
@@ -110,7 +111,7 @@ void StartScreen::look_at_wave(const Effect& effect, const std::string& amplitud
   }
   calib::set(start.model, amplitude, height * std::min(share.norm(), 10.0));
   calib::set(start.model, phase, std::atan2(share[1], share[0]));
-  follow(moved, effect, start);
+  refit_linearly(moved, effect, start);
   if (std::isfinite(start.squares)) into.push_back(start);
 }
 
@@ -120,12 +121,11 @@ std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchSc
     if (effect.name == "cogging") {
       calib::JointModel flat = current_.model;
       flat.actuator.ripple.order = values[1];
-      look_at_wave(effect, "ripple.amplitude_Nm", "ripple.phase_rad", values[0], flat, found);
+      screen_wave(effect, "ripple.amplitude_Nm", "ripple.phase_rad", values[0], flat, found);
     } else if (effect.name == "eccentricity") {
-      look_at_wave(effect, "sensor.eccentricity_rad", "sensor.eccentricity_phase_rad", values[0], current_.model,
-                   found);
+      screen_wave(effect, "sensor.eccentricity_rad", "sensor.eccentricity_phase_rad", values[0], current_.model, found);
     } else {
-      look(effect, values, found);
+      screen(effect, values, found);
     }
   }
   std::stable_sort(found.begin(), found.end(),

@@ -25,12 +25,12 @@ class StartScreen {
   const RolloutJacobian& jacobian() const { return jacobian_; }
 
  private:
-  void look(const Effect& effect, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
-  void look_along(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
-                  std::vector<ScreenedStart>& into) const;
-  void look_at_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
-                    const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
-  void follow(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const;
+  void screen(const Effect& effect, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
+  void line_search(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
+                   std::vector<ScreenedStart>& into) const;
+  void screen_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
+                   const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
+  void refit_linearly(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const;
 
   const NestedFit& fit_;
   const NestedModel& current_;

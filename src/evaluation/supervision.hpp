@@ -8,7 +8,7 @@ namespace pmg::evaluation {
 struct Supervision {
   int jobs = 1;  ///< threads
   work::Progress progress{};
-  bool over() const { return progress.over(); }
+  bool interrupted_now() const { return progress.interrupted_now(); }
 };
 
 /// Calls work(i) for every i below count (work/parallel.hpp).

@@ -67,7 +67,7 @@ struct Errand {
 sim::ActuatorsByJoint told(sim::ActuatorsByJoint motors, const model::RobotModel& robot, const Gains& policy,
                            const Gains& gains) {
   for (const int joint : policy_joints(robot)) {
-    sim::ActuatorParameters& p = motors[robot.joint_index.name(joint)];
+    model::ActuatorParameters& p = motors[robot.joint_index.name(joint)];
     p.drive.kp_scale *= gains.kp_Nm_per_rad[joint] / policy.kp_Nm_per_rad[joint];
     p.drive.kd_scale *= gains.kd_Nm_s_per_rad[joint] / policy.kd_Nm_s_per_rad[joint];
   }
@@ -111,7 +111,7 @@ void calibrate(Table2& table, const model::RobotModel& robot, const Gains& gains
     plant.offsets = calibrated_offsets(plant.truth, robot, place, number, supervision.progress.interrupted);
     plant.worst_offset_rad = worst_offset_rad(corrected(plant.truth, plant.offsets));
   });
-  if (supervision.over()) table.complete = false;
+  if (supervision.interrupted_now()) table.complete = false;
 }
 
 /// Every walk of the table: three kinds of robot per plant, three kinds of simulation.
@@ -277,7 +277,7 @@ void run_table2(Table2& table, const std::filesystem::path& folder, const Superv
     errands[e].walk->complete = trial.complete;
     errands[e].walk->fell = trial.fell;
   });
-  table.complete = !supervision.over();
+  table.complete = !supervision.interrupted_now();
   if (table.complete) summarise(table, walks);
 }
 

@@ -55,7 +55,7 @@ bench::Recording excitation(int number) {
   return recording;
 }
 
-std::vector<calib::SingleJoint> record(const bench::Bench& bench, const sim::ActuatorParameters& truth,
+std::vector<calib::SingleJoint> record(const bench::Bench& bench, const model::ActuatorParameters& truth,
                                        const model::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
   sim::NormalSource noise(seed);
   calib::JointModel plant;
@@ -133,7 +133,7 @@ sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotMo
   sim::ActuatorsByJoint plant;
   for (const model::Joint& joint : robot.joints) {
     if (!joint.policy) continue;
-    sim::ActuatorParameters& p = plant[joint.name];
+    model::ActuatorParameters& p = plant[joint.name];
     p.command.delay_s = delay_s;
     p.drive.kp_scale = draw(ranges.kp_factor, random);
     p.drive.kd_scale = draw(ranges.kd_factor, random);

@@ -50,7 +50,7 @@ TermEstimate ClusterRegression::term(const Eigen::VectorXd& column) const {
   const double spare = std::max(1.0, static_cast<double>(clusters_count_ - basis_.cols() - 1));
   found.deviation = std::sqrt(sums.squaredNorm() * static_cast<double>(clusters_count_) / spare) / squares;
   found.share = rms_ > 0.0 ? std::abs(found.coefficient) * rms(own) / rms_ : 0.0;
-  found.share_sure = rms_ > 0.0 ? (std::abs(found.coefficient) + 2.0 * found.deviation) * rms(own) / rms_ : 0.0;
+  found.share_upper = rms_ > 0.0 ? (std::abs(found.coefficient) + 2.0 * found.deviation) * rms(own) / rms_ : 0.0;
   return found;
 }
 

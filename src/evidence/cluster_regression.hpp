@@ -14,9 +14,9 @@ struct TermEstimate {
   /// 1986).
   double coefficient = 0.0, deviation = 0.0;
   double t() const { return deviation > 0.0 ? coefficient / deviation : 0.0; }
-  double share = 0.0;       ///< |b| rms(u) / rms(y)
-  double share_sure = 0.0;  ///< upper bound of share: (|b| + 2 deviations) rms(u) / rms(y)
-  double own = 0.0;         ///< rms(u) / rms(column): 0 for a linear combination of the other columns
+  double share = 0.0;        ///< |b| rms(u) / rms(y)
+  double share_upper = 0.0;  ///< upper bound of share: (|b| + 2 deviations) rms(u) / rms(y)
+  double own = 0.0;          ///< rms(u) / rms(column): 0 for a linear combination of the other columns
 };
 
 /// y = columns * coefficients + error. A column is left out if a linear combination of the columns before it leaves at

@@ -73,7 +73,7 @@ class BalanceChecks {
     const bool sure = must_be_positive ? e.t() > options_.sure_deviations : std::abs(e.t()) > options_.sure_deviations;
     if (sure && e.share > worth_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (e.share_sure < options_.disagrees_share * worth_share) {
+    } else if (e.share_upper < options_.disagrees_share * worth_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("{}: {:.3g} {} (deviation {:.2g}), {:.2f} % of the drive", what, e.coefficient, unit,
@@ -170,7 +170,7 @@ class BalanceChecks {
     for (double limit_rad = 0.003; limit_rad < 0.1; limit_rad *= 1.35) {
       const TermEstimate e = base.term(balance_.integral(
           [limit_rad](const BalancePoint& p) { return std::abs(p.error_rad) < limit_rad ? p.error_drive : 0.0; }));
-      if (std::abs(e.coefficient - 1.0) < 0.5) largest_share = std::max(largest_share, e.share_sure);
+      if (std::abs(e.coefficient - 1.0) < 0.5) largest_share = std::max(largest_share, e.share_upper);
       if (e.t() > surest_t) surest_t = e.t(), band_rad = limit_rad, surest = e;
     }
     Signature s{
@@ -265,7 +265,7 @@ class BalanceChecks {
                 ""};
     if (std::abs(e.t()) > options_.sure_deviations && e.share > options_.friction_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (std::max(friction.share_sure, load.share_sure) < options_.disagrees_share * options_.friction_share) {
+    } else if (std::max(friction.share_upper, load.share_upper) < options_.disagrees_share * options_.friction_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence =

@@ -163,7 +163,7 @@ Minimum gauss_newton(const Problem& problem, Eigen::VectorXd x, const GaussNewto
   best.squares = sum_of_squares(residuals);
   if (residuals.empty() || best.x.size() == 0) return best;
   double damping = kFirstDamping;
-  for (int iteration = 0; iteration < options.most_iterations && !progress.over(); ++iteration) {
+  for (int iteration = 0; iteration < options.most_iterations && !progress.interrupted_now(); ++iteration) {
     const Jacobian slopes = jacobian(counted, best.x, residuals);
     NormalEquations sum = prior(problem.coordinates, best.x, problem.prior_weight);
     const double before = best.squares + sum.squares;
@@ -173,7 +173,7 @@ Minimum gauss_newton(const Problem& problem, Eigen::VectorXd x, const GaussNewto
     }
     const Coordinates near = within_reach(problem.coordinates, best.x, options.longest_step);
     double now = before;
-    for (int attempt = 0; attempt < options.most_tries && !progress.over(); ++attempt) {
+    for (int attempt = 0; attempt < options.most_tries && !progress.interrupted_now(); ++attempt) {
       const Eigen::VectorXd there = best.x + bounded_step(sum.information, sum.gradient, near, best.x, damping);
       Residuals reached = counted.residuals(there);
       const double squares = sum_of_squares(reached);

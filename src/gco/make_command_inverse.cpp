@@ -142,7 +142,7 @@ CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLi
     }
     const bool rest = command[kVx] == 0.0 && command[kVy] == 0.0 && command[kOmega] == 0.0;
     if (!rest) correction[i] = correction_at(robot, within_reach(robot, library.blend, command), measurement);
-    progress.go_on(static_cast<double>(i + 1) / static_cast<double>(nodes));
+    progress.report_or_throw(static_cast<double>(i + 1) / static_cast<double>(nodes));
   }
   return {axis, correction};
 }

@@ -333,7 +333,7 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const wo
     options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
-    if (progress.over()) throw work::Interrupted();
+    if (progress.interrupted_now()) throw work::Interrupted();
     solution.cost = summary.final_cost;
     solution.iterations += static_cast<int>(summary.iterations.size());
     solution.legs = sample_legs(legs, task.symmetric, table);

@@ -135,11 +135,11 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners, const 
   library.q_upper = robot.q_upper();
   library.mirror = robot.mirror;
 
-  progress.go_on(work::kUnknownShare, "making bend");
+  progress.report_or_throw(work::kUnknownShare, "making bend");
   making.posture[0] = make_bend(robot, roles, making.legs);
-  progress.go_on(work::kUnknownShare, "making lean");
+  progress.report_or_throw(work::kUnknownShare, "making lean");
   making.posture[1] = make_lean(robot, roles, making.legs);
-  progress.go_on(work::kUnknownShare, "making squat");
+  progress.report_or_throw(work::kUnknownShare, "making squat");
   making.posture[2] = make_squat(robot, roles, making.legs);
   library.posture = making.posture;
 

@@ -102,7 +102,7 @@ class RobotDiagnosisRun {
                                        [](std::size_t n, const RobotRecording& r) { return n + r.ticks.size(); });
     for (const RobotRecording& recording : recordings) take(recording, static_cast<double>(total));
     result_.ground = ground_friction(equations_, samples_, robot_.total_mass_kg * kGravity_m_s2, options_.ground);
-    conclude(weigh(blocks_, equations_.kinds(), list_, options_.evidence));
+    conclude(find_causes(blocks_, equations_.kinds(), list_, options_.evidence));
     return std::move(result_);
   }
 
@@ -133,7 +133,7 @@ class RobotDiagnosisRun {
         for (RobotRow& row : equations_.rows(samples[i], support)) blocks_.back().rows.push_back(std::move(row));
       }
       done_ticks_ += kSample_s / recording.period_s;
-      if (i % 20 == 0) progress_.go_on(0.9 * std::min(done_ticks_ / total_ticks, 1.0));
+      if (i % 20 == 0) progress_.report_or_throw(0.9 * std::min(done_ticks_ / total_ticks, 1.0));
     }
     const std::vector<RobotSample> all =
         robot_samples(recording, {.ticks_per_sample = 1, .specific_force_I = forces_I});  // a slip is short

@@ -226,8 +226,8 @@ class CauseSearch {
 
 }  // namespace
 
-RobotEvidence weigh(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
-                    const EvidenceOptions& options) {
+RobotEvidence find_causes(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
+                          const EvidenceOptions& options) {
   return CauseSearch(std::move(blocks), kinds, list, options).run();
 }
 

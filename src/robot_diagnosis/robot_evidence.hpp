@@ -32,7 +32,7 @@ struct RobotEvidence {
 };
 
 /// (blocks of rows, number of kinds, parameters) => (evidence). Throws std::runtime_error if there are no rows.
-RobotEvidence weigh(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
-                    const EvidenceOptions& options = {});
+RobotEvidence find_causes(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list,
+                          const EvidenceOptions& options = {});
 
 }  // namespace pmg::robot_diagnosis

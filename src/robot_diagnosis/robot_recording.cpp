@@ -203,7 +203,7 @@ RobotRecording play(sim::World& world, std::span<const model::JointCommand> comm
     if (world.diverged()) throw std::runtime_error(fmt::format("{}: the simulation diverged at {} s", name, tick.t_s));
     const std::size_t done = recording.ticks.size();
     if (done % kTicksPerReport == 0)
-      progress.go_on(static_cast<double>(done) / static_cast<double>(commands.size()), name + " excitation");
+      progress.report_or_throw(static_cast<double>(done) / static_cast<double>(commands.size()), name + " excitation");
   }
   return recording;
 }

@@ -16,7 +16,7 @@ void expect(bool holds, const char* text) {
 
 }  // namespace
 
-ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s)
+ActuatorModel::ActuatorModel(const model::ActuatorParameters& parameters, double step_s)
     : parameters_(parameters),
       step_s_(step_s),
       elastic_(std::isfinite(parameters.transmission.stiffness_Nm_per_rad)),
@@ -26,7 +26,7 @@ ActuatorModel::ActuatorModel(const ActuatorParameters& parameters, double step_s
       rate_limited_(std::isfinite(parameters.command.rate_limit_rad_s)),
       torque_speed_(std::isfinite(parameters.drive.stall_torque_Nm)),
       load_dependent_(parameters.friction.load_driving != 0.0 || parameters.friction.load_backdriving != 0.0),
-      thermal_(parameters.thermal != ActuatorParameters::Thermal{}) {
+      thermal_(parameters.thermal != model::ActuatorParameters::Thermal{}) {
   expect(step_s > 0.0, "an actuator's step isn't above 0");
   const auto& [command, drive, sensor, transmission, friction, thermal, ripple] = parameters_;
   if (command.delay_s < 0.0 || command.delay_s > kDelaySteps * step_s) {
@@ -59,7 +59,7 @@ void ActuatorModel::reset(double q_rad) noexcept {
   given_ = {};
   given_at_rad_s_ = 0.0;
   heat_Nm2_s_ = drive_Nm_ = 0.0;
-  temperature_C_ = kReferenceTemperature_C;
+  temperature_C_ = model::kReferenceTemperature_C;
   friction_factor_ = torque_factor_ = 1.0;
 }
 
@@ -95,7 +95,7 @@ double ActuatorModel::followed(double q_rad) const noexcept {
 }
 
 double ActuatorModel::reading_rad(double q_rad) const {
-  const ActuatorParameters::Sensor& p = parameters_.sensor;
+  const model::ActuatorParameters::Sensor& p = parameters_.sensor;
   const double seen_rad = followed(q_rad);
   double reading = seen_rad + p.zero_offset_rad;
   if (p.eccentricity_rad != 0.0) reading += p.eccentricity_rad * std::sin(seen_rad + p.eccentricity_phase_rad);
@@ -104,7 +104,7 @@ double ActuatorModel::reading_rad(double q_rad) const {
 }
 
 /// Solves q + e sin(q + phase) = reading - offset by Newton's method; |e| < 1, so the slope is above 0.
-double ActuatorModel::joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad) {
+double ActuatorModel::joint_rad(const model::ActuatorParameters::Sensor& sensor, double reading_rad) {
   const double shown_rad = reading_rad - sensor.zero_offset_rad;
   if (sensor.eccentricity_rad == 0.0) return shown_rad;
   double q_rad = shown_rad;
@@ -162,7 +162,7 @@ double ActuatorModel::sensed_velocity(double dq_rad_s) noexcept {
 }
 
 ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
-  const ActuatorParameters::Drive& p = parameters_.drive;
+  const model::ActuatorParameters::Drive& p = parameters_.drive;
   Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward};
   if (delaying_) told = delayed(told);
   command_rad_ = rate_limited_ ? limited(told.q_rad) : told.q_rad;
@@ -185,7 +185,7 @@ double ActuatorModel::sag(double full_Nm) const noexcept {
 
 ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, double q_sensed_rad, double dq_sensed_rad_s,
                                            double dq_rad_s) noexcept {
-  const ActuatorParameters::Drive& p = parameters_.drive;
+  const model::ActuatorParameters::Drive& p = parameters_.drive;
   double per_unit_Nm = p.torque_per_unit_Nm * torque_factor_;
   const double kd = p.kd_scale * told.kd;
   bool follows_speed = !lagging_ && !velocity_lagging_;
@@ -217,7 +217,7 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
 ///   (coulomb + stribeck exp(-(dq / stribeck_rad_s)^2) + load factor |torque through the gear|)
 ///   * thermal factor * (1 + asymmetry direction).
 double ActuatorModel::most_dry_friction_Nm(double dq_rad_s, double direction) const noexcept {
-  const ActuatorParameters::Friction& p = parameters_.friction;
+  const model::ActuatorParameters::Friction& p = parameters_.friction;
   double most_Nm = p.coulomb_Nm;
   if (p.stribeck_Nm != 0.0) {
     const double ratio = dq_rad_s / p.stribeck_rad_s;
@@ -242,7 +242,7 @@ ActuatorModel::Line ActuatorModel::dry_friction(double dq_rad_s) const noexcept 
 
 /// offset + amplitude sin(order q + phase).
 double ActuatorModel::ripple_Nm(double motor_rad) const noexcept {
-  const ActuatorParameters::Ripple& p = parameters_.ripple;
+  const model::ActuatorParameters::Ripple& p = parameters_.ripple;
   if (p.amplitude_Nm == 0.0) return p.offset_Nm;
   return p.offset_Nm + p.amplitude_Nm * std::sin(p.order * motor_rad + p.phase_rad);
 }
@@ -252,12 +252,12 @@ double ActuatorModel::ripple_Nm(double motor_rad) const noexcept {
 ///   friction factor = exp(friction_per_K (T - 25 degC) + friction_per_Nm2_s H),
 ///   torque factor = 1 + torque_per_K (T - 25 degC), at least 0.
 void ActuatorModel::warm(double temperature_C) noexcept {
-  const ActuatorParameters::Thermal& p = parameters_.thermal;
+  const model::ActuatorParameters::Thermal& p = parameters_.thermal;
   const bool heats = p.friction_per_Nm2_s != 0.0;
   if (!heats && temperature_C == temperature_C_) return;  // exp() only when the reading changes, not in every step
   if (heats) heat_Nm2_s_ += step_s_ * (drive_Nm_ * drive_Nm_ - heat_Nm2_s_ / p.cooling_s);
   temperature_C_ = temperature_C;
-  const double above_K = temperature_C - kReferenceTemperature_C;
+  const double above_K = temperature_C - model::kReferenceTemperature_C;
   friction_factor_ = std::exp(p.friction_per_K * above_K + p.friction_per_Nm2_s * heat_Nm2_s_);
   torque_factor_ = std::max(0.0, 1.0 + p.torque_per_K * above_K);
 }
@@ -290,7 +290,7 @@ ActuatorTorque ActuatorModel::step(const ActuatorInput& input, double q_rad, dou
 /// Then the shaft's torque at w' acts on the joint. Both are implicit in their own speed, so a stiff shaft stays
 /// stable.
 ActuatorTorque ActuatorModel::elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept {
-  const ActuatorParameters::Transmission& p = parameters_.transmission;
+  const model::ActuatorParameters::Transmission& p = parameters_.transmission;
   const double half_play_rad = 0.5 * p.backlash_rad;
   const auto wound_rad = [&](double twist_rad) {
     return twist_rad - std::clamp(twist_rad, -half_play_rad, half_play_rad);

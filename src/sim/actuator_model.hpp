@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "sim/actuator_parameters.hpp"
+#include "model/actuator_parameters.hpp"
 
 namespace pmg::sim {
 
@@ -14,7 +14,7 @@ struct ActuatorInput {
   double feed_forward = 0.0;  ///< [unit of output]
   double supply = 1.0;        ///< bus voltage of a voltage servo
   bool enabled = true;
-  double temperature_C = kReferenceTemperature_C;  ///< of gear and winding
+  double temperature_C = model::kReferenceTemperature_C;  ///< of gear and winding
 };
 
 /// Torque at the joint as a line in the joint's speed. The integrator takes the slope implicitly, as MuJoCo's
@@ -31,7 +31,7 @@ class ActuatorModel {
   static constexpr int kDelaySteps = 128;  ///< the longest delay, in steps
 
   /// Throws std::invalid_argument if the delay is longer than kDelaySteps or a value makes no sense.
-  ActuatorModel(const ActuatorParameters& parameters, double step_s);
+  ActuatorModel(const model::ActuatorParameters& parameters, double step_s);
 
   /// At rest at q_rad. Commands before the first step count as equal to its input, but with the joint's reading as
   /// position.
@@ -53,13 +53,13 @@ class ActuatorModel {
   double reading_rad(double q_rad) const;
 
   /// Inverse of reading_rad without quantum, for a joint in the middle of the sensor's hysteresis [rad].
-  static double joint_rad(const ActuatorParameters::Sensor& sensor, double reading_rad);
+  static double joint_rad(const model::ActuatorParameters::Sensor& sensor, double reading_rad);
 
   /// Torque of the drive itself at the beginning of the step, before friction and gear: a drive derives it from its
   /// current.
   double drive_torque_Nm() const { return drive_Nm_; }
 
-  const ActuatorParameters& parameters() const { return parameters_; }
+  const model::ActuatorParameters& parameters() const { return parameters_; }
 
  private:
   struct Line {  // torque as a line in the motor's speed, see ActuatorTorque
@@ -83,7 +83,7 @@ class ActuatorModel {
   void warm(double temperature_C) noexcept;
   ActuatorTorque elastic(const Line& motor, double q_rad, double dq_rad_s) noexcept;
 
-  ActuatorParameters parameters_;
+  model::ActuatorParameters parameters_;
   double step_s_;
   bool elastic_, lagging_, velocity_lagging_, delaying_, rate_limited_, torque_speed_, load_dependent_, thermal_;
 
@@ -95,7 +95,7 @@ class ActuatorModel {
   double lagged_rad_ = 0.0, sensed_before_rad_ = 0.0, lagged_rad_s_ = 0.0;
   double sensor_rad_ = 0.0;  // angle of the sensor's side of its play
   double heat_Nm2_s_ = 0.0, drive_Nm_ = 0.0;
-  double temperature_C_ = kReferenceTemperature_C;
+  double temperature_C_ = model::kReferenceTemperature_C;
   double friction_factor_ = 1.0, torque_factor_ = 1.0;
   double bristle_rad_ = 0.0;
   double load_Nm_ = 0.0;  // through the gear, in the step before

@@ -12,16 +12,16 @@ namespace pmg::sim {
 namespace {
 
 /// Reads the groups in the table's order, in which the keys of a group are neighbours.
-ActuatorParameters read_actuator(files::ConfigReader& joint) {
-  ActuatorParameters parameters;
-  const auto table = actuator_parameters();
+model::ActuatorParameters read_actuator(files::ConfigReader& joint) {
+  model::ActuatorParameters parameters;
+  const auto table = model::actuator_parameters();
   for (std::size_t i = 0; i < table.size();) {
     const std::string group(table[i].group());
     const bool there = joint.has(group);
     std::optional<files::ConfigReader> reader;
     if (there) reader = joint.map(group);
     for (; i < table.size() && table[i].group() == group; ++i) {
-      const ActuatorParameter& p = table[i];
+      const model::ActuatorParameter& p = table[i];
       if (!reader || !reader->has(std::string(p.key()))) {
         if (reader) reader->optional<double>(std::string(p.key()), 0.0);
         continue;
@@ -46,7 +46,7 @@ ActuatorsByJoint read_motor_file(const std::filesystem::path& file) {
   files::ConfigReader joints = reader.map("joints");
   for (const std::string& name : joints.keys()) {
     files::ConfigReader joint = joints.map(name);
-    const ActuatorParameters parameters = read_actuator(joint);
+    const model::ActuatorParameters parameters = read_actuator(joint);
     try {
       ActuatorModel(parameters, model::kBusPeriod_s);
     } catch (const std::invalid_argument& error) {
@@ -75,11 +75,11 @@ std::string motor_yaml(const ActuatorsByJoint& actuators, const std::vector<std:
   std::string text;
   for (const std::string& remark : remarks) text += fmt::format("# {}\n", remark);
   text += "joints:\n";
-  ActuatorParameters neutral;
+  model::ActuatorParameters neutral;
   for (const auto& [name, parameters] : actuators) {
     text += fmt::format("  {}:{}\n", name, parameters == neutral ? " {}" : "");
     std::string_view group;
-    for (const ActuatorParameter& p : actuator_parameters()) {
+    for (const model::ActuatorParameter& p : model::actuator_parameters()) {
       if (p.value(parameters) == p.value(neutral)) continue;
       if (p.group() != group) text += fmt::format("    {}:\n", p.group());
       group = p.group();

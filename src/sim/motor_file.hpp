@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "model/actuator_parameters.hpp"
 #include "model/joint_index.hpp"
-#include "sim/actuator_parameters.hpp"
 
 namespace pmg::sim {
 
 /// Actuators by joint name. Parameters that a file doesn't give are neutral.
-using ActuatorsByJoint = std::map<std::string, ActuatorParameters>;
+using ActuatorsByJoint = std::map<std::string, model::ActuatorParameters>;
 
 /// Throws files::ConfigError with file, line and column on unknown groups and keys, and on numbers that make no sense.
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file);

@@ -14,12 +14,12 @@ ActuatorsByJoint motors_in_force(const model::RobotModel& robot, const std::file
   return read_motor_file(robot.directory / reader.required<std::string>("motor"), robot.joint_index);
 }
 
-ActuatorParameters actuator_in_force(const model::Joint& joint, const ActuatorsByJoint& motors) {
+model::ActuatorParameters actuator_in_force(const model::Joint& joint, const ActuatorsByJoint& motors) {
   const auto named = motors.find(joint.name);
-  ActuatorParameters actuator = named == motors.end() ? ActuatorParameters{} : named->second;
+  model::ActuatorParameters actuator = named == motors.end() ? model::ActuatorParameters{} : named->second;
   if (!std::isfinite(actuator.drive.limit)) actuator.drive.limit = joint.effort_limit_Nm;
   if (actuator.transmission.armature_kg_m2 == 0.0) actuator.transmission.armature_kg_m2 = joint.armature_kg_m2;
-  if (actuator.friction == ActuatorParameters::Friction{}) {
+  if (actuator.friction == model::ActuatorParameters::Friction{}) {
     actuator.friction.coulomb_Nm = joint.friction_Nm;
     actuator.friction.viscous_Nm_s_per_rad = joint.damping_Nm_s_per_rad;
   }

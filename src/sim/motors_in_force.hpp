@@ -16,6 +16,6 @@ ActuatorsByJoint motors_in_force(const model::RobotModel& robot, const std::file
 /// robot.yaml: an infinite drive.limit becomes the effort limit, an armature of zero the joint's armature_kg_m2, and
 /// friction that is all neutral the joint's friction_Nm (Coulomb) and damping_Nm_s_per_rad (viscous). Gains come with
 /// each command.
-ActuatorParameters actuator_in_force(const model::Joint& joint, const ActuatorsByJoint& motors);
+model::ActuatorParameters actuator_in_force(const model::Joint& joint, const ActuatorsByJoint& motors);
 
 }  // namespace pmg::sim

@@ -131,11 +131,11 @@ void expect_joints(const Variation& variation, const model::RobotModel& robot) {
   expect_size(variation.encoder_offset_rad, robot, "encoder_offset_rad");
 }
 
-ActuatorParameters varied(ActuatorParameters actuator, const Variation& variation, Eigen::Index joint) {
+model::ActuatorParameters varied(model::ActuatorParameters actuator, const Variation& variation, Eigen::Index joint) {
   actuator.drive.kp_scale *= factor(variation.kp_factor, joint);
   actuator.drive.kd_scale *= factor(variation.kd_factor, joint);
   actuator.transmission.armature_kg_m2 *= factor(variation.armature_factor, joint);
-  ActuatorParameters::Friction& friction = actuator.friction;
+  model::ActuatorParameters::Friction& friction = actuator.friction;
   for (double* dry : {&friction.coulomb_Nm, &friction.stribeck_Nm, &friction.load_driving, &friction.load_backdriving})
     *dry *= factor(variation.joint_friction_factor, joint);
   if (variation.encoder_offset_rad.size() > 0) actuator.sensor.zero_offset_rad += variation.encoder_offset_rad[joint];

@@ -8,9 +8,9 @@
 #include <map>
 #include <string>
 
+#include "model/actuator_parameters.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
-#include "sim/actuator_parameters.hpp"
 #include "sim/variation_ranges.hpp"
 
 namespace pmg::sim {
@@ -44,7 +44,7 @@ void expect_joints(const Variation& variation, const model::RobotModel& robot);
 
 /// The joint's actuator with its variation: gains, rotor inertia and dry friction times their factors, plus the
 /// encoder's offset.
-ActuatorParameters varied(ActuatorParameters actuator, const Variation& variation, Eigen::Index joint);
+model::ActuatorParameters varied(model::ActuatorParameters actuator, const Variation& variation, Eigen::Index joint);
 
 /// Writes masses and inertias into a compiled model and updates MuJoCo's derived constants. data is scratch: reset it
 /// afterwards. Throws std::invalid_argument for a link that the model doesn't have.

@@ -94,7 +94,7 @@ struct World::Impl {
   void make_motors(const model::RobotModel& robot) {
     expect_joints(options.variation, robot);
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const ActuatorParameters actuator = actuator_in_force(robot.joints[j], options.motors);
+      const model::ActuatorParameters actuator = actuator_in_force(robot.joints[j], options.motors);
       motors.emplace_back(varied(actuator, options.variation, static_cast<Eigen::Index>(j)), options.timestep_s);
       hand_over(model.get(), static_cast<int>(j), motors.back());
     }

@@ -30,7 +30,7 @@ void for_each_in_parallel(std::size_t count, unsigned threads, const Work& work,
   };
   tell();
   const auto take_turns = [&] {
-    for (std::size_t i = next++; i < count && !progress.over(); i = next++) {
+    for (std::size_t i = next++; i < count && !progress.interrupted_now(); i = next++) {
       try {
         work(i);
       } catch (...) {

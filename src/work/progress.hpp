@@ -24,14 +24,14 @@ struct Progress {
   /// True: end the work and keep the partial result. Called from any thread, at any time.
   std::function<bool()> interrupted{};
 
-  bool over() const { return interrupted && interrupted(); }
+  bool interrupted_now() const { return interrupted && interrupted(); }
   /// Reports; returns true to go on.
   bool operator()(double share, std::string_view doing = {}) const {
     if (told) told(share, doing);
-    return !over();
+    return !interrupted_now();
   }
   /// Reports; throws Interrupted if interrupted.
-  void go_on(double share, std::string_view doing = {}) const {
+  void report_or_throw(double share, std::string_view doing = {}) const {
     if (!(*this)(share, doing)) throw Interrupted();
   }
 };

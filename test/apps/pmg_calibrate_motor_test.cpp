@@ -54,7 +54,7 @@ TEST_F(PmgCalibrateMotor, WritesAMotorThatTheSimulationReads) {
   EXPECT_EQ(json["score"]["runs"], 1);
   EXPECT_LT(json["score"]["error_after"]["mean_absolute"], 0.002) << "the noise alone makes 0.8 mrad";
   const sim::ActuatorsByJoint motors = sim::read_motor_file(out_ / "motor.yaml");
-  const sim::ActuatorParameters& found = motors.at("servo");
+  const model::ActuatorParameters& found = motors.at("servo");
   EXPECT_NEAR(found.drive.kp_scale, 0.8, 0.03);
   EXPECT_NEAR(found.friction.coulomb_Nm, 0.3, 0.02);
   EXPECT_EQ(found.friction.coulomb_Nm, json["parameters"]["friction.coulomb_Nm"]["value"]);
@@ -83,7 +83,7 @@ TEST_F(PmgCalibrateMotor, RefusesBadInputInOneLineAndWritesNothing) {
   fs::remove(folder_ / "servo" / "runs" / "run2.csv");
   const Finished done = run({});
   EXPECT_EQ(done.exit_code, 2);
-  EXPECT_THAT(done.err, AllOf(HasSubstr("run2.csv"), HasSubstr("cannot be read")));
+  EXPECT_THAT(done.err, AllOf(HasSubstr("run2.csv"), HasSubstr("there is no such file")));
   EXPECT_FALSE(fs::exists(out_));
 }
 
@@ -127,7 +127,7 @@ TEST_F(PmgCalibrateMotor, AnswersWithThePublishedParametersWhereTheDriveWasRecor
   test::RunningProgram program("pmg_calibrate_motor",
                                {emps.string(), "--joint", "axis", "--out", out_.string(), "--threads", "2"}, folder_);
   ASSERT_EQ(program.wait(), 0) << program.err();
-  const sim::ActuatorParameters found = sim::read_motor_file(out_ / "motor.yaml").at("axis");
+  const model::ActuatorParameters found = sim::read_motor_file(out_ / "motor.yaml").at("axis");
   EXPECT_NEAR(found.transmission.armature_kg_m2 / 95.1, 1.0, 0.03);
   EXPECT_NEAR(found.friction.viscous_Nm_s_per_rad / 203.5, 1.0, 0.03);
   EXPECT_NEAR(found.friction.coulomb_Nm / 20.4, 1.0, 0.03);

@@ -37,6 +37,11 @@ class PmgController : public testing::Test {
   fs::path log_file() const { return folder_ / "log/log-0000.lcm"; }
   std::vector<std::string> arguments(std::vector<std::string> more) const {
     std::vector<std::string> all = {"--hal", "sil", "--gantry", "--lcm-url", "memq://"};
+    // Another test may run a controller beside this one, and of one name only one runs.
+    if (std::ranges::find(more, "--name") == more.end()) {
+      all.push_back("--name");
+      all.push_back("tested_" + std::to_string(getpid()));
+    }
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

@@ -42,13 +42,14 @@ class RobotBench : public testing::Test {
 /// A joint, and its motor in the simulation: a motor.yaml's, or robot.yaml's alone.
 struct Known {
   const char* joint;
-  sim::ActuatorParameters of_motor_yaml;  // neutral: no motor.yaml
-  std::vector<std::string> excitation;    // options of --make-excitation
+  model::ActuatorParameters of_motor_yaml;  // neutral: no motor.yaml
+  std::vector<std::string> excitation;      // options of --make-excitation
 };
 std::ostream& operator<<(std::ostream& out, const Known& known) { return out << known.joint; }
 
-sim::ActuatorParameters motor(double kp_scale, double kd_scale, double armature_kg_m2, double viscous, double coulomb) {
-  sim::ActuatorParameters p;
+model::ActuatorParameters motor(double kp_scale, double kd_scale, double armature_kg_m2, double viscous,
+                                double coulomb) {
+  model::ActuatorParameters p;
   p.drive.kp_scale = kp_scale, p.drive.kd_scale = kd_scale;
   p.transmission.armature_kg_m2 = armature_kg_m2;
   p.friction.viscous_Nm_s_per_rad = viscous, p.friction.coulomb_Nm = coulomb;
@@ -63,11 +64,11 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   const Known known = GetParam();
   const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(robot.joint_index.at(known.joint))];
-  const sim::ActuatorParameters truth = sim::actuator_in_force(joint, {{known.joint, known.of_motor_yaml}});
+  const model::ActuatorParameters truth = sim::actuator_in_force(joint, {{known.joint, known.of_motor_yaml}});
   excitation(known.joint, known.excitation);
   std::vector<std::string> arguments = {"--robot",        "z1",    "--bench",     known.joint, "--excitation",
                                         at("excitation"), "--out", at("recorded")};
-  if (known.of_motor_yaml != sim::ActuatorParameters{}) {
+  if (known.of_motor_yaml != model::ActuatorParameters{}) {
     std::ofstream(at("motor.yaml")) << sim::motor_yaml({{known.joint, truth}});
     arguments.insert(arguments.end(), {"--motor", at("motor.yaml")});
   }
@@ -78,7 +79,7 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
       << err_;
   const sim::ActuatorsByJoint motors = sim::read_motor_file(at("fit/motor.yaml"));
   ASSERT_TRUE(motors.contains(known.joint)) << "as bench.yaml says";
-  const sim::ActuatorParameters& found = motors.at(known.joint);
+  const model::ActuatorParameters& found = motors.at(known.joint);
   EXPECT_NEAR(found.drive.kp_scale / truth.drive.kp_scale, 1.0, 0.01);
   EXPECT_NEAR(found.drive.kd_scale / truth.drive.kd_scale, 1.0, 0.01);
   EXPECT_NEAR(found.transmission.armature_kg_m2 / truth.transmission.armature_kg_m2, 1.0, 0.01);
@@ -93,14 +94,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"left_knee", {}, {"--angle", "0.1:1.3"}}),
     [](const auto& known) {
       return std::string(known.param.joint) +
-             (known.param.of_motor_yaml == sim::ActuatorParameters{} ? "_of_robot_yaml" : "");
+             (known.param.of_motor_yaml == model::ActuatorParameters{} ? "_of_robot_yaml" : "");
     });
 
 // README.md's example: a knee is recorded and calibrated; a knee with wear (play, and friction under load) is recorded
 // and diagnosed against it.
 TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   const fs::path hidden_file = PMG_SOURCE_DIR "/config/examples/worn_knee.yaml";
-  const sim::ActuatorParameters hidden = sim::read_motor_file(hidden_file).at("left_knee");
+  const model::ActuatorParameters hidden = sim::read_motor_file(hidden_file).at("left_knee");
   ASSERT_EQ(run("pmg_calibrate_motor", {"--make-excitation", "--robot", "z1", "--joint", "left_knee", "--angle",
                                         "0.1:1.3", "--seconds", "5", "--out", at("excitation")}),
             0)
@@ -127,7 +128,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   for (const auto& cause : diagnosis["causes"]) {
     names.insert(cause["effect"]);
     for (const auto& [name, estimate] : cause["parameters"].items()) {
-      const double truth = sim::actuator_parameter(name).value(hidden);
+      const double truth = model::actuator_parameter(name).value(hidden);
       EXPECT_LE(estimate["low"].get<double>(), truth) << name;
       EXPECT_GE(estimate["high"].get<double>(), truth) << name;
       EXPECT_LT(estimate["high"].get<double>() - estimate["low"].get<double>(), truth) << name << ": says nothing";

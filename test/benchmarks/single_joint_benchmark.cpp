@@ -11,7 +11,7 @@ namespace {
 
 calib::JointModel model() {
   calib::JointModel model;
-  sim::ActuatorParameters& p = model.actuator;
+  model::ActuatorParameters& p = model.actuator;
   p.transmission.armature_kg_m2 = 0.02;
   p.command = {.delay_s = 0.0237, .rate_limit_rad_s = 5.0};
   p.friction.coulomb_Nm = 0.15;
@@ -41,7 +41,7 @@ void BM_single_joint(benchmark::State& state) {
 }
 
 void BM_single_joint_floor(benchmark::State& state) {
-  sim::ActuatorParameters rigid;
+  model::ActuatorParameters rigid;
   rigid.transmission.armature_kg_m2 = 0.02;
   MujocoJoint mujoco(joint().run().load, rigid, joint().step_s());
   mjModel* bare = mujoco.mj_model();

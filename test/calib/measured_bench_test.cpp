@@ -46,7 +46,7 @@ std::vector<calib::SingleJoint> joints(const bench::Bench& bench, const char* fi
 calib::JointModel hobby_servo(const bench::Bench& bench) {
   calib::JointModel model;
   model.actuator = bench.known;
-  sim::ActuatorParameters& p = model.actuator;
+  model::ActuatorParameters& p = model.actuator;
   p.drive.kp_scale = 0.19248;
   p.drive.torque_per_unit_Nm = 0.87751;
   p.drive.back_emf_s_per_rad = 2.3475;

@@ -121,7 +121,7 @@ TEST(Confidence, CoversTheTruth) {
     const double expected = calib::value(truth(), name);
     EXPECT_LT(std::abs(calib::value(fit.model, name) - expected), 4.0 * confidence[i].deviation) << name;
     EXPECT_LT(confidence[i].deviation, 0.03 * expected) << name << ": a deviation that says nothing covers everything";
-    EXPECT_EQ(confidence[i].told_apart_badly, "") << name;
+    EXPECT_EQ(confidence[i].confounded_with, "") << name;
   }
 }
 
@@ -151,8 +151,8 @@ TEST(Confidence, SaysWhatTheRunsCantTell) {
   model.actuator.drive.no_load_rad_s = 60.0;
   const std::vector<calib::Confidence> confidence = calib::confidence(joint, joint.point_of(model), 1);
   ASSERT_EQ(joint.parameters()[1].name, "drive.kd_scale");
-  EXPECT_EQ(confidence[1].told_apart_badly, "friction.viscous_Nm_s_per_rad");
-  EXPECT_EQ(confidence[3].told_apart_badly, "drive.kd_scale");
+  EXPECT_EQ(confidence[1].confounded_with, "friction.viscous_Nm_s_per_rad");
+  EXPECT_EQ(confidence[3].confounded_with, "drive.kd_scale");
   ASSERT_EQ(joint.parameters()[5].name, "drive.no_load_rad_s");
   EXPECT_TRUE(std::isinf(confidence[5].deviation));
 }
@@ -220,7 +220,7 @@ TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
   calib::JointModel start;
   std::vector<calib::FitParameter> unknowns = {calib::fit_parameter("transmission.armature_kg_m2", bench)};
   EXPECT_FALSE(calib::take_inverse_dynamics(*early, bench, start, unknowns));
-  EXPECT_EQ(start.actuator, sim::ActuatorParameters{});
+  EXPECT_EQ(start.actuator, model::ActuatorParameters{});
   EXPECT_EQ(unknowns.size(), 4U) << "inertia, both frictions and the offset: rollouts look for them";
 
   // Sines of 7 Hz and 25 Hz are too fast for 80 samples a second.

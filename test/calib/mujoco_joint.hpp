@@ -19,7 +19,7 @@ namespace pmg::test {
 
 class MujocoJoint {
  public:
-  MujocoJoint(const bench::JointLoad& load, const sim::ActuatorParameters& parameters, double step_s)
+  MujocoJoint(const bench::JointLoad& load, const model::ActuatorParameters& parameters, double step_s)
       : actuator_(parameters, step_s), model_(compile(text(load, step_s))), data_(mj_makeData(model_.get())) {
     sim::hand_over(model_.get(), 0, actuator_);
     mj_setConst(model_.get(), data_.get());

@@ -17,7 +17,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  std::function<void(sim::ActuatorParameters&)> set;
+  std::function<void(model::ActuatorParameters&)> set;
 };
 std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
 
@@ -114,9 +114,9 @@ INSTANTIATE_TEST_SUITE_P(EveryEffect, BothSimulators, testing::ValuesIn(kinds())
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(BothSimulators, AreComparedInEveryParameterThatMotorYamlHas) {
-  for (const sim::ActuatorParameter& parameter : sim::actuator_parameters()) {
+  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) {
     const auto changes = [&](const Kind& kind) {
-      sim::ActuatorParameters parameters;
+      model::ActuatorParameters parameters;
       kind.set(parameters);
       return parameter.value(parameters) != parameter.value({});
     };

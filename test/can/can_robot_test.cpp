@@ -72,6 +72,7 @@ struct Stage {
     Lockstep lockstep(loaded.robot, bus, plant, *tick, scenario, nullptr, {.balanced_by_policy = true});
     lockstep.after_tick = [&](const RunProgress& progress) {
       if (progress.result.mode == control::Mode::kFault) fault = progress.result.fault.code;
+      sat_down |= progress.result.sitting;
     };
     return lockstep.run();
   }
@@ -82,6 +83,7 @@ struct Stage {
   drives::DriveSetup setup;
   std::optional<test::EmulatedRobot> robot;
   faults::FaultCode fault = faults::FaultCode::kNone;
+  bool sat_down = false;
 };
 
 Scenario walking(double stand_s, double walk_s) {
@@ -170,12 +172,13 @@ TEST(CanRobot, DISABLED_TheTourIsTrackedAsInProcess) {
   }
 }
 
-/// A fault while the robot walks, and how many bus cycles later every drive is damped.
+/// A fault while the robot walks, and how many bus cycles later every drive is damped, or the sit-down begins.
 struct Row {
   const char* name;
   void (*inject)(test::EmulatedRobot&);
   int least, most;  ///< bus cycles, as in docs/reference/safety.md
   faults::FaultCode code;
+  bool sits_down = false;
 };
 
 constexpr std::array kRows = {
@@ -197,29 +200,31 @@ constexpr std::array kRows = {
         [](test::EmulatedRobot& robot) { robot.drives().drive(1, 0).fault = drives::DriveFault::kOverVoltage; }, 1, 5,
         faults::FaultCode::kBusLost},
     Row{"hot motor", [](test::EmulatedRobot& robot) { robot.drives().drive(0, 3).temperature_degC = 95.0; }, 1, 5,
-        faults::FaultCode::kTemperature},
+        faults::FaultCode::kTemperature, true},
     Row{"silent IMU", [](test::EmulatedRobot& robot) { robot.drives().imu_silent = true; }, 11, 15,
         faults::FaultCode::kBusLost},
 };
 
-TEST(CanRobot, EachFaultDampsEveryDriveWithinItsCycles) {
+TEST(CanRobot, EachFaultDampsEveryDriveOrBeginsTheSitDownWithinItsCycles) {
   for (const Row& row : kRows) {
     for (const int offset : {0, 1, 2, 3, 4}) {  // between two ticks
       if (over_sockets() && offset != 2) continue;
       Stage stage(1, true);
       const int from = 1500 + offset;
-      int damped = -1;
+      int reacted = -1;
       stage.robot->before = [&](int cycle) {
         if (cycle == from) row.inject(*stage.robot);
       };
       stage.robot->after = [&](int cycle, hal::BusStatus) {
-        if (damped < 0 && cycle >= from && stage.robot->limp_or_damped()) damped = cycle - from;
+        const bool reacts = row.sits_down ? stage.sat_down : stage.robot->limp_or_damped();
+        if (reacted < 0 && cycle >= from && reacts) reacted = cycle - from;
       };
       stage.run(walking(2.0, 1.2));
-      EXPECT_GE(damped, row.least) << row.name;
-      EXPECT_LE(damped, row.most) << row.name;
+      EXPECT_GE(reacted, row.least) << row.name;
+      EXPECT_LE(reacted, row.most) << row.name;
       EXPECT_EQ(stage.fault, row.code) << row.name;
-      if (offset == 2) fmt::print("{}: damped {} cycles after the cause\n", row.name, damped);
+      if (offset != 2) continue;
+      fmt::print("{}: {} {} cycles after the cause\n", row.name, row.sits_down ? "sits down" : "damped", reacted);
     }
   }
 }

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-sim::ActuatorParameters known() {
-  sim::ActuatorParameters known;
+model::ActuatorParameters known() {
+  model::ActuatorParameters known;
   known.transmission.armature_kg_m2 = 0.01;
   known.friction.viscous_Nm_s_per_rad = 0.1;
   known.friction.coulomb_Nm = 0.05;
@@ -27,7 +27,7 @@ sim::ActuatorParameters known() {
 /// A bench in files, moved by what is known and what is hidden.
 class Diagnose : public testing::Test {
  protected:
-  Diagnosis diagnosed(const std::function<void(sim::ActuatorParameters&)>& hide) {
+  Diagnosis diagnosed(const std::function<void(model::ActuatorParameters&)>& hide) {
     calib::JointModel truth;
     truth.actuator = known();
     hide(truth.actuator);
@@ -41,7 +41,7 @@ class Diagnose : public testing::Test {
 };
 
 TEST_F(Diagnose, NamesADelayWithItsInterval) {
-  const Diagnosis found = diagnosed([](sim::ActuatorParameters& p) { p.command.delay_s = 0.015; });
+  const Diagnosis found = diagnosed([](model::ActuatorParameters& p) { p.command.delay_s = 0.015; });
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "delay");
   const evidence::Interval delay_s = found.causes.front().parameters.front().estimate;
@@ -53,7 +53,7 @@ TEST_F(Diagnose, NamesADelayWithItsInterval) {
 }
 
 TEST_F(Diagnose, FindsNothingWhereNothingIsWrong) {
-  const Diagnosis found = diagnosed([](sim::ActuatorParameters&) {});
+  const Diagnosis found = diagnosed([](model::ActuatorParameters&) {});
   EXPECT_EQ(found.verdict, evidence::Verdict::kNone);
   EXPECT_TRUE(found.causes.empty());
   EXPECT_FALSE(found.rejected.empty());
@@ -79,7 +79,7 @@ TEST_F(Diagnose, NamesAQuantumThatReadingsShow) {
 
 TEST_F(Diagnose, SaysInJsonWhatTheFormatAsksFor) {
   const nlohmann::ordered_json json =
-      diagnosis_json(diagnosed([](sim::ActuatorParameters& p) { p.friction.coulomb_Nm = 0.5; }));
+      diagnosis_json(diagnosed([](model::ActuatorParameters& p) { p.friction.coulomb_Nm = 0.5; }));
   EXPECT_EQ(json.at("verdict"), "found");
   const auto& cause = json.at("causes").at(0);
   EXPECT_EQ(cause.at("effect"), "coulomb");

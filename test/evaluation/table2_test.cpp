@@ -63,7 +63,7 @@ TEST(Table2, TheAskedRatioIsThePapers) {
 }
 
 TEST(Table2, MotorCalibrationFindsWhatIsHiddenInADrive) {
-  sim::ActuatorParameters hidden;
+  model::ActuatorParameters hidden;
   hidden.drive.kp_scale = 0.9;
   hidden.transmission.armature_kg_m2 = 0.055;
   hidden.friction.coulomb_Nm = 1.5;
@@ -72,7 +72,7 @@ TEST(Table2, MotorCalibrationFindsWhatIsHiddenInADrive) {
   const auto joints = static_cast<Eigen::Index>(z1().joints.size());
   const sim::ActuatorsByJoint found = calibrated_motors(
       {{"left_knee", hidden}}, z1(), {JointVector::Constant(joints, 150.0), JointVector::Constant(joints, 6.0)}, 1);
-  const sim::ActuatorParameters& knee = found.at("left_knee");
+  const model::ActuatorParameters& knee = found.at("left_knee");
   EXPECT_NEAR(knee.drive.kp_scale, 0.9, 0.05);
   EXPECT_NEAR(knee.friction.coulomb_Nm, 1.5, 0.2);
   EXPECT_NEAR(knee.command.delay_s, 0.006, 0.002);

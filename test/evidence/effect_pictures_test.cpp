@@ -35,8 +35,8 @@ double slow_ramp(double t_s) { return std::min(0.6 * t_s, 1.8); }
 /// What shows an effect best.
 struct Demonstration {
   Command command;
-  std::function<void(sim::ActuatorParameters&)> effect;                         ///< what it changes
-  std::function<void(sim::ActuatorParameters&)> both = [](auto&) {};            ///< what both joints have
+  std::function<void(model::ActuatorParameters&)> effect;                       ///< what it changes
+  std::function<void(model::ActuatorParameters&)> both = [](auto&) {};          ///< what both joints have
   enum class Against { kTime, kPosition, kVelocity } against = Against::kTime;  ///< of the lower picture
   double kp = 25.0, gravity_Nm = 1.5, inertia_scale = 1.0;
 };
@@ -44,7 +44,7 @@ struct Demonstration {
 using Against = Demonstration::Against;
 
 /// Full voltage from 0.4 rad of error; 3.6 Nm at rest, none at 10 rad/s.
-void hobby_servo(sim::ActuatorParameters& p) {
+void hobby_servo(model::ActuatorParameters& p) {
   p.drive.limit = 1.0;
   p.drive.kp_scale = 0.1;
   p.drive.kd_scale = 0.0;
@@ -53,7 +53,7 @@ void hobby_servo(sim::ActuatorParameters& p) {
 }
 
 const std::map<std::string, Demonstration>& demonstrations() {
-  using P = sim::ActuatorParameters;
+  using P = model::ActuatorParameters;
   static const std::map<std::string, Demonstration> kAll = {
       {"coulomb", {steps, [](P& p) { p.friction.coulomb_Nm = 0.8; }}},
       {"viscous", {steps, [](P& p) { p.friction.viscous_Nm_s_per_rad = 0.8; }, [](P&) {}, Against::kVelocity}},

@@ -18,7 +18,7 @@ struct Unknown {
   double scale;
 };
 
-std::vector<Unknown> unknowns(const Rig& rig, const sim::ActuatorParameters& nominal) {
+std::vector<Unknown> unknowns(const Rig& rig, const model::ActuatorParameters& nominal) {
   std::vector<std::string> names = {"transmission.armature_kg_m2", "friction.coulomb_Nm"};
   if (rig.healthy.drive.servo)
     names.insert(names.end(), {"drive.torque_per_unit_Nm", "drive.back_emf_s_per_rad"});
@@ -29,7 +29,7 @@ std::vector<Unknown> unknowns(const Rig& rig, const sim::ActuatorParameters& nom
   if (rig.healthy.friction.load_driving > 0.0)
     names.insert(names.end(), {"friction.load_driving", "friction.load_backdriving"});
   std::vector<Unknown> found;
-  for (const std::string& name : names) found.push_back({name, sim::actuator_parameter(name).value(nominal)});
+  for (const std::string& name : names) found.push_back({name, model::actuator_parameter(name).value(nominal)});
   found.push_back({"command.delay_s", 2e-3});
   found.push_back({"friction.presliding_rad", 5e-4});
   return found;
@@ -44,7 +44,7 @@ std::vector<calib::SingleJoint> read(const std::filesystem::path& folder, const 
   return joints;
 }
 
-Eigen::VectorXd residuals(const sim::ActuatorParameters& model, const std::vector<calib::SingleJoint>& joints) {
+Eigen::VectorXd residuals(const model::ActuatorParameters& model, const std::vector<calib::SingleJoint>& joints) {
   std::vector<double> all;
   for (const calib::SingleJoint& joint : joints) {
     const std::vector<double> q_rad = joint.rollout({.actuator = model});
@@ -54,10 +54,10 @@ Eigen::VectorXd residuals(const sim::ActuatorParameters& model, const std::vecto
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-sim::ActuatorParameters changed(const std::vector<Unknown>& unknowns, sim::ActuatorParameters model,
-                                const Eigen::VectorXd& by) {
+model::ActuatorParameters changed(const std::vector<Unknown>& unknowns, model::ActuatorParameters model,
+                                  const Eigen::VectorXd& by) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const sim::ActuatorParameter& parameter = sim::actuator_parameter(unknowns[i].name);
+    const model::ActuatorParameter& parameter = model::actuator_parameter(unknowns[i].name);
     double& value = parameter.in(model);
     value = std::max(value + by[static_cast<Eigen::Index>(i)] * unknowns[i].scale,
                      std::max(parameter.lower, 1e-3 * unknowns[i].scale));
@@ -67,9 +67,9 @@ sim::ActuatorParameters changed(const std::vector<Unknown>& unknowns, sim::Actua
 
 }  // namespace
 
-sim::ActuatorParameters nominal_model(const Rig& rig) {
+model::ActuatorParameters nominal_model(const Rig& rig) {
   const PlantParameters& p = rig.healthy;
-  sim::ActuatorParameters model;
+  model::ActuatorParameters model;
   model.command.delay_s = p.command.delay_s;
   if (p.drive.servo) {
     model.drive.limit = 1.0;
@@ -91,8 +91,8 @@ sim::ActuatorParameters nominal_model(const Rig& rig) {
   return model;
 }
 
-sim::ActuatorParameters calibrated_model(const Rig& rig, const std::filesystem::path& healthy_bench) {
-  sim::ActuatorParameters model = nominal_model(rig);
+model::ActuatorParameters calibrated_model(const Rig& rig, const std::filesystem::path& healthy_bench) {
+  model::ActuatorParameters model = nominal_model(rig);
   const std::vector<Unknown> sought = unknowns(rig, model);
   const std::vector<calib::SingleJoint> joints = read(healthy_bench, kFitFilter);
   const auto count = static_cast<Eigen::Index>(sought.size());
@@ -110,7 +110,7 @@ sim::ActuatorParameters calibrated_model(const Rig& rig, const std::filesystem::
     for (int attempt = 0; attempt < 4 && !better; ++attempt, damping *= 10.0) {
       Eigen::MatrixXd damped = normal;
       damped.diagonal() *= 1.0 + damping;
-      const sim::ActuatorParameters candidate = changed(sought, model, -damped.ldlt().solve(gradient));
+      const model::ActuatorParameters candidate = changed(sought, model, -damped.ldlt().solve(gradient));
       const Eigen::VectorXd then = residuals(candidate, joints);
       better = then.squaredNorm() < missed.squaredNorm();
       if (better) model = candidate, missed = then;
@@ -121,7 +121,7 @@ sim::ActuatorParameters calibrated_model(const Rig& rig, const std::filesystem::
   return model;
 }
 
-double rollout_error_rad(const sim::ActuatorParameters& model, const std::filesystem::path& bench,
+double rollout_error_rad(const model::ActuatorParameters& model, const std::filesystem::path& bench,
                          const std::string& filter) {
   return total(calib::errors({.actuator = model}, read(bench, filter), 1)).mean_absolute_rad();
 }

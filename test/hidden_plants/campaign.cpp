@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kFurtherStream = 500000;
 
-diagnosis::Diagnosis diagnose(const std::filesystem::path& bench, const sim::ActuatorParameters& base) {
+diagnosis::Diagnosis diagnose(const std::filesystem::path& bench, const model::ActuatorParameters& base) {
   diagnosis::DiagnoseOptions options;
   options.fit = kFitFilter;
   options.score = kScoreFilter;

@@ -38,7 +38,7 @@ double noise_floor_rad(const HiddenPlant& hidden) {
   return sum_rad / count;
 }
 
-double in_motor_file(const PlantedParameter& planted, const sim::ActuatorParameters& base) {
+double in_motor_file(const PlantedParameter& planted, const model::ActuatorParameters& base) {
   const double before = calib::value({.actuator = base}, planted.name);
   switch (planted.how) {
     case PlantedParameter::How::kAdds:

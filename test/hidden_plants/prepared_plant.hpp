@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "model/actuator_parameters.hpp"
 #include "planting.hpp"
-#include "sim/actuator_parameters.hpp"
 
 namespace pmg::hidden {
 
@@ -29,7 +29,7 @@ nlohmann::json json(const PlantedTruth& truth);
 
 struct PreparedPlant {
   HiddenPlant hidden;
-  sim::ActuatorParameters base;  ///< the healthy joint's calibration
+  model::ActuatorParameters base;  ///< the healthy joint's calibration
   PlantedTruth truth;
   std::filesystem::path bench;
 };

@@ -26,10 +26,11 @@ TEST(PreparedPlant, PlantedNumbersAreAllThatTheModelLacks) {
   for (const std::uint64_t seed : {11ULL, 29ULL, 40ULL}) {  // Coulomb friction, delay, sensor hysteresis
     const PreparedPlant plant = prepare(seed, scratch("truth"));
     const PlantedTruth& truth = plant.truth;
-    sim::ActuatorParameters model = plant.base;
+    model::ActuatorParameters model = plant.base;
     ASSERT_EQ(truth.effects.size(), 1U);
     ASSERT_GE(truth.effects.front().moves_floors, 2.0) << truth.effects.front().name;
-    for (const auto& [name, value] : truth.effects.front().parameters) sim::actuator_parameter(name).in(model) = value;
+    for (const auto& [name, value] : truth.effects.front().parameters)
+      model::actuator_parameter(name).in(model) = value;
     EXPECT_LT(rollout_error_rad(model, plant.bench, kScoreFilter), truth.healthy_error_rad + 0.5 * truth.floor_rad)
         << truth.effects.front().name;
   }

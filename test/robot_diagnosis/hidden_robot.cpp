@@ -50,7 +50,7 @@ HiddenEffect hide_in_joint(Draw& draw, const model::RobotModel& robot, sim::Worl
   const int j = draw.below(robot.joint_index.size());
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(j)];
   sim::Variation& v = options.variation;
-  sim::ActuatorParameters& motor = options.motors[joint.name];
+  model::ActuatorParameters& motor = options.motors[joint.name];
   const auto with_friction = [&] {  // a motor of its own with the joint's friction
     motor.friction.coulomb_Nm = joint.friction_Nm * v.joint_friction_factor[j];
     motor.friction.viscous_Nm_s_per_rad = joint.damping_Nm_s_per_rad;

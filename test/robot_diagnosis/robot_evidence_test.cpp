@@ -47,7 +47,7 @@ std::vector<RobotBlock> blocks_that_begin_standing() {
 }
 
 TEST(RobotEvidence, RivalsPartWhereTheirRowsDifferNotWhereTheBlockBegins) {
-  const RobotEvidence found = weigh(blocks_that_begin_standing(), kKinds, two_payloads());
+  const RobotEvidence found = find_causes(blocks_that_begin_standing(), kKinds, two_payloads());
   ASSERT_EQ(found.findings.size(), 1U);
   const RobotFinding& payload = found.findings.front();
   ASSERT_EQ(payload.or_instead.size(), 1U) << "the two can't be told apart";

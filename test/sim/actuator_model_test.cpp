@@ -16,7 +16,7 @@ constexpr double kStep_s = 0.002;
 
 /// A joint of 0.05 kg m^2 about its axis, under a constant torque from outside.
 struct Joint {
-  explicit Joint(const ActuatorParameters& parameters, double start_rad = 0.0)
+  explicit Joint(const model::ActuatorParameters& parameters, double start_rad = 0.0)
       : actuator(parameters, kStep_s), q_rad(start_rad) {
     actuator.reset(start_rad);
   }
@@ -36,8 +36,8 @@ struct Joint {
 
 constexpr ActuatorInput kLimp{};
 
-ActuatorParameters with(const std::function<void(ActuatorParameters&)>& set) {
-  ActuatorParameters parameters;
+model::ActuatorParameters with(const std::function<void(model::ActuatorParameters&)>& set) {
+  model::ActuatorParameters parameters;
   set(parameters);
   return parameters;
 }
@@ -241,7 +241,7 @@ TEST(ActuatorModel, NeverAllocatesInAStep) {
 }
 
 TEST(ActuatorModel, RefusesWhatMakesNoSense) {
-  const std::vector<std::function<void(ActuatorParameters&)>> senseless = {
+  const std::vector<std::function<void(model::ActuatorParameters&)>> senseless = {
       [](auto& p) { p.command.delay_s = 1.0; },
       [](auto& p) { p.command.rate_limit_rad_s = 0.0; },
       [](auto& p) { p.friction.presliding_rad = 0.0; },

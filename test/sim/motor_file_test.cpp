@@ -39,15 +39,15 @@ class MotorFile : public testing::Test {
 };
 
 TEST_F(MotorFile, HoldsEveryParameterExactly) {
-  ActuatorParameters all;
+  model::ActuatorParameters all;
   double number = 0.013;
-  for (const ActuatorParameter& p : actuator_parameters()) p.in(all) = number *= 1.07;
+  for (const model::ActuatorParameter& p : model::actuator_parameters()) p.in(all) = number *= 1.07;
   all.transmission.backlash_rad = 0.01;
   write(motor_yaml({{joint_, all}, {robot_.joint_index.name(1), {}}}, {"made by a test"}));
   const ActuatorsByJoint read = read_motor_file(file_, robot_.joint_index);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read.at(joint_), all);
-  EXPECT_EQ(read.at(robot_.joint_index.name(1)), ActuatorParameters{});
+  EXPECT_EQ(read.at(robot_.joint_index.name(1)), model::ActuatorParameters{});
 }
 
 TEST_F(MotorFile, IsRefusedWithPlaceAndReason) {
@@ -99,17 +99,17 @@ TEST_F(MotorFile, IsTheOneThatIsNamedOrElseTheRobots) {
 
 TEST_F(MotorFile, LeavesToTheRobotWhatItDoesntSay) {
   const model::Joint& joint = robot_.joints[0];
-  const auto expect_robots = [&](const ActuatorParameters& p) {
+  const auto expect_robots = [&](const model::ActuatorParameters& p) {
     EXPECT_EQ(p.drive.limit, joint.effort_limit_Nm);
     EXPECT_EQ(p.transmission.armature_kg_m2, joint.armature_kg_m2);
     EXPECT_EQ(p.friction.coulomb_Nm, joint.friction_Nm);
     EXPECT_EQ(p.friction.viscous_Nm_s_per_rad, joint.damping_Nm_s_per_rad);
   };
   expect_robots(actuator_in_force(joint, {}));
-  ActuatorParameters late;
+  model::ActuatorParameters late;
   late.command.delay_s = 0.01;
   expect_robots(actuator_in_force(joint, {{joint.name, late}}));
-  ActuatorParameters other;
+  model::ActuatorParameters other;
   other.drive.limit = 3.0, other.transmission.armature_kg_m2 = 0.5, other.friction.viscous_Nm_s_per_rad = 2.0;
   EXPECT_EQ(actuator_in_force(joint, {{joint.name, other}}), other) << "viscous friction alone: no dry friction";
 }

@@ -93,14 +93,14 @@ TEST(Variation, ArmatureAndDryFrictionAreScaled) {
   sim::Variation variation;
   variation.armature_factor = JointVector::Constant(n, 1.3);
   variation.joint_friction_factor = JointVector::Constant(n, 0.5);
-  sim::ActuatorParameters nominal;
+  model::ActuatorParameters nominal;
   nominal.transmission.armature_kg_m2 = 0.04;
   nominal.friction = {.viscous_Nm_s_per_rad = 0.3,
                       .coulomb_Nm = 0.6,
                       .stribeck_Nm = -0.2,
                       .load_driving = 0.1,
                       .load_backdriving = 0.08};
-  const sim::ActuatorParameters drawn = sim::varied(nominal, variation, 3);
+  const model::ActuatorParameters drawn = sim::varied(nominal, variation, 3);
   EXPECT_NEAR(drawn.transmission.armature_kg_m2, 0.052, 1e-12);
   EXPECT_NEAR(drawn.friction.coulomb_Nm, 0.3, 1e-12);
   EXPECT_NEAR(drawn.friction.stribeck_Nm, -0.1, 1e-12);

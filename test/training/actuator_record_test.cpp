@@ -138,8 +138,8 @@ ordered_json inputs() {
 }
 
 ordered_json outputs(const Values& values) {
-  sim::ActuatorParameters parameters;
-  for (const auto& [name, value] : values) sim::actuator_parameter(name).in(parameters) = value;
+  model::ActuatorParameters parameters;
+  for (const auto& [name, value] : values) model::actuator_parameter(name).in(parameters) = value;
   sim::ActuatorModel model(parameters, kStep_s);
   model.reset(step_at(0).q_rad);
   ordered_json torque_Nm = ordered_json::array(), slope = ordered_json::array();
@@ -154,7 +154,7 @@ ordered_json outputs(const Values& values) {
 
 ordered_json actuators_now() {
   ordered_json names = ordered_json::array(), cases = ordered_json::object();
-  for (const sim::ActuatorParameter& parameter : sim::actuator_parameters()) names.push_back(parameter.name);
+  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) names.push_back(parameter.name);
   for (const auto& [name, values] : kCases) cases[name] = outputs(values);
   return {{"step_s", kStep_s}, {"names", names}, {"steps", inputs()}, {"cases", cases}};
 }
@@ -165,7 +165,7 @@ TEST(ActuatorRecord, ShowsEveryEffectAtWork) {
     if (values.empty()) continue;
     EXPECT_NE(outputs(values)["torque_Nm"].get<std::vector<double>>(), neutral) << name;
   }
-  for (const sim::ActuatorParameter& parameter : sim::actuator_parameters()) {
+  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) {
     bool used = false;
     for (const auto& [name, values] : kCases) used = used || values.contains(std::string(parameter.name));
     EXPECT_TRUE(used) << parameter.name;

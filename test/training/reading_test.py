@@ -114,7 +114,7 @@ class Reading(unittest.TestCase):
             (("armature_kg_m2", "armature_g_m2"), "joints.left_knee.armature_"),
             (("kp_Nm_per_rad: 700", "kp_Nm_per_rad: .nan"), "joints.left_knee.kp_Nm_per_rad: is '.nan'"),
             (("kp_Nm_per_rad: 700", "kp_Nm_per_rad: -700"), "joints.left_knee.kp_Nm_per_rad: is '-700'"),
-            (("drive:", "colour: red, drive:"), "joints.left_knee.colour: is unknown"),
+            ((" bus:", " colour: red, bus:"), "joints.left_knee.colour: is unknown"),
         ):
             (robot / "robot.yaml").write_text(committed.replace(knee, knee.replace(*change)))
             self.expect(said, said_by_pmg_sil("--robot", robot, "--out", self.folder), said_by_training(robot_said_by_training, robot))

@@ -80,7 +80,7 @@ const std::map<std::string, std::map<std::string, double>> kMotors = {
 sim::ActuatorsByJoint motors() {
   sim::ActuatorsByJoint motors;
   for (const auto& [joint, values] : kMotors) {
-    for (const auto& [name, value] : values) sim::actuator_parameter(name).in(motors[joint]) = value;
+    for (const auto& [name, value] : values) model::actuator_parameter(name).in(motors[joint]) = value;
   }
   return motors;
 }

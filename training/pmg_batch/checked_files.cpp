@@ -50,11 +50,11 @@ std::string randomization_json(const std::filesystem::path& file) {
 
 std::string motors_json(const std::filesystem::path& robot, const std::filesystem::path& file) {
   const sim::ActuatorsByJoint motors = sim::read_motor_file(file, model::load_robot(robot).joint_index);
-  const sim::ActuatorParameters neutral;
+  const model::ActuatorParameters neutral;
   ordered_json json = ordered_json::object();
   for (const auto& [joint, actuator] : motors) {
     ordered_json& values = json[joint] = ordered_json::object();
-    for (const sim::ActuatorParameter& p : sim::actuator_parameters()) {
+    for (const model::ActuatorParameter& p : model::actuator_parameters()) {
       if (p.value(actuator) != p.value(neutral)) values[std::string(p.name)] = p.value(actuator);
     }
   }

@@ -1,6 +1,6 @@
 """Drives and transmissions, batched: src/sim/actuator_model.cpp in torch, with the same steps and effects.
 
-src/sim/actuator_parameters.hpp explains each parameter; test/data/training/actuators.json holds the results of the C++.
+src/model/actuator_parameters.hpp explains each parameter; test/data/training/actuators.json holds the results of the C++.
 """
 
 import math
