@@ -30,11 +30,11 @@ Interval around(double value, double deviation) { return {value, value - 2.0 * d
 class BalanceChecks {
  public:
   BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, const SignatureOptions& options)
-      : bench_(bench), options_(options), balance_(bench, runs) {}
+      : bench_(bench), options_(options), balance_(bench, runs, options.balance) {}
 
   std::vector<Signature> all() {
-    const FoundShape shape = find_shape(balance_);
-    if (balance_.shaped()) found_ = command_shape_checks(shape, balance_.sample_s());
+    const FoundShape shape = find_shape(balance_, options_.shape, options_.balance.collinear_share);
+    if (balance_.shaped()) found_ = command_shape_checks(shape, balance_.sample_s(), options_.shape);
     columns_.emplace_back(balance_);
     drive_ = balance_.drive();
     const std::vector<int> clusters = balance_.clusters();
@@ -56,7 +56,9 @@ class BalanceChecks {
     return bench_.rig == bench::Rig::kLinear ? "N" : "Nm";
   }
 
-  ClusterRegression regression(const std::vector<Column>& base) const { return {base, drive_, balance_.clusters()}; }
+  ClusterRegression regression(const std::vector<Column>& base, bool whole_runs = false) const {
+    return {base, drive_, balance_.clusters(whole_runs), options_.balance.collinear_share};
+  }
 
   void cannot_tell(const std::string& effect, const std::string& why) {
     found_.push_back({effect, "balance of torques", Agreement::kCannotTell, {kNaN, kNaN, kNaN}, "", why});
@@ -90,7 +92,7 @@ class BalanceChecks {
     } else {
       cannot_tell("viscous", "the back-EMF of this drive looks the same");
     }
-    const double slow_rad_s = 0.15 * balance_.fastest_rad_s();
+    const double slow_rad_s = options_.slow_share * balance_.fastest_rad_s();
     const Column slow = balance_.integral([slow_rad_s](const BalancePoint& p) {
       const double ratio = p.dq_rad_s / slow_rad_s;
       return std::exp(-ratio * ratio) * p.direction;
@@ -130,7 +132,7 @@ class BalanceChecks {
     add_dead_band();
     if (pendulum()) {
       add_term("load", base, balance_.load_inertia_Nm(), "inertia of the load beyond what its weight says", "", false,
-               2.0 * options_.constant_share);
+               options_.load_share);
     }
     add_supply_sag(base);
     const double fastest_rad_s = balance_.fastest_rad_s();
@@ -141,10 +143,12 @@ class BalanceChecks {
       add_term("torque_speed", base, hard_and_fast, "share of a driving torque that is missing at the highest speed",
                "", true, options_.drive_share);
     }
-    const Column turning =
-        balance_.integral([](const BalancePoint& p) { return p.since_turn_s < 0.03 ? p.drive : 0.0; });
-    add_term("backlash", base, turning, "share of the drive that is missing within 30 ms of its reversal", "", true,
-             options_.drive_share);
+    const Column turning = balance_.integral(
+        [this](const BalancePoint& p) { return p.since_turn_s < options_.reversal_s ? p.drive : 0.0; });
+    add_term(
+        "backlash", base, turning,
+        fmt::format("share of the drive that is missing within {:.3g} ms of its reversal", 1e3 * options_.reversal_s),
+        "", true, options_.drive_share);
   }
 
   /// Behind a source resistance R the bridge, at duty d, draws the bus current d i. The bus drops by R d i, the motor's
@@ -167,19 +171,24 @@ class BalanceChecks {
         regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy});
     double band_rad = 0.0, surest_t = 0.0, largest_share = 0.0;
     TermEstimate surest;
-    for (double limit_rad = 0.003; limit_rad < 0.1; limit_rad *= 1.35) {
+    constexpr double kStep = 1.35;  // ratio of neighbouring bands: the resolution of the band found
+    for (double limit_rad = options_.band_smallest_rad; limit_rad < options_.band_largest_rad; limit_rad *= kStep) {
       const TermEstimate e = base.term(balance_.integral(
           [limit_rad](const BalancePoint& p) { return std::abs(p.error_rad) < limit_rad ? p.error_drive : 0.0; }));
-      if (std::abs(e.coefficient - 1.0) < 0.5) largest_share = std::max(largest_share, e.share_upper);
+      if (std::abs(e.coefficient - 1.0) < options_.band_possible_within)
+        largest_share = std::max(largest_share, e.share_upper);
       if (e.t() > surest_t) surest_t = e.t(), band_rad = limit_rad, surest = e;
     }
-    Signature s{
-        "dead_band", "balance of torques", Agreement::kCannotTell, {band_rad, band_rad / 1.35, band_rad * 1.35}, "rad",
-        ""};
-    if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < 0.4 &&
+    Signature s{"dead_band",
+                "balance of torques",
+                Agreement::kCannotTell,
+                {band_rad, band_rad / kStep, band_rad * kStep},
+                "rad",
+                ""};
+    if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < options_.band_agrees_within &&
         surest.share > options_.constant_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (surest.coefficient + 2.0 * surest.deviation < 0.6 ||
+    } else if (surest.coefficient + 2.0 * surest.deviation < options_.band_disagrees_below ||
                largest_share < options_.disagrees_share * options_.constant_share) {
       s.agreement = Agreement::kDisagrees;
     }
@@ -192,14 +201,14 @@ class BalanceChecks {
     if (!position_pd()) return cannot_tell("gain", "the unit of this drive is fitted anyway");
     if (!enough_) return cannot_tell("gain", "too little motion was recorded");
     const TermEstimate e = regression({c().acceleration, c().speed, c().direction, c().one, c().heavy}).term(c().load);
-    if (!(e.own > options_.own_share) || !(e.coefficient > 0.1)) {
+    if (!(e.own > options_.own_share) || !(e.coefficient > options_.gain_least)) {
       return cannot_tell("gain", "no load of known weight or inertia was moved");
     }
     const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
     Signature s{"gain", "balance of torques", Agreement::kCannotTell, around(gain, deviation), "", ""};
-    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, 0.05)) {
+    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, options_.gain_error)) {
       s.agreement = Agreement::kAgrees;
-    } else if (std::abs(gain - 1.0) + 2.0 * deviation < 0.05) {
+    } else if (std::abs(gain - 1.0) + 2.0 * deviation < options_.gain_error) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("the drive gives {:.3g} (deviation {:.2g}) of what the load takes, by its own account",
@@ -207,23 +216,23 @@ class BalanceChecks {
     found_.push_back(s);
   }
 
-  /// Takes the strongest of kOrders orders, with a Bonferroni threshold: 0.1 % false alarms over all of them, and
-  /// P(t2 > x) = exp(-x / 2) for chi-square with 2 degrees of freedom.
+  /// Takes the strongest of the orders, with a Bonferroni threshold for all of them: P(t2 > x) = exp(-x / 2) for
+  /// chi-square with 2 degrees of freedom.
   void add_cogging() {
     if (!enough_) return cannot_tell("cogging", "too little motion was recorded");
     if (bench_.rig == bench::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
     const ClusterRegression base = regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy,
                                                balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; })});
-    constexpr int kLowest = 3, kOrders = 60;  // a wrong load mimics orders below 3
-    const double bar = 2.0 * std::log(kOrders / 0.001);
+    const auto highest = static_cast<int>(options_.cogging_highest_order);
+    const double threshold = 2.0 * std::log(highest / options_.cogging_false_alarms);
     double best = 0.0, largest_missed = 0.0;
     int at = 0;
     ClusterRegression::Pair strongest;
-    for (int order = kLowest; order <= kOrders; ++order) {
+    for (int order = static_cast<int>(options_.cogging_lowest_order); order <= highest; ++order) {
       const auto pair =
           base.pair(balance_.integral([order](const BalancePoint& p) { return std::sin(order * p.q_rad); }),
                     balance_.integral([order](const BalancePoint& p) { return std::cos(order * p.q_rad); }));
-      if (!(pair.own > 0.3)) continue;
+      if (!(pair.own > options_.cogging_own_share)) continue;
       largest_missed = std::max(largest_missed, pair.share);
       if (pair.t2 > best && pair.share > options_.friction_share) best = pair.t2, at = order, strongest = pair;
     }
@@ -231,7 +240,7 @@ class BalanceChecks {
     const double deviation = best > 0.0 ? amplitude / std::sqrt(best) : 0.0;
     Signature s{"cogging", "balance of torques", Agreement::kCannotTell, around(amplitude, deviation), drive_unit(),
                 ""};
-    if (best > bar) {
+    if (best > threshold) {
       s.agreement = Agreement::kAgrees;
     } else if (largest_missed < options_.disagrees_share * options_.friction_share) {
       s.agreement = Agreement::kDisagrees;
@@ -247,11 +256,11 @@ class BalanceChecks {
     if (!enough_ || !temperature.allFinite()) return cannot_tell("thermal_drift", "no temperature was recorded");
     const double usual_C = temperature.mean(), range_K = temperature.maxCoeff() - temperature.minCoeff();
     const std::vector<int> runs = balance_.clusters(true);
-    if (range_K < 3.0 || runs.back() + 1 < 6) {
+    if (range_K < options_.thermal_range_K || runs.back() + 1 < options_.thermal_fewest_runs) {
       return cannot_tell("thermal_drift", fmt::format("temperatures differ by {:.1f} K only, or in few runs", range_K));
     }
-    const ClusterRegression base({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, drive_,
-                                 runs);
+    const ClusterRegression base =
+        regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, true);
     const TermEstimate friction =
         base.term(balance_.integral([usual_C](const BalancePoint& p) { return (p.temp_C - usual_C) * p.direction; }));
     const TermEstimate load = base.term(c().load.cwiseProduct(temperature - usual_C * c().one));
