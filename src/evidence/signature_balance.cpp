@@ -60,8 +60,13 @@ class BalanceChecks {
     return {base, drive_, balance_.clusters(whole_runs), options_.balance.collinear_share};
   }
 
+  static Signature undecided(const std::string& effect, const Interval& value, const std::string& unit) {
+    return {effect, "balance of torques", Agreement::kCannotTell, value, unit, ""};
+  }
+
   void cannot_tell(const std::string& effect, const std::string& why) {
-    found_.push_back({effect, "balance of torques", Agreement::kCannotTell, {kNaN, kNaN, kNaN}, "", why});
+    found_.push_back(undecided(effect, {kNaN, kNaN, kNaN}, ""));
+    found_.back().sentence = why;
   }
 
   /// An effect that is one term of the balance. must_be_positive: friction cannot drive the motion.
@@ -71,7 +76,7 @@ class BalanceChecks {
     const TermEstimate e = regression(base).term(column);
     if (!(e.own > options_.own_share))
       return cannot_tell(effect, what + " can't be told from the rest in these recordings");
-    Signature s{effect, "balance of torques", Agreement::kCannotTell, around(e.coefficient, e.deviation), unit, ""};
+    Signature s = undecided(effect, around(e.coefficient, e.deviation), unit);
     const bool sure = must_be_positive ? e.t() > options_.sure_deviations : std::abs(e.t()) > options_.sure_deviations;
     if (sure && e.share > worth_share) {
       s.agreement = Agreement::kAgrees;
@@ -179,12 +184,7 @@ class BalanceChecks {
         largest_share = std::max(largest_share, e.share_upper);
       if (e.t() > surest_t) surest_t = e.t(), band_rad = limit_rad, surest = e;
     }
-    Signature s{"dead_band",
-                "balance of torques",
-                Agreement::kCannotTell,
-                {band_rad, band_rad / kStep, band_rad * kStep},
-                "rad",
-                ""};
+    Signature s = undecided("dead_band", {band_rad, band_rad / kStep, band_rad * kStep}, "rad");
     if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < options_.band_agrees_within &&
         surest.share > options_.constant_share) {
       s.agreement = Agreement::kAgrees;
@@ -205,7 +205,7 @@ class BalanceChecks {
       return cannot_tell("gain", "no load of known weight or inertia was moved");
     }
     const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
-    Signature s{"gain", "balance of torques", Agreement::kCannotTell, around(gain, deviation), "", ""};
+    Signature s = undecided("gain", around(gain, deviation), "");
     if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, options_.gain_error)) {
       s.agreement = Agreement::kAgrees;
     } else if (std::abs(gain - 1.0) + 2.0 * deviation < options_.gain_error) {
@@ -238,8 +238,7 @@ class BalanceChecks {
     }
     const double amplitude = strongest.coefficients.norm();
     const double deviation = best > 0.0 ? amplitude / std::sqrt(best) : 0.0;
-    Signature s{"cogging", "balance of torques", Agreement::kCannotTell, around(amplitude, deviation), drive_unit(),
-                ""};
+    Signature s = undecided("cogging", around(amplitude, deviation), drive_unit());
     if (best > threshold) {
       s.agreement = Agreement::kAgrees;
     } else if (largest_missed < options_.disagrees_share * options_.friction_share) {
@@ -266,12 +265,8 @@ class BalanceChecks {
     const TermEstimate load = base.term(c().load.cwiseProduct(temperature - usual_C * c().one));
     const bool by_friction = std::abs(friction.t()) > std::abs(load.t());
     const TermEstimate& e = by_friction ? friction : load;
-    Signature s{"thermal_drift",
-                "balance of torques",
-                Agreement::kCannotTell,
-                around(e.coefficient, e.deviation),
-                by_friction ? std::string(drive_unit()) + "/K" : "1/K",
-                ""};
+    Signature s = undecided("thermal_drift", around(e.coefficient, e.deviation),
+                            by_friction ? std::string(drive_unit()) + "/K" : "1/K");
     if (std::abs(e.t()) > options_.sure_deviations && e.share > options_.friction_share) {
       s.agreement = Agreement::kAgrees;
     } else if (std::max(friction.share_upper, load.share_upper) < options_.disagrees_share * options_.friction_share) {
