@@ -23,6 +23,11 @@ option(PMG_UNITY "Compile several sources of a target together" ON)
 set(CMAKE_UNITY_BUILD ${PMG_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
 
+# GCC collects its own garbage from 128 MiB on, again and again. A source needs 300 to 900 MiB here; collecting later saves 5 to 13 % of its time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options("SHELL:--param ggc-min-heapsize=600000")  # KiB
+endif()
+
 add_library(pmg_warnings INTERFACE)
 target_compile_options(pmg_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
@@ -40,6 +45,7 @@ function(pmg_add_room name)
   add_library(pmg_room_${name} STATIC ${ROOM_SOURCES})
   target_include_directories(pmg_room_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
   target_link_libraries(pmg_room_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
+  pmg_use_common_headers(pmg_room_${name} rooms)
 endfunction()
 
 # The sources of programs and tests only parse, compose and compare: they are hardly optimised. The rooms that they call are.
@@ -54,6 +60,7 @@ function(pmg_add_app name)
   add_executable(${name} ${name}.cpp ${APP_SOURCES})
   target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
   target_compile_options(${name} PRIVATE ${PMG_QUICK_OPTIONS})
+  pmg_use_common_headers(${name} programs)
   add_dependencies(programs ${name})
 endfunction()
 
@@ -68,6 +75,7 @@ function(pmg_add_test name)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/test)
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
   target_compile_options(test_${name} PRIVATE ${PMG_QUICK_OPTIONS})
+  pmg_use_common_headers(test_${name} tests)
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300

@@ -100,11 +100,11 @@ std::string suffix(const Runs& runs, std::size_t run) {
 }
 
 std::vector<pages::Band> fault_bands(const Runs& runs) {
+  const std::string colour = "rgba(213,94,0,0.10)";
   std::vector<pages::Band> bands;
   for (const RunSeries& run : runs) {
     for (const RunSeries::Stretch& mode : run.modes) {
-      if (mode.text == to_string(control::Mode::kFault))
-        bands.push_back({mode.from_s, mode.to_s, "rgba(213,94,0,0.10)"});
+      if (mode.text == to_string(control::Mode::kFault)) bands.push_back({mode.from_s, mode.to_s, colour});
     }
   }
   return bands;
