@@ -156,8 +156,9 @@ class BalanceChecks {
         "", true, options_.drive_share);
   }
 
-  /// Behind a source resistance R the bridge, at duty d, draws the bus current d i. The bus drops by R d i, the motor's
-  /// voltage by R d^2 i.
+  /// With motor current i and duty d, the bridge draws the current d i from the bus. A source resistance R lowers the
+  /// bus by R d i, and the motor's voltage by R d^2 i. The column is d^2 times the load's torque, which is proportional
+  /// to i.
   void add_supply_sag(const std::vector<Column>& base) {
     if (bench_.law != bench::DriveLaw::kServoVoltage) {
       return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
