@@ -18,9 +18,10 @@ class BackendArguments {
   void declare(CLI::App& app);
 
   const std::string& hal() const { return hal_; }
-  /// Throws std::invalid_argument when this build doesn't contain it.
+  /// Name of the backend. Throws std::invalid_argument if this build does not contain it.
   const hal::BackendKind& kind() const { return factory_.kind(hal_); }
-  /// Every option of kind(), given or not. Throws std::invalid_argument when an option of another backend was given.
+  /// Values of all options of kind(), given or default. Throws std::invalid_argument if the command line has an option
+  /// of another backend.
   hal::OptionValues values() const;
 
  private:
@@ -28,17 +29,17 @@ class BackendArguments {
     std::string name;
     hal::OptionValue value;  // as given
     CLI::Option* option;
-    std::vector<std::string> kinds;  // that have it
-    std::string help;                // of all of them
+    std::vector<std::string> kinds;  // backends with this option
+    std::string help;                // help of all these backends
   };
   void declare(CLI::App& app, const hal::BackendKind& kind, const hal::BackendOption& option);
 
   hal::BackendFactory factory_;
   std::string hal_;
-  std::deque<Declared> declared_;  // CLI11 keeps addresses of the values
+  std::deque<Declared> declared_;  // CLI11 keeps addresses of the values: a deque does not move them
 };
 
-/// Each value under its name; empty texts are left out.
+/// (values) => (values by name). Leaves out empty texts.
 void add_to(nlohmann::ordered_json& json, const hal::OptionValues& values);
 
 }  // namespace pmg::apps

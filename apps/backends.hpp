@@ -1,4 +1,4 @@
-// The backends that this build contains, and those that users may ask for in vain.
+// Backends of this build, and the backends that it lacks.
 #pragma once
 
 #include "hal/backend_factory.hpp"

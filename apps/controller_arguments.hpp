@@ -1,4 +1,4 @@
-// pmg_controller's command line, and the configuration that it makes.
+// Command line of pmg_controller, and the resulting configuration.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ struct ControllerArguments {
   bool benching() const { return !bench.empty(); }
 };
 
-/// (arguments, control, backend) => the configuration in force. bench: null without --bench.
+/// (arguments, control, backend) => (configuration in force). bench: null without --bench.
 nlohmann::ordered_json config_json(const ControllerArguments& arguments, const control::LoadedControl& loaded,
                                    const hal::Backend& backend, const runtime::BenchSession* bench);
 

@@ -1,4 +1,4 @@
-// pmg_eval's command line: its subcommands and what they take.
+// Command line of pmg_eval: its subcommands and their options.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,9 +20,9 @@ struct EvalArguments {
   double speed_m_s = 0.8;
   bool gantry = false, nominal = false, video = false, json = false;
 
-  /// Declares every subcommand; app is then parsed by its owner.
+  /// Declares all subcommands. The caller parses app afterwards.
   void declare(CLI::App& app);
-  /// Name of the parsed subcommand. Fills in what was not given and differs from one subcommand to another.
+  /// Name of the parsed subcommand. Fills in the defaults that differ between subcommands.
   std::string finish(const CLI::App& app);
 
   std::string ranges_file() const { return nominal ? "" : variation.string(); }

@@ -1,4 +1,4 @@
-// pmg_calibrate_motor --make-excitation: its options, and what becomes of them.
+// pmg_calibrate_motor --make-excitation: its options and its work.
 #pragma once
 
 #include <fmt/format.h>
@@ -43,7 +43,8 @@ class ExcitationCommand {
 
   bool wanted() const { return wanted_; }
 
-  /// Writes the bench; says what it is. Throws std::invalid_argument, files::ConfigError or std::runtime_error.
+  /// Writes the bench and returns its description. Throws std::invalid_argument, files::ConfigError or
+  /// std::runtime_error.
   std::string run(const std::string& joint, const std::filesystem::path& out, unsigned seed) const {
     bench::ExcitationLimits limits = limits_;
     std::vector<bench::ExcitationGains> gains;

@@ -1,5 +1,5 @@
-// What an option's value must be: said in plain words in the help and in the error. CLI11's own ranges print the
-// largest double with 300 digits and take NaN for a number within them.
+// Checks of option values, with the same plain words in help and errors. CLI11's own ranges print the largest double
+// with 300 digits and accept NaN.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,8 @@
 
 namespace pmg::apps {
 
-/// help: after the option's type, as in "--jobs INT:1 to 64". expected completes "'-1' isn't a number ...".
+/// help: text after the option's type, as in "--jobs INT:1 to 64". expected: end of the error "'-1' isn't a number
+/// ...".
 inline CLI::Validator number_check(const std::string& help, const std::string& expected,
                                    const std::function<bool(double)>& holds) {
   return {[expected, holds](std::string& text) {
@@ -40,7 +41,7 @@ inline CLI::Validator positive() {
 inline CLI::Validator non_negative() {
   return number_check("0 or more", "a number of at least 0", [](double value) { return value >= 0.0; });
 }
-/// Both ends included.
+/// A range that includes both ends.
 inline CLI::Validator in_range(double lower, double upper) {
   return number_check(fmt::format("{:g} to {:g}", lower, upper),
                       fmt::format("a number from {:g} to {:g}", lower, upper),

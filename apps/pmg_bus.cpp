@@ -1,4 +1,4 @@
-// pmg_bus: first light of a robot's drives: who answers, what they say, one motor at a time.
+// pmg_bus: bring-up of a robot's drives: roll call, readings, and the motion of one motor at a time.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -74,7 +74,7 @@ std::string row(const drives::MotorSetup& motor, const drives::BusSetup& bus, co
                            joint.temperature_degC, drives::to_string(joint.fault));
 }
 
-/// Asks every bus once; prints a row a motor and the problems. Number of problems.
+/// Asks every bus once, and prints a row for each motor and all problems. Returns the number of problems.
 std::size_t show(Buses& buses) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
@@ -131,7 +131,7 @@ OneMotor find(Buses& buses, const std::string& joint) {
       fmt::format("'{}' isn't a joint; {}", joint, files::expected_name(joint, buses.robot.joint_index.names())));
 }
 
-/// One frame to one motor, and its answer within 0.1 s.
+/// Sends one frame to one motor and returns its answer within 0.1 s.
 drives::MotorReading ask(const OneMotor& one, const drives::MitFrame& bytes) {
   const drives::MitProtocol protocol(one.motor.ranges);
   const can::Frame frame = can::Frame::of(static_cast<std::uint32_t>(one.motor.node), bytes, one.bus.data_bitrate != 0);

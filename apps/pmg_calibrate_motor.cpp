@@ -1,4 +1,4 @@
-// pmg_calibrate_motor: from recordings of one joint to a motor model that moves as the joint did.
+// pmg_calibrate_motor: fits a motor model to recordings of one joint.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -89,7 +89,7 @@ std::vector<std::string> names_to_fit(const Arguments& arguments, const bench::B
   return names;
 }
 
-/// "NAME=REST" in two.
+/// ("NAME=REST") => (NAME, REST)
 std::pair<std::string, std::string> split(const std::string& text, const char* expected) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw std::invalid_argument(fmt::format("'{}'; expected {}", text, expected));
@@ -195,7 +195,7 @@ int calibrate(const Arguments& arguments) {
   const work::Progress reading = apps::shown(progress, "reading " + bench.folder.string());
   std::vector<calib::SingleJoint> fitted = calib::read_joints(bench, arguments.fit, step_s, reading), scored;
   if (!arguments.score.empty()) scored = calib::read_joints(bench, arguments.score, step_s, reading);
-  if (apps::interrupt_requested != 0) return kInterrupted;  // nothing is found yet
+  if (apps::interrupt_requested != 0) return kInterrupted;  // before any result
   calib::expect_apart(fitted, scored);
   calib::FitResults results;
   results.noise_floor = noise_floor(fitted, scored);

@@ -1,4 +1,4 @@
-// pmg_calibrate_zero: from logs of a robot that stood still to the zero points of its joints.
+// pmg_calibrate_zero: finds the zero points of a robot's joints from logs in which it stood still.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -97,7 +97,7 @@ int calibrate(const Arguments& arguments) {
   results.found = zero::calibrate_zero(robot, poses, arguments.options, apps::shown(progress));
   results.interrupted = apps::interrupt_requested != 0;
   progress.clear();
-  if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // nothing is found yet
+  if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // before any result
   write_results(results, known, arguments.out);
   if (arguments.json) {
     apps::print_json(zero::zero_json(results));

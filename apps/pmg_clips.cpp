@@ -1,4 +1,4 @@
-// Makes and shows clip libraries.
+// pmg_clips: makes and shows clip libraries.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,7 +35,8 @@ namespace {
 
 using namespace pmg;
 
-/// From the clips as they are read back, so that it belongs to the files. Interrupted, the old one stays.
+/// Makes the command inverse from the clips as read back, so that it belongs to the files. After an interruption the
+/// old one stays.
 void write_inverse(const model::RobotModel& robot, const std::filesystem::path& clips, const std::string& blend) {
   apps::ProgressLine progress;
   ClipLibrary library = model::load_clip_library(clips, robot);
@@ -57,7 +58,7 @@ int invert(const std::string& robot_name, const std::filesystem::path& clips, co
 
 int synth(const std::string& robot_name, const std::filesystem::path& out, const std::string& blend) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
-  model::require_writable(out);  // now, not after a minute's work
+  model::require_writable(out);  // before a minute of work, not after it
   apps::ProgressLine progress;
   const ClipLibrary library = generator::synthesize(robot, blend == "corners", apps::shown(progress));
   progress.clear();
@@ -158,7 +159,8 @@ struct WalkOptions {
   bool list = false;
 };
 
-/// Double-support limits of docs/explanation/method.md hold for the mean over all commands, the others for each.
+/// The double-support limits of docs/explanation/method.md hold for the mean over all commands, the other limits for
+/// each command.
 int walk(const WalkOptions& options) {
   const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
   ClipLibrary library =

@@ -1,4 +1,4 @@
-// pmg_diagnose: what the simulation gets wrong of a recorded joint, and why.
+// pmg_diagnose: the errors of a joint's simulation, and the effects behind them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -74,7 +74,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--json", arguments.json, "print diagnosis.json on stdout instead of the short report");
 }
 
-/// The joint of the file that is meant; also sets its name.
+/// The actuator of the chosen joint in the file. Also sets the joint's name.
 model::ActuatorParameters given_model(Arguments& arguments) {
   const sim::ActuatorsByJoint joints = sim::read_motor_file(arguments.model);
   if (joints.size() == 1 && arguments.joint.empty()) arguments.joint = joints.begin()->first;

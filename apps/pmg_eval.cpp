@@ -1,4 +1,4 @@
-// pmg_eval: how well policies do, over many simulated robots in parallel.
+// pmg_eval: performance of policies over many simulated robots in parallel.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -39,7 +39,7 @@ evaluation::Candidate candidate(const std::string& text, const apps::EvalArgumen
   candidate.control.robot = arguments.robot;
   candidate.control.clips = arguments.clips;
   candidate.control.policy = policy;
-  control::load_control(candidate.control);  // what doesn't fit is told before hours of work
+  control::load_control(candidate.control);  // refuses a wrong candidate before hours of work
   return candidate;
 }
 
@@ -62,7 +62,7 @@ evaluation::Plants plants(const apps::EvalArguments& arguments) {
   return plants;
 }
 
-/// Shows how far the work is, while it lives.
+/// Shows the progress of the work during its own lifetime.
 class Watch {
  public:
   explicit Watch(const apps::EvalArguments& arguments) {
@@ -86,7 +86,7 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Page and JSON to the folder, text or JSON to stdout; the exit code.
+/// Writes page and JSON to the folder, text or JSON to stdout. Returns the exit code.
 template <typename Result>
 int hand_over(const apps::EvalArguments& arguments, const Result& result, bool complete, bool reached) {
   const nlohmann::ordered_json json = to_json(result);
@@ -103,10 +103,10 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result, bool c
   return reached ? kOk : kMissed;
 }
 
-/// What went wrong with films, a line each. The table's films are those that can be watched.
+/// Errors of the films, one line each. The table gets the names of the films that were made.
 std::vector<std::string> make_films(const apps::EvalArguments& arguments, evaluation::Table1& table) {
   const Watch watch(arguments);
-  std::vector<std::optional<std::string>> failures(table.cases.size());  // nothing: not begun
+  std::vector<std::optional<std::string>> failures(table.cases.size());  // empty: not begun
   evaluation::for_each_piece(table.cases.size(), watch.supervision(), [&](std::size_t c) {
     failures[c] =
         film_case(table.cases[c], table.scenario, arguments.out / (table.cases[c].name + ".mp4"), watch.supervision());

@@ -39,7 +39,7 @@ int make(const Arguments& arguments, const fs::path& folder) {
   try {
     seal::write_operator_key(out, key);
   } catch (const std::exception&) {
-    seal::revoke_operator_key(folder, arguments.name);  // a key that nobody has
+    seal::revoke_operator_key(folder, arguments.name);  // nobody has got this key
     throw;
   }
   std::cout << fmt::format("{}: {}'s key; it belongs into ~/.config/pmg/operator-keys/ of that operator alone\n",

@@ -1,4 +1,4 @@
-// pmg_keyboard: drives a robot by the keys of a terminal, with live numbers beside them.
+// pmg_keyboard: drives a robot by the keys of a terminal and shows its state.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

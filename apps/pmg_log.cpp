@@ -1,4 +1,4 @@
-// pmg_log: what a log is about, what is in it for other programs, and whether the same controller does the same again.
+// pmg_log: summary of a log, its export for other programs, and its replay by the same controller.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -123,7 +123,7 @@ int export_log(const Arguments& arguments) {
   return apps::interrupt_requested == 0 ? kOk : kInterrupted;
 }
 
-/// What a run with --bench played, from where it was then or from the folder that --excitation names.
+/// The excitation of a run with --bench, from its folder at that time or from --excitation.
 logs::PlayedExcitation played_excitation(const model::RobotModel& robot, const std::string& joint,
                                          const fs::path& folder) {
   if (!fs::is_directory(folder)) {

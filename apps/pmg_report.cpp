@@ -1,4 +1,4 @@
-// pmg_report: logs as one page of pictures.
+// pmg_report: a page with pictures of one or several logs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// pmg_send: asks a running controller for a mode, drives it for a stretch, or stops it, from a shell.
+// pmg_send: asks a running controller for a mode, drives it for some time, or stops it, from a shell.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -42,7 +42,7 @@ network, 130 interrupted (a robot that was driven is brought to rest first).)";
 struct Arguments {
   std::string request;
   std::string robot, lcm_url, keys;
-  double timeout_s = 0.0;  // 0: by request
+  double timeout_s = 0.0;  // 0: the default of each request
   double duration_s = 0.0;
   Command command;
   bool json = false;
@@ -63,7 +63,7 @@ constexpr Request kRequests[] = {
     {"reset", ops::Goal::kReset, 2.0, "leave a latched fault for damping, if its cause is gone"},
 };
 constexpr double kDriveTimeout_s = 10.0;
-constexpr double kHoistTimeout_s = 15.0;  // to catch a robot that lies, and lift it
+constexpr double kHoistTimeout_s = 15.0;  // time to catch and lift a robot that lies on the ground
 constexpr const char *kLift = "lift", *kLower = "lower";
 
 void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
@@ -128,7 +128,7 @@ class Session {
  private:
   double timeout_s(double otherwise) const { return arguments_.timeout_s > 0.0 ? arguments_.timeout_s : otherwise; }
 
-  /// The robot that is meant. Empty when there is none, which is then reported.
+  /// Name of the robot to command. Reports an error and returns empty if there is none.
   std::string find_robot(double within_s) {
     if (!arguments_.robot.empty()) return arguments_.robot;
     const std::int64_t begin_ns = clock_.now_ns();
@@ -215,7 +215,7 @@ class Session {
     return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
   }
 
-  /// Once: why nothing happens yet.
+  /// Prints once why nothing happens yet.
   void say_whose_lease(const std::string& robot, const std::string& source) {
     if (source.empty() || waiting_said_) return;
     waiting_said_ = true;
@@ -224,7 +224,7 @@ class Session {
               << '\n';
   }
 
-  /// Once, when the controller can't follow the command as it was asked.
+  /// Prints once that the controller cannot follow the command as asked.
   void say_what_is_taken(const std::string& robot, bool last) {
     const auto news = board_.robots().find(robot);
     if (news == board_.robots().end()) return;
@@ -234,7 +234,7 @@ class Session {
     std::cerr << io::plain_text(fmt::format("{}: {}", robot, text)) << '\n';
   }
 
-  /// Once a second, when somebody watches.
+  /// Prints the progress once a second, if stderr is a terminal.
   void show_progress(const std::string& robot, const ops::Drive& drive) {
     const auto second = static_cast<int>(drive.driven_s());
     if (!drive.driving() || second == shown_second_ || isatty(STDERR_FILENO) == 0) return;
@@ -283,7 +283,7 @@ class Session {
   ops::OperatorSource source_;
   ops::RobotBoard board_;
   ops::TakenCommand taken_;
-  std::string limited_;  ///< what the controller made of a command that it can't follow; empty: nothing
+  std::string limited_;  ///< the controller's replacement of a command that it cannot follow; or empty
   bool waiting_said_ = false;
   int shown_second_ = -1;
 };

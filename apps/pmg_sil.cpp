@@ -30,7 +30,7 @@ enum ExitCode { kOk = 0, kFellOrFault = 1, kBadInput = 2, kInterrupted = 130 };
 
 using Arguments = apps::SilArguments;
 
-/// A flag's absence that CLI11 can't judge, because --export-mjcf and --print-config need less.
+/// Checks for required options. CLI11 cannot: --export-mjcf and --print-config need fewer options.
 void require(const fs::path& value, const char* option) {
   if (value.empty())
     throw std::invalid_argument(fmt::format("{} is missing (pmg_sil --help shows an example)", option));
@@ -45,7 +45,7 @@ int simulate(Arguments arguments) {
   } else if (!arguments.by_operators()) {
     require(arguments.scenario, "--scenario");
   }
-  // Everything that input can spoil comes first: nothing is written for bad input.
+  // All checks of the input come first: bad input leads to no output.
   control::LoadedControl loaded = control::load_control(arguments.control);
   arguments.control.policy = loaded.policy_name;
   if (arguments.realtime) sil::expect_shared_host(loaded.options);

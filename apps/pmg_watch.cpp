@@ -1,4 +1,4 @@
-// pmg_watch: what the controllers on an LCM address do, live in a terminal.
+// pmg_watch: shows the state of the controllers on an LCM address in a terminal.
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -44,7 +44,7 @@ struct Arguments {
   bool once = false, json = false;
 };
 
-/// A longer line would wrap, and the next picture begin too high.
+/// Width of the terminal. A longer line would wrap, and the next picture would begin too high.
 std::size_t columns() {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -58,7 +58,7 @@ class Watch {
         link_(io::choose_lcm_url(arguments.lcm_url)),
         board_(link_, clock_, seal::load_operator_seal(arguments.keys, link_.url())) {}
 
-  /// One status, with what comes once a second if it comes in time.
+  /// Waits for one STATUS, and for a short time for the messages that come once a second.
   int once() {
     const auto complete = [&] {
       const std::vector<const ops::RobotNews*> shown = selected();
@@ -117,7 +117,8 @@ class Watch {
     }
     if (shown.empty()) lines = {elapsed_s() > kNotHeardAfter_s ? nobody() : "listening on " + link_.url()};
     std::string text;
-    if (drawn_lines_ > 0) text += fmt::format("\x1b[{}A", drawn_lines_);  // up to where the last picture began
+    if (drawn_lines_ > 0)
+      text += fmt::format("\x1b[{}A", drawn_lines_);  // moves the cursor to the beginning of the last picture
     for (const std::string& line : lines) text += line.substr(0, columns()) + "\x1b[K\n";
     text += "\x1b[J";
     drawn_lines_ = lines.size();
@@ -165,7 +166,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", arguments.json, "print JSON, an object a line");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM}, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);  // pmg_watch | head
+    std::signal(SIGPIPE, SIG_IGN);  // as in pmg_watch | head
     Watch watch(arguments);
     return arguments.once ? watch.once() : watch.forever();
   });

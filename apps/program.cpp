@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;
-constexpr unsigned kPatience_s = 1;  ///< what takes longer after Ctrl-C is said
+constexpr unsigned kPatience_s = 1;  ///< work that takes longer after Ctrl-C is announced
 
 std::string program_name;    // NOLINT: signal handlers reach nothing else
 std::string finishing_line;  // NOLINT
@@ -29,15 +29,15 @@ void keep_in_mind(int /*signal*/) {
   interrupt_requested = 1;
 }
 
-/// The program is still at work. From here on the user may end it the hard way; not before, because one Ctrl-C can
-/// reach a program twice (timeout, for one, signals its child and then the group).
+/// Called while the program is still at work. From now on a second signal ends the program at once. An earlier one does
+/// not, because one Ctrl-C can reach a program twice (timeout signals its child and then the group).
 void say_what_goes_on(int /*signal*/) {
   const ssize_t written = write(STDERR_FILENO, finishing_line.data(), finishing_line.size());
   static_cast<void>(written);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, end_at_once);
 }
 
-/// A hang-up that is ignored already stays so: nohup.
+/// Keeps ignoring SIGHUP if it is already ignored (nohup).
 void handle(int signal, void (*handler)(int)) {
   const auto before = std::signal(signal, handler);
   if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);
@@ -81,7 +81,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   app.set_version_flag(
       "--version", [&] { return version(app, bundle); },
       bundle ? "print version and revision, with --robot the bundle too, and exit"
-             : "print version and revision, and exit");  // last: --robot is known when it is called
+             : "print version and revision, and exit");  // added last: it needs the value of --robot
   try {
     return parse_and_run(app, argc, argv, body);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -1,5 +1,5 @@
-// How far long work is, on stderr: on a terminal one line that renews itself, in a file or a pipe a line every five
-// seconds.
+// Progress of long work on stderr: one line that renews itself on a terminal, a line every five seconds in a file or
+// pipe.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace pmg::apps {
 
 class ProgressLine {
  public:
-  /// Work that is over before line_period says nothing in a file or a pipe.
+  /// Work shorter than line_period prints nothing to a file or pipe.
   explicit ProgressLine(std::chrono::milliseconds line_period = std::chrono::seconds(5)) : line_period_(line_period) {
     if (!terminal_) writer_ = std::jthread([this](const std::stop_token& stop) { write_lines(stop); });
   }
@@ -28,7 +28,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// As often as one likes: a terminal's line is renewed ten times a second.
+  /// May be called at any rate: a terminal's line is renewed ten times a second.
   void show(std::string_view text) {
     if (terminal_) {
       renew(text);
@@ -38,7 +38,7 @@ class ProgressLine {
     }
   }
 
-  /// share in [0, 1] as a bar, and what is being done.
+  /// A bar for share in [0, 1], and the present step in words.
   void show(double share, std::string_view text) {
     constexpr int kBar = 30;
     const int done = static_cast<int>(share * kBar);
@@ -49,7 +49,7 @@ class ProgressLine {
     }
   }
 
-  /// Makes room for ordinary text.
+  /// Clears the line, so that ordinary text can follow.
   void clear() {
     if (terminal_ && shown_) std::cerr << '\r' << std::string(kWidth, ' ') << '\r' << std::flush;
     shown_ = false;
@@ -66,11 +66,11 @@ class ProgressLine {
     std::cerr << fmt::format("\r{:<{}.{}}", text, kWidth, kWidth) << std::flush;
   }
 
-  /// A thread of its own: a line comes also while the work is long between two calls of show.
+  /// Runs in a thread of its own: lines appear also during a long time between two calls of show.
   void write_lines(const std::stop_token& stop) {
     sigset_t all;
     sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, nullptr);  // interruption is the work's to notice
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals go to the threads of the work
     const auto start = std::chrono::steady_clock::now();
     std::unique_lock lock(mutex_);
     for (auto next = start + line_period_; !stop.stop_requested(); next += line_period_) {
@@ -86,10 +86,10 @@ class ProgressLine {
   const bool terminal_ = isatty(STDERR_FILENO) == 1;
   bool shown_ = false;
   std::chrono::steady_clock::time_point last_;
-  std::mutex mutex_;  // of text_
+  std::mutex mutex_;  // guards text_
   std::string text_;
   std::condition_variable_any wake_;
-  std::jthread writer_;  // last: it uses what stands above
+  std::jthread writer_;  // declared last: it uses the members above
 };
 
 }  // namespace pmg::apps

@@ -1,4 +1,4 @@
-// A terminal whose keys arrive one by one, as it was before on every way out but SIGKILL.
+// A terminal whose keys arrive one by one. Every end of the program except SIGKILL restores its earlier state.
 #pragma once
 
 #include <fcntl.h>
@@ -19,11 +19,11 @@
 
 namespace pmg::apps {
 
-/// One in a process. Draws on the terminal's second screen, so what stood on it is there again afterwards. Ctrl-C and
-/// Ctrl-Z are signals as ever; after fg the keys arrive one by one again.
+/// At most one per process. Draws on the terminal's second screen, so the first one reappears afterwards. Ctrl-C and
+/// Ctrl-Z remain signals; after fg the keys arrive one by one again.
 class RawTerminal {
  public:
-  /// Throws std::runtime_error when input and output are no terminal.
+  /// Throws std::runtime_error if input or output is no terminal.
   RawTerminal() {
     if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0) {
       throw std::runtime_error("needs a terminal for its keys; pmg_send drives from scripts");
@@ -36,7 +36,7 @@ class RawTerminal {
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, die);
     std::signal(SIGTSTP, suspend);
     std::signal(SIGCONT, resume);
-    std::signal(SIGTTOU, SIG_IGN);  // the shell that took the terminal over meanwhile
+    std::signal(SIGTTOU, SIG_IGN);  // sent if the shell has taken the terminal over
   }
   ~RawTerminal() {
     leave();
@@ -45,7 +45,7 @@ class RawTerminal {
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
 
-  /// What was typed and not read, without waiting. Sets ended() when nobody can type any more.
+  /// Unread keys, without waiting. Sets ended() once the input is closed.
   std::string read() {
     std::array<char, 256> bytes{};
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
@@ -57,7 +57,7 @@ class RawTerminal {
   }
   bool ended() const noexcept { return ended_; }
 
-  /// A picture from the top left corner; lines that are too long or too many are cut.
+  /// Draws a picture from the top left corner. Cuts lines that are too long, and surplus lines.
   void draw(const std::vector<std::string>& lines) const {
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)

@@ -1,4 +1,4 @@
-// pmg_diagnose --robot: from logs of a whole robot, or from a simulated one that plays the excitation, to a verdict.
+// pmg_diagnose --robot: diagnosis of a whole robot from its logs, and recording of a simulated robot.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ struct RobotDiagnosisArguments {
   work::Progress progress{};
 };
 
-/// Plays both excitations on a simulated robot: DIR/hanging.lcm and DIR/standing.lcm. False when progress ended it:
-/// what was recorded whole until then is kept, and stderr says what.
+/// Plays both excitations on a simulated robot and writes DIR/hanging.lcm and DIR/standing.lcm. False after an
+/// interruption: complete recordings are kept, and stderr names them.
 inline bool record_robot(const std::string& name, const std::filesystem::path& out, unsigned seed,
                          const work::Progress& progress = {}) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
@@ -50,8 +50,8 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
   return true;
 }
 
-/// Writes DIR/diagnosis.json and DIR/report.html and tells the verdict on stdout. False when progress ended it: nothing
-/// is written then, and stderr says so. Throws std::exception on bad input, before anything is written.
+/// Writes DIR/diagnosis.json and DIR/report.html, and the verdict to stdout. False after an interruption: nothing is
+/// written, and stderr says so. Throws std::exception on bad input, before anything is written.
 inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
   const std::vector<robot_diagnosis::RobotRecording> recordings =

@@ -1,4 +1,4 @@
-// Long work on a progress line, ended by the first signal.
+// Progress of long work on a progress line; the first signal interrupts the work.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace pmg::apps {
 
-/// Shows what is being done, or `doing` where the work says nothing of it. Keeps a reference to the line.
+/// Shows the present step of the work, or `doing` if the work does not name its steps. Keeps a reference to the line.
 inline work::Progress shown(ProgressLine& line, const std::string& doing = "") {
   return {.told =
               [&line, doing](double share, std::string_view now) {

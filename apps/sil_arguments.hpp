@@ -1,4 +1,4 @@
-// pmg_sil's command line, and the configuration that it makes.
+// Command line of pmg_sil, and the resulting configuration.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ struct SilArguments {
   bool by_operators() const { return realtime && scenario.empty(); }
 };
 
-/// (arguments, control) => the configuration in force. bench: null without --bench.
+/// (arguments, control) => (configuration in force). bench: null without --bench.
 nlohmann::ordered_json config_json(const SilArguments& arguments, const control::LoadedControl& loaded,
                                    const runtime::BenchSession* bench);
 

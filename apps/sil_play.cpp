@@ -30,10 +30,11 @@ recording::RunInfo run_info(const Stage& stage) {
           .files = stage.loaded.files};
 }
 
-/// Who speaks to the controller over the network when no scenario does.
+/// The controller's network for operators, in place of a scenario.
 class Operators {
  public:
-  /// Keeps references. Throws std::runtime_error when there is no such network, or a controller of this name on it.
+  /// Keeps references. Throws std::runtime_error if there is no such network, or another controller with this
+  /// name on it.
   Operators(const Stage& stage, const recording::RunInfo& info, runtime::Controller& controller,
             sil::SimulatedRobot& simulated)
       : lock_(info.robot, io::choose_lcm_url(stage.arguments.lcm_url)),

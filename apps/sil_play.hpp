@@ -1,4 +1,4 @@
-// A scenario that is played in lockstep or with the robot's threads.
+// Plays a scenario in lockstep or with the robot's threads.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@
 
 namespace pmg::apps {
 
-/// A scenario that was played, either way.
+/// Outcome of a played scenario.
 struct Played {
   sil::RunOutcome outcome;
   sil::StageTiming timing;
@@ -28,7 +28,7 @@ struct Played {
   std::vector<sil::FailureReaction> reactions{};  // one for each failure that was injected
 };
 
-/// What both ways of playing need.
+/// Inputs of both ways of playing.
 struct Stage {
   const SilArguments& arguments;
   const control::LoadedControl& loaded;
@@ -45,9 +45,9 @@ struct Stage {
   bool balanced_by_policy() const { return arguments.control.policy != "none"; }
 };
 
-/// (stage) => (outcome), on the simulation's clock, in this thread.
+/// (stage) => (outcome). Lockstep: on the simulation's clock, in this thread.
 Played play_lockstep(const Stage& stage);
-/// (stage) => (outcome), on the wall clock; without a scenario operators drive over the network.
+/// (stage) => (outcome). Real time: on the wall clock; without a scenario, operators drive over the network.
 Played play_realtime(const Stage& stage);
 
 }  // namespace pmg::apps

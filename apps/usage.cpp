@@ -12,7 +12,7 @@ namespace pmg::apps {
 
 namespace {
 
-/// The program, then each subcommand that was given: pmg_send, walk.
+/// The program, then each given subcommand: {pmg_send, walk}.
 std::vector<const CLI::App*> given_commands(const CLI::App& app) {
   std::vector<const CLI::App*> chain{&app};
   for (auto next = app.get_subcommands(); !next.empty(); next = next.front()->get_subcommands()) {
@@ -38,7 +38,7 @@ std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) 
   return names;
 }
 
-/// As they are typed: "--out", "-M".
+/// Options as typed: "--out", "-M".
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -72,7 +72,7 @@ std::string unknown_option(const std::vector<const CLI::App*>& chain, const std:
                          : fmt::format("{}: unknown option; did you mean {}?", option, nearest);
 }
 
-/// What CLI11 could place nowhere; empty: nothing.
+/// The first word that CLI11 does not know; empty: none.
 std::string unknown_word(const CLI::App& app, const std::vector<const CLI::App*>& chain) {
   std::vector<std::string> words = app.remaining(true);
   std::erase(words, "--");
@@ -116,7 +116,7 @@ const CLI::Option* option_named(const std::vector<const CLI::App*>& chain, const
   return nullptr;
 }
 
-/// CLI11 says "Could not convert: --seed = many".
+/// For CLI11's message "Could not convert: --seed = many".
 std::string not_converted(const std::vector<const CLI::App*>& chain, const std::string& text) {
   const std::string start = "Could not convert: ";
   const std::size_t equals = text.find(" = ");
@@ -131,7 +131,7 @@ std::string not_converted(const std::vector<const CLI::App*>& chain, const std::
   return fmt::format("{}: '{}' isn't {}", name, text.substr(equals + 3), expected);
 }
 
-/// A value that isn't there, or one too many. CLI11 begins with the option's name.
+/// For a missing value or too many values: CLI11's message begins with the option's name.
 std::string wrong_count(const std::string& text) {
   const std::string name = text.substr(0, text.find(':'));
   if (text.ends_with("missing")) return name + ": its value is missing";

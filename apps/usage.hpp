@@ -1,4 +1,4 @@
-// What is wrong with a command line, in one line: the program, the word, what was expected.
+// One line about a wrong command line: the program, the wrong word, the expected one.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,8 +6,8 @@
 
 namespace pmg::apps {
 
-/// app: after app.parse() has thrown this error. Without a newline at the end. An unknown word comes before whatever
-/// else is wrong: a mistyped --out is no missing --out.
+/// app: its parse() has thrown this error. The result has no newline at the end. An unknown word is reported before any
+/// other error: a mistyped --out would otherwise be reported as a missing --out.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pmg::apps

@@ -14,9 +14,9 @@ namespace {
 
 using files::ConfigReader;
 
-constexpr double kPresliding_m = 1e-5;  // of guides and screws; a joint's milliradian would be a millimetre
+constexpr double kPresliding_m = 1e-5;  // of guides and screws; the joints' default of 1e-3 rad would mean 1 mm
 
-/// A positive number, or nothing where the file says "unknown" or nothing at all.
+/// A positive number; empty if the file says "unknown" or lacks the key.
 std::optional<double> known_number(ConfigReader& reader, const std::string& key) {
   if (!reader.has(key)) return std::nullopt;
   try {
@@ -41,7 +41,7 @@ void read_servo(Bench& bench, ConfigReader& drive) {
   take(bench, drive, "torque_Nm_per_V", "drive.torque_per_unit_Nm");
   take(bench, drive, "kt_V_s_per_rad", "drive.back_emf_s_per_rad");
   if (!drive.has("bus_V")) return;
-  try {  // a number, or the remarks of whoever recorded it
+  try {  // a number, or a remark in words
     bench.supply_V = drive.required<double>("bus_V", files::positive());
   } catch (const files::ConfigError&) {
     drive.map("bus_V");
@@ -53,7 +53,8 @@ void read_cascade(Bench& bench, ConfigReader& drive, const std::string& length) 
   bench.kd_of_law = drive.required<double>("kv_V_s_per_" + length, files::positive());
   bench.kp_of_law = kp_per_s * bench.kd_of_law;
   bench.known.drive.limit = drive.optional<double>("limit_V", 10.0, files::positive());
-  bench.known.command.hold_s = 1.0 / bench.sample_rate_hz;  // a digital loop: command and position of the same instant
+  bench.known.command.hold_s =
+      1.0 / bench.sample_rate_hz;  // a digital loop reads command and position at the same time
   take(bench, drive, length == "m" ? "gtau_N_per_V" : "gtau_Nm_per_V", "drive.torque_per_unit_Nm");
 }
 
@@ -118,7 +119,7 @@ std::optional<double> number(const CsvTable& table, std::size_t row, const std::
   return value;
 }
 
-/// The row's load among bench.yaml's; both round their masses.
+/// The load of bench.yaml with the row's mass. Both files round masses.
 JointLoad load_of(const Bench& bench, std::size_t row) {
   if (bench.loads.empty()) return {};
   const auto mass = number(bench.runs, row, "load_mass_kg"), length = number(bench.runs, row, "load_length_m");
@@ -179,7 +180,7 @@ Bench read_bench(const std::filesystem::path& folder) {
   bench.robot = reader.optional<std::string>("robot", "");
   bench.joint = reader.optional<std::string>("joint", "");
   if (reader.has("design")) reader.required<std::string>("design");
-  if (reader.has("reference")) reader.map("reference");  // for who compares, not for a fit
+  if (reader.has("reference")) reader.map("reference");  // a reference result for comparisons; a fit does not use it
   reader.finish();
   bench.runs = read_csv(folder / "runs.csv");
   return bench;

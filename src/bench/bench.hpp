@@ -1,4 +1,4 @@
-// A bench: bench.yaml says what the rig and the drive are, runs.csv which recordings there are.
+// A bench: bench.yaml describes the rig and the drive, runs.csv lists the recordings.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +14,11 @@
 
 namespace pmg::bench {
 
-/// What the joint moves besides its own rotor. On a linear rig kg and N.
+/// The load of the joint: everything that it moves except its own rotor. On a linear rig in kg and N.
 struct JointLoad {
   double inertia_kg_m2 = 0.0;  ///< about the axis
-  double gravity_Nm = 0.0;     ///< torque on the joint is -gravity_Nm sin(q - hangs_at): hangs_at is down
-  double hangs_at_rad = 0.0;   ///< 0 but for a robot's joints
+  double gravity_Nm = 0.0;     ///< gravity's torque on the joint is -gravity_Nm sin(q - hangs_at_rad)
+  double hangs_at_rad = 0.0;   ///< angle at which the load hangs at rest; 0 except for a robot's joints
 };
 
 enum class Rig { kPendulum, kHorizontal, kLinear, kRobot };
@@ -26,7 +26,7 @@ enum class DriveLaw { kServoVoltage, kPositionPd, kCascadePd, kTorque };
 
 struct BenchLoad {
   double mass_kg = 0.0, length_m = 0.0;
-  JointLoad load;  ///< a point mass's where bench.yaml says unknown
+  JointLoad load;  ///< of a point mass where bench.yaml says "unknown"
   bool inertia_known = false, gravity_known = false;
 };
 
@@ -34,36 +34,36 @@ struct BenchLoad {
 struct BenchRun {
   std::string file, trajectory;
   int repeat = 0;
-  std::optional<double> temp_C;  ///< as runs.csv says
-  double kp = 1.0, kd = 0.0;     ///< what the drive was told, in its own unit; 1 where runs.csv says nothing
+  std::optional<double> temp_C;  ///< from runs.csv
+  double kp = 1.0, kd = 0.0;     ///< commanded gains, in the drive's own unit; kp = 1 and kd = 0 without a column
   JointLoad load;
   Recording recording;
 };
 
 struct Bench {
   std::filesystem::path folder;
-  std::string robot, joint;  ///< of a robot's rig; empty where bench.yaml doesn't say
+  std::string robot, joint;  ///< of a robot's rig; empty without an entry in bench.yaml
   Rig rig = Rig::kPendulum;
   DriveLaw law = DriveLaw::kPositionPd;
   double sample_rate_hz = 100.0;
-  bool linear_hold = false;  ///< commands run straight between samples instead of being held
-  /// What bench.yaml knows of drive and rotor; the rest neutral.
+  bool linear_hold = false;  ///< true: commands are interpolated linearly between samples; false: held
+  /// Known parameters of drive and rotor; all others have no effect.
   model::ActuatorParameters known;
-  /// Names of known's parameters that bench.yaml leaves "unknown".
+  /// Names of the parameters that bench.yaml calls "unknown".
   std::vector<std::string> unknown;
-  double kp_of_law = 1.0, kd_of_law = 0.0;  ///< of the cascade, where gains aren't a run's
-  double supply_V = 1.0;                    ///< where no bus is recorded
+  double kp_of_law = 1.0, kd_of_law = 0.0;  ///< gains of a cascade, if runs.csv has no columns of gains
+  double supply_V = 1.0;                    ///< supply voltage if no bus voltage is recorded
   std::vector<BenchLoad> loads;
   CsvTable runs;
 
-  /// The rows that the filter keeps, read and checked; those read so far where progress is over. Throws
-  /// files::ConfigError, std::invalid_argument when none is.
+  /// (filter) => (its rows with their recordings, checked). After an interruption: the rows read so far. Throws
+  /// files::ConfigError; std::invalid_argument if the filter keeps no row.
   std::vector<BenchRun> read_runs(const RowFilter& filter, const work::Progress& progress = {}) const;
-  /// What motor.yaml calls the joint unless told otherwise: bench.yaml's joint, or the folder's name.
+  /// Default name of the joint in motor.yaml: the joint of bench.yaml, or the folder's name.
   std::string joint_name() const;
 };
 
-/// Throws files::ConfigError on whatever is missing, unknown or implausible.
+/// Throws files::ConfigError on a key or column that is missing, unknown or implausible.
 Bench read_bench(const std::filesystem::path& folder);
 
 }  // namespace pmg::bench

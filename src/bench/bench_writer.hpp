@@ -1,4 +1,4 @@
-// Writes what was recorded of a robot's joint as a bench: bench.yaml, runs.csv, runs/.
+// Writes recordings of a robot's joint as a bench: bench.yaml, runs.csv, runs/.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace pmg::bench {
 
-/// One run. Columns of equal length; an empty one is left out.
+/// One run. Columns have equal lengths; empty columns are not written.
 struct WrittenRun {
   std::string file, trajectory;
   int repeat = 0;
@@ -25,7 +25,7 @@ struct RobotBench {
   JointLoad load;
 };
 
-/// Throws std::runtime_error when a file can't be written; bench.yaml, without which it is no bench, comes last.
+/// Writes bench.yaml last: a folder without it is no bench. Throws std::runtime_error if a file can't be written.
 void write_bench(const std::filesystem::path& folder, const RobotBench& bench, const std::vector<WrittenRun>& runs);
 
 }  // namespace pmg::bench

@@ -12,11 +12,11 @@ namespace pmg::bench {
 
 namespace {
 
-constexpr double kRest_s = 0.5;  // at either end
-constexpr double kFade_s = 0.5;  // of smooth segments, in and out
+constexpr double kRest_s = 0.5;  // at both ends of a trajectory
+constexpr double kFade_s = 0.5;  // smooth segments begin and end with a ramp of this length
 constexpr double kSweepFrom_Hz = 0.2, kSweepTo_Hz = 8.0;
 
-/// Uniform numbers that are the same with every standard library.
+/// Uniform random numbers that are the same with every standard library.
 class UniformSource {
  public:
   explicit UniformSource(unsigned seed) : engine_(seed) {}
@@ -28,7 +28,7 @@ class UniformSource {
   std::mt19937_64 engine_;
 };
 
-/// Commands as shares of the range's half, in [-1, 1], one each period, between rests.
+/// Commands between two rests, one per period, as shares of half the range, in [-1, 1].
 class Drawing {
  public:
   Drawing(const ExcitationLimits& limits, unsigned seed)
@@ -41,7 +41,7 @@ class Drawing {
 
   void hold(double level, double seconds) { values_.insert(values_.end(), samples(seconds), level); }
 
-  /// Jumps to the other side and small ones in turn, so that friction's share of a step differs.
+  /// Alternates large steps to the other side and small steps: friction matters more in small steps.
   void steps(double seconds) {
     const std::size_t end = values_.size() + samples(seconds);
     double level = random_.in(-1.0, 1.0) < 0.0 ? 1e-9 : -1e-9;
@@ -76,20 +76,20 @@ class Drawing {
     });
   }
 
-  /// As wide as the range while slow, as fast as allowed afterwards.
+  /// Full amplitude at low frequencies; at high frequencies the amplitude keeps to the speed limit.
   void sweep(double seconds) {
     const double growth = std::log(kSweepTo_Hz / kSweepFrom_Hz) / seconds;
     smooth(seconds, [&](double t_s) {
       const double frequency_Hz = kSweepFrom_Hz * std::exp(growth * t_s);
       const double turns = (frequency_Hz - kSweepFrom_Hz) / growth;
-      // The envelope's own slope takes its part of the speed.
+      // The slope of the envelope contributes to the speed.
       const double height =
           std::min(1.0, most_per_s_ / (2.0 * std::numbers::pi * frequency_Hz + growth + 1.5 / kFade_s));
       return height * std::sin(2.0 * std::numbers::pi * turns);
     });
   }
 
-  /// There and back three times, each slower than the one before and as far as its share of the time allows.
+  /// Strokes to both sides at three speeds, the fastest first. Each speed gets a third of the time.
   void creep(double seconds) {
     constexpr double kSpeeds[] = {0.3, 0.1, 0.03};
     for (const double speed : kSpeeds) {
@@ -100,7 +100,7 @@ class Drawing {
         const double quarters = std::fmod(seconds_of(k) / quarter_s, 4.0);
         values_.push_back(reach * (quarters < 1.0 ? quarters : quarters < 3.0 ? 2.0 - quarters : quarters - 4.0));
       }
-      // Whole strokes only: what is left of the third rests at the centre.
+      // Only whole strokes: the joint rests at the centre for the rest of the third.
       const double strokes_s = std::floor(third_s / (4.0 * quarter_s) + 1e-9) * 4.0 * quarter_s;
       const auto whole = static_cast<std::size_t>(std::ceil(strokes_s * limits_.rate_hz - 1e-9));
       std::fill(values_.begin() + static_cast<std::ptrdiff_t>(std::min(start + whole, end)), values_.end(), 0.0);

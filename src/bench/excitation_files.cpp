@@ -1,4 +1,4 @@
-// Excitations as files: runs.csv, commands/, and a bench.yaml for what is to be recorded.
+// Excitations as files: runs.csv, commands/, and bench.yaml for the recordings to come.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "rate_hz" isn't told by runs.csv: the commands' times say it.
+/// A trajectory, and the rate of its commands [Hz] from their times: runs.csv has no rate.
 ExcitationTrajectory read_trajectory(const fs::path& file, const std::string& name, double& rate_hz) {
   const files::NumberTable table = files::read_number_table(file, {"t_s", "q_cmd_rad"}, "of a command over time");
   const std::size_t time = table.columns.front() == "t_s" ? 0 : 1;

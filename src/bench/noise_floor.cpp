@@ -13,7 +13,7 @@ namespace pmg::bench {
 
 namespace {
 
-constexpr double kSameCommand = 1e-3;  // of the command's range: files round
+constexpr double kSameCommand = 1e-3;  // share of the command's range: files round
 constexpr int kResamples = 400;
 constexpr unsigned kSeed = 1;
 
@@ -23,7 +23,8 @@ Design design(const BenchRun& run) {
   return {run.trajectory, run.kp, run.kd, run.load.inertia_kg_m2, run.load.gravity_Nm};
 }
 
-/// Sample by sample over the two's common length; a jump may come one sample sooner or later.
+/// True if two commands agree in more than two thirds of their common samples. A jump may come one sample earlier or
+/// later.
 bool same_command(const Recording& a, const Recording& b) {
   const std::size_t count = std::min(a.q_cmd_rad.size(), b.q_cmd_rad.size());
   const auto [low, high] = std::minmax_element(a.q_cmd_rad.begin(), a.q_cmd_rad.end());
@@ -33,7 +34,7 @@ bool same_command(const Recording& a, const Recording& b) {
     const auto near = [&](std::size_t other) { return std::abs(a.q_cmd_rad[k] - b.q_cmd_rad[other]) <= most_rad; };
     if (!near(k) && !(k > 0 && near(k - 1)) && !(k + 1 < count && near(k + 1))) ++apart;
   }
-  return 3 * apart < count;  // hosts drift by a few samples; another command differs nearly everywhere
+  return 3 * apart < count;  // clocks of hosts drift by a few samples; a different command differs nearly everywhere
 }
 
 RepeatPair compare(const Recording& a, const Recording& b) {
@@ -117,7 +118,7 @@ NoiseFloor noise_floor(const std::vector<const BenchRun*>& runs) {
 
 double sensor_noise_rad(const Recording& recording) {
   constexpr double kBinomials[] = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
-  constexpr double kVariance = 924.0;  // the sum of their squares
+  constexpr double kVariance = 924.0;  // sum of the squared binomials: 2 (1 + 36 + 225) + 400
   std::vector<double> differences;
   for (std::size_t k = 0; k + std::size(kBinomials) <= recording.q_rad.size(); ++k) {
     double sum = 0.0;
@@ -126,7 +127,9 @@ double sensor_noise_rad(const Recording& recording) {
       sum += kBinomials[i] * recording.q_rad[k + i];
       valid = valid && recording.valid[k + i];
     }
-    if (valid && sum != 0.0) differences.push_back(std::abs(sum));  // a quantised sensor at rest shows no noise
+    if (valid && sum != 0.0)
+      differences.push_back(
+          std::abs(sum));  // differences of 0 come from a quantised sensor at rest, and say nothing of the noise
   }
   if (differences.empty()) return 0.0;
   return fitting::median(std::move(differences)) / fitting::kNormalMedianDeviation / std::sqrt(kVariance);

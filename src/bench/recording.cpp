@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kFewestSamples = 50;
 constexpr double kLongestGap_samples = 5.0;
-constexpr double kLargestAngle_rad = 100.0;  // sixteen turns: no bench's joint; degrees reach it at a quarter turn
-constexpr double kLargestPosition_m = 20.0;  // no bench's axis; millimetres reach it at two centimetres
+constexpr double kLargestAngle_rad =
+    100.0;  // sixteen turns, more than any bench needs; in degrees a bit more than a quarter turn
+constexpr double kLargestPosition_m = 20.0;  // longer than any bench's axis; in millimetres only 20 mm
 
 void check_times(const CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
   const double step_s = 1.0 / sample_rate_hz;
@@ -51,8 +52,8 @@ void check_positions(const CsvTable& table, const std::string& column, const std
   }
 }
 
-/// One sample far off between two that agree. Twenty usual steps away and five times what its neighbours differ by: no
-/// joint gets there and back in two samples.
+/// A dropout: one reading that differs from both neighbours by more than 20 usual steps and by more than five times
+/// their difference. No joint moves there and back within two samples.
 std::vector<bool> find_valid(const std::vector<double>& q_rad) {
   std::vector<double> moves_rad;
   for (std::size_t k = 1; k < q_rad.size(); ++k) {
@@ -71,7 +72,7 @@ std::vector<bool> find_valid(const std::vector<double>& q_rad) {
   return valid;
 }
 
-/// The host's readings of the bus voltage fail now and then (zero, or double); the run's median replaces those.
+/// Single readings of the bus voltage may fail (zero, or twice the value). The run's median replaces them.
 void mend_bus(std::vector<double>& bus_V) {
   if (bus_V.empty()) return;
   const double usual_V = fitting::median(bus_V);
@@ -90,7 +91,7 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   const CsvTable table = read_csv(file);
   const std::string unit = format.linear ? "_m" : "_rad", rate = unit + "_s";
   const std::string force = format.linear ? "_N" : "_Nm";
-  const auto column = [&](const std::string& quantity) {  // with the hint that makes a wrong unit plain
+  const auto column = [&](const std::string& quantity) {  // the error of a missing column names the unit that is there
     const std::string name = quantity + unit;
     if (table.find(name)) return table.numbers(name);
     for (const std::string& other : table.header) {

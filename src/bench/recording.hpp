@@ -1,4 +1,4 @@
-// One recording of a bench: what was commanded and what the joint did, checked before anything is made of it.
+// One recording of a bench: commands to a joint and its response, checked while they are read.
 #pragma once
 
 #include <filesystem>
@@ -6,26 +6,26 @@
 
 namespace pmg::bench {
 
-/// Columns of equal length. On a linear rig rad is m and Nm is N. Columns that the file doesn't have are empty.
+/// Columns of equal length; a column that the file lacks is empty. On a linear rig rad means m and Nm means N.
 struct Recording {
   std::filesystem::path file;
-  std::vector<double> t_s, q_cmd_rad, q_rad;  ///< always there
+  std::vector<double> t_s, q_cmd_rad, q_rad;  ///< never empty
   std::vector<double> dq_cmd_rad_s, tau_ff_Nm, torque_Nm, bus_V, drive_V, temp_C;
   std::vector<bool> enabled;
-  /// False where the sensor dropped out for a sample: the reading leaps away and right back. One a sample.
+  /// One flag per sample; false for a dropout of the sensor: a single reading far from both of its neighbours.
   std::vector<bool> valid;
   std::size_t dropouts() const;
 };
 
 struct RecordingFormat {
   bool linear = false;            ///< columns end in _m instead of _rad
-  double sample_rate_hz = 100.0;  ///< as bench.yaml says
+  double sample_rate_hz = 100.0;  ///< from bench.yaml
   bool commanded = true;          ///< positions are commanded; false where the recorded torque is the input
 };
 
-/// Throws files::ConfigError that names file, line and column, on: missing columns or columns in another unit, NaN,
-/// times that stand still or run backwards, gaps, a rate other than bench.yaml's (milliseconds?), angles that look like
-/// degrees, too few samples, and a command that never changes.
+/// Throws files::ConfigError with file, line and column on: missing columns or columns in another unit, NaN, times that
+/// do not increase, gaps, a sample rate other than bench.yaml's (times in milliseconds?), angles that look like
+/// degrees, too few samples, and a constant command.
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format);
 
 }  // namespace pmg::bench

@@ -19,7 +19,7 @@ constexpr std::array kRelations = {"==", "!=", "<=", ">=", "<", ">"};
       fmt::format("filter '{}': {}; expected terms like 'kp_firmware in 4,8 and repeat == 0'", text, wrong));
 }
 
-/// Words, with relations as words of their own and nothing around the commas of a list.
+/// (text) => (words). A relation is a word of its own; a list is one word, without spaces at its commas.
 std::vector<std::string> words(const std::string& text) {
   std::string spaced;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -1,4 +1,4 @@
-// Which rows of runs.csv: "kp_firmware in 4,8,16,32 and repeat == 0".
+// Selection of rows of runs.csv, such as "kp_firmware in 4,8,16,32 and repeat == 0".
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace pmg::bench {
 
-/// Terms joined by `and`: COLUMN in V,V,... | not in V,V,... | == V | != V | < V | <= V | > V | >= V. Values that are
-/// numbers on both sides compare as numbers, others as text; < and its kin need numbers.
+/// Terms joined by `and`: COLUMN in V,V,... | not in V,V,... | == V | != V | < V | <= V | > V | >= V. Two numbers
+/// compare as numbers, other values as text. The last four relations need numbers.
 class RowFilter {
  public:
-  /// Throws std::invalid_argument that says what can't be read. Empty text keeps every row.
+  /// An empty text keeps every row. Throws std::invalid_argument that quotes the unreadable part.
   explicit RowFilter(const std::string& text);
 
-  /// One flag a row. Throws std::invalid_argument naming the columns when one isn't there.
+  /// One flag per row. Throws std::invalid_argument that lists the table's columns if a column is missing.
   std::vector<bool> keeps(const CsvTable& table) const;
 
   const std::string& text() const { return text_; }

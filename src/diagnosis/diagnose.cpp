@@ -158,8 +158,8 @@ class JointDiagnosisRun {
     diagnosis_.after_over_noise = std::sqrt(1.0 + rest / noise);
     const bool remains = rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning;
     if (remains) {
-      for (const Dependence& d :
-           dependences(residual_samples(bench_, fit.runs(), chosen.fitted.model, options_.threads))) {
+      for (const Dependence& d : dependences(
+               residual_samples(bench_, fit.runs(), chosen.fitted.model, options_.threads, by_.signatures.step))) {
         if (d.significant()) diagnosis_.depends_on.push_back(d.name);
       }
     }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "evidence/motion.hpp"
+#include "fitting/blocks.hpp"
 #include "fitting/statistics.hpp"
 #include "work/parallel.hpp"
 
@@ -13,7 +14,6 @@ namespace pmg::diagnosis {
 
 namespace {
 
-constexpr double kBlock_s = 0.5;  // as fitting::Blocks
 constexpr std::size_t kFewestBlocks = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -37,15 +37,15 @@ struct RunSamples {
 };
 
 RunSamples read(const bench::Bench& bench, const calib::SingleJoint& joint, const calib::JointModel& model,
-                std::size_t every) {
+                std::size_t every, const evidence::StepOptions& steps) {
   const bench::Recording& r = joint.run().recording;
   const std::vector<double> simulated_rad = joint.rollout(model);
-  const evidence::Motion m = evidence::motion(bench, joint.run());
+  const evidence::Motion m = evidence::motion(bench, joint.run(), 0.05, steps);
   RunSamples samples;
   for (std::size_t k = 0; k < r.t_s.size(); k += every) {
     if (!r.valid[k]) continue;
     samples.residual_rad.push_back(simulated_rad[k] - r.q_rad[k]);
-    samples.block.push_back(static_cast<std::size_t>((r.t_s[k] - r.t_s.front()) / kBlock_s));
+    samples.block.push_back(static_cast<std::size_t>((r.t_s[k] - r.t_s.front()) / fitting::Blocks::kLength_s));
     const double row[] = {m.dq_rad_s[k],
                           r.q_rad[k],
                           m.gravity_Nm[k],
@@ -163,13 +163,14 @@ evidence::Interval explained_share(const ResidualSamples& samples, const std::ve
 }  // namespace
 
 ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
-                                 const calib::JointModel& model, unsigned threads, std::size_t most) {
+                                 const calib::JointModel& model, unsigned threads, const evidence::StepOptions& steps,
+                                 std::size_t most) {
   std::size_t all = 0;
   for (const calib::SingleJoint& joint : runs) all += joint.run().recording.t_s.size();
   const std::size_t every = all / most + 1;
   std::vector<RunSamples> by_run(runs.size());
   work::for_each_in_parallel(runs.size(), threads,
-                             [&](std::size_t i) { by_run[i] = read(bench, runs[i], model, every); });
+                             [&](std::size_t i) { by_run[i] = read(bench, runs[i], model, every, steps); });
   ResidualSamples samples;
   std::vector<double> values[std::size(kColumns)];
   for (std::size_t i = 0; i < by_run.size(); ++i) {

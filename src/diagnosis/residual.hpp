@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
+#include "evidence/signature_options.hpp"
 #include "evidence/verdict.hpp"
 
 namespace pmg::diagnosis {
@@ -27,7 +28,8 @@ struct ResidualSamples {
 
 /// (bench, runs, model) => (samples, evenly thinned to at most `most`). Does not depend on the number of threads.
 ResidualSamples residual_samples(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
-                                 const calib::JointModel& model, unsigned threads, std::size_t most = 200000);
+                                 const calib::JointModel& model, unsigned threads,
+                                 const evidence::StepOptions& steps = {}, std::size_t most = 200000);
 
 /// Mean residual over one range of a circumstance, with its 95 % interval (cluster-robust over blocks).
 struct ResidualBin {

@@ -49,7 +49,7 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& s
   // seed by seed, so that an interruption leaves paired results
   for_each_piece(cases.size() * static_cast<std::size_t>(seeds), supervision, [&](std::size_t piece) {
     const std::size_t c = piece % cases.size(), seed = piece / cases.size();
-    TrialOptions options{.gantry = gantry, .interrupted = supervision.progress.interrupted, .observer = {}};
+    TrialOptions options{.gantry = gantry, .progress = supervision.progress, .observer = {}};
     if (seed == 0) {
       options.observer = [recorder = CourseRecorder(campaign.courses[c], robots[c].standing_height_m)](
                              const sil::RunProgress& now, sim::World& world) mutable {
@@ -76,7 +76,7 @@ std::string film_case(const Case& filmed, const sil::Scenario& scenario, const s
   };
   try {
     run_trial(filmed.candidate, scenario, filmed.plants.of(robot, 1),
-              {.gantry = false, .interrupted = supervision.progress.interrupted, .observer = shoot});
+              {.gantry = false, .progress = supervision.progress, .observer = shoot});
   } catch (const std::runtime_error& error) {  // no OSMesa
     return error.what();
   }

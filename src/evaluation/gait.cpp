@@ -140,7 +140,7 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
     return now.result.mode != control::Mode::kFault;
   };
   test.trial = run_trial(test.evaluated.candidate, gait_scenario(test), test.evaluated.plants.of(robot, 1),
-                         {.gantry = false, .interrupted = supervision.progress.interrupted, .observer = observer});
+                         {.gantry = false, .progress = supervision.progress, .observer = observer});
   const auto ticks = static_cast<double>(recordings[kLeft].loaded.size());
   if (ticks > 1.0) {
     test.walked_m_s = (end_W - start_W).head<2>().norm() / ((ticks - 1.0) * control::ControlCycle::kPeriod_s);

@@ -109,9 +109,9 @@ void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const S
     PushTrials& at = test.strengths[piece % test.strengths.size()];
     const std::size_t trial = piece / test.strengths.size();
     const PushPlan plan = PushPlan::of(static_cast<int>(trial));
-    at.runs[trial] = run_trial(
-        test.evaluated.candidate, push_scenario(plan), test.evaluated.plants.of(robot, trial + 1),
-        {.gantry = false, .interrupted = supervision.progress.interrupted, .observer = Pusher(plan, at.impulse_N_s)});
+    at.runs[trial] =
+        run_trial(test.evaluated.candidate, push_scenario(plan), test.evaluated.plants.of(robot, trial + 1),
+                  {.gantry = false, .progress = supervision.progress, .observer = Pusher(plan, at.impulse_N_s)});
   });
   test.complete = true;
   for (const PushTrials& at : test.strengths) {

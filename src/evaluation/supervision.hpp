@@ -1,4 +1,4 @@
-// What a long evaluation may use, tells and asks.
+// Threads, progress and interruption of a long evaluation.
 #pragma once
 
 #include "work/parallel.hpp"

@@ -89,7 +89,7 @@ Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, con
 void measure_yardsticks(Table1& table, const Supervision& supervision) {
   table.yardsticks.assign(table.cases.size(), {});
   for_each_piece(table.cases.size(), supervision, [&](std::size_t c) {
-    table.yardsticks[c] = yardstick(table.cases[c].candidate, table.scenario, supervision.progress.interrupted);
+    table.yardsticks[c] = yardstick(table.cases[c].candidate, table.scenario, supervision.progress);
   });
   for (const Yardstick& one : table.yardsticks)
     table.campaign.complete = table.campaign.complete && one.nothing.complete;

@@ -108,7 +108,7 @@ void calibrate(Table2& table, const model::RobotModel& robot, const Gains& gains
     std::filesystem::create_directories(place);
     plant.truth = draw_plant(table.ranges, robot, static_cast<int>(number));
     plant.motors = calibrated_motors(plant.truth, robot, gains, number);
-    plant.offsets = calibrated_offsets(plant.truth, robot, place, number, supervision.progress.interrupted);
+    plant.offsets = calibrated_offsets(plant.truth, robot, place, number, supervision.progress);
     plant.worst_offset_rad = worst_offset_rad(corrected(plant.truth, plant.offsets));
   });
   if (supervision.interrupted_now()) table.complete = false;
@@ -272,7 +272,7 @@ void run_table2(Table2& table, const std::filesystem::path& folder, const Superv
     world.motors = errands[e].motors;
     const TrialResult trial = run_trial(candidate, table.scenario, world,
                                         {.gantry = false,
-                                         .interrupted = supervision.progress.interrupted,
+                                         .progress = supervision.progress,
                                          .observer = WalkObserver(*errands[e].walk, robot, table.scenario)});
     errands[e].walk->complete = trial.complete;
     errands[e].walk->fell = trial.fell;

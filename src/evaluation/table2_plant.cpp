@@ -85,7 +85,7 @@ std::vector<calib::SingleJoint> record(const bench::Bench& bench, const model::A
 
 /// Plays the stances; false if interrupted.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
-                  const std::function<bool()>& stop) {
+                  const work::Progress& progress) {
   control::LoadedControl loaded =
       control::load_control({.robot = (folder / "stances").string(), .clips = {}, .policy = "none"});
   const sil::Scenario scenario = sil::load_scenario(folder / "stances/scenario.yaml");
@@ -99,7 +99,7 @@ bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::pat
   io::LogWriter file(folder / "log.lcm");
   recording::TickLog log(file, loaded.robot, {.robot = loaded.robot.name}, kRate_Hz);
   sil::Lockstep lockstep(loaded.robot, bus, truth, *tick, scenario, &log, {.balanced_by_policy = false});
-  lockstep.interrupted = stop;
+  lockstep.interrupted = [&progress] { return progress.interrupted_now(); };
   const bool interrupted = lockstep.run().interrupted;
   file.flush();
   return !interrupted;
@@ -181,9 +181,9 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
 
 std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                             const std::filesystem::path& folder, std::uint64_t seed,
-                                            const std::function<bool()>& stop) {
+                                            const work::Progress& progress) {
   zero::write_zero_rig(robot, folder / "stances");
-  if (!take_stances(plant, folder, seed, stop)) return {};
+  if (!take_stances(plant, folder, seed, progress)) return {};
   const zero::ZeroCalibration found = zero::calibrate_zero(robot, zero::read_still_poses({folder / "log.lcm"}, robot));
   std::vector<FoundOffset> offsets;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {

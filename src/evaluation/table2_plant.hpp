@@ -3,13 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <vector>
 
 #include "control/control_setup.hpp"
 #include "model/robot_model.hpp"
 #include "sim/motor_file.hpp"
 #include "sim/variation.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::evaluation {
 
@@ -40,13 +40,13 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
 
 /// Zero calibration (paper III-C.2, eq. 21 to 25). The plant takes the stances of pmg_calibrate_zero --make-stances,
 /// steadied by the gantry; its log is evaluated. Returns the observable offsets (reading minus true angle) by joint.
-/// All files are below folder. If stop() returns true, it ends early and returns nothing.
+/// All files are below folder. After an interruption it returns nothing.
 struct FoundOffset {
   std::string joint;
   double zero_offset_rad = 0.0;
 };
 std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                             const std::filesystem::path& folder, std::uint64_t seed,
-                                            const std::function<bool()>& stop);
+                                            const work::Progress& progress);
 
 }  // namespace pmg::evaluation

@@ -36,7 +36,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
     if (options.observer) ended = !options.observer(now, simulated);
   };
   lockstep.interrupted = [&] {
-    interrupted = options.interrupted && options.interrupted();
+    interrupted = options.progress.interrupted_now();
     return ended || interrupted;
   };
   const bool diverged = lockstep.run().diverged;

@@ -12,6 +12,7 @@
 #include "sil/run_measure.hpp"
 #include "sil/scenario.hpp"
 #include "sim/world.hpp"
+#include "work/progress.hpp"
 
 namespace pmg::evaluation {
 
@@ -49,9 +50,9 @@ struct TrialResult {
 using TrialObserver = std::function<bool(const sil::RunProgress&, sim::World&)>;
 
 struct TrialOptions {
-  bool gantry = false;                ///< the robot hangs throughout, and nothing is judged
-  std::function<bool()> interrupted;  ///< may be empty
-  TrialObserver observer;             ///< may be empty
+  bool gantry = false;        ///< the robot hangs throughout, and nothing is judged
+  work::Progress progress{};  ///< asked for interruptions; a trial reports nothing
+  TrialObserver observer{};   ///< may be empty
 };
 
 /// Plays the scenario without intervention after a fall. From then on velocity and height count as zero and attitude as

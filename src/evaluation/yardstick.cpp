@@ -38,8 +38,7 @@ class IdealRobot {
 
 }  // namespace
 
-Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
-                    const std::function<bool()>& interrupted) {
+Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, const work::Progress& progress) {
   const model::RobotModel robot = model::load_robot(model::find_robot(candidate.control.robot));
   const GeneratorOptions options = gco::generator_options(robot);
   StepMeasure nothing(robot, scenario), follower(robot, scenario);
@@ -57,8 +56,7 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
   };
   Candidate hanging = candidate;
   hanging.control.policy = "none";  // no policy runs in the air
-  const TrialResult hung =
-      run_trial(hanging, scenario, {}, {.gantry = true, .interrupted = interrupted, .observer = judge});
+  const TrialResult hung = run_trial(hanging, scenario, {}, {.gantry = true, .progress = progress, .observer = judge});
   Yardstick result;
   nothing.report(result.nothing);
   follower.report(result.follower);

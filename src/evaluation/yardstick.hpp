@@ -15,8 +15,7 @@ struct Yardstick {
 /// robot's motion doesn't matter. The follower's command has the generator's limits (ranges, rates, slower in double
 /// support, stops within their time). The clips' common reach does not limit it, so a blend that cuts a command counts
 /// against the policy.
-Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario,
-                    const std::function<bool()>& interrupted);
+Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, const work::Progress& progress);
 
 /// (error - follower) / (nothing - follower): 0 for a perfect follower, 1 for a robot that does nothing. NaN where the
 /// scenario commands nothing in a channel.

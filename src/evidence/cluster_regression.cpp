@@ -8,8 +8,6 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kImitated = 0.01;  // share of a column's norm: with less of its own the column is collinear
-
 double rms(const Eigen::VectorXd& values) {
   return values.size() > 0 ? values.norm() / std::sqrt(static_cast<double>(values.size())) : 0.0;
 }
@@ -17,11 +15,11 @@ double rms(const Eigen::VectorXd& values) {
 }  // namespace
 
 ClusterRegression::ClusterRegression(const std::vector<Eigen::VectorXd>& columns, const Eigen::VectorXd& y,
-                                     std::vector<int> clusters)
-    : basis_(y.size(), 0), rms_(rms(y)), clusters_(std::move(clusters)) {
+                                     std::vector<int> clusters, double collinear_share)
+    : basis_(y.size(), 0), rms_(rms(y)), clusters_(std::move(clusters)), collinear_share_(collinear_share) {
   for (const Eigen::VectorXd& column : columns) {
     const Eigen::VectorXd rest = without_columns(column);
-    if (!(rest.norm() > kImitated * column.norm())) continue;
+    if (!(rest.norm() > collinear_share_ * column.norm())) continue;
     basis_.conservativeResize(Eigen::NoChange, basis_.cols() + 1);
     basis_.col(basis_.cols() - 1) = rest.normalized();
   }
@@ -42,7 +40,7 @@ TermEstimate ClusterRegression::term(const Eigen::VectorXd& column) const {
   const Eigen::VectorXd own = without_columns(column);
   found.own = column.norm() > 0.0 ? own.norm() / column.norm() : 0.0;
   const double squares = own.squaredNorm();
-  if (!(found.own > kImitated)) return found;
+  if (!(found.own > collinear_share_)) return found;
   found.coefficient = own.dot(rest_) / squares;
   const Eigen::VectorXd error = rest_ - found.coefficient * own;
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(clusters_count_);
@@ -61,7 +59,8 @@ ClusterRegression::Pair ClusterRegression::pair(const Eigen::VectorXd& a, const 
   own.col(1) = without_columns(b);
   found.own = std::min(own.col(0).norm() / std::max(1e-300, a.norm()), own.col(1).norm() / std::max(1e-300, b.norm()));
   const Eigen::Matrix2d squares = own.transpose() * own;
-  if (!(found.own > kImitated) || squares.determinant() < 1e-3 * squares(0, 0) * squares(1, 1)) return found;
+  // Two columns whose correlation r has r^2 > 0.999 cannot be told apart: det = (1 - r^2) * the diagonal's product.
+  if (!(found.own > collinear_share_) || squares.determinant() < 1e-3 * squares(0, 0) * squares(1, 1)) return found;
   const Eigen::Matrix2d inverse = squares.inverse();
   found.coefficients = inverse * (own.transpose() * rest_);
   const Eigen::VectorXd error = rest_ - own * found.coefficients;

@@ -20,10 +20,11 @@ struct TermEstimate {
 };
 
 /// y = columns * coefficients + error. A column is left out if a linear combination of the columns before it leaves at
-/// most 1 % of its norm.
+/// most collinear_share of its norm.
 class ClusterRegression {
  public:
-  ClusterRegression(const std::vector<Eigen::VectorXd>& columns, const Eigen::VectorXd& y, std::vector<int> clusters);
+  ClusterRegression(const std::vector<Eigen::VectorXd>& columns, const Eigen::VectorXd& y, std::vector<int> clusters,
+                    double collinear_share);
 
   TermEstimate term(const Eigen::VectorXd& column) const;
 
@@ -44,6 +45,7 @@ class ClusterRegression {
   Eigen::VectorXd rest_;   // part of y orthogonal to it
   double rms_;             // of y
   std::vector<int> clusters_;
+  double collinear_share_;
   int clusters_count_ = 0;
 };
 

@@ -9,8 +9,9 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kLongest_s = 0.1;
-constexpr int kResamples = 200;
+constexpr int kResamples = 200;  // 5 of them lie beyond either end of a 95 % interval
+constexpr double kLimitStep =
+    1.12;  // ratio of neighbouring rate limits of the search: the resolution of the limit found
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// For each cluster (row) and candidate shape (column): squared residual of the full balance, and of a balance without
@@ -20,27 +21,28 @@ struct Profile {
   double ratio(Eigen::Index shape) const { return residual.col(shape).sum() / whole.col(shape).sum(); }
 };
 
-Eigen::MatrixXd basis(const std::vector<Column>& columns) {
+Eigen::MatrixXd basis(const std::vector<Column>& columns, double collinear_share) {
   Eigen::MatrixXd found(columns.front().size(), 0);
   for (const Column& column : columns) {
     Column rest = column;
     for (int twice = 0; twice < 2; ++twice) rest -= found * (found.transpose() * rest);
-    if (!(rest.norm() > 0.01 * column.norm())) continue;
+    if (!(rest.norm() > collinear_share * column.norm())) continue;
     found.conservativeResize(Eigen::NoChange, found.cols() + 1);
     found.col(found.cols() - 1) = rest.normalized();
   }
   return found;
 }
 
-Profile profile(TorqueBalance& balance, const std::vector<CommandShape>& shapes) {
+Profile profile(TorqueBalance& balance, const std::vector<CommandShape>& shapes, double collinear_share) {
   const std::vector<int> clusters = balance.clusters();
   const auto direction = balance.integral([](const BalancePoint& p) { return p.direction; });
   const auto load = balance.integral([](const BalancePoint& p) { return p.gravity_Nm; });
   const auto heavy = balance.integral([](const BalancePoint& p) { return std::abs(p.gravity_Nm) * p.direction; });
   const Column one = Column::Ones(direction.size());
-  const Eigen::MatrixXd small = basis({balance.speed_rad_s(), direction, one, heavy});
+  const Eigen::MatrixXd small = basis({balance.speed_rad_s(), direction, one, heavy}, collinear_share);
   const Eigen::MatrixXd full = basis(
-      {balance.speed_rad_s(), direction, one, heavy, load + balance.load_inertia_Nm(), balance.acceleration_rad_s2()});
+      {balance.speed_rad_s(), direction, one, heavy, load + balance.load_inertia_Nm(), balance.acceleration_rad_s2()},
+      collinear_share);
   Profile found;
   found.residual = found.whole = Eigen::MatrixXd::Zero(clusters.back() + 1, static_cast<Eigen::Index>(shapes.size()));
   for (std::size_t s = 0; s < shapes.size(); ++s) {
@@ -87,11 +89,13 @@ Interval interval(double value, std::vector<double> drawn) {
   return {value, drawn[tail], drawn[drawn.size() - 1 - tail]};
 }
 
-void find_delay(TorqueBalance& balance, double rate_limit_rad_s, std::mt19937& random, FoundShape& found) {
+void find_delay(TorqueBalance& balance, const ShapeOptions& options, double collinear_share, double rate_limit_rad_s,
+                std::mt19937& random, FoundShape& found) {
   const double step_s = std::max(0.001, 0.25 * balance.sample_s());
   std::vector<CommandShape> shapes;
-  for (double delay_s = 0.0; delay_s <= kLongest_s; delay_s += step_s) shapes.push_back({delay_s, rate_limit_rad_s});
-  const Profile p = profile(balance, shapes);
+  for (double delay_s = 0.0; delay_s <= options.longest_delay_s; delay_s += step_s)
+    shapes.push_back({delay_s, rate_limit_rad_s});
+  const Profile p = profile(balance, shapes, collinear_share);
   const Eigen::VectorXd all = ratios(p, Eigen::VectorXd::Ones(p.residual.rows()));
   std::vector<double> drawn_s;
   for (int i = 0; i < kResamples; ++i)
@@ -100,14 +104,15 @@ void find_delay(TorqueBalance& balance, double rate_limit_rad_s, std::mt19937& r
   found.delay_gain = 1.0 - all.minCoeff() / all[0];
 }
 
-void find_rate(TorqueBalance& balance, double delay_s, std::mt19937& random, FoundShape& found) {
+void find_rate(TorqueBalance& balance, const ShapeOptions& options, double collinear_share, double delay_s,
+               std::mt19937& random, FoundShape& found) {
   std::vector<CommandShape> shapes;
-  for (double share = 0.4; share < 4.0; share *= 1.12) {
+  for (double share = options.slowest_limit; share < options.fastest_limit; share *= kLimitStep) {
     shapes.push_back({delay_s, share * balance.fastest_rad_s()});
   }
   const auto limits = static_cast<Eigen::Index>(shapes.size());
   shapes.push_back({delay_s, kInfinite});
-  const Profile p = profile(balance, shapes);
+  const Profile p = profile(balance, shapes, collinear_share);
   const Eigen::VectorXd all = ratios(p, Eigen::VectorXd::Ones(p.residual.rows()));
   Eigen::Index best = 0;
   all.head(limits).minCoeff(&best);
@@ -125,21 +130,19 @@ void find_rate(TorqueBalance& balance, double delay_s, std::mt19937& random, Fou
 
 }  // namespace
 
-FoundShape find_shape(TorqueBalance& balance, unsigned seed) {
-  constexpr std::size_t kFewestWindows = 40;
-  constexpr double kWorthIt = 0.1;  // share of the balance's squared residual
+FoundShape find_shape(TorqueBalance& balance, const ShapeOptions& options, double collinear_share, unsigned seed) {
   FoundShape found;
   found.rate_limit_rad_s = {kInfinite, kInfinite, kInfinite};
-  if (!balance.shaped() || balance.windows() < kFewestWindows) return found;
+  if (!balance.shaped() || static_cast<double>(balance.windows()) < options.fewest_windows) return found;
   found.known = true;
   std::mt19937 random(seed);
   CommandShape shape;
   // Alternate twice: a rate limit is a proxy for a delay until it is known, and vice versa.
   for (int round = 0; round < 2; ++round) {
-    find_delay(balance, shape.rate_limit_rad_s, random, found);
-    shape.delay_s = found.delay_gain > kWorthIt && found.delay_s.low > 0.0 ? found.delay_s.value : 0.0;
-    find_rate(balance, shape.delay_s, random, found);
-    if (!(found.rate_gain.low > kWorthIt)) break;
+    find_delay(balance, options, collinear_share, shape.rate_limit_rad_s, random, found);
+    shape.delay_s = found.delay_gain > options.least_gain && found.delay_s.low > 0.0 ? found.delay_s.value : 0.0;
+    find_rate(balance, options, collinear_share, shape.delay_s, random, found);
+    if (!(found.rate_gain.low > options.least_gain)) break;
     shape.rate_limit_rad_s = found.rate_limit_rad_s.value;
   }
   balance.shape(shape);

@@ -16,7 +16,7 @@ struct FoundShape {
 };
 
 /// (balance) => (best shape). Sets the balance to the shape found; a delay or a limit that is not significant stays
-/// neutral. 95 % intervals are a bootstrap over clusters, seeded.
-FoundShape find_shape(TorqueBalance& balance, unsigned seed = 1);
+/// neutral. 95 % intervals are a bootstrap over clusters, seeded. collinear_share: of BalanceOptions.
+FoundShape find_shape(TorqueBalance& balance, const ShapeOptions& options, double collinear_share, unsigned seed = 1);
 
 }  // namespace pmg::evidence

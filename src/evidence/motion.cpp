@@ -11,9 +11,7 @@ namespace pmg::evidence {
 namespace {
 
 constexpr double kNoMotion = std::numeric_limits<double>::quiet_NaN();
-constexpr double kJump = 4.0;           // ratio to the command's move in the neighbouring samples
-constexpr double kSmallestJump = 0.04;  // share of the command's range
-constexpr std::size_t kSmallestReach = 2;
+constexpr std::size_t kSmallestReach = 2;  // five samples: a parabola has three coefficients
 
 /// Slope [rad/s] and curvature [rad/s^2] at the sample `at` of a least-squares parabola through the valid samples from
 /// first to last; NaN with fewer than four of them.
@@ -74,25 +72,25 @@ void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion
 
 }  // namespace
 
-std::vector<std::size_t> command_steps(const bench::Recording& r) {
+std::vector<std::size_t> command_steps(const bench::Recording& r, const StepOptions& options) {
   const auto [low, high] = std::minmax_element(r.q_cmd_rad.begin(), r.q_cmd_rad.end());
-  const double smallest_rad = kSmallestJump * (*high - *low);
+  const double smallest_rad = options.jump_share * (*high - *low);
   const auto move_rad = [&](std::size_t k) { return std::abs(r.q_cmd_rad[k] - r.q_cmd_rad[k - 1]); };
   std::vector<std::size_t> steps;
   for (std::size_t k = 1; k < r.q_cmd_rad.size(); ++k) {
     const double beside_rad =
         std::max(k > 1 ? move_rad(k - 1) : 0.0, k + 1 < r.q_cmd_rad.size() ? move_rad(k + 1) : 0.0);
-    if (move_rad(k) > std::max(smallest_rad, kJump * beside_rad) && move_rad(k) > 0.0) steps.push_back(k);
+    if (move_rad(k) > std::max(smallest_rad, options.jump_ratio * beside_rad) && move_rad(k) > 0.0) steps.push_back(k);
   }
   return steps;
 }
 
-Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s) {
+Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s, const StepOptions& steps) {
   const bench::Recording& r = run.recording;
   Motion motion;
   differentiate(r, window_s, motion);
   drive(bench, run, motion);
-  motion.steps = command_steps(r);
+  motion.steps = command_steps(r, steps);
   std::size_t next = 0;
   double last_step_s = kNoMotion;
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/bench.hpp"
+#include "evidence/signature_options.hpp"
 
 namespace pmg::evidence {
 
@@ -21,10 +22,11 @@ struct Motion {
 };
 
 /// The parabola is fitted to the samples within window_s / 2 on either side, at least two samples on either side.
-Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s = 0.05);
+Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s = 0.05,
+              const StepOptions& steps = {});
 
-/// (recording) => (samples at which the command jumps): it moves there by more than 4 times its move in the samples
-/// before and after, and by more than 4 % of its range.
-std::vector<std::size_t> command_steps(const bench::Recording& recording);
+/// (recording) => (samples at which the command jumps): it moves there by more than jump_ratio times its move in the
+/// samples before and after, and by more than jump_share of its range.
+std::vector<std::size_t> command_steps(const bench::Recording& recording, const StepOptions& options = {});
 
 }  // namespace pmg::evidence

@@ -38,7 +38,7 @@ std::vector<Signature> signatures(const bench::Bench& bench, const std::vector<b
                                   const SignatureOptions& options) {
   std::vector<Signature> found;
   if (runs.empty()) return found;
-  found.push_back(step_onset_check(bench, runs));
+  found.push_back(step_onset_check(bench, runs, options));
   for (Signature& check : balance_checks(bench, runs, options)) found.push_back(std::move(check));
   for (Signature& check : rest_checks(bench, runs, options)) found.push_back(std::move(check));
   for (Signature& check : free_swing_checks(bench, runs, options)) found.push_back(std::move(check));

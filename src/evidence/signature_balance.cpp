@@ -30,11 +30,11 @@ Interval around(double value, double deviation) { return {value, value - 2.0 * d
 class BalanceChecks {
  public:
   BalanceChecks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, const SignatureOptions& options)
-      : bench_(bench), options_(options), balance_(bench, runs) {}
+      : bench_(bench), options_(options), balance_(bench, runs, options.balance) {}
 
   std::vector<Signature> all() {
-    const FoundShape shape = find_shape(balance_);
-    if (balance_.shaped()) found_ = command_shape_checks(shape, balance_.sample_s());
+    const FoundShape shape = find_shape(balance_, options_.shape, options_.balance.collinear_share);
+    if (balance_.shaped()) found_ = command_shape_checks(shape, balance_.sample_s(), options_.shape);
     columns_.emplace_back(balance_);
     drive_ = balance_.drive();
     const std::vector<int> clusters = balance_.clusters();
@@ -56,10 +56,17 @@ class BalanceChecks {
     return bench_.rig == bench::Rig::kLinear ? "N" : "Nm";
   }
 
-  ClusterRegression regression(const std::vector<Column>& base) const { return {base, drive_, balance_.clusters()}; }
+  ClusterRegression regression(const std::vector<Column>& base, bool whole_runs = false) const {
+    return {base, drive_, balance_.clusters(whole_runs), options_.balance.collinear_share};
+  }
+
+  static Signature undecided(const std::string& effect, const Interval& value, const std::string& unit) {
+    return {effect, "balance of torques", Agreement::kCannotTell, value, unit, ""};
+  }
 
   void cannot_tell(const std::string& effect, const std::string& why) {
-    found_.push_back({effect, "balance of torques", Agreement::kCannotTell, {kNaN, kNaN, kNaN}, "", why});
+    found_.push_back(undecided(effect, {kNaN, kNaN, kNaN}, ""));
+    found_.back().sentence = why;
   }
 
   /// An effect that is one term of the balance. must_be_positive: friction cannot drive the motion.
@@ -69,7 +76,7 @@ class BalanceChecks {
     const TermEstimate e = regression(base).term(column);
     if (!(e.own > options_.own_share))
       return cannot_tell(effect, what + " can't be told from the rest in these recordings");
-    Signature s{effect, "balance of torques", Agreement::kCannotTell, around(e.coefficient, e.deviation), unit, ""};
+    Signature s = undecided(effect, around(e.coefficient, e.deviation), unit);
     const bool sure = must_be_positive ? e.t() > options_.sure_deviations : std::abs(e.t()) > options_.sure_deviations;
     if (sure && e.share > worth_share) {
       s.agreement = Agreement::kAgrees;
@@ -90,7 +97,7 @@ class BalanceChecks {
     } else {
       cannot_tell("viscous", "the back-EMF of this drive looks the same");
     }
-    const double slow_rad_s = 0.15 * balance_.fastest_rad_s();
+    const double slow_rad_s = options_.slow_share * balance_.fastest_rad_s();
     const Column slow = balance_.integral([slow_rad_s](const BalancePoint& p) {
       const double ratio = p.dq_rad_s / slow_rad_s;
       return std::exp(-ratio * ratio) * p.direction;
@@ -130,7 +137,7 @@ class BalanceChecks {
     add_dead_band();
     if (pendulum()) {
       add_term("load", base, balance_.load_inertia_Nm(), "inertia of the load beyond what its weight says", "", false,
-               2.0 * options_.constant_share);
+               options_.load_share);
     }
     add_supply_sag(base);
     const double fastest_rad_s = balance_.fastest_rad_s();
@@ -141,14 +148,17 @@ class BalanceChecks {
       add_term("torque_speed", base, hard_and_fast, "share of a driving torque that is missing at the highest speed",
                "", true, options_.drive_share);
     }
-    const Column turning =
-        balance_.integral([](const BalancePoint& p) { return p.since_turn_s < 0.03 ? p.drive : 0.0; });
-    add_term("backlash", base, turning, "share of the drive that is missing within 30 ms of its reversal", "", true,
-             options_.drive_share);
+    const Column turning = balance_.integral(
+        [this](const BalancePoint& p) { return p.since_turn_s < options_.reversal_s ? p.drive : 0.0; });
+    add_term(
+        "backlash", base, turning,
+        fmt::format("share of the drive that is missing within {:.3g} ms of its reversal", 1e3 * options_.reversal_s),
+        "", true, options_.drive_share);
   }
 
-  /// Behind a source resistance R the bridge, at duty d, draws the bus current d i. The bus drops by R d i, the motor's
-  /// voltage by R d^2 i.
+  /// With motor current i and duty d, the bridge draws the current d i from the bus. A source resistance R lowers the
+  /// bus by R d i, and the motor's voltage by R d^2 i. The column is d^2 times the load's torque, which is proportional
+  /// to i.
   void add_supply_sag(const std::vector<Column>& base) {
     if (bench_.law != bench::DriveLaw::kServoVoltage) {
       return cannot_tell("supply_sag", "this drive regulates its current, whatever the bus");
@@ -167,19 +177,19 @@ class BalanceChecks {
         regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy});
     double band_rad = 0.0, surest_t = 0.0, largest_share = 0.0;
     TermEstimate surest;
-    for (double limit_rad = 0.003; limit_rad < 0.1; limit_rad *= 1.35) {
+    constexpr double kStep = 1.35;  // ratio of neighbouring bands: the resolution of the band found
+    for (double limit_rad = options_.band_smallest_rad; limit_rad < options_.band_largest_rad; limit_rad *= kStep) {
       const TermEstimate e = base.term(balance_.integral(
           [limit_rad](const BalancePoint& p) { return std::abs(p.error_rad) < limit_rad ? p.error_drive : 0.0; }));
-      if (std::abs(e.coefficient - 1.0) < 0.5) largest_share = std::max(largest_share, e.share_upper);
+      if (std::abs(e.coefficient - 1.0) < options_.band_possible_within)
+        largest_share = std::max(largest_share, e.share_upper);
       if (e.t() > surest_t) surest_t = e.t(), band_rad = limit_rad, surest = e;
     }
-    Signature s{
-        "dead_band", "balance of torques", Agreement::kCannotTell, {band_rad, band_rad / 1.35, band_rad * 1.35}, "rad",
-        ""};
-    if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < 0.4 &&
+    Signature s = undecided("dead_band", {band_rad, band_rad / kStep, band_rad * kStep}, "rad");
+    if (surest_t > options_.sure_deviations && std::abs(surest.coefficient - 1.0) < options_.band_agrees_within &&
         surest.share > options_.constant_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (surest.coefficient + 2.0 * surest.deviation < 0.6 ||
+    } else if (surest.coefficient + 2.0 * surest.deviation < options_.band_disagrees_below ||
                largest_share < options_.disagrees_share * options_.constant_share) {
       s.agreement = Agreement::kDisagrees;
     }
@@ -192,14 +202,14 @@ class BalanceChecks {
     if (!position_pd()) return cannot_tell("gain", "the unit of this drive is fitted anyway");
     if (!enough_) return cannot_tell("gain", "too little motion was recorded");
     const TermEstimate e = regression({c().acceleration, c().speed, c().direction, c().one, c().heavy}).term(c().load);
-    if (!(e.own > options_.own_share) || !(e.coefficient > 0.1)) {
+    if (!(e.own > options_.own_share) || !(e.coefficient > options_.gain_least)) {
       return cannot_tell("gain", "no load of known weight or inertia was moved");
     }
     const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
-    Signature s{"gain", "balance of torques", Agreement::kCannotTell, around(gain, deviation), "", ""};
-    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, 0.05)) {
+    Signature s = undecided("gain", around(gain, deviation), "");
+    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, options_.gain_error)) {
       s.agreement = Agreement::kAgrees;
-    } else if (std::abs(gain - 1.0) + 2.0 * deviation < 0.05) {
+    } else if (std::abs(gain - 1.0) + 2.0 * deviation < options_.gain_error) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("the drive gives {:.3g} (deviation {:.2g}) of what the load takes, by its own account",
@@ -207,31 +217,30 @@ class BalanceChecks {
     found_.push_back(s);
   }
 
-  /// Takes the strongest of kOrders orders, with a Bonferroni threshold: 0.1 % false alarms over all of them, and
-  /// P(t2 > x) = exp(-x / 2) for chi-square with 2 degrees of freedom.
+  /// Takes the strongest of the orders, with a Bonferroni threshold for all of them: P(t2 > x) = exp(-x / 2) for
+  /// chi-square with 2 degrees of freedom.
   void add_cogging() {
     if (!enough_) return cannot_tell("cogging", "too little motion was recorded");
     if (bench_.rig == bench::Rig::kLinear) return cannot_tell("cogging", "looked for on turning joints only");
     const ClusterRegression base = regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy,
                                                balance_.integral([](const BalancePoint& p) { return p.hanging_Nm; })});
-    constexpr int kLowest = 3, kOrders = 60;  // a wrong load mimics orders below 3
-    const double bar = 2.0 * std::log(kOrders / 0.001);
+    const auto highest = static_cast<int>(options_.cogging_highest_order);
+    const double threshold = 2.0 * std::log(highest / options_.cogging_false_alarms);
     double best = 0.0, largest_missed = 0.0;
     int at = 0;
     ClusterRegression::Pair strongest;
-    for (int order = kLowest; order <= kOrders; ++order) {
+    for (int order = static_cast<int>(options_.cogging_lowest_order); order <= highest; ++order) {
       const auto pair =
           base.pair(balance_.integral([order](const BalancePoint& p) { return std::sin(order * p.q_rad); }),
                     balance_.integral([order](const BalancePoint& p) { return std::cos(order * p.q_rad); }));
-      if (!(pair.own > 0.3)) continue;
+      if (!(pair.own > options_.cogging_own_share)) continue;
       largest_missed = std::max(largest_missed, pair.share);
       if (pair.t2 > best && pair.share > options_.friction_share) best = pair.t2, at = order, strongest = pair;
     }
     const double amplitude = strongest.coefficients.norm();
     const double deviation = best > 0.0 ? amplitude / std::sqrt(best) : 0.0;
-    Signature s{"cogging", "balance of torques", Agreement::kCannotTell, around(amplitude, deviation), drive_unit(),
-                ""};
-    if (best > bar) {
+    Signature s = undecided("cogging", around(amplitude, deviation), drive_unit());
+    if (best > threshold) {
       s.agreement = Agreement::kAgrees;
     } else if (largest_missed < options_.disagrees_share * options_.friction_share) {
       s.agreement = Agreement::kDisagrees;
@@ -247,22 +256,18 @@ class BalanceChecks {
     if (!enough_ || !temperature.allFinite()) return cannot_tell("thermal_drift", "no temperature was recorded");
     const double usual_C = temperature.mean(), range_K = temperature.maxCoeff() - temperature.minCoeff();
     const std::vector<int> runs = balance_.clusters(true);
-    if (range_K < 3.0 || runs.back() + 1 < 6) {
+    if (range_K < options_.thermal_range_K || runs.back() + 1 < options_.thermal_fewest_runs) {
       return cannot_tell("thermal_drift", fmt::format("temperatures differ by {:.1f} K only, or in few runs", range_K));
     }
-    const ClusterRegression base({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, drive_,
-                                 runs);
+    const ClusterRegression base =
+        regression({c().load, c().acceleration, c().speed, c().direction, c().one, c().heavy}, true);
     const TermEstimate friction =
         base.term(balance_.integral([usual_C](const BalancePoint& p) { return (p.temp_C - usual_C) * p.direction; }));
     const TermEstimate load = base.term(c().load.cwiseProduct(temperature - usual_C * c().one));
     const bool by_friction = std::abs(friction.t()) > std::abs(load.t());
     const TermEstimate& e = by_friction ? friction : load;
-    Signature s{"thermal_drift",
-                "balance of torques",
-                Agreement::kCannotTell,
-                around(e.coefficient, e.deviation),
-                by_friction ? std::string(drive_unit()) + "/K" : "1/K",
-                ""};
+    Signature s = undecided("thermal_drift", around(e.coefficient, e.deviation),
+                            by_friction ? std::string(drive_unit()) + "/K" : "1/K");
     if (std::abs(e.t()) > options_.sure_deviations && e.share > options_.friction_share) {
       s.agreement = Agreement::kAgrees;
     } else if (std::max(friction.share_upper, load.share_upper) < options_.disagrees_share * options_.friction_share) {

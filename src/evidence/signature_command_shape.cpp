@@ -21,12 +21,11 @@ Signature too_little(const std::string& effect) {
           "too little motion was recorded"};
 }
 
-Signature delay_check(const FoundShape& shape, double sample_s) {
+Signature delay_check(const FoundShape& shape, double sample_s, const ShapeOptions& options) {
   const Interval& d = shape.delay_s;
-  // Half a sample: the recording does not give the time of a command within a sample.
-  const double unsure_s = std::max(0.002, 0.5 * sample_s);
+  const double unsure_s = std::max(options.least_delay_s, options.least_delay_samples * sample_s);
   Signature s{"delay", "balance of torques", Agreement::kCannotTell, d, "s", ""};
-  if (d.low > unsure_s && shape.delay_gain > 0.1) {
+  if (d.low > unsure_s && shape.delay_gain > options.least_gain) {
     s.agreement = Agreement::kAgrees;
   } else if (d.high < unsure_s) {
     s.agreement = Agreement::kDisagrees;
@@ -37,12 +36,12 @@ Signature delay_check(const FoundShape& shape, double sample_s) {
   return s;
 }
 
-Signature rate_limit_check(const FoundShape& shape) {
+Signature rate_limit_check(const FoundShape& shape, const ShapeOptions& options) {
   const Interval& r = shape.rate_limit_rad_s;
   Signature s{"rate_limit", "balance of torques", Agreement::kCannotTell, r, "rad/s", ""};
-  if (shape.rate_gain.low > 0.1) {
+  if (shape.rate_gain.low > options.least_gain) {
     s.agreement = Agreement::kAgrees;
-  } else if (shape.rate_gain.high < 0.05) {
+  } else if (shape.rate_gain.high < options.no_limit_gain) {
     s.agreement = Agreement::kDisagrees;
   }
   s.sentence = fmt::format(
@@ -53,9 +52,9 @@ Signature rate_limit_check(const FoundShape& shape) {
 
 }  // namespace
 
-std::vector<Signature> command_shape_checks(const FoundShape& shape, double sample_s) {
+std::vector<Signature> command_shape_checks(const FoundShape& shape, double sample_s, const ShapeOptions& options) {
   if (!shape.known) return {too_little("delay"), too_little("rate_limit")};
-  return {delay_check(shape, sample_s), rate_limit_check(shape)};
+  return {delay_check(shape, sample_s, options), rate_limit_check(shape, options)};
 }
 
 }  // namespace pmg::evidence

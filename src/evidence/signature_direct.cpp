@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr Interval kUnknown{kNoNumber, kNoNumber, kNoNumber};
+constexpr double kSameReading_rad = 1e-7;  // readings that differ by less differ by rounding
 
 /// Median with its 95 % interval: the values at ranks n / 2 +- 1.96 sqrt(n) / 2 (normal approximation of the binomial).
 Interval median_interval(std::vector<double> values) {
@@ -33,17 +34,21 @@ Interval median_interval(std::vector<double> values) {
 /// Time from the step at this sample to the onset of motion; empty if the joint was not at rest or hardly moves. With
 /// constant acceleration from rest, sqrt(q - q_rest) is proportional to t - t_onset: t_onset is the root of a fitted
 /// line.
-std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad) {
-  constexpr double kRest_s = 0.15, kFirst = 0.02, kLast = 0.2;  // the last two: fitted part, as shares of the step
+std::optional<double> onset_s(const bench::Recording& r, std::size_t step, double noise_rad,
+                              const OnsetOptions& options) {
   const double size_rad = std::abs(r.q_cmd_rad[step] - r.q_cmd_rad[step - 1]);
   std::size_t before = step;
-  while (before > 0 && r.t_s[step] - r.t_s[before - 1] < kRest_s) --before;
-  if (step - before < 4 || r.t_s[step] - r.t_s[before] < 0.5 * kRest_s) return std::nullopt;
+  while (before > 0 && r.t_s[step] - r.t_s[before - 1] < options.rest_s) --before;
+  // Where samples are missing, half of the time at rest suffices.
+  if (static_cast<double>(step - before) < options.fewest_rest_samples ||
+      r.t_s[step] - r.t_s[before] < 0.5 * options.rest_s)
+    return std::nullopt;
   double rest_rad = 0.0;
   for (std::size_t k = before; k < step; ++k) rest_rad += r.q_rad[k] / static_cast<double>(step - before);
-  const double first_rad = std::max(6.0 * noise_rad, kFirst * size_rad);
+  const double first_rad = std::max(options.first_of_noise * noise_rad, options.first_of_step * size_rad);
   for (std::size_t k = before; k < step; ++k) {
-    if (!r.valid[k] || std::abs(r.q_rad[k] - rest_rad) > std::max(4.0 * noise_rad, 0.1 * first_rad))
+    if (!r.valid[k] ||
+        std::abs(r.q_rad[k] - rest_rad) > std::max(options.rest_of_noise * noise_rad, options.rest_of_way * first_rad))
       return std::nullopt;
     if (k > before && r.q_cmd_rad[k] != r.q_cmd_rad[k - 1]) return std::nullopt;
   }
@@ -51,16 +56,16 @@ std::optional<double> onset_s(const bench::Recording& r, std::size_t step, doubl
   double n = 0.0, t = 0.0, y = 0.0, tt = 0.0, ty = 0.0;
   for (std::size_t k = step; k < r.t_s.size() && r.q_cmd_rad[k] == r.q_cmd_rad[step]; ++k) {
     const double way_rad = sign * (r.q_rad[k] - rest_rad), after_s = r.t_s[k] - r.t_s[step];
-    if (after_s > 0.3 || !r.valid[k] || (!r.enabled.empty() && !r.enabled[k])) return std::nullopt;
+    if (after_s > options.longest_s || !r.valid[k] || (!r.enabled.empty() && !r.enabled[k])) return std::nullopt;
     if (way_rad < first_rad) continue;
-    if (way_rad > kLast * size_rad && n >= 2.0) break;
+    if (way_rad > options.last_of_step * size_rad && n >= 2.0) break;
     const double root = std::sqrt(way_rad);
     n += 1.0;
     t += after_s;
     y += root;
     tt += after_s * after_s;
     ty += after_s * root;
-    if (way_rad > kLast * size_rad && n >= 2.0) break;
+    if (way_rad > options.last_of_step * size_rad && n >= 2.0) break;
   }
   const double bend = n * tt - t * t;
   if (n < 2.0 || !(bend > 0.0)) return std::nullopt;
@@ -74,9 +79,10 @@ struct Rest {
   double kp, short_by_rad;  ///< steady-state error without the load's share: command - reading - G sin(q) / kp
 };
 
-/// Adds a rest for each stretch of constant command with readings constant over its last 0.3 s.
-void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vector<Rest>& rests) {
-  constexpr double kStood_s = 0.3;
+/// Adds a rest for each stretch of constant command with readings constant over its last stood_s. Four fifths of that
+/// time suffice where samples are missing.
+void add_rests(const bench::Bench& bench, const bench::BenchRun& run, const RestOptions& options,
+               std::vector<Rest>& rests) {
   const bench::Recording& r = run.recording;
   const double noise_rad = bench::sensor_noise_rad(r), kp = bench.known.drive.kp_scale * run.kp;
   std::size_t from = 0;
@@ -84,16 +90,16 @@ void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vecto
     const bool ends = k == r.t_s.size() || r.q_cmd_rad[k] != r.q_cmd_rad[from];
     if (!ends) continue;
     std::size_t first = k - 1;
-    while (first > from && r.t_s[k - 1] - r.t_s[first - 1] <= kStood_s) --first;
+    while (first > from && r.t_s[k - 1] - r.t_s[first - 1] <= options.stood_s) --first;
     double mean_rad = 0.0, low_rad = r.q_rad[first], high_rad = low_rad;
-    bool on = r.t_s[k - 1] - r.t_s[first] > 0.8 * kStood_s && from > 0;
+    bool on = r.t_s[k - 1] - r.t_s[first] > 0.8 * options.stood_s && from > 0;
     for (std::size_t i = first; i < k; ++i) {
       mean_rad += r.q_rad[i] / static_cast<double>(k - first);
       low_rad = std::min(low_rad, r.q_rad[i]);
       high_rad = std::max(high_rad, r.q_rad[i]);
       on = on && r.valid[i] && (r.enabled.empty() || r.enabled[i]) && (r.tau_ff_Nm.empty() || r.tau_ff_Nm[i] == 0.0);
     }
-    if (on && high_rad - low_rad <= std::max(8.0 * noise_rad, 5e-4)) {
+    if (on && high_rad - low_rad <= std::max(options.range_of_noise * noise_rad, options.range_rad)) {
       const double held_rad = run.load.gravity_Nm * std::sin(mean_rad) / kp;
       rests.push_back({kp, r.q_cmd_rad[from] - mean_rad - held_rad});
     }
@@ -103,19 +109,20 @@ void add_rests(const bench::Bench& bench, const bench::BenchRun& run, std::vecto
 
 }  // namespace
 
-Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs) {
+Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                           const SignatureOptions& options) {
   Signature s{"delay", "step onset", Agreement::kCannotTell, kUnknown, "s", "no steps from rest were recorded"};
   std::vector<double> onsets_s;
   for (const bench::BenchRun& run : runs) {
     const double noise_rad = bench::sensor_noise_rad(run.recording);
-    for (const std::size_t step : command_steps(run.recording)) {
-      if (const auto onset = onset_s(run.recording, step, noise_rad)) onsets_s.push_back(*onset);
+    for (const std::size_t step : command_steps(run.recording, options.step)) {
+      if (const auto onset = onset_s(run.recording, step, noise_rad, options.onset)) onsets_s.push_back(*onset);
     }
   }
-  if (onsets_s.size() < 4) return s;
+  if (static_cast<double>(onsets_s.size()) < options.onset.fewest_steps) return s;
   s.value = median_interval(onsets_s);
-  // The recording gives neither the time of the command nor that of the reading within a sample.
-  const double unsure_s = std::max(0.003, 0.75 / bench.sample_rate_hz);
+  const double unsure_s =
+      std::max(options.onset.least_delay_s, options.onset.least_delay_samples / bench.sample_rate_hz);
   if (s.value.low > unsure_s) {
     s.agreement = Agreement::kAgrees;
   } else if (s.value.high < unsure_s) {
@@ -140,10 +147,11 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
                  "needs a position PD at two gains, half as high again, and commands that stand still"};
   if (bench.law != bench::DriveLaw::kPositionPd) return {band};
   std::vector<Rest> rests;
-  for (const bench::BenchRun& run : runs) add_rests(bench, run, rests);
+  for (const bench::BenchRun& run : runs) add_rests(bench, run, options.rest, rests);
   double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
   for (const Rest& rest : rests) lowest = std::min(lowest, rest.kp), highest = std::max(highest, rest.kp);
-  if (rests.size() < 8 || !(highest >= 1.5 * lowest)) return {band};
+  if (static_cast<double>(rests.size()) < options.rest.fewest_rests || !(highest >= options.rest.gain_ratio * lowest))
+    return {band};
 
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   Eigen::Vector2d products = Eigen::Vector2d::Zero();
@@ -202,7 +210,7 @@ Signature quantum_check(const std::vector<bench::BenchRun>& runs, const Signatur
   if (readings.size() < fewest) return s;
   std::vector<double> steps_rad;
   for (auto it = std::next(readings.begin()); it != readings.end(); ++it) {
-    if (*it - *std::prev(it) > 1e-7) steps_rad.push_back(*it - *std::prev(it));
+    if (*it - *std::prev(it) > kSameReading_rad) steps_rad.push_back(*it - *std::prev(it));
   }
   if (steps_rad.size() < fewest) return s;
   std::sort(steps_rad.begin(), steps_rad.end());
@@ -219,7 +227,7 @@ Signature quantum_check(const std::vector<bench::BenchRun>& runs, const Signatur
   }
   const double share = static_cast<double>(multiples) / static_cast<double>(steps_rad.size());
   s.value = single;
-  if (share > 0.9 && quantum_rad > options.quantum_coarse_rad) {
+  if (share > options.quantum_multiples_share && quantum_rad > options.quantum_coarse_rad) {
     s.agreement = Agreement::kAgrees;
     s.sentence = fmt::format("{:.0f} % of the {} different readings are {:.3g} rad apart, or multiples of it",
                              100.0 * share, readings.size(), quantum_rad);

@@ -35,7 +35,7 @@ Signature check(const std::string& effect, const ClusterRegression& regression, 
 std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                          const SignatureOptions& options) {
   if (bench.rig != bench::Rig::kPendulum) return {};
-  const TorqueBalance balance(bench, runs, TorqueBalance::While::kOff);
+  const TorqueBalance balance(bench, runs, options.balance, TorqueBalance::While::kOff);
   if (balance.windows() == 0) return {};
   const std::vector<int> clusters = balance.clusters();
   if (clusters.back() + 1 < options.swing_fewest_clusters) return {};
@@ -44,10 +44,14 @@ std::vector<Signature> free_swing_checks(const bench::Bench& bench, const std::v
   const Column left = -(weight + balance.load_inertia_Nm());
   const Column direction = balance.integral([](const BalancePoint& p) { return p.direction; });
   const Column one = Column::Ones(direction.size());
-  return {check("coulomb", {{balance.acceleration_rad_s2(), balance.speed_rad_s(), one}, left, clusters}, direction,
-                weight, "the same at any speed", "Nm", options),
-          check("viscous", {{balance.acceleration_rad_s2(), direction, one}, left, clusters}, balance.speed_rad_s(),
-                weight, "more the faster it is", "Nm s/rad", options)};
+  const auto regression = [&](const Column& other) {
+    return ClusterRegression({balance.acceleration_rad_s2(), other, one}, left, clusters,
+                             options.balance.collinear_share);
+  };
+  return {
+      check("coulomb", regression(balance.speed_rad_s()), direction, weight, "the same at any speed", "Nm", options),
+      check("viscous", regression(direction), balance.speed_rad_s(), weight, "more the faster it is", "Nm s/rad",
+            options)};
 }
 
 }  // namespace pmg::evidence

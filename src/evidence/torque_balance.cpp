@@ -10,18 +10,12 @@ namespace pmg::evidence {
 
 namespace {
 
-constexpr double kWindow_s = 0.2;       // averages sensor noise, yet is shorter than most motions
-constexpr std::size_t kFewest = 12;     // midpoints in a window
-constexpr double kDerivative_s = 0.07;  // window of the speed that gives the direction of motion
-constexpr double kRest_share = 0.01;    // share of the fastest speed below which the direction counts as noise
-constexpr double kMoving_share = 0.7;   // of a window must move in a known direction
-
-/// Speed below which its sign is unknown: three deviations of a fitted slope, 3 noise / (T sqrt(sum k^2)) with the
+/// Speed below which its sign is unknown: still_deviations n of a fitted slope, n noise / (T sqrt(sum k^2)) with the
 /// sample time T and k = -reach..reach.
-double uncertain_rad_s(const bench::Recording& r, double sample_s) {
-  const double reach = std::max(2.0, std::round(0.5 * kDerivative_s / sample_s));
+double still_rad_s(const bench::Recording& r, double sample_s, const BalanceOptions& options) {
+  const double reach = std::max(2.0, std::round(0.5 * options.speed_window_s / sample_s));
   const double squares = reach * (reach + 1.0) * (2.0 * reach + 1.0) / 3.0;
-  return 3.0 * bench::sensor_noise_rad(r) / (sample_s * std::sqrt(squares));
+  return options.still_deviations * bench::sensor_noise_rad(r) / (sample_s * std::sqrt(squares));
 }
 
 /// The speed that one sample in 50 exceeds.
@@ -57,10 +51,12 @@ std::vector<double> means(const bench::Bench& bench, const bench::Recording& r, 
 
 }  // namespace
 
-TorqueBalance::TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when)
-    : bench_(&bench), source_(&runs), when_(when), shaped_(bench.law != bench::DriveLaw::kTorque) {
+TorqueBalance::TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                             const BalanceOptions& options, While when)
+    : bench_(&bench), source_(&runs), options_(options), when_(when), shaped_(bench.law != bench::DriveLaw::kTorque) {
   sample_s_ = 1.0 / bench.sample_rate_hz;
-  const std::size_t count = std::max(kFewest, static_cast<std::size_t>(std::lround(kWindow_s / sample_s_)));
+  const std::size_t count = std::max(static_cast<std::size_t>(options_.fewest_points),
+                                     static_cast<std::size_t>(std::lround(options_.window_s / sample_s_)));
   const double half_s = 0.5 * static_cast<double>(count) * sample_s_;
   const double norm = 16.0 / 35.0 * 2.0 * half_s;  // integral of (1 - x^2)^3
   for (std::size_t k = 0; k < count; ++k) {
@@ -77,17 +73,17 @@ TorqueBalance::TorqueBalance(const bench::Bench& bench, const std::vector<bench:
 
 void TorqueBalance::read(const bench::BenchRun& run) {
   const bench::Recording& r = run.recording;
-  const Motion m = motion(*bench_, run, kDerivative_s);
+  const Motion m = motion(*bench_, run, options_.speed_window_s);
   const double fastest_rad_s = usual_fastest(m.dq_rad_s);
   fastest_rad_s_ = std::max(fastest_rad_s_, fastest_rad_s);
-  const double uncertain = std::max(uncertain_rad_s(r, sample_s_), kRest_share * fastest_rad_s);
+  const double still = std::max(still_rad_s(r, sample_s_, options_), options_.still_share * fastest_rad_s);
   std::vector<BalancePoint> points(r.t_s.size() - 1);
   std::vector<bool> usable(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     BalancePoint& p = points[k];
     p.q_rad = 0.5 * (r.q_rad[k] + r.q_rad[k + 1]);
     p.dq_rad_s = 0.5 * (m.dq_rad_s[k] + m.dq_rad_s[k + 1]);
-    p.direction = std::clamp(p.dq_rad_s / std::max(uncertain, 1e-12), -1.0, 1.0);
+    p.direction = std::clamp(p.dq_rad_s / std::max(still, 1e-12), -1.0, 1.0);
     p.gravity_Nm = run.load.gravity_Nm * std::sin(p.q_rad);
     p.hanging_Nm = run.load.gravity_Nm * std::cos(p.q_rad);
     p.load_Nm = p.gravity_Nm + run.load.inertia_kg_m2 * 0.5 * (m.ddq_rad_s2[k] + m.ddq_rad_s2[k + 1]);
@@ -148,7 +144,7 @@ void TorqueBalance::find_windows(std::size_t run) {
       usable = usable && usable_[run][k];
       moving += std::abs(points[k].direction) >= 1.0 ? 1 : 0;
     }
-    if (usable && static_cast<double>(moving) >= kMoving_share * static_cast<double>(count)) {
+    if (usable && static_cast<double>(moving) >= options_.moving_share * static_cast<double>(count)) {
       windows_.push_back({run, first});
     }
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/bench.hpp"
+#include "evidence/signature_options.hpp"
 
 namespace pmg::evidence {
 
@@ -18,7 +19,7 @@ struct CommandShape {
 /// The joint half-way between two samples.
 struct BalancePoint {
   double q_rad = 0.0, dq_rad_s = 0.0;
-  double direction = 0.0;                     ///< of motion: clamp(dq / uncertain speed, -1, 1)
+  double direction = 0.0;                     ///< of motion: clamp(dq / still speed, -1, 1)
   double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the bench's load: G sin q, and G sin q + I ddq
   double hanging_Nm = 0.0;                    ///< G cos q
   double drive = 0.0;                         ///< output of the drive's law [unit of output times supply]
@@ -37,7 +38,8 @@ class TorqueBalance {
  public:
   /// The bench and the runs must outlive the balance. Windows lie where the drive is on throughout, or off throughout.
   enum class While { kOn, kOff };
-  TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, While when = While::kOn);
+  TorqueBalance(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, const BalanceOptions& options,
+                While when = While::kOn);
 
   std::size_t windows() const { return windows_.size(); }
   bool shaped() const { return shaped_; }  ///< positions are commanded, so the command's shape matters
@@ -75,10 +77,10 @@ class TorqueBalance {
   };
   void read(const bench::BenchRun& run);
   void find_windows(std::size_t run);
-  double noise_rad_s(const bench::BenchRun& run) const;
 
   const bench::Bench* bench_;
   const std::vector<bench::BenchRun>* source_;
+  BalanceOptions options_;
   While when_;
   bool shaped_;
   double sample_s_ = 0.01, fastest_rad_s_ = 0.0;

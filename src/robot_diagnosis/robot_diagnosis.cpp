@@ -13,7 +13,7 @@ namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kSample_s = 0.05;
+constexpr double kSample_s = 0.05;  // SampleOptions::ticks_per_sample control ticks of 10 ms
 
 /// (support of each sample) => (the same, but kLoose for `settle` samples on each side of a change): no equation here
 /// holds during landing, lifting or the first slip.
@@ -92,7 +92,7 @@ class RobotDiagnosisRun {
       : robot_(robot),
         options_(options),
         progress_(progress),
-        list_(robot_parameters(robot, options.tolerances)),
+        list_(robot_parameters(robot, options.tolerances, options.causes)),
         equations_(robot, list_, options.support) {
     result_.options = listed(options);
   }
@@ -107,19 +107,27 @@ class RobotDiagnosisRun {
   }
 
  private:
+  SampleOptions sampling(SampleOptions of, double low_pass_s) const {
+    of.low_pass_s = low_pass_s;
+    of.direction_low_pass_s = options_.direction_low_pass_s;
+    of.turning_rad_s = options_.turning_rad_s;
+    return of;
+  }
+  SampleOptions sampling(SampleOptions of) const { return sampling(of, options_.low_pass_s); }
+
   void take(const RobotRecording& recording, double total_ticks) {
-    const std::string sampling = drive_sampling_text(recording.drive);
-    if (result_.drive_sampling.find(sampling) == std::string::npos)
-      result_.drive_sampling += (result_.drive_sampling.empty() ? "" : "; ") + sampling;
-    const std::vector<RobotSample> crude = robot_samples(recording);
+    const std::string drives = drive_sampling_text(recording.drive);
+    if (result_.drive_sampling.find(drives) == std::string::npos)
+      result_.drive_sampling += (result_.drive_sampling.empty() ? "" : "; ") + drives;
+    const std::vector<RobotSample> crude = robot_samples(recording, sampling({}));
     std::vector<Support> seen;
     for (const RobotSample& sample : crude) seen.push_back(equations_.support(sample));
     const std::vector<Support> supports = without_transitions(seen, static_cast<std::size_t>(options_.settle_samples));
     const std::vector<Eigen::Vector3d> forces_I =
         specific_forces(equations_, recording, supports_of_ticks(recording, crude, supports));
-    const std::vector<RobotSample> lively = robot_samples(recording, {.specific_force_I = forces_I}),
-                                   calm = robot_samples(recording, {.low_pass_s = options_.standing_low_pass_s,
-                                                                    .specific_force_I = forces_I});
+    const std::vector<RobotSample> lively = robot_samples(recording, sampling({.specific_force_I = forces_I})),
+                                   calm = robot_samples(recording, sampling({.specific_force_I = forces_I},
+                                                                            options_.standing_low_pass_s));
     for (std::size_t i = 0; i < supports.size(); ++i) {
       const Support support = supports[i];
       const std::vector<RobotSample>& samples = support == Support::kStanding ? calm : lively;
@@ -136,7 +144,7 @@ class RobotDiagnosisRun {
       if (i % 20 == 0) progress_.report_or_throw(0.9 * std::min(done_ticks_ / total_ticks, 1.0));
     }
     const std::vector<RobotSample> all =
-        robot_samples(recording, {.ticks_per_sample = 1, .specific_force_I = forces_I});  // a slip is short
+        robot_samples(recording, sampling({.ticks_per_sample = 1, .specific_force_I = forces_I}));  // a slip is short
     samples_.insert(samples_.end(), all.begin(), all.end());
   }
 

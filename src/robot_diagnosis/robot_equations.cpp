@@ -267,7 +267,9 @@ std::vector<RobotRow> RobotEquations::rows(const RobotSample& sample, Support su
 }
 
 void RobotEquations::add_column(int parameter, const Eigen::VectorXd& column, std::vector<RobotRow>& rows) const {
-  const double negligible = 1e-9;  // in any unit here; roundings of the finite differences are below 1e-7 Nm
+  // Leaves out coefficients that are 0 by structure, to save time. Rounding errors of finite differences, up to 1e-7,
+  // may stay: the estimates don't notice them.
+  const double negligible = 1e-9;  // row's unit per unit of the parameter
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double value = column[static_cast<Eigen::Index>(i)];
     if (std::abs(value) > negligible) rows[i].coefficients.emplace_back(parameter, value);

@@ -25,7 +25,12 @@ NormalEquations left_out(NormalEquations all, const NormalEquations& block) {
 class CauseSearch {
  public:
   CauseSearch(std::vector<RobotBlock> blocks, int kinds, const RobotParameterList& list, const EvidenceOptions& options)
-      : blocks_(std::move(blocks)), kinds_(kinds), list_(list), options_(options), noise_(kinds), priors_(list) {
+      : blocks_(std::move(blocks)),
+        kinds_(kinds),
+        list_(list),
+        options_(options),
+        noise_(kinds, options.noise),
+        priors_(list) {
     if (std::ranges::all_of(blocks_, [](const RobotBlock& block) { return block.rows.empty(); }))
       throw std::runtime_error("no stretch of the logs that a diagnosis can use");
     learn_noise();
@@ -41,7 +46,7 @@ class CauseSearch {
     for (RobotFinding& finding : evidence.findings) estimate_values(finding);
     evidence.held_out_before = held_out_rms(nothing_found);
     evidence.held_out_after = held_out_rms(priors_);
-    for (const double variance : noise_levels(blocks_, kinds_, evidence.theta).variance)
+    for (const double variance : noise_levels(blocks_, kinds_, evidence.theta, options_.noise).variance)
       evidence.left.push_back(std::sqrt(variance));
     find_detectable(evidence);
     return evidence;
@@ -55,14 +60,14 @@ class CauseSearch {
     Priors free(list_);
     free.widen_all();
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(parameters);
-    constexpr int kRounds = 3;
+    constexpr int kRounds = 3;  // of reweighting: the levels need the fit, and the fit needs the levels
     for (int round = 0; round < kRounds; ++round) {
-      noise_ = noise_levels(blocks_, kinds_, theta);
+      noise_ = noise_levels(blocks_, kinds_, theta, options_.noise);
       sum_blocks(parameters);
       theta = posterior_mean(all_, free);
       clear_own_gains(theta);
     }
-    noise_ = noise_levels(blocks_, kinds_, theta);
+    noise_ = noise_levels(blocks_, kinds_, theta, options_.noise);
     sum_blocks(parameters);
   }
 
@@ -157,7 +162,8 @@ class CauseSearch {
       const Posterior now = posterior(rest, priors_);
       gain += 0.5 * (block.squares_after(now.mean) - block.squares_after(posterior_mean(rest, with)));
       ++finding.folds;
-      if (log_evidence(candidate, list_, now, precision) > 0.5 * options_.least_log_evidence) ++finding.folds_better;
+      if (log_evidence(candidate, list_, now, precision) > options_.share_in_folds * options_.least_log_evidence)
+        ++finding.folds_better;
     }
     return finding.log_evidence + gain > options_.least_log_evidence && finding.folds_better == finding.folds;
   }
@@ -200,7 +206,8 @@ class CauseSearch {
   }
 
   /// Smallest parameter error whose evidence alone would suffice, all others at their tolerances:
-  /// sqrt(2 (least_log_evidence + 2) v), v the data's variance plus tolerance^2, and at least `relevant`.
+  /// sqrt(2 (least_log_evidence + detectable_margin) v), v the data's variance plus tolerance^2, and at least
+  /// `relevant`.
   void find_detectable(RobotEvidence& evidence) const {
     const Posterior now = posterior(all_, Priors(list_));
     const Eigen::VectorXd prior = Priors(list_).precision();
@@ -210,7 +217,8 @@ class CauseSearch {
       const double variance = (of_data > 0.0 ? 1.0 / of_data : std::numeric_limits<double>::infinity()) +
                               list_.parameters[k].tolerance * list_.parameters[k].tolerance;
       evidence.detectable.push_back(
-          std::max(std::sqrt(2.0 * (options_.least_log_evidence + 2.0) * variance), list_.parameters[k].relevant));
+          std::max(std::sqrt(2.0 * (options_.least_log_evidence + options_.detectable_margin) * variance),
+                   list_.parameters[k].relevant));
     }
   }
 

@@ -37,7 +37,7 @@ GroundFriction ground_friction(RobotEquations& equations, std::span<const RobotS
   }
   GroundFriction ground;
   ground.slipping_samples = static_cast<int>(slipping.size());
-  if (!sticking.empty()) ground.at_least = quantile(sticking, 0.99);
+  if (!sticking.empty()) ground.at_least = quantile(sticking, options.quantile_of_sticking);
   if (static_cast<double>(slipping.size()) < options.fewest_samples) return ground;
   ground.observable = true;
   ground.value = quantile(slipping, options.quantile_of_slipping);

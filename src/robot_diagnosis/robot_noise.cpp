@@ -6,19 +6,14 @@ namespace pmg::robot_diagnosis {
 
 namespace {
 
-bool moves(const RobotRow& row) {
-  constexpr double kMostStandstill = 0.2;
-  return row.standstill <= kMostStandstill;
-}
+bool moves(const RobotRow& row, const NoiseOptions& options) { return row.standstill <= options.most_standstill; }
 
-/// 1 + 2 * sum of the autocorrelations, up to the first one below 0.05.
-double rows_per_independent(const std::vector<double>& e, double mean_square) {
-  constexpr int kLongestLag = 30;
-  constexpr double kSmall = 0.05;
+/// 1 + 2 * sum of the autocorrelations, up to the first one below least_autocorrelation.
+double rows_per_independent(const std::vector<double>& e, double mean_square, const NoiseOptions& options) {
   double inflation = 1.0;
-  for (int lag = 1; lag <= kLongestLag && static_cast<std::size_t>(lag) < e.size(); ++lag) {
+  for (int lag = 1; lag <= options.longest_lag && static_cast<std::size_t>(lag) < e.size(); ++lag) {
     const double product = std::inner_product(e.begin() + lag, e.end(), e.begin(), 0.0) / static_cast<double>(e.size());
-    if (product <= kSmall * mean_square) break;
+    if (product <= options.least_autocorrelation * mean_square) break;
     inflation += 2.0 * product / mean_square;
   }
   return inflation;
@@ -33,26 +28,26 @@ double residual(const RobotRow& row, const Eigen::VectorXd& theta) {
 }
 
 double NoiseLevels::weight(const RobotRow& row) const {
-  if (!moves(row)) return 0.0;
+  if (!moves(row, options)) return 0.0;
   const auto kind = static_cast<std::size_t>(row.kind);
   return variance[kind] > 0.0 ? 1.0 / ((variance[kind] + row.friction_variance) * rows_per_independent[kind]) : 0.0;
 }
 
-NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta) {
-  constexpr std::size_t kFewest = 20;  // rows of a kind that a noise level needs
+NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta,
+                         const NoiseOptions& options) {
   std::vector<std::vector<double>> by_kind(static_cast<std::size_t>(kinds));
   for (const RobotBlock& block : blocks) {
     for (const RobotRow& row : block.rows)
-      if (moves(row)) by_kind[static_cast<std::size_t>(row.kind)].push_back(residual(row, theta));
+      if (moves(row, options)) by_kind[static_cast<std::size_t>(row.kind)].push_back(residual(row, theta));
   }
-  NoiseLevels levels(kinds);
+  NoiseLevels levels(kinds, options);
   for (std::size_t kind = 0; kind < by_kind.size(); ++kind) {
     const std::vector<double>& e = by_kind[kind];
-    if (e.size() < kFewest) continue;
+    if (static_cast<double>(e.size()) < options.fewest_rows) continue;
     const double square = std::inner_product(e.begin(), e.end(), e.begin(), 0.0) / static_cast<double>(e.size());
     if (square <= 0.0) continue;
     levels.variance[kind] = square;
-    levels.rows_per_independent[kind] = rows_per_independent(e, square);
+    levels.rows_per_independent[kind] = rows_per_independent(e, square, options);
   }
   return levels;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fitting/least_squares.hpp"
+#include "robot_diagnosis/robot_options.hpp"
 #include "robot_diagnosis/robot_row.hpp"
 
 namespace pmg::robot_diagnosis {
@@ -18,8 +19,12 @@ struct NoiseLevels {
   std::vector<double> variance;              ///< in the row's unit squared; 0 with too few rows
   std::vector<double> rows_per_independent;  ///< 1 + 2 * sum of the noise's autocorrelations
 
-  explicit NoiseLevels(int kinds)
-      : variance(static_cast<std::size_t>(kinds), 0.0), rows_per_independent(static_cast<std::size_t>(kinds), 1.0) {}
+  NoiseOptions options;
+
+  explicit NoiseLevels(int kinds, const NoiseOptions& thresholds = {})
+      : variance(static_cast<std::size_t>(kinds), 0.0),
+        rows_per_independent(static_cast<std::size_t>(kinds), 1.0),
+        options(thresholds) {}
 
   /// 1 / ((variance + friction_variance) * rows_per_independent); 0 near standstill, where dry friction is unknown and
   /// stays constant for long.
@@ -27,7 +32,8 @@ struct NoiseLevels {
 };
 
 /// (blocks, theta) => (noise of each kind). Rows of one kind must be in the order of time.
-NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta);
+NoiseLevels noise_levels(const std::vector<RobotBlock>& blocks, int kinds, const Eigen::VectorXd& theta,
+                         const NoiseOptions& options = {});
 
 /// (rows, noise) => (weighted normal equations at theta = 0; samples: the equivalent number of independent rows).
 fitting::NormalEquations normal_equations(std::span<const RobotRow> rows, const NoiseLevels& noise,

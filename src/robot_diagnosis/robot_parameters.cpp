@@ -18,8 +18,8 @@ using Kind = RobotParameter::Kind;
 /// Adds the parameters link by link and joint by joint.
 class ParameterListBuilder {
  public:
-  ParameterListBuilder(const model::RobotModel& robot, const RobotTolerances& tolerances)
-      : robot_(robot), tolerances_(tolerances), moved_kg_m2_(moved_inertia_kg_m2(robot)) {}
+  ParameterListBuilder(const model::RobotModel& robot, const RobotTolerances& tolerances, const RobotCauseSizes& sizes)
+      : robot_(robot), tolerances_(tolerances), sizes_(sizes), moved_kg_m2_(moved_inertia_kg_m2(robot)) {}
 
   RobotParameterList build() {
     add_links();
@@ -37,9 +37,8 @@ class ParameterListBuilder {
   }
 
   void add_links() {
-    constexpr double kLightest_kg = 0.15;  // lighter links need no nuisance parameter
     for (const auto& [name, link] : robot_.urdf->links_) {
-      if (!link->inertial || link->inertial->mass < kLightest_kg) continue;
+      if (!link->inertial || link->inertial->mass < sizes_.lightest_link_kg) continue;
       add({.kind = Kind::kLinkMass, .link = name, .tolerance = tolerances_.link_mass_share, .wide = 0.0});
     }
   }
@@ -48,8 +47,8 @@ class ParameterListBuilder {
     const int mass = add({.kind = Kind::kTorsoMass,
                           .link = robot_.torso_link,
                           .tolerance = tolerances_.payload_kg,
-                          .wide = 3.0,
-                          .relevant = 0.25});
+                          .wide = sizes_.torso_payload_kg.wide,
+                          .relevant = sizes_.torso_payload_kg.relevant});
     list_.candidates.push_back({"payload", robot_.torso_link, {mass}});
     std::vector<int> center;
     for (int axis = 0; axis < 3; ++axis) {
@@ -57,8 +56,8 @@ class ParameterListBuilder {
                             .link = robot_.torso_link,
                             .axis = axis,
                             .tolerance = tolerances_.torso_center_m,
-                            .wide = 0.03,
-                            .relevant = 0.006}));
+                            .wide = sizes_.torso_center_m.wide,
+                            .relevant = sizes_.torso_center_m.relevant}));
     }
     list_.candidates.push_back({"center_of_mass", robot_.torso_link, center});
   }
@@ -74,8 +73,8 @@ class ParameterListBuilder {
       const int payload = add({.kind = Kind::kHandPayload,
                                .link = hand,
                                .tolerance = tolerances_.payload_kg,
-                               .wide = 1.5,
-                               .relevant = 0.1});
+                               .wide = sizes_.hand_payload_kg.wide,
+                               .relevant = sizes_.hand_payload_kg.relevant});
       list_.candidates.push_back({"payload", hand, {payload}});
     }
   }
@@ -87,8 +86,8 @@ class ParameterListBuilder {
                          .link = robot_.imu.link,
                          .axis = axis,
                          .tolerance = tolerances_.imu_rad,
-                         .wide = 0.04,
-                         .relevant = 0.005}));
+                         .wide = sizes_.imu_rad.wide,
+                         .relevant = sizes_.imu_rad.relevant}));
     }
     list_.candidates.push_back({"imu_mounting", robot_.imu.link, imu});
   }
@@ -96,26 +95,31 @@ class ParameterListBuilder {
   void add_joint(int j) {
     const model::Joint& joint = robot_.joints[static_cast<std::size_t>(j)];
     const RobotTolerances& t = tolerances_;
-    const auto effect = [&](const char* name, Kind kind, double tolerance, double wide, double relevant) {
-      const int index = add({.kind = kind, .joint = j, .tolerance = tolerance, .wide = wide, .relevant = relevant});
+    const auto effect = [&](const char* name, Kind kind, double tolerance, const CauseSize& size, double scale = 1.0) {
+      const int index = add({.kind = kind,
+                             .joint = j,
+                             .tolerance = tolerance,
+                             .wide = size.wide * scale,
+                             .relevant = size.relevant * scale});
       list_.candidates.push_back({name, joint.name, {index}});
     };
-    effect("gain", Kind::kKp, t.kp_share, 0.3, 0.04);
-    effect("damping_gain", Kind::kKd, t.kd_share, 0.5, 0.1);
-    const double friction_Nm = std::max(joint.friction_Nm, 0.01 * joint.effort_limit_Nm);
+    effect("gain", Kind::kKp, t.kp_share, sizes_.kp_share);
+    effect("damping_gain", Kind::kKd, t.kd_share, sizes_.kd_share);
+    const double friction_Nm = std::max(joint.friction_Nm, sizes_.coulomb_least_of_effort * joint.effort_limit_Nm);
     effect("coulomb", Kind::kCoulomb, std::max(t.friction_share * joint.friction_Nm, t.friction_least_Nm),
-           2.0 * friction_Nm, 0.3 * friction_Nm);
-    const double viscous = std::max(joint.damping_Nm_s_per_rad, 0.05);
-    effect("viscous", Kind::kViscous, t.friction_share * viscous, 3.0 * viscous, 0.4 * viscous);
-    const double armature = std::max(joint.armature_kg_m2, 0.002);
+           sizes_.coulomb_share, friction_Nm);
+    const double viscous = std::max(joint.damping_Nm_s_per_rad, sizes_.viscous_least_Nm_s_per_rad);
+    effect("viscous", Kind::kViscous, t.friction_share * viscous, sizes_.viscous_share, viscous);
+    const double armature = std::max(joint.armature_kg_m2, sizes_.armature_least_kg_m2);
     effect("armature", Kind::kArmature, std::hypot(t.armature_share * armature, t.inertia_share * moved_kg_m2_[j]),
-           armature, 0.2 * armature);
-    effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, 0.06, 0.006);
-    effect("delay", Kind::kDelay, t.delay_s, 0.01, 0.0015);
+           sizes_.armature_share, armature);
+    effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, sizes_.zero_offset_rad);
+    effect("delay", Kind::kDelay, t.delay_s, sizes_.delay_s);
   }
 
   const model::RobotModel& robot_;
   const RobotTolerances& tolerances_;
+  const RobotCauseSizes& sizes_;
   const JointVector moved_kg_m2_;
   RobotParameterList list_;
 };
@@ -133,8 +137,9 @@ JointVector moved_inertia_kg_m2(const model::RobotModel& robot) {
   return inertia;
 }
 
-RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances) {
-  return ParameterListBuilder(robot, tolerances).build();
+RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances,
+                                    const RobotCauseSizes& sizes) {
+  return ParameterListBuilder(robot, tolerances, sizes).build();
 }
 
 std::string name(const RobotParameter& parameter) {

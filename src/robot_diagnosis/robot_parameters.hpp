@@ -23,6 +23,21 @@ struct RobotTolerances {
   double delay_s = 0.0004;
 };
 
+/// Sizes of a cause: standard deviation of its prior, and the smallest value worth reporting.
+struct CauseSize {
+  double wide = 0.0, relevant = 0.0;
+};
+
+/// Sizes of the causes; a share is relative to the model's value.
+struct RobotCauseSizes {
+  CauseSize torso_payload_kg{3.0, 0.25}, hand_payload_kg{1.5, 0.1}, torso_center_m{0.03, 0.006}, imu_rad{0.04, 0.005};
+  CauseSize kp_share{0.3, 0.04}, kd_share{0.5, 0.1};
+  CauseSize coulomb_share{2.0, 0.3}, viscous_share{3.0, 0.4}, armature_share{1.0, 0.2};
+  CauseSize zero_offset_rad{0.06, 0.006}, delay_s{0.01, 0.0015};
+  double coulomb_least_of_effort = 0.01, viscous_least_Nm_s_per_rad = 0.05, armature_least_kg_m2 = 0.002;
+  double lightest_link_kg = 0.15;
+};
+
 /// One parameter error; 0 means that the model is right.
 struct RobotParameter {
   enum class Kind {
@@ -62,9 +77,10 @@ struct RobotParameterList {
 /// Inertia about each joint's axis, of all links beyond it and its armature, with all joints at 0 [kg m^2].
 JointVector moved_inertia_kg_m2(const model::RobotModel& robot);
 
-RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances);
+RobotParameterList robot_parameters(const model::RobotModel& robot, const RobotTolerances& tolerances,
+                                    const RobotCauseSizes& sizes = {});
 
-/// Key of the parameter in diagnosis.json ("kp_scale_error", "payload", ...), and its unit.
+/// Key of the parameter in diagnosis.json ("kp_error_share", "mass_kg", ...), and its unit.
 std::string name(const RobotParameter& parameter);
 std::string unit(const RobotParameter& parameter);
 

@@ -8,9 +8,7 @@ namespace pmg::robot_diagnosis {
 
 namespace {
 
-constexpr double kDirectionLowPass_s = 0.025;
-constexpr int kMargin = 8;               // ticks at both ends of a recording without samples
-constexpr double kTurning_rad_s = 0.02;  // below it MuJoCo's dry friction is not at its full value
+constexpr int kMargin = 8;  // ticks without samples at both ends: the reach, 3 * 25 ms, of the shorter low-pass
 
 struct TickMeans {
   RobotSample mean;
@@ -94,13 +92,13 @@ void around(int k, int count, const std::vector<double>& w, Add&& add) {
 }
 
 /// Directions of motion from the low-passed speed: encoder noise would flip a slow joint's direction between ticks.
-void find_directions(double period_s, std::vector<TickMeans>& means) {
-  const std::vector<double> w = weights(kDirectionLowPass_s, period_s);
+void find_directions(double period_s, const SampleOptions& options, std::vector<TickMeans>& means) {
+  const std::vector<double> w = weights(options.direction_low_pass_s, period_s);
   const auto count = static_cast<int>(means.size());
   for (int k = 0; k < count; ++k) {
     JointVector dq = JointVector::Zero(means.front().mean.dq.size());
     around(k, count, w, [&](std::size_t at, double weight) { dq += weight * means[at].mean.dq; });
-    means[static_cast<std::size_t>(k)].mean.direction = (dq / kTurning_rad_s).array().tanh();
+    means[static_cast<std::size_t>(k)].mean.direction = (dq / options.turning_rad_s).array().tanh();
   }
 }
 
@@ -140,7 +138,7 @@ std::vector<RobotSample> robot_samples(const RobotRecording& recording, const Sa
   const auto forces_I = options.specific_force_I;
   for (std::size_t k = 1; k < forces_I.size() && k <= means.size(); ++k)
     means[k - 1].mean.specific_force_I = forces_I[k];
-  find_directions(recording.period_s, means);
+  find_directions(recording.period_s, options, means);
   const std::vector<double> w = weights(options.low_pass_s, recording.period_s);
   const auto joints = static_cast<int>(ticks.front().state.q.size()), count = static_cast<int>(means.size());
   std::vector<RobotSample> samples;

@@ -30,8 +30,10 @@ std::vector<JointVector> torque_ripple(const RobotRecording& recording);
 Eigen::Vector3d mean_of_readings(const Eigen::Vector3d& at, const Eigen::Vector3d& after, double share);
 
 struct SampleOptions {
-  int ticks_per_sample = 5;   ///< 50 ms: the Nyquist frequency of 10 Hz lies above the low-pass
-  double low_pass_s = 0.025;  ///< deviation of the Gaussian: -3 dB at 5.3 Hz; the hanging excitation ends at 2.1 Hz
+  int ticks_per_sample = 5;   ///< a sample per 50 ms: its Nyquist frequency, 10 Hz, lies above the low-pass
+  double low_pass_s = 0.025;  ///< deviation of the Gaussian: -3 dB at sqrt(ln 2) / (2 pi 0.025 s) = 5.3 Hz
+  /// Direction of motion: tanh(dq / turning_rad_s), dq after a low-pass of this deviation.
+  double direction_low_pass_s = 0.025, turning_rad_s = 0.02;
   /// Mean specific force between every tick and the next [m/s^2, IMU axes]; empty: mean_of_readings() is used.
   std::span<const Eigen::Vector3d> specific_force_I{};
 };

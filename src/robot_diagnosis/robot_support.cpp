@@ -8,8 +8,6 @@
 
 namespace pmg::robot_diagnosis {
 
-namespace {}  // namespace
-
 Eigen::Vector3d RobotEquations::accelerometer_share(const JointVector& q, const JointVector& torque_Nm) {
   return robot_.imu.T_LI.linear().transpose() * dynamics_.imu_acceleration(q, torque_Nm);
 }

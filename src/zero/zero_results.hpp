@@ -19,8 +19,8 @@ struct ZeroResults {
   bool interrupted = false;
 };
 
-/// The actuators with sensor.zero_offset_rad = -z (reading minus true angle) of the observable joints. Replaces an
-/// actuator's earlier offset, which the readings of the poses already contain.
+/// (actuators, results) => (actuators with sensor.zero_offset_rad = -z, reading minus true angle, at the observable
+/// joints). -z replaces an actuator's earlier offset: readings of poses are raw, so z corrects the whole offset.
 sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results);
 
 /// A joint whose zero point the poses do not determine, with the reason.

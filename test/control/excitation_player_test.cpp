@@ -170,5 +170,19 @@ TEST(Excitation, IsRefusedWhenTheJointMayNot) {
       << "the guard in force would clamp them";
 }
 
+TEST(Excitation, ATickChecksGainsAgainstItsOwnGuard) {
+  const model::RobotModel& robot = test::z1();
+  TickOptions options = tick_options(robot);
+  options.excitation = plan(robot);
+  options.excitation->runs[0].kp_Nm_per_rad = 2500.0;
+  const io::SimulationClock clock;
+  const auto make = [&] {
+    Tick(robot, test::clips(robot), std::make_unique<policy::ReferencePolicy>(), clock, options);
+  };
+  EXPECT_THROW(make(), std::invalid_argument) << "the default guard allows 2000";
+  options.guard.max_kp_Nm_per_rad = 3000.0;
+  EXPECT_NO_THROW(make());
+}
+
 }  // namespace
 }  // namespace pmg::control

@@ -46,7 +46,7 @@ TEST(Trial, StandingIsJudgedFromTheFirstTickOfStanding) {
 
 TEST(Trial, OnTheGantryNothingIsJudged) {
   const TrialResult result =
-      run_trial(without_policy(), standing(0.5), {}, {.gantry = true, .interrupted = {}, .observer = {}});
+      run_trial(without_policy(), standing(0.5), {}, {.gantry = true, .progress = {}, .observer = {}});
   EXPECT_EQ(result.judged_s, 0.0);
   ASSERT_EQ(result.step_errors.size(), 1U);
   EXPECT_TRUE(std::isnan(result.step_errors[0][kLinVel]));
@@ -71,7 +71,7 @@ TEST(Trial, AfterAFallVelocityAndHeightAreZeroAndTheRunGoesOnToItsEnd) {
     return true;
   };
   const TrialResult result =
-      run_trial(without_policy(), scenario, {}, {.gantry = false, .interrupted = {}, .observer = shove});
+      run_trial(without_policy(), scenario, {}, {.gantry = false, .progress = {}, .observer = shove});
   ASSERT_TRUE(result.fell);
   ASSERT_LT(result.fell_at_s, 3.0) << "the last step must not see the fall";
   EXPECT_FALSE(result.survived());
@@ -87,14 +87,15 @@ TEST(Trial, AfterAFallVelocityAndHeightAreZeroAndTheRunGoesOnToItsEnd) {
 TEST(Trial, AnObserverEndsIt) {
   const TrialObserver at_once = [](const sil::RunProgress& now, sim::World&) { return now.time_s < 0.1; };
   const TrialResult result =
-      run_trial(without_policy(), standing(5.0), {}, {.gantry = false, .interrupted = {}, .observer = at_once});
+      run_trial(without_policy(), standing(5.0), {}, {.gantry = false, .progress = {}, .observer = at_once});
   EXPECT_TRUE(result.complete);
   EXPECT_LT(result.duration_s, 0.2);
 }
 
 TEST(Trial, AnInterruptedOneIsNotComplete) {
-  const TrialResult result = run_trial(without_policy(), standing(5.0), {},
-                                       {.gantry = false, .interrupted = [] { return true; }, .observer = {}});
+  const TrialResult result =
+      run_trial(without_policy(), standing(5.0), {},
+                {.gantry = false, .progress = {.told = {}, .interrupted = [] { return true; }}, .observer = {}});
   EXPECT_FALSE(result.complete);
   EXPECT_FALSE(result.survived());
 }

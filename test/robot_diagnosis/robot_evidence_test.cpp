@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robot_diagnosis/drive_sampling.hpp"
+#include "robot_diagnosis/robot_samples.hpp"
 
 namespace pmg::robot_diagnosis {
 namespace {
@@ -81,6 +82,31 @@ TEST(DriveSampling, SharesAreThoseOfTheStepsOfATick) {
     EXPECT_NEAR(sampling.acceleration_share(0.01), ends, 1e-12);
   }
   EXPECT_EQ(DriveSampling{}.position_share(0.01), 0.5) << "a drive much faster than the tick";
+}
+
+// A joint that turns at a constant speed v is at q + share v T on average over the steps of a tick from q.
+TEST(DriveSampling, SamplesAreMeansOverTheStepsOfTheDrivesThatRecorded) {
+  constexpr double kSpeed_rad_s = 0.3, kTick_s = 0.01;
+  for (const double step_s : {0.0, 0.002, 0.005}) {
+    RobotRecording recording{.name = "ramp", .period_s = kTick_s, .drive = {step_s, "the test"}};
+    for (int k = 0; k < 60; ++k) {
+      RobotTick tick;
+      tick.t_s = k * kTick_s;
+      tick.state.q = JointVector::Constant(1, kSpeed_rad_s * tick.t_s);
+      tick.state.dq = JointVector::Constant(1, kSpeed_rad_s);
+      for (JointVector* v :
+           {&tick.command.q, &tick.command.dq, &tick.command.kp, &tick.command.kd, &tick.command.tau_ff})
+        v->setZero(1);
+      recording.ticks.push_back(tick);
+    }
+    const std::vector<RobotSample> samples = robot_samples(recording);
+    ASSERT_FALSE(samples.empty());
+    const double share = step_s > 0.0 ? 0.5 * (1.0 - step_s / kTick_s) : 0.5;
+    for (const RobotSample& sample : samples) {
+      const double tick_begins_s = sample.t_s - 0.5 * kTick_s;  // a sample's time is its tick's middle
+      EXPECT_NEAR(sample.q[0], kSpeed_rad_s * (tick_begins_s + share * kTick_s), 1e-9) << step_s;  // rounding
+    }
+  }
 }
 
 TEST(DriveSampling, IsTheLogsOwnOrTheSimulatedDrivesOrSaidToBeUnknown) {
