@@ -21,7 +21,7 @@ std::uint64_t number(const std::uint8_t* from, int bytes) {
 }
 
 /// Opens files only: a pipe would be waited for, and a device may have no end.
-std::FILE* open(const std::filesystem::path& path) {
+std::FILE* open_file(const std::filesystem::path& path) {
   std::error_code none;
   const std::filesystem::file_type type = std::filesystem::status(path, none).type();
   const auto refuse = [&](const char* what) {
@@ -36,7 +36,7 @@ std::FILE* open(const std::filesystem::path& path) {
 
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& path) : file_(open(path), std::fclose) {
+LogReader::LogReader(const std::filesystem::path& path) : file_(open_file(path), std::fclose) {
   if (!file_) throw std::runtime_error(path.string() + ": can't be opened: " + std::strerror(errno));
 }
 

@@ -96,8 +96,9 @@ class OperatorApps : public testing::Test {
     return std::string(std::istreambuf_iterator<char>(in), {});
   }
   std::unique_ptr<Background> controller(const std::string& name, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"--hal", "sil", "--robot", "z1", "--policy", "none", "--gantry", "--no-realtime",
-                                          "--name", name, "--log", (folder_ / ("log_" + name)).string()};
+    std::vector<std::string> arguments = {"--hal",    "sil",  "--robot",  "z1",
+                                          "--policy", "none", "--gantry", "--no-realtime",
+                                          "--name",   name,   "--log",    (folder_ / ("log_" + name)).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto started = std::make_unique<Background>("pmg_controller", arguments, folder_ / (name + ".txt"));
     EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0) << text(folder_ / (name + ".txt"));
@@ -225,8 +226,8 @@ TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideTheProm
     }
     EXPECT_EQ(mode_of("z1"), "fault");
     EXPECT_EQ(robot->end(SIGINT), 0);
-    EXPECT_THAT(text(folder_ / "z1.txt"), AllOf(HasSubstr("injected: hot at 3 s: temperature; "),
-                                                HasSubstr("(promised 501 to 505)")));
+    EXPECT_THAT(text(folder_ / "z1.txt"),
+                AllOf(HasSubstr("injected: hot at 3 s: temperature; "), HasSubstr("(promised 501 to 505)")));
   });
 }
 
