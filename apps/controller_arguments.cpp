@@ -20,6 +20,7 @@ Example:
   pmg_controller --hal sil --robot z1 --log out/first
   pmg_send walk --robot z1 --vx 0.4 --for 5
   pmg_controller --hal sil --viewer
+  pmg_controller --hal sil --inject failures.yaml
   pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
 
 Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
@@ -68,6 +69,9 @@ void ControllerArguments::declare(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--no-realtime", no_realtime, "ordinary scheduling: for trying things out, not for a robot");
   app.add_option("--duration", duration_s, "end after so many seconds")->check(positive());
+  app.add_option(
+      "--inject", inject,
+      "with --hal sil: inject the failures of this file (YAML); the end tells what each led to, in bus cycles");
   app.add_flag("--print-config", print_config, "print the configuration in force as JSON and exit");
   app.add_flag("--json", json, "print how the run went as JSON on stdout at the end");
 }
@@ -79,6 +83,7 @@ nlohmann::ordered_json config_json(const ControllerArguments& arguments, const c
   json["hal"] = arguments.backend.hal();
   json["lcm_url"] = arguments.lcm_url;
   json["log"] = arguments.log.string();
+  if (!arguments.inject.empty()) json["inject"] = arguments.inject.string();
   add_to(json, backend.configuration());
   if (bench != nullptr) json["bench"] = bench->json();
   json["realtime"] = {{"asked_for", arguments.threads.realtime},

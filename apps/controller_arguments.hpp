@@ -20,7 +20,7 @@ struct ControllerArguments {
   BackendArguments backend{backends()};
   control::ControlSetup control;
   std::string name, lcm_url, keys;
-  std::filesystem::path log, excitation, bench_out;
+  std::filesystem::path log, excitation, bench_out, inject;
   std::string bench;
   bool insecure = false;  ///< a network without keys
   bool no_log = false, no_realtime = false, print_config = false, json = false;

@@ -13,9 +13,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "control/mode_text.hpp"
 #include "controller_arguments.hpp"
+#include "injection.hpp"
 #include "io/lcm_link.hpp"
 #include "io/plain_text.hpp"
 #include "json_output.hpp"
@@ -81,14 +83,17 @@ class Console {
   Console(const model::RobotModel& robot, std::string name) : robot_(robot), name_(std::move(name)) {}
 
   void show(const runtime::ControllerNews& news) {
-    if (news.mode == mode_ && news.hanging == hanging_) return;
+    if (news.mode == mode_ && news.hanging == hanging_ && news.sitting == sitting_) return;
     mode_ = news.mode;
     hanging_ = news.hanging;
     if (news.mode == control::Mode::kFault) {
-      spdlog::error("FAULT, damping: {}", faults::describe(news.fault, robot_));
+      const bool sat = std::exchange(sitting_, news.sitting);
+      if (sat) return spdlog::error("the sit-down is over: damping");
+      spdlog::error("FAULT, {}: {}", news.sitting ? "sitting down" : "damping", faults::describe(news.fault, robot_));
       spdlog::error("{} Then: pmg_send reset --robot {}", faults::advice(news.fault.code), name_);
       return;
     }
+    sitting_ = false;
     const char* driving = news.driving.name.data();
     spdlog::info("mode: {}{}{}", control::mode_text(news.mode, news.hanging), *driving == '\0' ? "" : ", driven by ",
                  driving);
@@ -98,7 +103,7 @@ class Console {
   const model::RobotModel& robot_;
   std::string name_;
   control::Mode mode_ = control::Mode::kPassive;
-  bool hanging_ = false;
+  bool hanging_ = false, sitting_ = false;
 };
 
 void announce(const Arguments& arguments, const recording::RunInfo& run, Variant variant) {
@@ -175,15 +180,18 @@ ExitCode run(const Arguments& arguments, const EndSignals& signals, runtime::Con
   return failure.empty() && recorder.complete() ? kOk : kFailed;
 }
 
-void report(const Arguments& arguments, const runtime::Controller& controller, const recording::Recorder& recorder) {
+void report(const Arguments& arguments, const runtime::Controller& controller, const recording::Recorder& recorder,
+            const apps::Injection& injection) {
   for (const std::string& line : runtime::punctuality_lines(controller)) spdlog::info(line);
   if (recorder.lost() > 0) spdlog::warn("{} ticks are not in the log", recorder.lost());
+  for (const std::string& line : injection.lines()) spdlog::info("injected: {}", line);
   if (!arguments.json) return;
   nlohmann::ordered_json json = {{"robot", arguments.name},
                                  {"log", arguments.log.string()},
                                  {"logged_ticks", recorder.written()},
                                  {"lost_ticks", recorder.lost()}};
   json.update(runtime::punctuality_json(controller));
+  if (!arguments.inject.empty()) json["injected"] = injection.report();
   apps::print_json(json);
 }
 
@@ -219,6 +227,8 @@ int run_controller(Arguments& arguments) {
     loaded.options.excitation = bench->plan();
   }
   const runtime::BenchSession* session = bench ? &*bench : nullptr;
+  apps::Injection injection(arguments.inject, arguments.backend.hal(), loaded.robot);
+  injection.into(loaded);
   if (arguments.print_config) {
     apps::print_json(config_json(arguments, loaded, *backend, session));
     return kOk;
@@ -231,7 +241,7 @@ int run_controller(Arguments& arguments) {
   }
   const runtime::NameLock lock(arguments.name, arguments.lcm_url);
   io::LcmLink link(arguments.lcm_url);
-  hal::Hal& drives = backend->connect([&signals] { return signals.wait_ms(0); });
+  hal::Hal& drives = injection.into(backend->connect([&signals] { return signals.wait_ms(0); }), loaded.robot);
   const std::unique_ptr<control::Tick> tick = control::make_tick(loaded, clock);
   runtime::Controller controller(loaded.robot, drives, *tick, arguments.threads);
   const recording::RunInfo info = run_info(arguments, loaded, *backend, controller, session);
@@ -250,6 +260,7 @@ int run_controller(Arguments& arguments) {
                                warn);
   std::atomic<bool> bench_over{false};
   recorder.after_record = [&](const control::TickRecord& record) {
+    injection.watch(record);
     const hal::TruthSample* truth = backend->take_truth(record.state.bus_sample);
     if (truth != nullptr) recorder.write_truth(record.now_ns, truth->truth, truth->hoisted);
     if (!excited) return;
@@ -260,7 +271,7 @@ int run_controller(Arguments& arguments) {
   const ExitCode code =
       run(arguments, signals, controller, comms, std::move(claim), recorder, *backend, console, bench_over);
   if (bench) spdlog::info("{}: {}", bench->write(*excited), arguments.bench_out.string());
-  report(arguments, controller, recorder);
+  report(arguments, controller, recorder, injection);
   if (bench && code == kOk && !bench->whole(*excited)) return kFailed;
   return code;
 }

@@ -256,11 +256,14 @@ class Session {
           json["text"] = answer.text;
           continue;
         }
-        json["robots"].push_back({{"robot", answer.robot},
-                                  {"acknowledged", answer.acknowledged},
-                                  {"reached", answer.progress == ops::Progress::kReached},
-                                  {"mode", answer.mode},
-                                  {"text", answer.text}});
+        nlohmann::ordered_json entry = {{"robot", answer.robot},
+                                        {"acknowledged", answer.acknowledged},
+                                        {"reached", answer.progress == ops::Progress::kReached},
+                                        {"mode", answer.mode},
+                                        {"text", answer.text}};
+        if (answer.acknowledged_after_s) entry["acknowledged_after_s"] = *answer.acknowledged_after_s;
+        if (answer.reached_after_s) entry["reached_after_s"] = *answer.reached_after_s;
+        json["robots"].push_back(std::move(entry));
       }
       apps::print_json(json);
       return;
@@ -271,9 +274,16 @@ class Session {
       if (answer.robot.empty()) {
         out << "pmg_send: " << io::plain_text(answer.text) << '\n';
       } else {
-        out << io::plain_text(fmt::format("{}: {}{}", answer.robot, answer.mode, text)) << '\n';
+          out << io::plain_text(fmt::format("{}: {}{}{}", answer.robot, answer.mode, text, times_text(answer))) << '\n';
       }
     }
+  }
+
+  /// Of a stop: how long each half took.
+  std::string times_text(const ops::Answer& answer) const {
+    if (arguments_.request != "stop" || !answer.acknowledged_after_s || !answer.reached_after_s) return {};
+    return fmt::format("; acknowledged after {:.0f} ms, damping known after {:.0f} ms",
+                       1e3 * *answer.acknowledged_after_s, 1e3 * *answer.reached_after_s);
   }
 
   const Arguments& arguments_;

@@ -61,10 +61,12 @@ int simulate(Arguments arguments) {
                                                             : sil::load_scenario(arguments.scenario);
   sil::FailureClock failure_clock;
   std::vector<sil::Failure> failures;
+  std::optional<sil::FailingTick> failing_tick;
   if (!arguments.inject.empty()) {
     failures = sil::load_failures(arguments.inject, loaded.robot);
     loaded.policy =
         std::make_unique<sil::FailingPolicy>(std::move(loaded.policy), failures, failure_clock, arguments.realtime);
+    loaded.options.spoiler = &failing_tick.emplace(failures, failure_clock, arguments.realtime);
   }
   if (arguments.print_config) {
     apps::print_json(config_json(arguments, loaded, bench ? &*bench : nullptr));

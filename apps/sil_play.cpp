@@ -80,6 +80,7 @@ Played play_lockstep(const Stage& stage) {
   if (!stage.failures.empty()) {
     lockstep.bus_sleeps = [&bus] { return bus.bus_sleeps(); };
     lockstep.control_sleeps = [&bus] { return bus.control_sleeps(); };
+    lockstep.overrun_s = [&bus] { return bus.overrun_s(); };
     lockstep.while_bus_sleeps = [&bus] { bus.idle(); };
   }
   if (stage.excitation != nullptr) {

@@ -35,6 +35,7 @@ class CommandLimiter {
   }
 
   void reset() noexcept {
+    rate_per_s_ = limits_.rate_per_s;
     target_ = Command{};
     command_ = Command{};
     rising_share_.fill(1.0);
@@ -42,6 +43,9 @@ class CommandLimiter {
     stop_left_s_ = stop_within_s_;
     limited_ = false;
   }
+
+  /// Another rate for this channel [1/s], until reset().
+  void set_rate(Channel channel, double rate_per_s) noexcept { rate_per_s_[channel] = rate_per_s; }
 
   /// (user, double_support, dt) => (command). double_support in [0, 1] is the product of the feet's contact weights. A
   /// channel that isn't finite keeps its previous target.
@@ -56,7 +60,7 @@ class CommandLimiter {
     if (!stopping) stop_left_s_ = stop_within_s_;
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       const bool velocity = channel < kVelocityChannels;
-      double step = limits_.rate_per_s[channel] * dt_s * (velocity ? rate_factor : 1.0);
+      double step = rate_per_s_[channel] * dt_s * (velocity ? rate_factor : 1.0);
       if (velocity && stopping) step = std::max(step, stopping_step(channel, dt_s));
       move(channel, step, dt_s);
     }
@@ -96,6 +100,7 @@ class CommandLimiter {
   }
 
   CommandLimits limits_;
+  std::array<double, kChannels> rate_per_s_{};
   double double_support_rate_ = 1.0;
   double stop_within_s_ = 0.0;
   double turn_s_ = 0.0;

@@ -115,6 +115,9 @@ class Generator {
     set_contacts(0.0);
   }
 
+  /// Another rate limit for this channel [1/s], until reset().
+  void set_rate(Channel channel, double rate_per_s) noexcept { limiter_.set_rate(channel, rate_per_s); }
+
   /// One tick: (user, dt) => (reference). No heap, no exception. A channel that isn't finite keeps its last value. A dt
   /// that isn't positive changes nothing.
   const Reference& step(const Command& user, double dt_s) noexcept {

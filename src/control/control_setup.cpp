@@ -104,6 +104,9 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/change_over/longest_s", tick.change_over.longest_s);
   visit("/sit_down/duration_s", tick.sit_down.duration_s);
   visit("/sit_down/settle_s", tick.sit_down.settle_s);
+  visit("/sit_down/reference_s", tick.sit_down.reference_s);
+  visit("/sit_down/height_rate_m_s", tick.sit_down.height_rate_m_s);
+  visit("/sit_down/brake_factor", tick.sit_down.brake_factor);
   visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
   visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
   visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);
@@ -183,6 +186,7 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
   };
   if (unnamed("/command/turn_s")) options.generator.turn_s = 0.0;
   if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
+  if (unnamed("/sit_down/brake_factor")) options.sit_down.brake_factor = 1.0;
 }
 
 nlohmann::ordered_json control_json(const LoadedControl& loaded) {

@@ -11,40 +11,89 @@ namespace pmg::control {
 namespace {
 
 constexpr double kLongest_s = 1.0;
+constexpr double kRounding_s = 1e-6;
 
 const SitDownOptions& checked(const SitDownOptions& options) {
-  if (!(options.duration_s >= 0.0 && options.settle_s >= 0.0 && options.duration_s + options.settle_s <= kLongest_s)) {
+  if (!(options.duration_s >= 0.0 && options.settle_s >= 0.0 &&
+        options.duration_s + options.settle_s <= kLongest_s + 1e-9)) {
     throw std::invalid_argument("sit_down: duration_s and settle_s; expected 0 or more, and 1 s together at most");
+  }
+  if (!(options.reference_s >= 0.0 && (options.duration_s == 0.0 || options.reference_s < options.duration_s))) {
+    throw std::invalid_argument("sit_down: reference_s; expected 0 or more, and less than duration_s");
+  }
+  if (!(options.brake_factor >= 1.0 && options.height_rate_m_s > 0.0)) {
+    throw std::invalid_argument("sit_down: brake_factor and height_rate_m_s; expected 1 or more, and more than 0");
   }
   return options;
 }
 
+double seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-9; }
+
+/// (share of the time) => (share of the way), with a trapezoid of speed: a fifth of the time each to accelerate and to
+/// brake. A robot that is lowered evenly moves least.
+double share_of_way(double t) {
+  constexpr double kAccelerating = 0.2, kSpeed = 1.0 / (1.0 - kAccelerating);
+  if (t >= 1.0) return 1.0;
+  if (t > 0.5) return 1.0 - share_of_way(1.0 - t);
+  return t < kAccelerating ? 0.5 * kSpeed * t * t / kAccelerating : kSpeed * (t - 0.5 * kAccelerating);
+}
+
 }  // namespace
 
-SitDown::SitDown(const model::RobotModel& robot, const ClipLibrary& library, const SitDownOptions& options)
+SitDown::SitDown(const model::RobotModel& robot, const ClipLibrary& library, const SitDownOptions& options,
+                 const hal::GuardOptions& guard)
     : options_(checked(options)),
       own_(own_gains(robot)),
       crouch_(library.q_stand),
       from_(library.q_stand),
-      ramp_({.speed_rad_s = 1.0, .shortest_s = options.duration_s, .longest_s = options.duration_s}) {
+      brake_kd_((options.brake_factor * own_.kd_Nm_s_per_rad).cwiseMin(guard.max_kd_Nm_s_per_rad)) {
   const StaticClip& height = library.posture[kHeight - kVelocityChannels];
-  known_ = options_.duration_s > 0.0 && !height.command.empty() && height.command.front() < 0.0;
-  if (known_) crouch_ = model::deepest_crouch(robot, height.q.front());
+  if (options_.duration_s == 0.0 || height.command.empty() || height.command.front() >= 0.0) return;
+  lowest_m_ = height.command.front();
+  crouch_ = model::deepest_crouch(robot, height.q.front());
 }
 
-void SitDown::start(const JointVector& q, const JointVector& q_des, const JointVector& kp,
-                    std::int64_t now_ns) noexcept {
-  if (!known_) return;
+void SitDown::start(std::int64_t now_ns) noexcept {
+  stage_ = lowest_m_ < 0.0 ? Stage::kReference : Stage::kNone;
+  start_ns_ = now_ns;
+}
+
+const JointVector& SitDown::same_torque(const JointVector& q, const JointVector& q_des,
+                                        const JointVector& kp) noexcept {
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     from_[i] = own_.kp_Nm_per_rad[i] > 0.0 ? q[i] + kp[i] * (q_des[i] - q[i]) / own_.kp_Nm_per_rad[i] : q_des[i];
   }
-  ramp_.start(from_, crouch_);
-  end_ns_ = now_ns + std::llround((options_.duration_s + options_.settle_s) * 1e9);
+  return from_;
 }
 
-void SitDown::step(double dt_s, model::JointCommand& command) noexcept {
-  command.q = crouch_;
-  ramp_.apply(dt_s, command.q);
+void SitDown::lower_joints(const JointVector& q, const JointVector& q_des, const JointVector& kp,
+                           std::int64_t now_ns) noexcept {
+  same_torque(q, q_des, kp);
+  stage_ = Stage::kJoints;
+  joints_start_ns_ = now_ns;
+}
+
+SitDown::Stage SitDown::stage(std::int64_t now_ns) noexcept {
+  const bool lowered = stage_ == Stage::kReference || stage_ == Stage::kJoints;
+  if (lowered && seconds(now_ns - start_ns_) > options_.duration_s + options_.settle_s - kRounding_s) {
+    stage_ = Stage::kDamped;
+  }
+  return stage_;
+}
+
+bool SitDown::active(std::int64_t now_ns) noexcept {
+  const Stage now = stage(now_ns);
+  return now == Stage::kReference || now == Stage::kJoints;
+}
+
+bool SitDown::reference_is_due(std::int64_t now_ns) const noexcept {
+  return seconds(now_ns - start_ns_) < options_.reference_s - kRounding_s;
+}
+
+void SitDown::step(std::int64_t now_ns, model::JointCommand& command) const noexcept {
+  const double whole_s = options_.duration_s - seconds(joints_start_ns_ - start_ns_);
+  const double gone_s = seconds(now_ns - joints_start_ns_);
+  command.q = from_ + share_of_way(gone_s < whole_s ? gone_s / whole_s : 1.0) * (crouch_ - from_);
   command.dq.setZero();
   command.tau_ff.setZero();
   command.kp = own_.kp_Nm_per_rad;

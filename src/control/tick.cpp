@@ -40,6 +40,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     : stopwatch_(stopwatch),
       dt_s_(options.dt_s),
       policy_may_owe_ticks_(options.late_policy_ticks),
+      spoiler_(options.spoiler),
       guard_(options.guard),
       gains_(gains_in_force(robot, *policy, guard_)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
@@ -50,7 +51,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       change_over_(options.change_over),
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
-      sit_down_(robot, library, options.sit_down),
+      sit_down_(robot, library, options.sit_down, guard_),
       target_(robot.q_stand()) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();
@@ -92,7 +93,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.mode = supervisor_.mode();
   result_.fault = supervisor_.fault();
   sit_down(input, before);
-  if (!upright(result_.mode) && !result_.sitting) release(input.state);
+  if (!upright(result_.mode) && !result_.sitting) release(input.state, input.now_ns);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   if (excitation_) {
     if (result_.mode != Mode::kStand) excitation_->give_up();
@@ -101,6 +102,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
 
   for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
+  if (spoiler_ != nullptr) spoiler_->spoil(result_);
   result_.times.tick_ns = tick.elapsed_ns();
   return result_;
 }
@@ -196,6 +198,7 @@ void Tick::begin_policy() noexcept {
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
   motion_.reset();
+  without_policy_ = false;
   target_ = motion_.reference().q;
   gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
@@ -213,7 +216,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
 faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   faults::Fault fault = make_reference();
   if (fault.code == faults::FaultCode::kNone) {
-    if (policy_waits()) {
+    if (policy_waits() || without_policy_) {
       target_ = result_.reference.q;
     } else {
       fault = ask_policy(state);
@@ -225,8 +228,8 @@ faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   command.q = target_;
   entry_.apply(dt_s_, command.q);
   change_over_.apply(dt_s_, command.q);
-  command.kp = gains_.kp_Nm_per_rad;
-  command.kd = gains_.kd_Nm_s_per_rad;
+  command.kp = gains_in_use().kp_Nm_per_rad;
+  command.kd = gains_in_use().kd_Nm_s_per_rad;
   if (excitation_ && entry_.done()) excite(command);
   result_.limited = limiter_.apply(state, command.q);
   command.dq.setZero();
@@ -246,6 +249,7 @@ void Tick::excite(model::JointCommand& command) noexcept {
 faults::Fault Tick::make_reference() noexcept {
   const io::Lap generator(stopwatch_);
   result_.reference = motion_.advance(result_.user, dt_s_);
+  if (spoiler_ != nullptr) spoiler_->spoil(result_.reference);
   result_.times.generator_ns = generator.elapsed_ns();
   if (!finite(result_.reference)) return {.code = faults::FaultCode::kReferenceNotFinite};
 
@@ -278,19 +282,54 @@ faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
 
 void Tick::sit_down(const TickInput& input, Mode before) noexcept {
   result_.sitting = false;
-  const bool sound =
-      result_.mode == Mode::kFault && !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
+  if (result_.mode != Mode::kFault) {
+    sit_down_.stop();
+    return;
+  }
+  const bool sound = !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
   if (sound && upright(before) && entry_.done() && !policy_waits() && faults::allows_sit_down(result_.fault.code)) {
-    sit_down_.start(input.state.q, limiter_.last(), gains_.kp_Nm_per_rad, input.now_ns);
-    set_limiter_gains(sit_down_.gains());
+    begin_sit_down(input);
   } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != faults::FaultCode::kJointTorque) {
     feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
   }
-  if (!sound || feet_->footing() == faults::Footing::kHangs) sit_down_.stop();
   if (!sit_down_.active(input.now_ns)) return;
-  sit_down_.step(dt_s_, result_.command);
-  result_.limited = limiter_.apply(input.state, result_.command.q);
+  if (!sound || feet_->footing() == faults::Footing::kHangs) {
+    sit_down_.stop();
+    return;
+  }
   result_.sitting = true;
+  if (sit_down_.stage(input.now_ns) == SitDown::Stage::kReference) {
+    if (lower_reference(input)) return;
+    sit_down_.lower_joints(input.state.q, limiter_.last(), gains_in_use().kp_Nm_per_rad, input.now_ns);
+    set_limiter_gains(sit_down_.gains());
+  }
+  sit_down_.step(input.now_ns, result_.command);
+  result_.limited = limiter_.apply(input.state, result_.command.q);
+}
+
+void Tick::begin_sit_down(const TickInput& input) noexcept {
+  if (result_.fault.code == faults::FaultCode::kReferenceNotFinite) motion_.reset();
+  motion_.set_rate(kHeight, sit_down_.options().height_rate_m_s);
+  sit_down_.start(input.now_ns);
+  if (!faults::policy_is_sound_after(result_.fault.code)) leave_policy(input.state);
+}
+
+bool Tick::lower_reference(const TickInput& input) noexcept {
+  // Without the policy a robot at rest is lowered at once: nothing but its stiffness balances it.
+  const bool useful = !without_policy_ || motion_.reference().gain > 0.0;
+  if (!useful || !sit_down_.reference_is_due(input.now_ns)) return false;
+  result_.user = Command{};
+  result_.user[kHeight] = sit_down_.lowest_m();
+  if (drive(input.state).code == faults::FaultCode::kNone) return true;
+  if (without_policy_ || !finite(result_.reference)) return false;
+  leave_policy(input.state);  // it failed meanwhile; the reference goes on alone
+  return lower_reference(input);
+}
+
+void Tick::leave_policy(const model::RobotState& state) noexcept {
+  without_policy_ = true;
+  change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), motion_.reference().q);
+  set_limiter_gains(sit_down_.gains());
 }
 
 void Tick::set_limiter_gains(const policy::DriveGains& gains) noexcept {
@@ -299,10 +338,12 @@ void Tick::set_limiter_gains(const policy::DriveGains& gains) noexcept {
   }
 }
 
-void Tick::release(const model::RobotState& state) noexcept {
+void Tick::release(const model::RobotState& state, std::int64_t now_ns) noexcept {
   result_.hanging = result_.footing_unknown = false;
   result_.foot_load.reset();
-  release_command(state, result_.mode == Mode::kPassive ? nullptr : &brake_kd_, result_.command);
+  const bool sat = sit_down_.stage(now_ns) == SitDown::Stage::kDamped;
+  const JointVector& brake_kd = sat ? sit_down_.brake_kd() : brake_kd_;
+  release_command(state, result_.mode == Mode::kPassive ? nullptr : &brake_kd, result_.command);
 }
 
 }  // namespace pmg::control

@@ -27,6 +27,16 @@
 
 namespace pmg::control {
 
+struct TickResult;
+
+/// Spoils what a tick itself makes, in simulations and tests: the causes that no bus and no policy can have.
+class TickSpoiler {
+ public:
+  virtual ~TickSpoiler() = default;
+  virtual void spoil(Reference& reference) noexcept = 0;  ///< of this tick
+  virtual void spoil(TickResult& result) noexcept = 0;    ///< at the tick's end
+};
+
 struct TickOptions {
   double dt_s = 0.01;
   GeneratorOptions generator;
@@ -43,6 +53,7 @@ struct TickOptions {
   SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
+  TickSpoiler* spoiler = nullptr;
   int late_policy_ticks = 3;  ///< after so many ticks in a row without a result of the policy: a fault; before, its
                               ///< last target is held
 };
@@ -130,13 +141,20 @@ class Tick {
   faults::Fault ask_policy(const model::RobotState& state) noexcept;
   /// In Fault: begins, goes on with or ends the sit-down.
   void sit_down(const TickInput& input, Mode before) noexcept;
+  void begin_sit_down(const TickInput& input) noexcept;
+  /// One tick of the sit-down's first stage; false when it is over or can't go on.
+  bool lower_reference(const TickInput& input) noexcept;
+  /// From now on the reference drives alone, under robot.yaml's gains, until Stand is entered again.
+  void leave_policy(const model::RobotState& state) noexcept;
+  const policy::DriveGains& gains_in_use() const noexcept { return without_policy_ ? sit_down_.gains() : gains_; }
   faults::FaultEvidence evidence(const TickInput& input) const noexcept;
   void set_limiter_gains(const policy::DriveGains& gains) noexcept;
-  void release(const model::RobotState& state) noexcept;
+  void release(const model::RobotState& state, std::int64_t now_ns) noexcept;
 
   const io::Clock& stopwatch_;
   double dt_s_;
   int policy_may_owe_ticks_;
+  TickSpoiler* spoiler_;
   hal::GuardOptions guard_;
   policy::DriveGains gains_;
   JointVector brake_kd_;
@@ -150,8 +168,9 @@ class Tick {
   Limiter limiter_;
   faults::ActionMonitor action_monitor_;
   SitDown sit_down_;
-  bool stop_asked_ = false;  // in this tick, by anybody
-  JointVector target_;       // the policy's last good one, before ramp and limits
+  bool without_policy_ = false;  // in a sit-down whose policy isn't sound
+  bool stop_asked_ = false;      // in this tick, by anybody
+  JointVector target_;           // the policy's last good one, before ramp and limits
   int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
   TickResult result_;
 };

@@ -84,11 +84,16 @@ bool allows_sit_down(FaultCode code) noexcept {
   return false;
 }
 
+bool policy_is_sound_after(FaultCode code) noexcept {
+  return code == FaultCode::kTemperature || code == FaultCode::kOverrun || code == FaultCode::kJointTorque ||
+         code == FaultCode::kReferenceNotFinite;
+}
+
 Reaction reaction(FaultCode code) noexcept {
   static constexpr CycleRange kNever{}, kAtOnce{1, 5}, kThreeTicks{11, 15};
   const auto at_once = [](const CycleRange& damping) { return Reaction{kNever, damping}; };
   const auto after_sit_down = [](const CycleRange& found) {
-    constexpr int kSitDown = 475;  // SitDownOptions: 0.95 s
+    constexpr int kSitDown = 500;  // SitDownOptions: 1 s
     return Reaction{found, {found.least + kSitDown, found.most + kSitDown}};
   };
   switch (code) {

@@ -51,6 +51,9 @@ inline bool same_incident(const Fault& a, const Fault& b) noexcept {
 /// whose policy pulled it far away falls already.
 bool allows_sit_down(FaultCode code) noexcept;
 
+/// After this fault the policy still gets valid inputs and gives valid results in time.
+bool policy_is_sound_after(FaultCode code) noexcept;
+
 /// Bus cycles of 2 ms, from the first one that carries a cause. most -1: never.
 struct CycleRange {
   int least = -1, most = -1;

@@ -26,6 +26,9 @@ class MotionComposition {
   /// At rest in the standing posture, nothing remembered.
   void reset() noexcept;
 
+  /// Another rate limit for this channel [1/s], until reset().
+  void set_rate(Channel channel, double rate_per_s) noexcept { generator_.set_rate(channel, rate_per_s); }
+
   /// (user, dt) => (reference). PMG's generator applies the library's inverse, so u' averages to the user's command.
   /// The baselines, which don't know u', ask their clips for the user's command itself.
   const Reference& advance(const Command& user, double dt_s) noexcept;

@@ -1,8 +1,13 @@
 #include "io/lcm_link.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <random>
 #include <stdexcept>
 #include <thread>
@@ -67,8 +72,20 @@ void LcmLink::expect_to_hear_itself() {
       return;
     }
   }
+  expect_free_descriptor();
   throw std::runtime_error("LCM address \"" + url_ +
                            "\": what this host sends does not come back to it; a firewall may drop multicast");
+}
+
+void LcmLink::expect_free_descriptor() const {
+  const int probe = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int error = errno;
+  if (probe >= 0) {
+    ::close(probe);
+  } else if (error == EMFILE || error == ENFILE) {
+    throw std::runtime_error("LCM address \"" + url_ + "\": " + std::strerror(error) +
+                             ": this program may open no further file or socket; raise its limit (ulimit -n)");
+  }
 }
 
 void LcmLink::handle(const Handler& handler, Bytes bytes) noexcept {

@@ -20,11 +20,24 @@ std::uint64_t number(const std::uint8_t* from, int bytes) {
   return value;
 }
 
+/// Opens files only: a pipe would be waited for, and a device may have no end.
+std::FILE* open_file(const std::filesystem::path& path) {
+  std::error_code none;
+  const std::filesystem::file_type type = std::filesystem::status(path, none).type();
+  const auto refuse = [&](const char* what) {
+    throw std::runtime_error(path.string() + ": is " + what + "; expected a log");
+  };
+  if (type == std::filesystem::file_type::directory) refuse("a folder");
+  if (type == std::filesystem::file_type::fifo) refuse("a pipe");
+  if (type == std::filesystem::file_type::socket) refuse("a socket");
+  if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::block) refuse("a device");
+  return std::fopen(path.c_str(), "rbe");
+}
+
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& path) : file_(std::fopen(path.c_str(), "rbe"), std::fclose) {
+LogReader::LogReader(const std::filesystem::path& path) : file_(open_file(path), std::fclose) {
   if (!file_) throw std::runtime_error(path.string() + ": can't be opened: " + std::strerror(errno));
-  if (std::filesystem::is_directory(path)) throw std::runtime_error(path.string() + ": is a folder; expected a log");
 }
 
 bool LogReader::next() {

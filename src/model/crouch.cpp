@@ -13,6 +13,8 @@ constexpr double kMargin_rad = 0.0349066;  // 2 degrees
 constexpr double kMoves_rad = 1e-3;
 constexpr double kFarthest = 10.0;  // times the squat's way: beyond every limit
 constexpr int kHalvings = 50;
+/// Of half the sole: the damped robot sinks forward onto its knees and arms. Backward it would fall over its heels.
+constexpr double kAhead = 0.35;
 
 /// The robot's first moment of mass about the base [kg m], and the left foot's pose.
 struct Bodies {
@@ -34,13 +36,14 @@ void add(const RobotModel& robot, const JointVector& q, const KDL::SegmentMap::c
   }
 }
 
-/// Of the centre of mass before the sole's centre, in the foot's frame [m].
-double ahead_of_sole_m(const RobotModel& robot, const JointVector& q) {
+/// Of the centre of mass before its place over the sole, in the foot's frame [m].
+double ahead_of_place_m(const RobotModel& robot, const JointVector& q) {
   Bodies bodies;
   bodies.moment = robot.base_inertia.getMass() * robot.base_inertia.getCOG();
   add(robot, q, robot.tree.getRootSegment(), KDL::Frame::Identity(), bodies);
   const KDL::Vector com_F = bodies.foot.Inverse() * (bodies.moment / robot.total_mass_kg);
-  return com_F.x() - robot.feet[kLeft].box_center_F.x();
+  const FootModel& sole = robot.feet[kLeft];
+  return com_F.x() - (sole.box_center_F.x() + kAhead * sole.box_half_size_m.x());
 }
 
 }  // namespace
@@ -49,7 +52,12 @@ JointVector deepest_crouch(const RobotModel& robot, const JointVector& squat) {
   const JointVector stand = robot.q_stand();
   const JointVector lower = robot.q_lower().array() + kMargin_rad, upper = robot.q_upper().array() - kMargin_rad;
   const auto moves = [&](int joint) { return std::abs(squat[joint] - stand[joint]) > kMoves_rad; };
+  // What the squat does not move, and the legs don't, has a posture of its own.
+  const JointVector own = robot.q_sit_down();
   JointVector crouch = squat;
+  for (Eigen::Index joint = 0; joint < crouch.size(); ++joint) {
+    if (own[joint] != stand[joint]) crouch[joint] = own[joint];
+  }
   PerFoot<std::optional<int>> hip;
   for (const Foot foot : {kLeft, kRight}) {
     for (const int joint : robot.leg_joints[foot]) {
@@ -64,7 +72,7 @@ JointVector deepest_crouch(const RobotModel& robot, const JointVector& squat) {
       const int joint = *hip[foot];
       crouch[joint] = lower[joint] + share * (upper[joint] - lower[joint]);
     }
-    return ahead_of_sole_m(robot, crouch);
+    return ahead_of_place_m(robot, crouch);
   };
   double low = 0.0, high = 1.0;
   const bool falls = ahead_m(low) > 0.0;

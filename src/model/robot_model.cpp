@@ -76,6 +76,8 @@ Joint read_joint(files::ConfigReader reader, const std::string& name, const Urdf
   joint.velocity_limit_rad_s = source->limits->velocity;
   joint.effort_limit_Nm = source->limits->effort;
   joint.stand_rad = reader.required<double>("stand_rad", files::in_range(joint.lower_rad, joint.upper_rad));
+  joint.sit_down_rad =
+      reader.optional<double>("sit_down_rad", joint.stand_rad, files::in_range(joint.lower_rad, joint.upper_rad));
   joint.kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", files::positive());
   joint.kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", files::non_negative());
   joint.armature_kg_m2 = reader.required<double>("armature_kg_m2", files::non_negative());
@@ -191,6 +193,9 @@ std::array<Eigen::Vector3d, 4> FootModel::sole_corners_F() const {
 
 JointVector RobotModel::q_stand() const {
   return collect(joints, [](const Joint& joint) { return joint.stand_rad; });
+}
+JointVector RobotModel::q_sit_down() const {
+  return collect(joints, [](const Joint& joint) { return joint.sit_down_rad; });
 }
 JointVector RobotModel::q_lower() const {
   return collect(joints, [](const Joint& joint) { return joint.lower_rad; });

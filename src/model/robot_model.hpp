@@ -41,7 +41,8 @@ struct Joint {
   double armature_kg_m2 = 0.0;  ///< rotor inertia seen at the joint
   double damping_Nm_s_per_rad = 0.0, friction_Nm = 0.0;
   double stand_rad = 0.0;
-  bool policy = false;  ///< the policy drives it (the legs); other joints follow q_ref
+  double sit_down_rad = 0.0;  ///< in the crouch before the drives damp; the legs' is computed (model/crouch.hpp)
+  bool policy = false;        ///< the policy drives it (the legs); other joints follow q_ref
   BusAddress bus;
 };
 
@@ -80,6 +81,7 @@ struct RobotModel {
   double standing_height_m = 0.0;  ///< base_link origin above the soles in the standing posture
 
   JointVector q_stand() const;
+  JointVector q_sit_down() const;
   JointVector q_lower() const;
   JointVector q_upper() const;
 };

@@ -90,8 +90,18 @@ void ModeWish::ask_again_after_lease() {
   source_.request(robot_, requested_mode(goal_), goal_ == Goal::kReset);
 }
 
+void ModeWish::note_times() {
+  const double now_s = elapsed_s();
+  for (const Answer& answer : answers()) {
+    Times& times = times_[answer.robot];
+    if (answer.acknowledged && !times.acknowledged_s) times.acknowledged_s = now_s;
+    if (answer.progress == Progress::kReached && !times.reached_s) times.reached_s = now_s;
+  }
+}
+
 Progress ModeWish::step() {
   ask_again_after_lease();
+  note_times();
   const std::vector<Answer> all = answers();
   const auto every = [&](auto condition) { return std::ranges::all_of(all, condition); };
   const bool gathered = !robot_.empty() || source_.clock().now_ns() - begin_ns_ >= kGather_ns;
@@ -118,6 +128,10 @@ std::vector<Answer> ModeWish::answers() const {
 
 Answer ModeWish::judge(const std::string& robot) const {
   Answer answer{.robot = robot, .mode = "unknown", .text = ""};
+  if (const auto times = times_.find(robot); times != times_.end()) {
+    answer.acknowledged_after_s = times->second.acknowledged_s;
+    answer.reached_after_s = times->second.reached_s;
+  }
   const HeardRobot* heard = source_.heard(robot);
   if (heard == nullptr) {
     answer.text = fmt::format("no controller of this name answers on {}", source_.url());

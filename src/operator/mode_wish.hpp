@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,8 @@ struct Answer {
   Progress progress = Progress::kPending;
   std::string mode;  ///< the newest known mode
   std::string text;  ///< for people: why the request failed, or empty
+  /// From the first request until this operator knew it [s]; nullopt: not yet.
+  std::optional<double> acknowledged_after_s{}, reached_after_s{};
 };
 
 class ModeWish {
@@ -51,6 +55,11 @@ class ModeWish {
   std::string waits_for() const;
 
  private:
+  /// When an answer and its mode were first known [s after the first request].
+  struct Times {
+    std::optional<double> acknowledged_s, reached_s;
+  };
+  void note_times();
   Answer judge(const std::string& robot) const;
   /// Whether a refusal is final: another source drives and still sends.
   bool final(const HeardRobot& heard) const;
@@ -67,6 +76,7 @@ class ModeWish {
   std::int64_t begin_ns_, repeat_at_ns_;
   std::int64_t refused_ns_ = -1;  ///< time of the first refusal; -1: none
   bool upright_when_refused_ = false;
+  std::map<std::string, Times> times_;
 };
 
 }  // namespace pmg::ops

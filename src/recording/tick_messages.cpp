@@ -140,7 +140,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
   if (result.fault.code == faults::FaultCode::kNone) {
     message.fault.clear();
   } else {
-    message.fault = describe(result.fault, robot);
+    message.fault = (result.sitting ? "sitting down; " : "") + describe(result.fault, robot);
   }
   message.driving_source = result.driving.name.data();
   message.command_age_s = std::isfinite(result.command_age_s) ? result.command_age_s : -1.0;

@@ -67,6 +67,7 @@ void Controller::run_control(const control::CycleTiming& timing) noexcept {
   news_.put({.now_ns = record_.now_ns,
              .mode = result.mode,
              .hanging = result.hanging,
+             .sitting = result.sitting,
              .fault = result.fault,
              .driving = result.driving});
   mode_.store(result.mode, std::memory_order_release);

@@ -36,6 +36,7 @@ struct ControllerNews {
   std::int64_t now_ns = 0;
   control::Mode mode = control::Mode::kPassive;
   bool hanging = false;
+  bool sitting = false;  ///< in Fault: the robot is lowered before the drives damp
   faults::Fault fault;
   control::Source driving;
 };

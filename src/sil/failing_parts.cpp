@@ -80,6 +80,15 @@ hal::BusStatus FailingBus::exchange(const model::JointCommand& command, model::R
   return status;
 }
 
+double FailingBus::overrun_s() const noexcept {
+  const double now_s = clock_.now_s.load(std::memory_order_relaxed);
+  double longest_s = 0.0;
+  for (const Failure& failure : failures_) {
+    if (failure.kind == FailureKind::kOverrun && failure.acts(now_s)) longest_s = std::max(longest_s, failure.value);
+  }
+  return longest_s;
+}
+
 void FailingBus::idle() noexcept {
   slept_s_ += kCycle_s;
   bus_.exchange(slept_s_ > kWatchdog_s ? brake_ : held_, answer_);
@@ -89,20 +98,17 @@ void FailingBus::idle() noexcept {
 /// The command of the cycle that comes, counted from the first one that carries the failure.
 void FailingBus::watch(const model::JointCommand& command) noexcept {
   const double now_s = static_cast<double>(cycles_ + 1) * kCycle_s;
+  const std::uint64_t sits_from = clock_.sits_from_sample.load();
   for (std::size_t i = 0; i < failures_.size(); ++i) {
     const Failure& failure = failures_[i];
     FailureReaction& reaction = reactions_[i];
-    if (now_s < failure.at_s - 0.5 * kCycle_s) {
-      if (command.kp.maxCoeff() > 0.0) upright_kp_ = command.kp;
-      continue;
-    }
+    if (now_s < failure.at_s - 0.5 * kCycle_s) continue;
     const auto cycle = static_cast<std::int64_t>(std::llround((now_s - failure.at_s) / kCycle_s));
     if (reaction.cycles_to_damping >= 0) continue;
     if (braking(command)) {
       reaction.cycles_to_damping = cycle;
-    } else if (reaction.cycles_to_sit_down < 0 && upright_kp_.size() == command.kp.size() &&
-               command.kp != upright_kp_) {
-      reaction.cycles_to_sit_down = cycle;  // other gains: the robot's own
+    } else if (reaction.cycles_to_sit_down < 0 && sits_from != 0 && command.bus_sample >= sits_from) {
+      reaction.cycles_to_sit_down = cycle;
     }
   }
 }
@@ -197,6 +203,27 @@ policy::Status FailingPolicy::act(const model::RobotState& state, const Referenc
     if (failure.kind == FailureKind::kPolicyFar) q_des[failure.joint] = reference.q[failure.joint] + failure.value;
   }
   return status;
+}
+
+const Failure* FailingTick::acting(FailureKind kind) const noexcept {
+  const double now_s = clock_.now_s.load(std::memory_order_relaxed);
+  const auto found = std::ranges::find_if(failures_, [&](const Failure& f) { return f.kind == kind && f.acts(now_s); });
+  return found == failures_.end() ? nullptr : &*found;
+}
+
+void FailingTick::spoil(Reference& reference) noexcept {
+  if (acting(FailureKind::kReferenceNotFinite) != nullptr) reference.q.setConstant(kNan);
+}
+
+void FailingTick::spoil(control::TickResult& result) noexcept {
+  if (acting(FailureKind::kCommandNotFinite) != nullptr) result.command.q.setConstant(kNan);
+  if (!result.sitting) {
+    clock_.sits_from_sample.store(0);
+  } else if (clock_.sits_from_sample.load() == 0) {
+    clock_.sits_from_sample.store(result.command.bus_sample);
+  }
+  const Failure* overrun = acting(FailureKind::kOverrun);
+  if (sleeps_ && overrun != nullptr) std::this_thread::sleep_for(std::chrono::duration<double>(overrun->value));
 }
 
 }  // namespace pmg::sil

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "control/tick.hpp"
 #include "hal/hal.hpp"
 #include "policy/policy.hpp"
 #include "sil/failures.hpp"
@@ -18,6 +19,8 @@ namespace pmg::sil {
 struct FailureClock {
   std::atomic<double> now_s{0.0};      ///< time of the run, by its bus cycles
   std::atomic<bool> all_sleep{false};  ///< a stall of both threads lasts
+  /// The first bus sample whose command lowers the robot: the control thread writes it; 0 before.
+  std::atomic<std::uint64_t> sits_from_sample{0};
 };
 
 /// Passes another bus on and spoils what passes. In the bus thread; no heap after construction.
@@ -34,6 +37,7 @@ class FailingBus final : public hal::Hal {
   /// themselves.
   void idle() noexcept;
   bool bus_sleeps() const noexcept { return acts(FailureKind::kStall) || acts(FailureKind::kStallBus); }
+  double overrun_s() const noexcept;  ///< of the tick that ends now
   bool control_sleeps() const noexcept { return acts(FailureKind::kStall) || acts(FailureKind::kStallControl); }
 
   const std::vector<Failure>& failures() const noexcept { return failures_; }
@@ -60,7 +64,6 @@ class FailingBus final : public hal::Hal {
   double slept_s_ = 0.0;
   std::mt19937_64 random_{1};
   model::JointCommand held_, brake_;
-  JointVector upright_kp_;
   model::RobotState answer_;               // of the drives, before what is lost or late
   std::vector<model::RobotState> before_;  // by failure: the state in which it began
   std::vector<model::RobotState> late_;    // ring of the last second
@@ -84,6 +87,22 @@ class FailingPolicy final : public policy::Policy {
   std::unique_ptr<policy::Policy> own_;
   std::vector<Failure> failures_;
   const FailureClock& clock_;
+  const bool sleeps_;
+};
+
+/// Spoils the tick; in the control thread. sleeps: as FailingBus's.
+class FailingTick final : public control::TickSpoiler {
+ public:
+  FailingTick(std::vector<Failure> failures, FailureClock& clock, bool sleeps)
+      : failures_(std::move(failures)), clock_(clock), sleeps_(sleeps) {}
+  void spoil(Reference& reference) noexcept override;
+  void spoil(control::TickResult& result) noexcept override;
+
+ private:
+  const Failure* acting(FailureKind kind) const noexcept;
+
+  std::vector<Failure> failures_;
+  FailureClock& clock_;
   const bool sleeps_;
 };
 

@@ -22,7 +22,7 @@ struct KindRow {
   double least = 0.0, most = 0.0;  ///< of the value
 };
 
-constexpr std::array<KindRow, 19> kKinds = {{
+constexpr std::array<KindRow, 22> kKinds = {{
     {"encoder_stuck", true, false},
     {"encoder_offset", true, true, -10.0, 10.0},
     {"encoder_lost", true, false},
@@ -42,6 +42,9 @@ constexpr std::array<KindRow, 19> kKinds = {{
     {"policy_late", false, false},
     {"policy_not_finite", false, false},
     {"policy_far", true, true, -std::numbers::pi, std::numbers::pi},
+    {"overrun", false, true, 0.0, 0.1},
+    {"reference_not_finite", false, false},
+    {"command_not_finite", false, false},
 }};
 
 std::vector<std::string> kind_names() {

@@ -11,25 +11,28 @@
 namespace pmg::sil {
 
 enum class FailureKind {
-  kEncoderStuck,     ///< the joint reports the position that it had
-  kEncoderOffset,    ///< value is added to the joint's position [rad]
-  kEncoderLost,      ///< the joint reports no number
-  kSpeedReading,     ///< the joint reports the speed value [rad/s]
-  kTorqueReading,    ///< the joint reports the torque value [Nm]
-  kHot,              ///< the joint's drive reports the temperature value [degC]
-  kMotorSilent,      ///< the joint's motor gives no torque; its encoder works
-  kImuLost,          ///< the IMU reports no number
-  kImuFrozen,        ///< the IMU reports what it had
-  kImuDrift,         ///< the orientation turns about the pitch axis by value [rad/s]
-  kPacketLoss,       ///< value per cent of the cycles bring no answer of the drives
-  kDelay,            ///< the drives' answers are value [s] old
-  kBusLost,          ///< the drives don't answer at all
-  kStall,            ///< both real-time threads sleep
-  kStallBus,         ///< the bus thread sleeps
-  kStallControl,     ///< the control thread sleeps
-  kPolicyLate,       ///< the policy gives no result in time
-  kPolicyNotFinite,  ///< the policy gives no number
-  kPolicyFar,        ///< the policy pulls the joint value [rad] away from the reference
+  kEncoderStuck,        ///< the joint reports the position that it had
+  kEncoderOffset,       ///< value is added to the joint's position [rad]
+  kEncoderLost,         ///< the joint reports no number
+  kSpeedReading,        ///< the joint reports the speed value [rad/s]
+  kTorqueReading,       ///< the joint reports the torque value [Nm]
+  kHot,                 ///< the joint's drive reports the temperature value [degC]
+  kMotorSilent,         ///< the joint's motor gives no torque; its encoder works
+  kImuLost,             ///< the IMU reports no number
+  kImuFrozen,           ///< the IMU reports what it had
+  kImuDrift,            ///< the orientation turns about the pitch axis by value [rad/s]
+  kPacketLoss,          ///< value per cent of the cycles bring no answer of the drives
+  kDelay,               ///< the drives' answers are value [s] old
+  kBusLost,             ///< the drives don't answer at all
+  kStall,               ///< both real-time threads sleep
+  kStallBus,            ///< the bus thread sleeps
+  kStallControl,        ///< the control thread sleeps
+  kPolicyLate,          ///< the policy gives no result in time
+  kPolicyNotFinite,     ///< the policy gives no number
+  kPolicyFar,           ///< the policy pulls the joint value [rad] away from the reference
+  kOverrun,             ///< the control thread's ticks end value [s] later than they would
+  kReferenceNotFinite,  ///< the motion generator gives no number
+  kCommandNotFinite,    ///< the control thread's command has no number
 };
 
 const char* to_string(FailureKind kind) noexcept;

@@ -41,6 +41,8 @@ class Lockstep {
   /// In cycles in which its thread sleeps, a cycle is left out. While the bus sleeps the world goes on without it.
   std::function<bool()> bus_sleeps, control_sleeps;
   std::function<void()> while_bus_sleeps;
+  /// How much later than its deadline the tick ends [s].
+  std::function<double()> overrun_s;
   /// Asked before every tick: true ends the run and keeps what was done.
   std::function<bool()> interrupted;
 

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "io/clock.hpp"
 #include "io/private_network.hpp"
 
 namespace pmg {
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 using io::Multicast;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 struct Finished {
   int exit_code = -1;
@@ -93,12 +95,12 @@ class OperatorApps : public testing::Test {
     std::ifstream in(file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   }
-  std::unique_ptr<Background> controller(const std::string& name) {
-    auto started = std::make_unique<Background>(
-        "pmg_controller",
-        std::vector<std::string>{"--hal", "sil", "--robot", "z1", "--policy", "none", "--gantry", "--no-realtime",
-                                 "--name", name, "--log", (folder_ / ("log_" + name)).string()},
-        folder_ / (name + ".txt"));
+  std::unique_ptr<Background> controller(const std::string& name, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"--hal",    "sil",  "--robot",  "z1",
+                                          "--policy", "none", "--gantry", "--no-realtime",
+                                          "--name",   name,   "--log",    (folder_ / ("log_" + name)).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto started = std::make_unique<Background>("pmg_controller", arguments, folder_ / (name + ".txt"));
     EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0) << text(folder_ / (name + ".txt"));
     return started;
   }
@@ -223,11 +225,33 @@ TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
     const std::unique_ptr<Background> driver = walking_driver("z1");
     const Finished stop = run("pmg_send stop");
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
-    EXPECT_EQ(stop.out, "z1: damping\n");
+    EXPECT_THAT(stop.out, MatchesRegex("z1: damping; acknowledged after [0-9]+ ms, damping known after [0-9]+ ms\n"));
     EXPECT_EQ(driver->wait(), 1) << "the driver is told that somebody stopped it";
     EXPECT_EQ(mode_of("z1"), "damping");
     EXPECT_EQ(robot->end(SIGINT), 0);
   });
+}
+
+TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideThePromise) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const fs::path file = folder_ / "failures.yaml";
+    std::ofstream(file) << "failures:\n  - {kind: hot, at_s: 3.0, for_s: 100.0, joint: left_knee, value: 95.0}\n";
+    const auto robot = controller("z1", {"--inject", file.string()});
+    EXPECT_EQ(run("pmg_send damping").exit_code, 0);
+    const io::WallClock clock;
+    const std::int64_t end_ns = clock.now_ns() + 60'000'000'000;
+    while (mode_of("z1") != "fault" && clock.now_ns() < end_ns) {
+    }
+    EXPECT_EQ(mode_of("z1"), "fault");
+    EXPECT_EQ(robot->end(SIGINT), 0);
+    EXPECT_THAT(text(folder_ / "z1.txt"),
+                AllOf(HasSubstr("injected: hot at 3 s: temperature; "), HasSubstr("(promised 501 to 505)")));
+  });
+}
+
+TEST_F(OperatorApps, FailuresAreInjectedIntoSimulatedDrivesOnly) {
+  const Finished refused = run("pmg_controller --hal can --inject failures.yaml --lcm-url memq:// --no-log");
+  EXPECT_EQ(refused.exit_code, 2);
 }
 
 TEST_F(OperatorApps, AnInterruptedWalkIsBroughtToRest) {
@@ -357,7 +381,7 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
     EXPECT_EQ(stand.exit_code, 0) << stand.err;
     const Finished stop = run("pmg_send stop" + url);
     EXPECT_EQ(stop.exit_code, 0) << "a stop needs no key: " << stop.err;
-    EXPECT_EQ(stop.out, "z1: damping\n");
+    EXPECT_THAT(stop.out, MatchesRegex("z1: damping; acknowledged after [0-9]+ ms, damping known after [0-9]+ ms\n"));
 
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 0);
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 1);

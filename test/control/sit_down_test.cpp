@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "control/control_rig.hpp"
+#include "control/drive_gains.hpp"
 
 namespace pmg::control {
 namespace {
 
+using test::BreakablePolicy;
 using test::ControlRig;
 using test::kNan;
 
@@ -37,7 +40,7 @@ TEST(SitDown, EndsInTheCrouchWithinASecondAndThenDamps) {
   rig.run(1.0 + 0.02);
   rig.after_cycle = nullptr;
   EXPECT_TRUE(rig.bus.damping());
-  const SitDown expected(test::biped(), test::clips(test::biped()), {});
+  const SitDown expected(test::biped(), test::clips(test::biped()), {}, {});
   ASSERT_EQ(last.size(), expected.crouch().size());
   EXPECT_LT((last - expected.crouch()).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -126,22 +129,119 @@ TEST(SitDown, WithoutAPolicyThatNeedsTheGroundNothingSaysThatTheFeetCarry) {
   EXPECT_LE(reaction.to_damping, 5);
 }
 
-TEST(SitDown, NoTorqueJumpsWhenItBegins) {
+TEST(SitDown, NoTorqueJumpsWhenTheJointsAreLowered) {
   const ClipLibrary library = test::clips(test::biped());
   const Eigen::Index n = library.q_stand.size();
-  SitDown sit_down(test::biped(), library, {});
+  SitDown sit_down(test::biped(), library, {}, {});
   const JointVector q = library.q_stand, q_des = q + JointVector::Constant(n, 0.2), kp = JointVector::Constant(n, 80.0);
-  sit_down.start(q, q_des, kp, 0);
+  sit_down.start(0);
+  sit_down.lower_joints(q, q_des, kp, 0);
   model::JointCommand command;
-  sit_down.step(1e-6, command);
+  sit_down.step(0, command);
   const JointVector before = kp.cwiseProduct(q_des - q), after = command.kp.cwiseProduct(command.q - q);
-  EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(SitDown, RefusesTimesThatAreTooLong) {
+TEST(SitDown, TheWayOfTheJointsIsEvenAndEndsInTheCrouch) {
   const ClipLibrary library = test::clips(test::biped());
-  EXPECT_THROW(SitDown(test::biped(), library, {.duration_s = 1.0, .settle_s = 0.1}), std::invalid_argument);
-  EXPECT_THROW(SitDown(test::biped(), library, {.duration_s = -0.1}), std::invalid_argument);
+  SitDown sit_down(test::biped(), library, {.duration_s = 0.9, .settle_s = 0.1, .reference_s = 0.4}, {});
+  sit_down.start(0);
+  const std::int64_t begin_ns = 400'000'000;
+  sit_down.lower_joints(library.q_stand, library.q_stand, sit_down.gains().kp_Nm_per_rad, begin_ns);
+  const double way_rad = (sit_down.crouch() - library.q_stand).norm();
+  model::JointCommand command;
+  JointVector last = library.q_stand;
+  for (std::int64_t now_ns = begin_ns; now_ns <= 900'000'000; now_ns += 10'000'000) {
+    sit_down.step(now_ns, command);
+    // 1.25 times the mean speed of the half second, and rounding.
+    EXPECT_LE((command.q - last).norm(), 1.2501 * way_rad * 0.01 / 0.5);
+    last = command.q;
+  }
+  EXPECT_LT((last - sit_down.crouch()).norm(), 1e-9);
+  EXPECT_EQ(sit_down.stage(990'000'000), SitDown::Stage::kJoints);
+  EXPECT_EQ(sit_down.stage(1'000'000'000), SitDown::Stage::kDamped);
+}
+
+/// Ticks in which the policy was asked, of the sit-down's first 0.3 s.
+int asked_while_sitting(const std::function<void(ControlRig&)>& inject) {
+  ControlRig rig(test::biped());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.3;
+  rig.run(1.0);
+  inject(rig);
+  while (!rig.tick.result().sitting) rig.cycle();
+  const int before = rig.policy->calls;
+  rig.run(0.3);
+  EXPECT_TRUE(rig.tick.result().sitting);
+  return rig.policy->calls - before;
+}
+
+TEST(SitDown, ASoundPolicyBalancesTheRobotUntilTheReferenceHasStopped) { EXPECT_GE(asked_while_sitting(overheat), 29); }
+
+TEST(SitDown, APolicyThatFailedIsNotAskedAgain) {
+  for (const BreakablePolicy::Break how : {BreakablePolicy::Break::kNotANumber, BreakablePolicy::Break::kLate}) {
+    EXPECT_EQ(asked_while_sitting([&](ControlRig& rig) { rig.policy->how = how; }), 0);
+  }
+}
+
+TEST(SitDown, APolicyThatFailsMeanwhileLeavesTheReferenceAlone) {
+  ControlRig rig(test::biped());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.3;
+  rig.run(1.0);
+  overheat(rig);
+  rig.run(0.1);
+  rig.policy->how = BreakablePolicy::Break::kNotANumber;
+  rig.after_cycle = [&] {
+    EXPECT_TRUE(rig.bus.finite());
+    EXPECT_FALSE(rig.bus.damping());
+  };
+  rig.run(0.5);
+  EXPECT_TRUE(rig.tick.result().sitting);
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kTemperature);
+}
+
+TEST(SitDown, TheReferenceStopsAndGoesDown) {
+  ControlRig rig(test::biped());
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.3;
+  rig.run(1.0);
+  overheat(rig);
+  rig.run(0.35);
+  const Command& command = rig.tick.result().reference.command;
+  EXPECT_LT(std::abs(command[kVx]), 0.15);
+  const double lowest_m = SitDown(test::biped(), test::clips(test::biped()), {}, {}).lowest_m();
+  ASSERT_LT(lowest_m, 0.0);
+  // 0.25 s with the sit-down's rate of 0.5 m/s, or all the way; a driver's own rate is slower.
+  EXPECT_LE(command[kHeight], std::max(-0.5 * 0.25, lowest_m));
+}
+
+TEST(SitDown, AfterItTheDrivesDampMoreAndAfterAStopAsEver) {
+  const JointVector own = own_gains(test::biped()).kd_Nm_s_per_rad;
+  for (const bool stopped : {false, true}) {
+    ControlRig rig(test::biped());
+    begin_to_sit(rig);
+    if (stopped) rig.ask(Source::make("stranger", 77), Mode::kDamping, false);
+    rig.run(1.0);
+    ASSERT_TRUE(rig.bus.damping());
+    const double factor = stopped ? 1.0 : SitDownOptions{}.brake_factor;
+    EXPECT_LT((rig.bus.last_command.kd - factor * own).cwiseAbs().maxCoeff(), 1e-9);
+    rig.bus.spoil = nullptr;
+    rig.reset();
+    rig.run(0.1);
+    ASSERT_EQ(rig.mode(), Mode::kDamping);
+    EXPECT_LT((rig.bus.last_command.kd - own).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(SitDown, RefusesOptionsThatCannotBe) {
+  const ClipLibrary library = test::clips(test::biped());
+  const auto make = [&](const SitDownOptions& options) { SitDown(test::biped(), library, options, {}); };
+  EXPECT_THROW(make({.duration_s = 1.0, .settle_s = 0.1}), std::invalid_argument);
+  EXPECT_THROW(make({.duration_s = -0.1}), std::invalid_argument);
+  EXPECT_THROW(make({.duration_s = 0.3, .reference_s = 0.3}), std::invalid_argument);
+  EXPECT_THROW(make({.height_rate_m_s = 0.0}), std::invalid_argument);
+  EXPECT_THROW(make({.brake_factor = 0.9}), std::invalid_argument);
 }
 
 }  // namespace

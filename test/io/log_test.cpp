@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -35,6 +36,22 @@ pmg_msgs::motor_command_t motor_command(int joints) {
     for (int i = 0; i < joints; ++i) values->push_back(0.1 * i + 1.0 / 3.0);
   }
   return message;
+}
+
+TEST_F(Log, APipeOrADeviceIsRefusedAtOnce) {
+  const auto refusal = [](const std::filesystem::path& path) -> std::string {
+    try {
+      io::LogReader reader(path);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::filesystem::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(refusal(pipe), pipe.string() + ": is a pipe; expected a log");
+  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device; expected a log");
+  EXPECT_EQ(refusal(folder_), folder_.string() + ": is a folder; expected a log");
 }
 
 TEST_F(Log, ReaderGivesBackWhatWasWritten) {

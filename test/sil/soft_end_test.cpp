@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ostream>
 #include <random>
 #include <vector>
 
+#include "sil/failing_parts.hpp"
 #include "sil/varied_robot.hpp"
 
 namespace pmg::sil {
@@ -19,54 +19,28 @@ namespace {
 using faults::FaultCode;
 using test::kTick_s;
 
-/// Spoils what a fault needs, from a time on: the drives' report or the policy's result.
-struct Cause {
-  double from_s = 0.0, now_s = 0.0;
-  FaultCode code = FaultCode::kNone;
-  bool acts(FaultCode wanted) const { return code == wanted && now_s >= from_s; }
-};
-
-class SpoiltPolicy final : public policy::Policy {
- public:
-  SpoiltPolicy(std::unique_ptr<policy::Policy> own, const Cause& cause) : own_(std::move(own)), cause_(cause) {}
-  Variant variant() const override { return own_->variant(); }
-  std::optional<policy::DriveGains> gains() const override { return own_->gains(); }
-  std::optional<double> action_bound_rad() const override { return own_->action_bound_rad(); }
-  bool needs_ground() const override { return own_->needs_ground(); }
-  void reset() noexcept override { own_->reset(); }
-  policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
-                     JointVector& q_des) noexcept override {
-    const policy::Status status = own_->act(state, reference, observed, q_des);
-    if (cause_.acts(FaultCode::kPolicyNotFinite)) q_des[3] = std::numeric_limits<double>::quiet_NaN();
-    return cause_.acts(FaultCode::kStalePolicy) ? policy::Status::kLate : status;
+/// A failure that leads to this fault, for the rest of the run.
+Failure failure_for(FaultCode code, double at_s) {
+  constexpr int kKnee = 3;
+  constexpr double kAlways_s = 1e3;
+  switch (code) {
+    case FaultCode::kTemperature:
+      return {FailureKind::kHot, at_s, kAlways_s, kKnee, 95.0};
+    case FaultCode::kStalePolicy:
+      return {FailureKind::kPolicyLate, at_s, kAlways_s};
+    case FaultCode::kOverrun:
+      return {FailureKind::kOverrun, at_s, kAlways_s, -1, 0.012};
+    case FaultCode::kJointTorque:
+      return {FailureKind::kTorqueReading, at_s, kAlways_s, kKnee, 156.0};
+    case FaultCode::kReferenceNotFinite:
+      return {FailureKind::kReferenceNotFinite, at_s, 0.05};
+    default:
+      return {FailureKind::kPolicyNotFinite, at_s, kAlways_s};
   }
-
- private:
-  std::unique_ptr<policy::Policy> own_;
-  const Cause& cause_;
-};
-
-class SpoiltDrives final : public hal::Hal {
- public:
-  SpoiltDrives(hal::Hal& drives, const model::RobotModel& robot, const Cause& cause)
-      : drives_(drives), robot_(robot), cause_(cause) {}
-  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
-    const hal::BusStatus status = drives_.exchange(command, state);
-    constexpr int kKnee = 3;
-    const model::Joint& knee = robot_.joints[kKnee];
-    if (cause_.acts(FaultCode::kTemperature)) state.temperature_degC[kKnee] = 95.0;
-    if (cause_.acts(FaultCode::kJointTorque)) state.tau[kKnee] = 1.3 * knee.effort_limit_Nm;
-    return status;
-  }
-
- private:
-  hal::Hal& drives_;
-  const model::RobotModel& robot_;
-  const Cause& cause_;
-};
+}
 
 struct End {
-  double peak_m_s = 0.0;   ///< of the torso's speed in the 3 s after the fault
+  double peak_m_s = 0.0;   ///< of the torso's speed in the 6 s after the fault
   double fault_s = -1.0;   ///< after its cause
   double damped_s = -1.0;  ///< after the fault
   FaultCode code = FaultCode::kNone;
@@ -78,36 +52,39 @@ End end_of(std::uint64_t seed, FaultCode code, bool walks, bool sits) {
   const auto draw = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  Cause cause;
-  cause.code = code;
-  cause.from_s = draw(4.0, 5.2);  // at any phase of the gait
+  const double at_s = std::round(draw(4.0, 5.2) / kTick_s) * kTick_s;  // at any phase of the gait
   const Command command{{draw(-0.3, 0.6), draw(-0.2, 0.2), draw(-0.4, 0.4), 0.0, 0.0, 0.0}};
+  const std::vector<Failure> failures = {failure_for(code, at_s)};
+  FailureClock clock;
+  FailingTick failing_tick(failures, clock, false);
   test::VariedRobot it(
-      seed, "pmg", [&](auto own) { return std::make_unique<SpoiltPolicy>(std::move(own), cause); },
+      seed, "pmg", [&](auto own) { return std::make_unique<FailingPolicy>(std::move(own), failures, clock, false); },
       [&](control::TickOptions& options) {
+        options.spoiler = &failing_tick;
         if (!sits) options.sit_down.duration_s = 0.0;
       });
-  SpoiltDrives drives(it.drives, it.robot, cause);
+  FailingBus drives(it.drives, failures, it.robot, clock, false);
   test::ScriptedOperator driver;
-  driver.then(1.5, control::Mode::kStand).then(7.0, walks ? control::Mode::kWalk : control::Mode::kStand, command);
+  driver.then(1.5, control::Mode::kStand).then(10.0, walks ? control::Mode::kWalk : control::Mode::kStand, command);
   Lockstep lockstep(it.robot, drives, it.plant, *it.tick, driver.scenario, nullptr, {.balanced_by_policy = true});
+  lockstep.overrun_s = [&] { return drives.overrun_s(); };
   const int torso = mj_name2id(it.world.mj_model(), mjOBJ_BODY, it.robot.torso_link.c_str());
   End end;
   Eigen::Vector3d last_m = Eigen::Vector3d::Zero();
   double fault_at_s = -1.0;
   lockstep.after_record = [&](const control::TickRecord& record) {
-    cause.now_s = static_cast<double>(record.tick) * kTick_s;
+    const double now_s = static_cast<double>(record.tick) * kTick_s;
     const Eigen::Vector3d torso_m = Eigen::Map<const Eigen::Vector3d>(it.world.mj_data()->xipos + 3 * torso);
     const double speed_m_s = (torso_m - last_m).norm() / kTick_s;
     last_m = torso_m;
     if (record.result.mode != control::Mode::kFault) return;
     if (fault_at_s < 0.0) {
-      fault_at_s = cause.now_s;
+      fault_at_s = now_s;
       end.code = record.result.fault.code;
-      end.fault_s = cause.now_s - cause.from_s;
+      end.fault_s = now_s - at_s;
     }
-    if (!record.result.sitting && end.damped_s < 0.0) end.damped_s = cause.now_s - fault_at_s;
-    if (cause.now_s > fault_at_s) end.peak_m_s = std::max(end.peak_m_s, speed_m_s);
+    if (!record.result.sitting && end.damped_s < 0.0) end.damped_s = now_s - fault_at_s;
+    if (now_s > fault_at_s) end.peak_m_s = std::max(end.peak_m_s, speed_m_s);
   };
   lockstep.run();
   return end;
@@ -126,6 +103,7 @@ class SoftEnd : public testing::TestWithParam<FaultCode> {
     const std::uint64_t robots = test::campaign_robots(3);
     for (std::uint64_t seed = 1; seed <= robots; ++seed) {
       const End hard = end_of(seed, GetParam(), walks, false), soft = end_of(seed, GetParam(), walks, true);
+      EXPECT_EQ(soft.code, GetParam());
       damped.push_back(hard.peak_m_s);
       seated.push_back(soft.peak_m_s);
       until.push_back(soft.damped_s);
@@ -137,8 +115,8 @@ class SoftEnd : public testing::TestWithParam<FaultCode> {
         "{:.2f}; damped after {:.2f} s\n",
         to_string(GetParam()), walks ? "walking" : "standing", robots, hard_m_s, soft_m_s,
         *std::ranges::max_element(damped), *std::ranges::max_element(seated), median(until));
-    // Measured over 20 robots: 0.62 to 0.64 standing, 0.69 to 0.73 walking. docs/reference/safety.md has the table.
-    EXPECT_LE(soft_m_s, (walks ? 0.85 : 0.75) * hard_m_s);
+    // The page's promise; docs/reference/safety.md has the table.
+    EXPECT_LE(soft_m_s, 0.5 * hard_m_s);
   }
 };
 
@@ -146,7 +124,8 @@ TEST_P(SoftEnd, SlowsTheFallOfARobotThatStands) { compare(false); }
 TEST_P(SoftEnd, SlowsTheFallOfARobotThatWalks) { compare(true); }
 
 INSTANTIATE_TEST_SUITE_P(Faults, SoftEnd,
-                         testing::Values(FaultCode::kTemperature, FaultCode::kStalePolicy, FaultCode::kJointTorque,
+                         testing::Values(FaultCode::kTemperature, FaultCode::kStalePolicy, FaultCode::kOverrun,
+                                         FaultCode::kJointTorque, FaultCode::kReferenceNotFinite,
                                          FaultCode::kPolicyNotFinite),
                          [](const auto& row) { return std::string(to_string(row.param)); });
 
