@@ -274,7 +274,7 @@ class Session {
       if (answer.robot.empty()) {
         out << "pmg_send: " << io::plain_text(answer.text) << '\n';
       } else {
-          out << io::plain_text(fmt::format("{}: {}{}{}", answer.robot, answer.mode, text, times_text(answer))) << '\n';
+        out << io::plain_text(fmt::format("{}: {}{}{}", answer.robot, answer.mode, text, times_text(answer))) << '\n';
       }
     }
   }
