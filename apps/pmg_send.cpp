@@ -16,8 +16,8 @@
 #include "operator/robot_board.hpp"
 #include "operator/taken_command.hpp"
 #include "operator/words.hpp"
-#include "option_checks.hpp"
 #include "program.hpp"
+#include "send_arguments.hpp"
 
 namespace {
 
@@ -25,76 +25,7 @@ using namespace pmg;
 
 enum ExitCode { kOk = 0, kNotReached = 1, kBadInput = 2, kInterrupted = 130 };
 
-constexpr const char* kFooter = R"(
-Examples:
-  pmg_send stop                              brake every robot, whoever drives it
-  pmg_send stand                             the one robot that is heard
-  pmg_send walk --vx 0.3 --for 5 --robot z1  climb to walk, drive 5 s, come to rest, stand
-  pmg_send command --omega 0.4 --for 2       drive a robot that is in walk already
-  pmg_send lift                              a simulated robot that fell: up on its hoist; then reset, stand
-
-A command that the robot can't follow as it was asked is told, with what the controller made of it and why. After another
-source's crash the end of its lease is waited for. A stop is asked for every 50 ms until it is acknowledged. Software stops are not safety-rated.
-
-Exit codes: 0 acknowledged and the mode reached, 1 refused, or not acknowledged or not reached in time, 2 bad input or no
-network, 130 interrupted (a robot that was driven is brought to rest first).)";
-
-struct Arguments {
-  std::string request;
-  std::string robot, lcm_url, keys;
-  double timeout_s = 0.0;  // 0: the default of each request
-  double duration_s = 0.0;
-  Command command;
-  bool json = false;
-};
-
-struct Request {
-  const char* name;
-  ops::Goal goal;
-  double timeout_s;  ///< entering Stand takes 5 s at the longest
-  const char* help;
-};
-
-constexpr Request kRequests[] = {
-    {"stop", ops::Goal::kStop, 2.0, "brake (damping) every robot on the address, or the one of --robot"},
-    {"damping", ops::Goal::kDamping, 2.0, "drives brake, no position"},
-    {"passive", ops::Goal::kPassive, 2.0, "drives limp; a robot that stands only brakes when told once"},
-    {"stand", ops::Goal::kStand, 10.0, "stand, from the posture that is measured"},
-    {"reset", ops::Goal::kReset, 2.0, "leave a latched fault for damping, if its cause is gone"},
-};
-constexpr double kDriveTimeout_s = 10.0;
-constexpr double kHoistTimeout_s = 15.0;  // time to catch and lift a robot that lies on the ground
-constexpr const char *kLift = "lift", *kLower = "lower";
-
-void declare_drive(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
-  CLI::App* drive = app.add_subcommand(name, help);
-  drive->fallthrough();
-  drive->add_option("--for", arguments.duration_s, "how long [s]")->required()->check(apps::positive());
-  constexpr const char* kOptions[] = {"--vx", "--vy", "--omega", "--pitch", "--roll", "--height"};
-  constexpr const char* kHelp[] = {"forward [m/s]",       "to the left [m/s]",        "turning left [rad/s]",
-                                   "torso forward [rad]", "torso to the right [rad]", "above standing [m]"};
-  for (std::size_t i = 0; i < kChannels; ++i) {
-    drive->add_option(kOptions[i], arguments.command.u[i], kHelp[i])->check(apps::finite());
-  }
-}
-
-void declare(CLI::App& app, Arguments& arguments) {
-  app.footer(kFooter);
-  app.require_subcommand(1);
-  app.add_option("--robot", arguments.robot, "controller's name; may be left out when one is heard, and for stop");
-  app.add_option("--lcm-url", arguments.lcm_url,
-                 fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
-  app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");
-  app.add_option("--timeout", arguments.timeout_s,
-                 "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 15, others 10")
-      ->check(apps::positive());
-  app.add_flag("--json", arguments.json, "print the outcome as JSON");
-  for (const Request& request : kRequests) app.add_subcommand(request.name, request.help)->fallthrough();
-  app.add_subcommand(kLift, "simulation: catch the robot with its hoist, lift it, keep it up")->fallthrough();
-  app.add_subcommand(kLower, "simulation: set it down and let go, if it stands")->fallthrough();
-  declare_drive(app, arguments, "walk", "climb to walk, drive for a while, come to rest and stand");
-  declare_drive(app, arguments, "command", "drive a robot that is in walk for a while, and come to rest");
-}
+using Arguments = apps::SendArguments;
 
 /// A stop goes out whatever the keys are: nobody needs one to stop a robot.
 seal::OperatorSeal load_seal(const Arguments& arguments, const std::string& lcm_url) {
@@ -119,10 +50,10 @@ class Session {
         taken_(arguments.command) {}
 
   int run() {
-    for (const Request& request : kRequests) {
+    for (const apps::SendRequest& request : apps::kSendRequests) {
       if (arguments_.request == request.name) return ask(request);
     }
-    return arguments_.request == kLift || arguments_.request == kLower ? hoist() : drive();
+    return arguments_.request == apps::kLift || arguments_.request == apps::kLower ? hoist() : drive();
   }
 
  private:
@@ -148,7 +79,7 @@ class Session {
     throw std::invalid_argument(fmt::format("several robots are heard ({}): say which one with --robot", names));
   }
 
-  int ask(const Request& request) {
+  int ask(const apps::SendRequest& request) {
     const bool every_robot = request.goal == ops::Goal::kStop;
     const std::string robot = every_robot ? arguments_.robot : find_robot(timeout_s(request.timeout_s));
     if (robot.empty() && !every_robot) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
@@ -170,9 +101,9 @@ class Session {
   }
 
   int hoist() {
-    const std::string robot = find_robot(timeout_s(kHoistTimeout_s));
+    const std::string robot = find_robot(timeout_s(apps::kHoistTimeout_s));
     if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
-    ops::HoistWish wish(source_, robot, arguments_.request == kLift, timeout_s(kHoistTimeout_s));
+    ops::HoistWish wish(source_, robot, arguments_.request == apps::kLift, timeout_s(apps::kHoistTimeout_s));
     ops::Progress progress = ops::Progress::kPending;
     while (progress == ops::Progress::kPending && apps::interrupt_requested == 0) {
       link_.receive(10);
@@ -182,12 +113,12 @@ class Session {
   }
 
   int drive() {
-    const std::string robot = find_robot(timeout_s(kDriveTimeout_s));
+    const std::string robot = find_robot(timeout_s(apps::kDriveTimeout_s));
     if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
     ops::Drive drive(source_, robot, arguments_.command,
                      {.duration_s = arguments_.duration_s,
                       .climb = arguments_.request == "walk",
-                      .timeout_s = timeout_s(kDriveTimeout_s)});
+                      .timeout_s = timeout_s(apps::kDriveTimeout_s)});
     ops::Progress progress = ops::Progress::kPending;
     while (progress == ops::Progress::kPending) {
       link_.receive(5);
@@ -303,7 +234,7 @@ class Session {
 int main(int argc, char** argv) {
   CLI::App app("Asks a running controller for a mode, drives it for a while, or stops it.", "pmg_send");
   Arguments arguments;
-  declare(app, arguments);
+  apps::declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
     arguments.request = app.get_subcommands().front()->get_name();
     apps::notice({SIGINT, SIGTERM}, "bringing the robot to rest");

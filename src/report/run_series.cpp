@@ -1,3 +1,4 @@
+// Longer than 300 lines: one gatherer, a member function for each channel of a log.
 #include "report/run_series.hpp"
 
 #include <fmt/format.h>
