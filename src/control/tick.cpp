@@ -308,7 +308,10 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
 }
 
 void Tick::begin_sit_down(const TickInput& input) noexcept {
-  if (result_.fault.code == faults::FaultCode::kReferenceNotFinite) motion_.reset();
+  if (result_.fault.code == faults::FaultCode::kReferenceNotFinite) {
+    motion_.reset();
+    change_over_.start(limiter_.last(), motion_.reference().q);
+  }
   motion_.set_rate(kHeight, sit_down_.options().height_rate_m_s);
   sit_down_.start(input.now_ns);
   if (!faults::policy_is_sound_after(result_.fault.code)) leave_policy(input.state);
