@@ -308,7 +308,6 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
 }
 
 void Tick::begin_sit_down(const TickInput& input) noexcept {
-  if (result_.fault.code == faults::FaultCode::kReferenceNotFinite) motion_.reset();
   motion_.set_rate(kHeight, sit_down_.options().height_rate_m_s);
   sit_down_.start(input.now_ns);
   if (!faults::policy_is_sound_after(result_.fault.code)) leave_policy(input.state);
@@ -318,6 +317,12 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
   // Without the policy a robot at rest is lowered at once: nothing but its stiffness balances it.
   const bool useful = !without_policy_ || motion_.reference().gain > 0.0;
   if (!useful || !sit_down_.reference_is_due(input.now_ns)) return false;
+  // A reference that failed is asked again in the next tick: a stop in mid-stride would fell the robot.
+  const bool failed_now = input.now_ns == result_.fault.stamp_ns;
+  if (failed_now && result_.fault.code == faults::FaultCode::kReferenceNotFinite) {
+    result_.command.q = limiter_.last();
+    return true;
+  }
   result_.user = Command{};
   result_.user[kHeight] = sit_down_.lowest_m();
   if (drive(input.state).code == faults::FaultCode::kNone) return true;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace pmg::io {
 
@@ -23,9 +24,30 @@ constexpr int kQueueCapacity = 200;
 constexpr const char* kSelfTest = "LCM_SELF_TEST";  // liblcm's own channel for the same purpose
 constexpr int kSelfTestTries = 20, kSelfTestWait_ms = 50;
 
+constexpr std::size_t kDescriptors = 6;  // of liblcm's and our sockets, pipes included
+
+/// Throws and names the limit, whose effects otherwise look like a defect of the address or a firewall.
+void expect_free_descriptors(const std::string& url, std::size_t count) {
+  std::vector<int> probes;
+  int error = 0;
+  while (probes.size() < count && error == 0) {
+    const int probe = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (probe < 0) {
+      error = errno;
+    } else {
+      probes.push_back(probe);
+    }
+  }
+  for (const int probe : probes) ::close(probe);
+  if (error != EMFILE && error != ENFILE) return;
+  throw std::runtime_error("LCM address \"" + url + "\": " + std::strerror(error) +
+                           "; expected room for more files and sockets (ulimit -n)");
+}
+
 }  // namespace
 
 LcmLink::LcmLink(const std::string& url) : url_(url), lcm_(nullptr, &lcm_destroy) {
+  expect_free_descriptors(url, kDescriptors);
   const std::string checked = checked_lcm_url(url);
   udpm_ = udpm_address(checked);
   lcm_.reset(lcm_create(checked.c_str()));
@@ -72,20 +94,9 @@ void LcmLink::expect_to_hear_itself() {
       return;
     }
   }
-  expect_free_descriptor();
+  expect_free_descriptors(url_, 1);
   throw std::runtime_error("LCM address \"" + url_ +
                            "\": what this host sends does not come back to it; a firewall may drop multicast");
-}
-
-void LcmLink::expect_free_descriptor() const {
-  const int probe = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  const int error = errno;
-  if (probe >= 0) {
-    ::close(probe);
-  } else if (error == EMFILE || error == ENFILE) {
-    throw std::runtime_error("LCM address \"" + url_ + "\": " + std::strerror(error) +
-                             ": this program may open no further file or socket; raise its limit (ulimit -n)");
-  }
 }
 
 void LcmLink::handle(const Handler& handler, Bytes bytes) noexcept {

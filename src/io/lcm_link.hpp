@@ -79,7 +79,6 @@ class LcmLink {
   static void dispatch(const lcm_recv_buf_t* message, const char* channel, void* subscription);
   void handle(const Handler& handler, Bytes bytes) noexcept;
   void expect_to_hear_itself();
-  void expect_free_descriptor() const;  // throws and names the limit, which otherwise looks like a firewall
   int receive_multicast(int timeout_ms, int max_messages);
   int receive_by_liblcm(int timeout_ms, int max_messages);
 

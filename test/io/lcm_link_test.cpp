@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -75,6 +76,22 @@ TEST(LcmUrl, WhatIsWrongIsSaidInOneLine) {
        }) {
     EXPECT_THROW(checked_lcm_url(url), std::invalid_argument) << url;
     EXPECT_THAT(error_of(url), AllOf(HasSubstr(complaint), HasSubstr(url), Not(HasSubstr("\n"))));
+  }
+}
+
+TEST(LcmLink, AFullTableOfFilesIsNamedAndNoFirewall) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int next = ::dup(STDIN_FILENO);
+  ASSERT_GE(next, 0);
+  ::close(next);
+  for (const unsigned left : {0u, 3u}) {
+    rlimit few = before;
+    few.rlim_cur = static_cast<rlim_t>(next) + left;
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    const std::string error = error_of("udpm://239.255.76.67:7667?ttl=0");
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    EXPECT_THAT(error, AllOf(HasSubstr("Too many open files"), HasSubstr("ulimit -n"), Not(HasSubstr("firewall"))));
   }
 }
 

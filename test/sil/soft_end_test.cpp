@@ -33,7 +33,7 @@ Failure failure_for(FaultCode code, double at_s) {
     case FaultCode::kJointTorque:
       return {FailureKind::kTorqueReading, at_s, kAlways_s, kKnee, 156.0};
     case FaultCode::kReferenceNotFinite:
-      return {FailureKind::kReferenceNotFinite, at_s, 0.05};
+      return {FailureKind::kReferenceNotFinite, at_s, kTick_s};
     default:
       return {FailureKind::kPolicyNotFinite, at_s, kAlways_s};
   }
