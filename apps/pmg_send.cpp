@@ -33,8 +33,7 @@ seal::OperatorSeal load_seal(const Arguments& arguments, const std::string& lcm_
     return seal::load_operator_seal(arguments.keys, lcm_url);
   } catch (const std::exception& error) {
     if (arguments.request != "stop") throw;
-    std::cerr << "pmg_send: " << io::plain_text(error.what())
-              << "; the stop goes out without a key, and anybody's answer is believed\n";
+    std::cerr << "pmg_send: " << io::plain_text(error.what()) << "; the stop goes out without a key\n";
     return {};
   }
 }
@@ -150,9 +149,8 @@ class Session {
   void say_whose_lease(const std::string& robot, const std::string& source) {
     if (source.empty() || waiting_said_) return;
     waiting_said_ = true;
-    std::cerr << io::plain_text(fmt::format(
-                     "{}: {} drove and fell silent without letting go; waiting until its lease is over", robot, source))
-              << '\n';
+    std::cerr << io::plain_text(robot + ": " + source)
+              << " drove and fell silent without letting go; waiting until its lease is over\n";
   }
 
   /// Prints once that the controller cannot follow the command as asked.

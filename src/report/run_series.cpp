@@ -19,7 +19,6 @@
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
-#include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "report/measured_command.hpp"
 #include "report/run_judgement.hpp"
@@ -36,18 +35,6 @@ namespace {
 std::string short_name(const fs::path& log) {
   const fs::path path = fs::weakly_canonical(log);
   return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
-}
-
-/// The texts that a page shows. A log's names were chosen by other programs.
-pmg_msgs::robot_info_t plain(pmg_msgs::robot_info_t info) {
-  for (std::string* text :
-       {&info.robot, &info.model, &info.software, &info.policy, &info.backend, &info.bundle, &info.options}) {
-    *text = io::plain_text(*text);
-  }
-  for (auto* texts : {&info.refused, &info.joint_names, &info.bundle_file}) {
-    for (std::string& text : *texts) text = io::plain_text(text);
-  }
-  return info;
 }
 
 /// Gathers the events of one run. If the log holds several runs, the last one remains.
@@ -182,12 +169,9 @@ class Gathering {
   bool step(const pmg_msgs::scenario_step_t& message) {
     end_step();
     run_.scenario = io::plain_text(message.scenario);
-    RunSeries::Step step{.from_s = t_s_,
-                         .to_s = t_s_,
-                         .number = message.number,
-                         .text = io::plain_text(message.text),
-                         .asked = {},
-                         .tracking = {}};
+    const std::string text = io::plain_text(message.text);
+    RunSeries::Step step{
+        .from_s = t_s_, .to_s = t_s_, .number = message.number, .text = text, .asked = {}, .tracking = {}};
     std::ranges::copy(message.command, step.asked.begin());
     run_.steps.push_back(std::move(step));
     if (judgement_) before_step_ = judgement_->outcome().tracking;
@@ -245,11 +229,7 @@ class Gathering {
   bool tick(const pmg_msgs::tick_input_t& message) {
     if (last_tick_ && message.tick > *last_tick_ + 1) run_.lost_ticks += message.tick - *last_tick_ - 1;
     last_tick_ = message.tick;
-    if (message.guard_trip == pmg_msgs::tick_input_t::CONTROL_FROZEN)
-      run_.guard_trips.push_back({t_s_, "the bus guard damped: no fresh command from the control thread"});
-    if (message.guard_trip == pmg_msgs::tick_input_t::COMMAND_NOT_FINITE)
-      run_.guard_trips.push_back({t_s_, "the bus guard damped: a command that was no number"});
-    if (message.stop) run_.stops.push_back({t_s_, "stop"});
+    append(message, t_s_, run_);
     return true;
   }
 

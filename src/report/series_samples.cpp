@@ -92,4 +92,23 @@ void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kC
   extend(run.hoisted, t_s, message.hoisted != 0 ? "on the gantry" : "");
 }
 
+void append(const pmg_msgs::tick_input_t& message, double t_s, RunSeries& run) {
+  if (message.guard_trip == pmg_msgs::tick_input_t::CONTROL_FROZEN)
+    run.guard_trips.push_back({t_s, "the bus guard damped: no fresh command from the control thread"});
+  if (message.guard_trip == pmg_msgs::tick_input_t::COMMAND_NOT_FINITE)
+    run.guard_trips.push_back({t_s, "the bus guard damped: a command that was no number"});
+  if (message.stop) run.stops.push_back({t_s, "stop"});
+}
+
+pmg_msgs::robot_info_t plain(pmg_msgs::robot_info_t info) {
+  for (std::string* text :
+       {&info.robot, &info.model, &info.software, &info.policy, &info.backend, &info.bundle, &info.options}) {
+    *text = io::plain_text(*text);
+  }
+  for (auto* texts : {&info.refused, &info.joint_names, &info.bundle_file}) {
+    for (std::string& text : *texts) text = io::plain_text(text);
+  }
+  return info;
+}
+
 }  // namespace pmg::report

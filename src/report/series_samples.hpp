@@ -5,8 +5,10 @@
 
 #include "pmg_msgs/ground_truth_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
+#include "pmg_msgs/robot_info_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
 #include "pmg_msgs/status_t.hpp"
+#include "pmg_msgs/tick_input_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "report/run_series.hpp"
 
@@ -17,9 +19,13 @@ void append(const pmg_msgs::robot_state_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run);
+void append(const pmg_msgs::tick_input_t& message, double t_s, RunSeries& run);
 
 /// measured: the robot's motion by command channel. While the gantry carries the robot, the series gets NaN.
 void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kChannels>& measured, double t_s,
             RunSeries& run);
+
+/// The texts that a page shows, harmless: a log's names were chosen by other programs.
+pmg_msgs::robot_info_t plain(pmg_msgs::robot_info_t info);
 
 }  // namespace pmg::report
