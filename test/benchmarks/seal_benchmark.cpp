@@ -22,7 +22,7 @@ struct Bench {
 
   Bench() {
     status.robot = command.robot = "z1";
-    command.source = "pmg_send.12345";
+    command.source = "anna.12345";
     const auto proven = decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(controller.prove("STATUS", status));
     peer = anna.believe("STATUS", proven->message_bytes, proven->seal).value();
     const io::Bytes bytes = anna.seal("COMMAND", command, &peer);
@@ -34,7 +34,7 @@ void BM_judge_command(benchmark::State& state) {
   const Bench bench;
   for (auto _ : state) {
     const auto message = decode_sealed<pmg_msgs::command_t, pmg_msgs::seal_t>(bench.sealed);
-    auto judgement = bench.controller.judge("COMMAND", message->message_bytes, message->seal, 0);
+    auto judgement = bench.controller.judge("COMMAND", "anna.12345", message->message_bytes, message->seal, 0);
     benchmark::DoNotOptimize(judgement);
   }
 }
