@@ -6,6 +6,7 @@
 
 #include "bench/csv_table.hpp"
 #include "generator/published_gait.hpp"
+#include "pmg/types.hpp"
 
 namespace pmg::evaluation {
 

@@ -55,34 +55,6 @@ bench::Recording excitation(int number) {
   return recording;
 }
 
-std::vector<calib::SingleJoint> record(const bench::Bench& bench, const model::ActuatorParameters& truth,
-                                       const model::HangingLoad& load, double kp, double kd, std::uint64_t seed) {
-  sim::NormalSource noise(seed);
-  calib::JointModel plant;
-  plant.actuator = truth;
-  // A position drive's zero does not show on its own encoder. The hanging limb would show it, but the paper fits only
-  // the response.
-  plant.actuator.sensor.zero_offset_rad = 0.0;
-  std::vector<calib::SingleJoint> runs;
-  for (int number = 0; number < kBenchRuns; ++number) {
-    bench::BenchRun run;
-    run.file = fmt::format("run{}.csv", number);
-    run.kp = kp * (number % 2 == 0 ? 1.0 : 0.5);
-    run.kd = kd * (number < 2 ? 1.0 : 0.5);  // with a single kd it can't be told from viscous friction
-    // A known weight in two of the runs. If a limb is lighter than its rotor, gain, rotor and friction could otherwise
-    // all be larger by one factor.
-    const bool weighted = number == 1 || number == 2;
-    run.load.inertia_kg_m2 = load.inertia_kg_m2 + (weighted ? kWeight_kg * kArm_m * kArm_m : 0.0);
-    run.load.gravity_Nm = load.gravity_Nm + (weighted ? kGravity_m_s2 * kWeight_kg * kArm_m : 0.0);
-    run.recording = excitation(number);
-    const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
-    run.recording.q_rad = joint.rollout(plant);
-    for (double& q_rad : run.recording.q_rad) q_rad += sil::kEncoderNoise_rad * noise.next();
-    runs.emplace_back(bench, run, calib::simulation_step_s(bench));
-  }
-  return runs;
-}
-
 /// Plays the stances; false if interrupted.
 bool take_stances(const sim::ActuatorsByJoint& plant, const std::filesystem::path& folder, std::uint64_t seed,
                   const work::Progress& progress) {
@@ -151,6 +123,37 @@ sim::ActuatorsByJoint draw_plant(const PlantRanges& ranges, const model::RobotMo
   return plant;
 }
 
+std::vector<calib::SingleJoint> record_joint(const bench::Bench& bench, const model::RobotModel& robot,
+                                             const std::string& joint, const model::ActuatorParameters& truth,
+                                             const Gains& gains, unsigned seed) {
+  const int index = robot.joint_index.at(joint);
+  const double kp = gains.kp_Nm_per_rad[index], kd = gains.kd_Nm_s_per_rad[index];
+  const model::HangingLoad load = model::hanging_load(robot, joint);
+  sim::NormalSource noise(seed + 17U * static_cast<unsigned>(index));
+  calib::JointModel plant;
+  plant.actuator = truth;
+  // A position drive's zero does not show on its own encoder. The hanging limb would show it, but the paper fits only
+  // the response.
+  plant.actuator.sensor.zero_offset_rad = 0.0;
+  std::vector<calib::SingleJoint> runs;
+  for (int number = 0; number < kBenchRuns; ++number) {
+    bench::BenchRun run;
+    run.file = fmt::format("run{}.csv", number);
+    run.kp = kp * (number % 2 == 0 ? 1.0 : 0.5);
+    run.kd = kd * (number < 2 ? 1.0 : 0.5);  // with a single kd it can't be told from viscous friction
+    // A known weight in two of the runs. If a limb is lighter than its rotor, gain, rotor and friction could otherwise
+    // all be larger by one factor.
+    const bool weighted = number == 1 || number == 2;
+    run.load.inertia_kg_m2 = load.inertia_kg_m2 + (weighted ? kWeight_kg * kArm_m * kArm_m : 0.0);
+    run.load.gravity_Nm = load.gravity_Nm + (weighted ? kGravity_m_s2 * kWeight_kg * kArm_m : 0.0);
+    run.recording = excitation(number);
+    run.recording.q_rad = calib::SingleJoint(bench, run, calib::simulation_step_s(bench)).rollout(plant);
+    for (double& q_rad : run.recording.q_rad) q_rad += sil::kEncoderNoise_rad * noise.next();
+    runs.emplace_back(bench, run, calib::simulation_step_s(bench));
+  }
+  return runs;
+}
+
 sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                         const Gains& gains, unsigned seed) {
   bench::Bench bench;
@@ -163,7 +166,6 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
   sim::ActuatorsByJoint found;
   for (const auto& [name, truth] : plant) {
     const int joint = robot.joint_index.at(name);
-    const model::HangingLoad load = model::hanging_load(robot, name);
     std::vector<calib::FitParameter> unknowns;
     for (const char* parameter : {"drive.kp_scale", "drive.kd_scale", "transmission.armature_kg_m2",
                                   "friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}) {
@@ -171,9 +173,7 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
     }
     calib::JointModel start;
     start.actuator.transmission.armature_kg_m2 = robot.joints[static_cast<std::size_t>(joint)].armature_kg_m2;
-    const calib::FitProblem problem(unknowns, start,
-                                    record(bench, truth, load, gains.kp_Nm_per_rad[joint], gains.kd_Nm_s_per_rad[joint],
-                                           seed + 17U * static_cast<unsigned>(joint)));
+    const calib::FitProblem problem(unknowns, start, record_joint(bench, robot, name, truth, gains, seed));
     found[name] = calib::fit(problem, options).model.actuator;
   }
   return found;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "calib/single_joint.hpp"
 #include "control/control_setup.hpp"
 #include "model/robot_model.hpp"
 #include "sim/motor_file.hpp"
@@ -32,9 +33,15 @@ struct Gains {
   JointVector kp_Nm_per_rad, kd_Nm_s_per_rad;
 };
 
-/// Motor calibration (paper III-C.1, eq. 20). Every joint of the plant plays an excitation, at two gains and with
-/// encoder noise; the limb beyond it is its load. Gain, damping, rotor, friction and delay are fitted. The recording
-/// comes from the single-joint simulation that agrees with MuJoCo's joint in tests, not from a robot on a bench.
+/// Recordings of one joint of a plant, at two gains and with encoder noise. Its load is the limb that hangs from it, in
+/// half of the runs with a known weight on the limb.
+std::vector<calib::SingleJoint> record_joint(const bench::Bench& bench, const model::RobotModel& robot,
+                                             const std::string& joint, const model::ActuatorParameters& truth,
+                                             const Gains& gains, unsigned seed);
+
+/// Motor calibration (paper III-C.1, eq. 20). Every joint of the plant plays an excitation (record_joint). Gain,
+/// damping, rotor, friction and delay are fitted. The recording comes from the single-joint simulation that agrees with
+/// MuJoCo's joint in tests, not from a robot on a bench.
 sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                         const Gains& gains, unsigned seed);
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "can/emulated_robot.hpp"
 #include "can/memory_link.hpp"
 #include "model/robots.hpp"
@@ -52,6 +54,8 @@ TEST_F(FirstLight, AKneeMovesAndItsLoadTellsTheDirection) {
   EXPECT_FALSE(drives_->drive(0, 3).enabled()) << "switched off afterwards";
   for (std::size_t m = 0; m < 6; ++m) EXPECT_EQ(drives_->drive(0, m).enabled(), false) << "no other drive was ever on";
   EXPECT_FALSE(verdict(result).empty());
+  EXPECT_GT(std::abs(result.model_Nm), 0.1) << "the shank does not hang straight down";
+  EXPECT_NEAR(result.held_Nm, result.model_Nm, result.friction_Nm);
 }
 
 TEST_F(FirstLight, ASilentFaultyOrMisplacedMotorIsSwitchedOffWithALine) {

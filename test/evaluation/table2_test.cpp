@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/hanging_load.hpp"
+
 namespace pmg::evaluation {
 namespace {
 
@@ -60,6 +62,18 @@ TEST(Table2, InformedGainsFollowFromTheRotorsInertia) {
 
 TEST(Table2, TheAskedRatioIsThePapers) {
   EXPECT_NEAR(published(kFullCalibration)[1] / published(kBaseline)[1], kAskedRatio, 0.0005);
+}
+
+TEST(Table2, AJointIsRecordedWithTheLimbThatHangsFromIt) {
+  const auto joints = static_cast<Eigen::Index>(z1().joints.size());
+  const std::vector<calib::SingleJoint> runs = record_joint(
+      {}, z1(), "left_knee", {}, {JointVector::Constant(joints, 150.0), JointVector::Constant(joints, 6.0)}, 1);
+  const model::HangingLoad limb = model::hanging_load(z1(), "left_knee");
+  ASSERT_GT(limb.gravity_Nm, 1.0);
+  ASSERT_EQ(runs.size(), 4U);
+  EXPECT_EQ(runs[0].run().load.inertia_kg_m2, limb.inertia_kg_m2);
+  EXPECT_EQ(runs[0].run().load.gravity_Nm, limb.gravity_Nm);
+  EXPECT_GT(runs[1].run().load.gravity_Nm, limb.gravity_Nm) << "a known weight on the limb";
 }
 
 TEST(Table2, MotorCalibrationFindsWhatIsHiddenInADrive) {
