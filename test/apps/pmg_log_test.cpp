@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -101,7 +102,9 @@ TEST_F(PmgLog, ReplaySaysInItsExitCodeWhetherItIsTheSame) {
 TEST_F(PmgLog, BadInputIsOneClearLine) {
   expect_refused("info " + (folder_ / "absent.lcm").string(), "absent.lcm");
   expect_refused("info " + folder_.string(), "no log in this folder");
-  expect_refused("replay /dev/null", "no tick to replay");
+  const fs::path empty = folder_ / "empty.lcm";
+  std::ofstream{empty};
+  expect_refused("replay " + empty.string(), "no tick to replay");
   expect_refused(std::string("export ") + kLog, "--csv or --mcap");
   expect_refused(std::string("export ") + kLog + " --mcap /dev/full", "/dev/full");
   expect_refused(std::string("replay --robot z1 ") + kLog, "other joints");
