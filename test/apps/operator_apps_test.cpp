@@ -21,6 +21,7 @@
 
 #include "io/clock.hpp"
 #include "io/private_network.hpp"
+#include "io/raw_datagrams.hpp"
 
 namespace pmg {
 namespace {
@@ -252,6 +253,7 @@ TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideTheProm
 TEST_F(OperatorApps, FailuresAreInjectedIntoSimulatedDrivesOnly) {
   const Finished refused = run("pmg_controller --hal can --inject failures.yaml --lcm-url memq:// --no-log");
   EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--inject spoils simulated drives; expected --hal sil"));
 }
 
 TEST_F(OperatorApps, AnInterruptedWalkIsBroughtToRest) {
@@ -281,21 +283,6 @@ TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, AllOf(HasSubstr("first: damping"), HasSubstr("second: damping")));
   });
-}
-
-/// To LCM's default group, all from one sender: fragments of several senders are no message.
-void send_datagrams(const std::vector<std::string>& datagrams) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(7667);
-  group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
-  sockaddr any{};
-  std::memcpy(&any, &group, sizeof(group));
-  for (const std::string& bytes : datagrams) {
-    EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
-  }
-  ::close(socket);
 }
 
 constexpr const char* kNetwork = "udpm://239.255.76.67:7667?ttl=1";
@@ -445,13 +432,9 @@ class Eavesdropper {
     ::setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
     const int buffer = 1 << 22;
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &buffer, sizeof(buffer));
-    sockaddr_in group{};
-    group.sin_family = AF_INET;
-    group.sin_port = htons(7667);
-    group.sin_addr.s_addr = htonl(0xEFFF4C43);
-    sockaddr any{};
-    std::memcpy(&any, &group, sizeof(group));
-    EXPECT_EQ(::bind(socket_, &any, sizeof(group)), 0);
+    const sockaddr_in group = io::default_group();
+    const sockaddr any = io::any_address(group);
+    EXPECT_EQ(::bind(socket_, &any, sizeof(any)), 0);
     ip_mreq membership{};
     membership.imr_multiaddr = group.sin_addr;
     EXPECT_EQ(::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)), 0);
@@ -482,7 +465,7 @@ TEST_F(OperatorApps, ARecordedSessionMovesNoRobot) {
     std::vector<std::string> recorded;
     const auto play = [&] {
       for (const std::string& datagram : recorded) {
-        send_datagrams({datagram});
+        io::send_datagrams({datagram});
         ::usleep(4000);  // slower than the rate limit
       }
     };
@@ -525,10 +508,10 @@ TEST_F(OperatorApps, NoDatagramEndsAProgram) {
     while (lines() < 2 && watch.running()) {
     }
     // An offset that wraps in 32 bits; names whose zero byte is outside the datagram, behind what an earlier one left.
-    send_datagrams({fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"),
-                    fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x'))});
-    send_datagrams(std::vector<std::string>(20, "LC02    " + std::string(52, 'A') + '\0' + "rest"));
-    send_datagrams({fragment(100, 41, 0, std::string(10, 'A')), "LC02    " + std::string(20, 'A')});
+    io::send_datagrams({fragment(1000, 0, 0, std::string("STATUS") + '\0' + "begin"),
+                        fragment(1000, 0xFFFFFF00, 1, std::string(300, 'x'))});
+    io::send_datagrams(std::vector<std::string>(20, "LC02    " + std::string(52, 'A') + '\0' + "rest"));
+    io::send_datagrams({fragment(100, 41, 0, std::string(10, 'A')), "LC02    " + std::string(20, 'A')});
     const auto before = lines();
     while (lines() < before + 2 && watch.running()) {
     }

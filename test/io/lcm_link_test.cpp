@@ -21,6 +21,7 @@
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "private_network.hpp"
+#include "raw_datagrams.hpp"
 
 namespace pmg::io {
 namespace {
@@ -263,28 +264,15 @@ TEST(LcmLink, StockLcmHearsOurMessages) {
   });
 }
 
-/// Datagrams as nobody's LCM sends them.
-void send_datagram(const std::vector<std::uint8_t>& bytes) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(7667);
-  group.sin_addr.s_addr = htonl(0xEFFF4C43);  // 239.255.76.67
-  sockaddr any{};
-  std::memcpy(&any, &group, sizeof(group));
-  EXPECT_EQ(::sendto(socket, bytes.data(), bytes.size(), 0, &any, sizeof(group)), static_cast<ssize_t>(bytes.size()));
-  ::close(socket);
-}
-
 TEST(LcmLink, HostileDatagramsAreCountedAndTheNextMessageArrives) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
     LcmLink receiver(kDefaultLcmUrl), sender(kDefaultLcmUrl);
     int heard = 0;
     receiver.subscribe("COMMAND", [&](Bytes) { ++heard; });
-    send_datagram({});
-    send_datagram({'L', 'C'});
-    send_datagram({'L', 'C', '0', '2', 0, 0, 0, 1, 'C', 'O', 'M'});  // a name without end
-    send_datagram({'L', 'C', '0', '3', 0, 0, 0, 1, 0, 0, 0, 9, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 2, 'C', 0});
+    send_datagrams({""});
+    send_datagrams({"LC"});
+    send_datagrams({std::string("LC02\0\0\0\1COM", 11)});  // a name without end
+    send_datagrams({std::string("LC03\0\0\0\1\0\0\0\x09\xFF\xFF\xFF\0\0\0\0\2C\0", 22)});
     sender.publish("COMMAND", command(0.1));
     while (receiver.receive(5000) == 0) {
     }
@@ -297,7 +285,7 @@ TEST(LcmLink, AFloodOfForeignDatagramsDoesNotKeepTheCaller) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
     LcmLink receiver(kDefaultLcmUrl);
     receiver.subscribe("COMMAND", [](Bytes) {});
-    for (int k = 0; k < 50; ++k) send_datagram({'n', 'o', 'i', 's', 'e', '.', '.', '.'});
+    for (int k = 0; k < 50; ++k) send_datagrams({"noise..."});
     EXPECT_EQ(receiver.receive(60'000, 10), 0) << "it returned although it might have waited for a minute";
     EXPECT_EQ(receiver.receiver()->counts().malformed, 10 * LcmLink::kDatagramsPerMessage);
   });
