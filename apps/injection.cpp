@@ -1,5 +1,6 @@
 #include "injection.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -22,9 +23,8 @@ struct Injection::Parts {
   sil::FailureClock clock;
   sil::FailingTick tick;
   std::optional<sil::FailingBus> bus;
-  std::vector<faults::Fault> faults;  // stamps since the first tick
+  std::vector<faults::Fault> faults;  // stamps by the failures' clock, which counts bus cycles
   faults::Fault last;
-  std::int64_t first_tick_ns = -1;
 };
 
 Injection::Injection(const std::filesystem::path& file, const std::string& hal, const model::RobotModel& robot) {
@@ -46,11 +46,10 @@ hal::Hal& Injection::into(hal::Hal& drives, const model::RobotModel& robot) {
 
 void Injection::watch(const control::TickRecord& record) {
   if (!parts_) return;
-  if (parts_->first_tick_ns < 0) parts_->first_tick_ns = record.now_ns;
   const faults::Fault& fault = record.result.fault;
   if (fault.code != faults::FaultCode::kNone && !faults::same_incident(fault, parts_->last)) {
     parts_->faults.push_back(fault);
-    parts_->faults.back().stamp_ns -= parts_->first_tick_ns;
+    parts_->faults.back().stamp_ns = std::llround(1e9 * parts_->clock.now_s.load());
   }
   parts_->last = fault;
 }
