@@ -6,10 +6,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "files/bounded_file.hpp"
 
@@ -39,24 +41,49 @@ files::Place place_in(const UrdfTree& tree, std::size_t at) {
 constexpr std::ptrdiff_t kMostLinks = 256;  // a humanoid with two hands of 25 joints each has some 90
 constexpr int kDeepestElement = 32;         // URDF's own nest five deep
 
-/// Bounds what parsers recurse over or search again and again: links, joints, and the nesting of elements.
+constexpr std::string_view kXmlSpaces = " \t\r\n\v\f";
+
+/// (text, place of a '<') => (place of the last byte of what begins there: a comment, raw text, a declaration or a tag,
+/// whose values in quotes may hold '>'). The text's last byte when it has no end.
+std::size_t end_of_markup(std::string_view text, std::size_t at) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNoTags = {
+      {{"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<!", ">"}, {"<?", ">"}}};
+  for (const auto& [begin, end] : kNoTags) {
+    if (!text.substr(at).starts_with(begin)) continue;
+    const std::size_t found = text.find(end, at + begin.size());
+    return found == std::string_view::npos ? text.size() - 1 : found + end.size() - 1;
+  }
+  char quote = '\0';
+  for (; at < text.size(); ++at) {
+    if (quote != '\0') {
+      if (text[at] == quote) quote = '\0';
+    } else if (text[at] == '"' || text[at] == '\'') {
+      quote = text[at];
+    } else if (text[at] == '>') {
+      return at;
+    }
+  }
+  return text.size() - 1;
+}
+
+/// Bounds what parsers recurse over or search again and again: links, and the nesting of elements.
 void check_extent(const UrdfTree& tree) {
+  const std::string_view text = tree.text;
   int depth = 0;
   std::ptrdiff_t links = 0;
-  for (std::size_t at = tree.text.find('<'); at != std::string::npos; at = tree.text.find('<', at + 1)) {
-    const std::string_view rest = std::string_view(tree.text).substr(at);
-    if (rest.starts_with("<!--")) {
-      at = std::min(tree.text.find("-->", at), tree.text.size() - 1);
-      continue;
-    }
-    if (rest.starts_with("<!") || rest.starts_with("<?")) continue;
-    const std::size_t end = tree.text.find('>', at);
-    if (rest.starts_with("</")) {
+  std::size_t end = 0;
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', end + 1)) {
+    end = end_of_markup(text, at);
+    if (text.substr(at).starts_with("<!") || text.substr(at).starts_with("<?")) continue;
+    std::string_view inner = text.substr(at + 1, end - std::min(at + 1, end));
+    inner.remove_prefix(std::min(inner.find_first_not_of(kXmlSpaces), inner.size()));
+    if (inner.starts_with('/')) {
       --depth;
-    } else if (end != std::string::npos && tree.text[end - 1] != '/') {
+    } else if (!inner.ends_with('/')) {
       ++depth;
     }
-    links += rest.starts_with("<link ") ? 1 : 0;
+    const std::size_t name_end = inner.find_first_of(" \t\r\n\v\f/");
+    links += inner.substr(0, name_end) == "link" ? 1 : 0;
     if (depth > kDeepestElement) {
       files::raise(place_in(tree, at), "", fmt::format("is {} elements deep", depth),
                    fmt::format("{} at most", kDeepestElement));

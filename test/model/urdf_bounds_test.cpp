@@ -50,7 +50,7 @@ std::string joint(const std::string& parent, const std::string& child) {
 TEST_F(UrdfBounds, AFileAboveItsBoundIsNotRead) {
   std::ofstream(file_) << "";
   fs::resize_file(file_, std::uintmax_t{1} << 34);  // 16 GiB that the disk doesn't hold
-  EXPECT_THAT(refusal(), HasSubstr("has 1.64e+04 MiB; expected"));
+  EXPECT_THAT(refusal(), HasSubstr("has 1.64e+04 MiB; expected a URDF file of 4 MiB at most"));
 }
 
 TEST_F(UrdfBounds, ARobotOfTenThousandLinksIsRefusedAtItsFirstLinkTooMany) {
@@ -69,6 +69,33 @@ TEST_F(UrdfBounds, XmlThatIsTooDeepIsRefused) {
   for (int k = 0; k < 100'000; ++k) deep += "<a>";
   EXPECT_THAT(refusal_of(deep), HasSubstr("elements deep; expected 32 at most"));
   EXPECT_THAT(refusal_of("<!-- " + deep + " -->" + link("l0")), HasSubstr("accepted")) << "comments nest nothing";
+  EXPECT_THAT(refusal_of("<a><![CDATA[" + deep + "]]></a>" + link("l0")), HasSubstr("accepted")) << "nor does raw text";
+}
+
+std::string exchanged(std::string text, const std::string& what, const std::string& instead) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += instead.size()) {
+    text.replace(at, what.size(), instead);
+  }
+  return text;
+}
+
+TEST_F(UrdfBounds, HoldHoweverTheXmlIsWritten) {
+  std::string robot = link("l0");
+  for (int k = 1; k < 300; ++k) {
+    const std::string name = "l" + std::to_string(k);
+    robot += link(name) + joint("l" + std::to_string(k - 1), name);
+  }
+  for (const char* begin : {"<link\t", "<link\n", "<link\r\n  ", "< link "}) {
+    EXPECT_THAT(refusal_of(exchanged(robot, "<link ", begin)), HasSubstr("link: is number 257; expected 256"));
+  }
+  std::string quoted, closed;
+  for (int k = 0; k < 40; ++k) {
+    quoted += "<a b=\"/>\" c='/>'>";
+    closed += "<a><![CDATA[</a>]]>";
+  }
+  EXPECT_THAT(refusal_of(quoted), HasSubstr("is 33 elements deep; expected 32 at most"));
+  EXPECT_THAT(refusal_of(closed), HasSubstr("is 33 elements deep; expected 32 at most"));
+  EXPECT_THAT(refusal_of("<link name='/>'><a b=\">"), testing::Not(HasSubstr("accepted"))) << "no end";
 }
 
 TEST_F(UrdfBounds, LinksInACycleOfTheirOwnAreNamed) {
