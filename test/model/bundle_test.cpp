@@ -122,5 +122,18 @@ TEST_F(BundleTest, SaysWhichFileItCannotRead) {
   }
 }
 
+TEST_F(BundleTest, AFileAboveItsBoundIsNotRead) {
+  const fs::path robot = folder_ / "robot";
+  fs::resize_file(robot / "policies/walk.onnx", std::uintmax_t{1} << 34);  // 16 GiB that the disk doesn't hold
+  try {
+    of(robot);
+    FAIL();
+  } catch (const files::ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("walk.onnx: has 1.64e+04 MiB; expected a file of a robot of 64 MiB"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace pmg::model

@@ -50,6 +50,18 @@ class LinearPolicyFile {
     bytes_.replace(at, text.size(), instead);
     save();
   }
+  /// One more key and value of the ONNX metadata: field 14 of ModelProto, whose field 1 is the key and field 2 the
+  /// value.
+  void append_metadata(const std::string& key, const std::string& value) {
+    const auto field = [](char tag, const std::string& content) {
+      std::string bytes(1, tag);
+      std::size_t size = content.size();
+      for (; size >= 0x80; size >>= 7) bytes += static_cast<char>((size & 0x7f) | 0x80);
+      return bytes + static_cast<char>(size) + content;
+    };
+    bytes_ += field('\x72', field('\x0a', key) + field('\x12', value));
+    save();
+  }
   /// `size` bytes from the beginning of this text.
   std::string text_at(const std::string& text, std::size_t size) const {
     return bytes_.substr(bytes_.find(text), size);

@@ -104,6 +104,16 @@ TEST(OnnxPolicyFile, BytesThatAreNoNetworkAreRefused) {
   EXPECT_NE(refusal("absent.onnx"), "was accepted");
 }
 
+TEST(OnnxPolicyFile, AFileOrMetadataAboveItsBoundIsNotRead) {
+  const LinearPolicyFile giant;
+  fs::resize_file(giant.file(), std::uintmax_t{1} << 34);  // 16 GiB that the disk doesn't hold
+  EXPECT_THAT(refusal(giant.file()), HasSubstr("has 1.64e+04 MiB; expected an ONNX policy of 32 MiB at most"));
+  LinearPolicyFile wordy;
+  wordy.exchange("pmg_policy\x12", "pmg_polizy\x12");
+  wordy.append_metadata("pmg_policy", std::string((4 << 20) + 1, ' '));
+  EXPECT_THAT(refusal(wordy.file()), HasSubstr("has 4194305 bytes; expected 4194304 at most"));
+}
+
 TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
   EXPECT_THAT(refusal_after("\"action_limit\"", "\"aktion_limit\""), HasSubstr("action_limit"));
   EXPECT_THAT(refusal_after("\"action_limit\": 4.0", "\"action_limit\": 0.0"), HasSubstr("action_limit is 0"));
