@@ -121,6 +121,17 @@ TEST(SitDown, FeetThatCarryNothingAreNotSatOn) {
   EXPECT_LE(reaction.to_damping, 5);
 }
 
+TEST(SitDown, ARobotOnItsRampIntoStandIsNotSatOn) {
+  ControlRig rig(test::biped());
+  rig.ask(Mode::kStand);
+  rig.run(0.3);  // the shortest ramp takes 0.5 s
+  ASSERT_EQ(rig.mode(), Mode::kStand);
+  const ControlRig::Reaction reaction = rig.reaction_to([&] { overheat(rig); });
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kTemperature);
+  EXPECT_EQ(reaction.to_sit_down, -1);
+  EXPECT_LE(reaction.to_damping, 5);
+}
+
 TEST(SitDown, WithoutAPolicyThatNeedsTheGroundNothingSaysThatTheFeetCarry) {
   ControlRig rig(test::biped(), false);
   rig.reach_walk();
@@ -224,7 +235,7 @@ TEST(SitDown, AfterItTheDrivesDampMoreAndAfterAStopAsEver) {
     if (stopped) rig.ask(Source::make("stranger", 77), Mode::kDamping, false);
     rig.run(1.0);
     ASSERT_TRUE(rig.bus.damping());
-    const double factor = stopped ? 1.0 : SitDownOptions{}.brake_factor;
+    const double factor = stopped ? 1.0 : 3.0;  // docs/reference/safety.md
     EXPECT_LT((rig.bus.last_command.kd - factor * own).cwiseAbs().maxCoeff(), 1e-9);
     rig.bus.spoil = nullptr;
     rig.reset();

@@ -76,11 +76,14 @@ TEST_F(SupervisorTest, DampingIsReachedFromEveryModeInOneTick) {
 }
 
 TEST_F(SupervisorTest, GoesLimpOnlyFromDamping) {
-  reach(Mode::kStand);
-  ask(Mode::kPassive);
-  EXPECT_EQ(update(10), Mode::kDamping);
-  ask(Mode::kPassive);
-  EXPECT_EQ(update(), Mode::kPassive);
+  for (const Mode from : {Mode::kStand, Mode::kWalk}) {
+    reach(from);
+    ask(Mode::kPassive);
+    EXPECT_EQ(update(), Mode::kDamping) << to_string(from);
+    EXPECT_EQ(update(10), Mode::kDamping) << to_string(from);
+    ask(Mode::kPassive);
+    EXPECT_EQ(update(), Mode::kPassive) << to_string(from);
+  }
 }
 
 TEST_F(SupervisorTest, StandRequestStopsWalkingFirst) {
@@ -96,6 +99,11 @@ TEST_F(SupervisorTest, StandRequestStopsWalkingFirst) {
   at_rest_ = true;
   EXPECT_EQ(update(), Mode::kStand);
   EXPECT_EQ(supervisor_.admit(user), Command{});
+  reach(Mode::kWalk);
+  at_rest_ = false;
+  ask(Mode::kStand);
+  EXPECT_EQ(update(50), Mode::kWalk);
+  EXPECT_EQ(update(), Mode::kStand) << "0.5 s later, whatever the reference does";
 }
 
 TEST_F(SupervisorTest, StaleCommandEndsInStandAndIsNotLatched) {
@@ -119,11 +127,16 @@ TEST_F(SupervisorTest, StaleCommandEndsInStandAndIsNotLatched) {
 
 TEST_F(SupervisorTest, WalkIsRefusedWithoutAFreshCommand) {
   reach(Mode::kStand);
-  command_age_s_ = std::numeric_limits<double>::infinity();
+  for (const double age_s : {0.201, std::numeric_limits<double>::infinity()}) {
+    command_age_s_ = age_s;
+    ask(Mode::kWalk);
+    EXPECT_EQ(update(), Mode::kStand);
+    command_age_s_ = 0.0;
+    EXPECT_EQ(update(10), Mode::kStand) << "a refused request is forgotten";
+  }
+  command_age_s_ = 0.2;
   ask(Mode::kWalk);
-  update();
-  command_age_s_ = 0.0;
-  EXPECT_EQ(update(10), Mode::kStand) << "a refused request is forgotten";
+  EXPECT_EQ(update(), Mode::kWalk);
 }
 
 TEST_F(SupervisorTest, FaultIsLatchedUntilResetAndThenDamps) {
@@ -151,6 +164,36 @@ TEST_F(SupervisorTest, FirstFaultIsKept) {
   update();
   EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kStateNotFinite);
   EXPECT_EQ(supervisor_.fault().joint, 2);
+}
+
+TEST_F(SupervisorTest, OfSeveralFaultsInOneTickTheFirstOfTheTableIsKept) {
+  using faults::FaultCode;
+  const auto spoil = [&](FaultCode code) {
+    const model::Joint& joint = test::biped().joints[3];
+    if (code == FaultCode::kBusLost) bus_ = hal::BusStatus::kLost;
+    if (code == FaultCode::kStateNotFinite) state_.q[2] = kNan;
+    if (code == FaultCode::kTemperature) state_.temperature_degC[4] = 91.0;
+    if (code == FaultCode::kJointLimit) state_.q[3] = joint.upper_rad + 0.2;
+    if (code == FaultCode::kJointVelocity) state_.dq[3] = 2.0 * joint.velocity_limit_rad_s;
+    if (code == FaultCode::kJointTorque) state_.tau[3] = 2.0 * joint.effort_limit_Nm;
+    if (code == FaultCode::kTilt) {  // beyond torso_attitude's limit, too
+      state_.orientation_WI = Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitY()) * state_.orientation_WI;
+    }
+  };
+  const std::vector<std::vector<FaultCode>> together = {
+      {FaultCode::kBusLost, FaultCode::kStateNotFinite, FaultCode::kTemperature},
+      {FaultCode::kJointLimit, FaultCode::kJointVelocity, FaultCode::kJointTorque, FaultCode::kTilt}};
+  for (const std::vector<FaultCode>& codes : together) {
+    for (std::size_t first = 0; first < codes.size(); ++first) {
+      supervisor_ = Supervisor(test::biped(), {});
+      state_ = test::standing_state(test::biped());
+      bus_ = hal::BusStatus::kOk;
+      reach(Mode::kStand);
+      for (std::size_t k = codes.size(); k > first; --k) spoil(codes[k - 1]);
+      EXPECT_EQ(update(3), Mode::kFault);
+      EXPECT_EQ(supervisor_.fault().code, codes[first]);
+    }
+  }
 }
 
 TEST_F(SupervisorTest, AFaultCannotBeAskedFor) {
@@ -278,8 +321,8 @@ TEST_F(SupervisorTest, AHostThatStopsBothThreadsIsNoFault) {
 }
 
 TEST_F(SupervisorTest, AResetOutsideOfFaultChangesNothing) {
-  for (const Mode mode : {Mode::kDamping, Mode::kStand, Mode::kWalk}) {
-    reach(mode);
+  for (const Mode mode : {Mode::kPassive, Mode::kDamping, Mode::kStand, Mode::kWalk}) {
+    if (mode != Mode::kPassive) reach(mode);
     ask(Mode::kDamping, true);
     EXPECT_EQ(update(3), mode) << "an impatient second reset must not drop the robot";
   }

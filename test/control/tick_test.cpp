@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "control/drive_gains.hpp"
 #include "control/fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
 
@@ -32,7 +33,7 @@ TEST(Tick, DampingBrakesWithoutPosition) {
   const TickResult& result = driven.run(0.05);
   EXPECT_EQ(result.mode, Mode::kDamping);
   EXPECT_EQ(result.command.kp.sum(), 0.0);
-  EXPECT_GT(result.command.kd.minCoeff(), 0.0);
+  EXPECT_EQ(result.command.kd, own_gains(test::z1()).kd_Nm_s_per_rad);
 }
 
 TEST(Tick, StandIsEnteredFromTheMeasuredPostureWithoutAJump) {
@@ -71,8 +72,17 @@ TEST(Tick, StandIgnoresCommandsAndWalkFollowsAllSix) {
     EXPECT_GT(result.reference.command.u[i] * driven.drive.command.u[i], 0.0) << kChannelNames[i];
   }
   EXPECT_GT(result.reference.phase_rate_per_s, 0.0);
-  EXPECT_EQ(result.command.kd, driven.tick.result().command.kd);
+  EXPECT_EQ(result.command.kp, own_gains(test::z1()).kp_Nm_per_rad) << "of a policy without gains of its own";
+  EXPECT_EQ(result.command.kd, own_gains(test::z1()).kd_Nm_s_per_rad);
   EXPECT_EQ(result.command.dq.cwiseAbs().maxCoeff(), 0.0) << "the drives' own damping only";
+  for (const Channel channel : {kVx, kVy, kOmega}) driven.drive.command[channel] = 0.0;
+  driven.run(3.0);
+  EXPECT_EQ(result.mode, Mode::kWalk);
+  EXPECT_NEAR(result.reference.gain, 0.0, 1e-9) << "zero velocity means standing";
+  EXPECT_EQ(result.reference.phase_rate_per_s, 0.0);
+  for (const Channel channel : {kPitch, kRoll, kHeight}) {
+    EXPECT_GT(result.reference.command[channel] * driven.drive.command[channel], 0.0) << "with a posture";
+  }
 }
 
 TEST(Tick, ASilentOperatorBringsTheRobotToAStandstillWithinItsTime) {

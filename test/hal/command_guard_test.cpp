@@ -99,8 +99,8 @@ TEST_F(Guard, ClampsWhatIsFiniteToTheRobotsLimits) {
       const model::Joint& joint = z1().joints[static_cast<std::size_t>(i)];
       EXPECT_EQ(command.q[i], sign > 0.0 ? joint.upper_rad : joint.lower_rad);
       EXPECT_EQ(command.dq[i], sign * joint.velocity_limit_rad_s);
-      EXPECT_EQ(command.kp[i], sign > 0.0 ? kOptions.max_kp_Nm_per_rad : 0.0);
-      EXPECT_EQ(command.kd[i], sign > 0.0 ? kOptions.max_kd_Nm_s_per_rad : 0.0);
+      EXPECT_EQ(command.kp[i], sign > 0.0 ? 2000.0 : 0.0);  // docs/reference/safety.md
+      EXPECT_EQ(command.kd[i], sign > 0.0 ? 100.0 : 0.0);
       EXPECT_EQ(command.tau_ff[i], sign * joint.effort_limit_Nm);
     }
   }

@@ -262,6 +262,21 @@ TEST_F(OperatorGateTest, AFloodOfOneSourceTakesNoRoomFromAnother) {
   EXPECT_EQ(gate_.counts().flooded, 200'000 - flood);
 }
 
+TEST_F(OperatorGateTest, RequestsAreTakenOneIn25MillisecondsWithRoomForFour) {
+  pass_ms(1000);
+  for (int k = 0; k < 10; ++k) send_mode("gamepad", Modes::STAND);
+  EXPECT_EQ(take_requests().size(), 4u);
+  pass_ms(1000);
+  std::size_t taken = 0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    pass_ms(1);
+    send_mode("gamepad", Modes::STAND);
+    taken += take_requests().size();
+  }
+  EXPECT_GE(taken, 1000u / 25);
+  EXPECT_LE(taken, 1000u / 25 + 4);
+}
+
 TEST_F(OperatorGateTest, MessagesThatADelayBunchedAreAllTaken) {
   pass_ms(1000);
   for (int k = 0; k < 8; ++k) send_command("gamepad");  // 160 ms of a 50 Hz source at once
