@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "generator_core/allocation_count.hpp"
+
 namespace pmg::io {
 namespace {
 
@@ -143,11 +145,16 @@ TEST_F(Assembler, ASendersNextMessageReplacesItsUnfinishedOne) {
 }
 
 TEST_F(Assembler, ThousandsOfUnfinishedMessagesTakeNoMoreMemoryThanFour) {
+  static_assert(LcmAssembler::kPlaces == 4 && LcmAssembler::kLargestMessage == 256 * 1024, "docs/reference/network.md");
+  const Datagram begin = fragment({.size = LcmAssembler::kLargestMessage, .count = 9, .rest = kChannel + "abcd"});
+  const long allocations = test::allocation_count();
+  for (std::uint64_t sender = 0; sender < 10'000; ++sender) assembler_.take(sender, begin);
+  EXPECT_EQ(test::allocation_count(), allocations) << "a datagram allocates nothing";
   for (std::uint64_t sender = 0; sender < 10'000; ++sender) {
     EXPECT_EQ(take(fragment({.size = LcmAssembler::kLargestMessage, .count = 9, .rest = kChannel + "abcd"}), sender),
               "-");
   }
-  EXPECT_EQ(assembler_.counts().incomplete, 10'000 - static_cast<std::int64_t>(LcmAssembler::kPlaces));
+  EXPECT_EQ(assembler_.counts().incomplete, 20'000 - static_cast<std::int64_t>(LcmAssembler::kPlaces));
   EXPECT_EQ(take(fragment({.size = LcmAssembler::kLargestMessage + 1, .rest = kChannel})), "-");
   EXPECT_EQ(take(fragment({.size = 0xFFFFFFFF, .rest = kChannel})), "-");
   EXPECT_EQ(take(fragment({.rest = kChannel + "abcd"}), 1), "-");

@@ -40,8 +40,6 @@ Message message_in(io::Bytes bytes) {
 class CommsTest : public testing::Test {
  protected:
   CommsTest() {
-    run_.robot = "biped";
-    run_.session = 17;
     for (const char* channel :
          {"ACK", "STATUS", "STATE", "REFERENCE", "MOTOR_COMMAND", "TIMING", "FAULT", "ROBOT_INFO", "LINK"}) {
       link_.subscribe(channel, [this, channel](io::Bytes) { ++heard_[channel]; });
@@ -86,7 +84,7 @@ class CommsTest : public testing::Test {
   hal::StopLine stop_line_;
   control::OperatorInbox inbox_{stop_line_};
   control::ControllerOutbox outbox_;
-  recording::RunInfo run_;
+  recording::RunInfo run_{.robot = "biped", .session = 17};
   Comms comms_{link_, inbox_, outbox_, robot_, run_, 100.0, clock_};
   control::TickRecord record_;
   std::map<std::string, int> heard_;
@@ -156,10 +154,28 @@ TEST_F(CommsTest, LinkTellsWhatBecameOfEveryMessage) {
   record_.result.ignored = {
       .accepted = 1, .other_source = 2, .out_of_order = 3, .late = 4, .not_finite = 5, .no_lease = 6};
   link_.send("COMMAND", std::vector<std::uint8_t>{1, 2, 3});
+  pmg_msgs::mode_t request = stop();
+  request.mode = pmg_msgs::mode_t::STAND;
+  const auto send = [&](int times) {
+    for (int k = 0; k < times; ++k) link_.publish("MODE", request);
+  };
+  request.version = pmg_msgs::mode_t::VERSION - 1;
+  send(2);
+  request.version = pmg_msgs::mode_t::VERSION;
+  request.robot = "another";
+  send(3);
+  request.robot = "biped";
+  send(4);  // without a seal
+  request.mode = pmg_msgs::mode_t::DAMPING;
+  send(4 + 5);  // room for four
   tick();
   EXPECT_EQ(counts_.robot, "biped");
   EXPECT_EQ(counts_.accepted, 1);
   EXPECT_EQ(counts_.malformed, 1);
+  EXPECT_EQ(counts_.other_version, 2);
+  EXPECT_EQ(counts_.other_robot, 3);
+  EXPECT_EQ(counts_.not_fresh, 4);
+  EXPECT_EQ(counts_.flooded, 5);
   EXPECT_EQ(counts_.other_source, 2);
   EXPECT_EQ(counts_.out_of_order, 3);
   EXPECT_EQ(counts_.late, 4);
@@ -215,6 +231,17 @@ TEST_F(CommsTest, AStopIsTakenWithoutWaitingForTheNextTick) {
   link_.publish("MODE", stop());
   comms_.step(0);
   EXPECT_EQ(stop_line_.pulls(), 1u);
+}
+
+TEST_F(CommsTest, AFloodIsLeftForTheNextStepsSoThatEveryStepPublishes) {
+  for (int k = 0; k < 600; ++k) link_.publish("MODE", stop());
+  record_.now_ns = clock_.now_ns();
+  outbox_.newest.put(record_);
+  comms_.step(0);
+  EXPECT_EQ(stop_line_.pulls(), 500u);
+  link_.receive(0);
+  EXPECT_EQ(heard_["STATUS"], 1);
+  EXPECT_EQ(stop_line_.pulls(), 600u);
 }
 
 /// Controllers of one name on one network, each starting in a thread of its own; the number that won it.
