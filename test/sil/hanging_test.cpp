@@ -124,6 +124,14 @@ struct Ride {
     }
     return most;
   }
+  /// The first tick from from_s on of which this holds [s]; 1e9: none.
+  template <typename Holds>
+  double first(double from_s, Holds&& holds) const {
+    for (const Seen& tick : seen) {
+      if (tick.time_s >= from_s && holds(tick)) return tick.time_s;
+    }
+    return 1e9;
+  }
   /// The first tick from from_s on after which the feet carry less than a tenth of the weight for 0.1 s.
   double lifted_at(double from_s) const {
     int ticks = 0;
@@ -222,6 +230,8 @@ TEST_P(LiftedInMidWalk, HangsStillInItsStandingPostureAndStandsWhenItIsSetDown) 
   ASSERT_LT(clear_s, down_s - 2.0) << it.told();
   EXPECT_EQ(it.most(0.3, lift_s, [](const Seen& tick) { return tick.hanging ? 1.0 : 0.0; }), 0.0)
       << "on its feet it is never taken for a robot that hangs";
+  const double seen_s = it.first(lift_s, [](const Seen& tick) { return tick.hanging; }) - clear_s;
+  EXPECT_LT(seen_s, 0.25) << "docs/reference/safety.md";
   const auto all_hang = [](const Seen& tick) { return tick.hanging ? 0.0 : 1.0; };
   EXPECT_EQ(it.most(clear_s + 1.0, down_s, all_hang), 0.0);
   const double off_rad = it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.farthest_rad; });
@@ -234,7 +244,8 @@ TEST_P(LiftedInMidWalk, HangsStillInItsStandingPostureAndStandsWhenItIsSetDown) 
   const double torque = it.most(clear_s + 1.0, down_s, [](const Seen& tick) { return tick.most_torque; });
   EXPECT_LT(torque, 0.3) << "it holds its own legs and no more";
   EXPECT_TRUE(it.stands()) << it.told();
-  RecordProperty("figures", fmt::format("lifted {:.2f} s, {:.3f} rad, torque {:.2f}", clear_s, off_rad, torque));
+  RecordProperty("figures", fmt::format("lifted {:.2f} s, seen {:.2f} s later, {:.3f} rad, torque {:.2f}", clear_s,
+                                        seen_s, off_rad, torque));
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, LiftedInMidWalk, testing::Range<std::uint64_t>(1, 21));
@@ -286,6 +297,11 @@ TEST(Hanging, DroppedFromAHandsBreadthItsPolicyCatchesIt) {
   const auto rope = [](double t) { return t < kDrop_s ? Rope{0.07, 1.0} : Rope{}; };  // 0.05 m: the rope sags by 0.02
   const Ride it = ride(scenario_of({{0.0, control::Mode::kStand}}, 10.0), rope);
   EXPECT_EQ(it.most(2.0, kDrop_s, [](const Seen& tick) { return tick.hanging ? 0.0 : 1.0; }), 0.0);
+  const int calls = it.seen[static_cast<std::size_t>(kDrop_s / kTick_s)].policy_calls;
+  const double down_s = it.first(kDrop_s, [](const Seen& tick) { return tick.carried > 0.1; });
+  const double back_s = it.first(kDrop_s, [&](const Seen& tick) { return tick.policy_calls > calls; });
+  EXPECT_LE(back_s - down_s, 0.1 + 1e-9) << "docs/reference/safety.md";
+  RecordProperty("back_s", fmt::format("{:.2f}", back_s - down_s));
   EXPECT_TRUE(it.stands()) << it.told();
 }
 
