@@ -97,6 +97,38 @@ TEST_F(TickMessages, NoFieldOfAMessageIsForgotten) {
   EXPECT_EQ(untouched<ground_truth_t>([&](auto& m) { fill(7, model::GroundTruth{}, false, m); }), none);
 }
 
+TEST_F(TickMessages, OfOneTickCarryTheStampOfItsStatusAndAStateThatOfItsSample) {
+  record_->now_ns = 77;
+  record_->state.stamp_ns = 75;
+  pmg_msgs::status_t status;
+  pmg_msgs::reference_t reference;
+  pmg_msgs::motor_command_t command;
+  pmg_msgs::timing_t timing;
+  pmg_msgs::robot_state_t state;
+  fill(*record_, run_, robot_, status);
+  fill(*record_, joints_, reference);
+  fill(*record_, joints_, command);
+  fill(*record_, BusTiming{}, control::DroppedItems{}, timing);
+  fill(*record_, joints_, state);
+  EXPECT_EQ(status.stamp_ns, 77);
+  EXPECT_EQ(reference.stamp_ns, 77);
+  EXPECT_EQ(command.stamp_ns, 77);
+  EXPECT_EQ(timing.stamp_ns, 77);
+  EXPECT_EQ(state.stamp_ns, 75);
+}
+
+TEST_F(TickMessages, AStatusSaysThatTheRobotSitsDownUntilTheDrivesDamp) {
+  pmg_msgs::status_t status;
+  record_->result.fault.code = faults::FaultCode::kTemperature;
+  record_->result.fault.joint = 2;
+  record_->result.sitting = true;
+  fill(*record_, run_, robot_, status);
+  EXPECT_TRUE(status.fault.starts_with("sitting down; temperature")) << status.fault;
+  record_->result.sitting = false;
+  fill(*record_, run_, robot_, status);
+  EXPECT_TRUE(status.fault.starts_with("temperature")) << status.fault;
+}
+
 TEST_F(TickMessages, AStateIsReadBackAsItWas) {
   model::RobotState& state = record_->state;
   state.stamp_ns = 12;

@@ -6,10 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <string>
+
+#include "seal/controller_seal.hpp"
 
 namespace pmg::seal {
 namespace {
@@ -90,6 +93,23 @@ TEST_F(KeyFiles, ARevokedKeyIsGoneAndASecondOneIsNew) {
   EXPECT_FALSE(revoke_operator_key(controller_, "anna"));
   EXPECT_TRUE(read_controller_keys(controller_)->operators.empty());
   EXPECT_NE(make_operator_key(controller_, "anna").secret, first.secret);
+}
+
+TEST_F(KeyFiles, AControllerThatLooksAgainTakesKeysThatWereMadeOrRevokedIntoAccount) {
+  make_operator_key(controller_, "anna");
+  ControllerSeal seal = load_controller_seal(controller_.string(), "memq://", false);
+  int seconds = 100;
+  const auto news_after = [&](const std::function<void()>& change) {
+    change();  // its time is set, because file systems count in coarse steps
+    fs::last_write_time(controller_ / "operators", fs::file_time_type::clock::now() - std::chrono::seconds(--seconds));
+    return seal.refresh();
+  };
+  EXPECT_EQ(news_after([] {}), "") << "what it began with";
+  EXPECT_EQ(seal.refresh(), "");
+  EXPECT_EQ(news_after([&] { make_operator_key(controller_, "bert"); }), "operators with a key: 2");
+  EXPECT_EQ(news_after([&] { revoke_operator_key(controller_, "anna"); }), "operators with a key: 1");
+  ::chmod((controller_ / "controller.key").c_str(), 0644);
+  EXPECT_THAT(news_after([] {}), HasSubstr("from now on nobody has a key"));
 }
 
 TEST_F(KeyFiles, NamesStayInTheFolder) {
