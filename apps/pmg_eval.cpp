@@ -67,7 +67,7 @@ class Watch {
  public:
   explicit Watch(const apps::EvalArguments& arguments) {
     supervision_.jobs = arguments.jobs;
-    supervision_.progress = {.told = [this](double share, std::string_view pieces) { show(share, pieces); },
+    supervision_.progress = {.report = [this](double share, std::string_view pieces) { show(share, pieces); },
                              .interrupted = [] { return apps::interrupt_requested != 0; }};
   }
   Watch(const Watch&) = delete;

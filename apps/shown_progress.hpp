@@ -12,7 +12,7 @@ namespace pmg::apps {
 
 /// Shows the present step of the work, or `doing` if the work does not name its steps. Keeps a reference to the line.
 inline work::Progress shown(ProgressLine& line, const std::string& doing = "") {
-  return {.told =
+  return {.report =
               [&line, doing](double share, std::string_view now) {
                 const std::string_view text = now.empty() ? std::string_view(doing) : now;
                 if (std::isnan(share))

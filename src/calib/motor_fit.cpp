@@ -174,7 +174,7 @@ class MotorFitRun {
 
   /// For searches: passes interruptions on, reports nothing.
   work::Progress stopping() {
-    return {.told = {}, .interrupted = [this] {
+    return {.report = {}, .interrupted = [this] {
               if (progress_.interrupted_now()) stopped_ = true;
               return stopped_.load();
             }};

@@ -53,15 +53,13 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, 
     bus.motor_of_node.fill(-1);
     for (const drives::MotorSetup& motor : setup.buses[b].motors) {
       bus.motor_of_node[static_cast<std::size_t>(motor.node)] = static_cast<int>(bus.motors.size());
-      bus.motors.push_back({.setup = &motor,
-                            .protocol = drives::MitProtocol(motor.ranges),
-                            .monitor = drives::MotorMonitor(motor.limits)});
+      bus.motors.emplace_back(motor);
     }
     bus.outgoing.resize(bus.motors.size());
     bus.wanted.resize(bus.motors.size());
     bus.readings.resize(bus.motors.size());
-    for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back(at_zero(linked));
-    for (const auto& linked : setup.buses[b].parallel) bus.parallel.push_back(at_zero(linked));
+    for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back({.setup = &linked});
+    for (const auto& linked : setup.buses[b].parallel) bus.parallel.push_back({.setup = &linked});
     waits_ = waits_ || bus.link->descriptor() >= 0;
     buses_.push_back(std::move(bus));
   }

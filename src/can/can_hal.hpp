@@ -71,15 +71,18 @@ class CanHal final : public hal::Hal {
 
  private:
   struct Motor {
+    explicit Motor(const drives::MotorSetup& motor) : setup(&motor), protocol(motor.ranges), monitor(motor.limits) {}
+
     const drives::MotorSetup* setup;
     drives::MitProtocol protocol;
     drives::MotorMonitor monitor;
   };
   template <int N>
   struct Linked {
-    const drives::LinkedMotors<N>* setup;
-    typename drives::RodLinkage<N>::Angles q_rad, dq_rad_s, theta_rad;  // of the last sample
-    bool solved;  // the joint angles belong to the last motor angles
+    using Angles = typename drives::RodLinkage<N>::Angles;
+    const drives::LinkedMotors<N>* setup = nullptr;
+    Angles q_rad = Angles::Zero(), dq_rad_s = Angles::Zero(), theta_rad = Angles::Zero();  // of the last sample
+    bool solved = true;  // the joint angles belong to the last motor angles
   };
   struct Bus {
     const drives::BusSetup* setup = nullptr;
@@ -92,15 +95,6 @@ class CanHal final : public hal::Hal {
     std::vector<Linked<2>> parallel;
     std::array<int, 256> motor_of_node{};
   };
-  template <int N>
-  static Linked<N> at_zero(const drives::LinkedMotors<N>& setup) {
-    using Angles = typename drives::RodLinkage<N>::Angles;
-    return {.setup = &setup,
-            .q_rad = Angles::Zero(),
-            .dq_rad_s = Angles::Zero(),
-            .theta_rad = Angles::Zero(),
-            .solved = true};
-  }
   template <int N>
   static void command_cranks(Bus& bus, const Linked<N>& linked) noexcept;
   template <int N>

@@ -60,7 +60,7 @@ class JointDiagnosisRun {
     EffectSearch search(
         bench_, fit, base, limits(), direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, by_),
         by_,
-        {.told = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
+        {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
     for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     Extension chosen = search.choose();
@@ -119,7 +119,7 @@ class JointDiagnosisRun {
 
   void report(double share, std::string_view doing) {
     share_ = std::max(share_, share);
-    if (progress_.told) progress_.told(share_, doing);
+    if (progress_.report) progress_.report(share_, doing);
   }
 
   void score(const effects::NestedFit& fit, const std::vector<calib::SingleJoint>& scored) {

@@ -151,9 +151,9 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
                                          {{{-1, 0, 1}}, {gaits.backward, gaits.turn}, 1.17},
                                          {{{0, 1, 1}}, {gaits.lateral, gaits.turn}, 1.10},
                                          {{{0, 1, -1}}, {gaits.lateral, turn_right}, 1.10}}};
-  const work::Progress during{.told =
+  const work::Progress during{.report =
                                   [&](double share, std::string_view) {
-                                    if (progress.told) progress.told(share, "combinations of two velocities");
+                                    if (progress.report) progress.report(share, "combinations of two velocities");
                                   },
                               .interrupted = progress.interrupted};
   const auto make = [&](const Wanted& want) {

@@ -144,15 +144,16 @@ ClipLibrary synthesize(const model::RobotModel& robot, bool with_corners, const 
   library.posture = making.posture;
 
   std::mutex one_at_a_time;  // several clips are made at the same time
-  const work::Progress locked{.told =
+  const work::Progress locked{.report =
                                   [&](double share, std::string_view name) {
                                     const std::lock_guard lock(one_at_a_time);
-                                    if (progress.told) progress.told(share, name);
+                                    if (progress.report) progress.report(share, name);
                                   },
                               .interrupted = progress.interrupted};
   const auto during = [&locked](const char* name) {
     return work::Progress{
-        .told = [&locked, name](double share, std::string_view) { locked.told(share, "making " + std::string(name)); },
+        .report = [&locked, name](double share,
+                                  std::string_view) { locked.report(share, "making " + std::string(name)); },
         .interrupted = locked.interrupted};
   };
   const auto make = [&](const char* name, const GaitTask& task, UpperBody body) {

@@ -171,8 +171,8 @@ class Replay {
     has_state_ = false;
     ++report_.ticks;
     report_.duration_s = seconds(event);
-    if (progress_.told && report_.ticks % kTicksAProgress == 0)
-      progress_.told(work::kUnknownShare, fmt::format("{:8.1f} s replayed", report_.duration_s));
+    if (progress_.report && report_.ticks % kTicksAProgress == 0)
+      progress_.report(work::kUnknownShare, fmt::format("{:8.1f} s replayed", report_.duration_s));
   }
 
   void require_tick() const {

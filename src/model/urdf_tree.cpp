@@ -95,10 +95,12 @@ void check_extent(const UrdfTree& tree) {
   }
 }
 
-/// Links in a cycle of their own hang on no root; urdfdom takes them without a word.
+/// Links in a cycle of their own hang on no root; urdfdom takes them without a word. They own each other: they are cut
+/// apart, or their memory would never be freed.
 void check_all_reached(const UrdfTree& tree) {
   for (const auto& [name, link] : tree.urdf->links_) {
     if (tree.link_pose.contains(name)) continue;
+    for (const auto& [any_name, any_link] : tree.urdf->links_) any_link->child_links.clear();
     files::raise(tree.place("link", name), "link " + name, "is not connected to the root link",
                  fmt::format("a chain of joints from {}", tree.urdf->getRoot()->name));
   }

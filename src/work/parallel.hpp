@@ -24,9 +24,9 @@ void for_each_in_parallel(std::size_t count, unsigned threads, const Work& work,
   std::size_t done = 0;
   std::exception_ptr thrown;
   const auto tell = [&] {
-    if (progress.told)
-      progress.told(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, count)),
-                    std::to_string(done) + " of " + std::to_string(count));
+    if (progress.report)
+      progress.report(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, count)),
+                      std::to_string(done) + " of " + std::to_string(count));
   };
   tell();
   const auto take_turns = [&] {

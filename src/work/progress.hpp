@@ -20,14 +20,14 @@ class Interrupted : public std::runtime_error {
 struct Progress {
   /// share: part of the work done, 0 to 1, or kUnknownShare; doing: the present step in words, or "". One call at a
   /// time.
-  std::function<void(double share, std::string_view doing)> told{};
+  std::function<void(double share, std::string_view doing)> report{};
   /// True: end the work and keep the partial result. Called from any thread, at any time.
   std::function<bool()> interrupted{};
 
   bool interrupted_now() const { return interrupted && interrupted(); }
   /// Reports; returns true to go on.
   bool operator()(double share, std::string_view doing = {}) const {
-    if (told) told(share, doing);
+    if (report) report(share, doing);
     return !interrupted_now();
   }
   /// Reports; throws Interrupted if interrupted.

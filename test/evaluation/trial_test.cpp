@@ -95,7 +95,7 @@ TEST(Trial, AnObserverEndsIt) {
 TEST(Trial, AnInterruptedOneIsNotComplete) {
   const TrialResult result =
       run_trial(without_policy(), standing(5.0), {},
-                {.gantry = false, .progress = {.told = {}, .interrupted = [] { return true; }}, .observer = {}});
+                {.gantry = false, .progress = {.report = {}, .interrupted = [] { return true; }}, .observer = {}});
   EXPECT_FALSE(result.complete);
   EXPECT_FALSE(result.survived());
 }

@@ -228,7 +228,7 @@ TEST_F(RunSeriesTest, TakesWallTimesFromTheTableBesideALockstepLog) {
 TEST_F(RunSeriesTest, StopsWhenItIsToldTo) {
   double read_share = 0.0;
   const RunSeries run =
-      read_run(write({.ticks = 2000}), {.told = [&](double share, std::string_view) { read_share = share; },
+      read_run(write({.ticks = 2000}), {.report = [&](double share, std::string_view) { read_share = share; },
                                         .interrupted = [&] { return read_share >= 0.3; }});
   EXPECT_LT(run.duration_s, 15.0);
   EXPECT_GT(run.duration_s, 1.0);

@@ -14,7 +14,7 @@ TEST(Parallel, EveryPieceIsDoneOnceWhateverTheJobs) {
     std::vector<std::atomic<int>> done(20);
     std::vector<double> told;
     for_each_in_parallel(done.size(), jobs, [&](std::size_t piece) { ++done[piece]; },
-                         {.told = [&told](double share, std::string_view) { told.push_back(share); }});
+                         {.report = [&told](double share, std::string_view) { told.push_back(share); }});
     for (const auto& count : done) EXPECT_EQ(count, 1);
     ASSERT_EQ(told.size(), done.size() + 1) << "before the first, and after each";
     for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], static_cast<double>(i) / 20.0);
