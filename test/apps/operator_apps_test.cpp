@@ -237,17 +237,22 @@ TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideTheProm
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     const fs::path file = folder_ / "failures.yaml";
     std::ofstream(file) << "failures:\n  - {kind: hot, at_s: 3.0, for_s: 100.0, joint: left_knee, value: 95.0}\n";
-    std::string shown;
+    Finished damping;
+    std::string shown, mode;
     // A host that pauses the controller for longer than it can bear ends it in a fault of timing: then once more.
     for (int attempt = 0; attempt < 5; ++attempt) {
       const auto robot = controller("z1", {"--inject", file.string()});
-      run("pmg_send damping");
-      while (mode_of("z1") != "fault" && robot->running()) {
+      damping = run("pmg_send damping");
+      const io::WallClock clock;
+      const std::int64_t end_ns = clock.now_ns() + 60'000'000'000;
+      while (mode = mode_of("z1"), mode != "fault" && clock.now_ns() < end_ns) {
       }
       EXPECT_EQ(robot->end(SIGINT), 0);
       shown = text(folder_ / "z1.txt");
       if (shown.find("FAULT") == shown.find("FAULT, damping: temperature")) break;
     }
+    EXPECT_EQ(damping.exit_code, 0);
+    EXPECT_EQ(mode, "fault");
     EXPECT_THAT(shown, AllOf(HasSubstr("injected: hot at 3 s: temperature; "), HasSubstr("(promised 501 to 505)")));
   });
 }
@@ -351,8 +356,9 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
 
     for (const std::string& folder : {anna, bert}) {
       fs::create_directories(folder);
-      const Finished made = run("pmg_key new --keys " + keys + " " + fs::path(folder).filename().string() + " --out " +
-                                folder + "/z1.key");
+      std::string make_key = "pmg_key new --keys ";
+      make_key.append(keys).append(" ").append(fs::path(folder).filename()).append(" --out ").append(folder);
+      const Finished made = run(make_key.append("/z1.key"));
       EXPECT_EQ(made.exit_code, 0) << made.err;
     }
     EXPECT_EQ(run("pmg_key list --keys " + keys).out, "anna\nbert\n");
@@ -374,10 +380,11 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
 
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 0);
     EXPECT_EQ(run("pmg_key revoke --keys " + keys + " anna").exit_code, 1);
+    const std::string stand_by_anna = "pmg_send stand --timeout 4 --keys " + anna + url;
     int revoked = 0;
     for (int k = 0; k < 100 && revoked == 0; ++k) {  // the controller looks once a second
       EXPECT_EQ(run("pmg_send stop" + url).exit_code, 0);
-      revoked = run("pmg_send stand --timeout 4 --keys " + anna + url).exit_code;
+      revoked = run(stand_by_anna).exit_code;
     }
     EXPECT_EQ(revoked, 1);
     EXPECT_EQ(run("pmg_send stand --keys " + bert + url).exit_code, 0);
