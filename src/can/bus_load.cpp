@@ -15,9 +15,12 @@ constexpr int kFrameBytes = 8, kImuFrames = 3;
 
 double frame_time_s(int bytes, int bitrate, int data_bitrate) {
   const int payload = 8 * bytes;
-  if (data_bitrate == 0) return static_cast<double>(47 + payload + (34 + payload - 1) / 4) / bitrate;
-  const int crc = bytes > 16 ? 32 : 27;
-  return 34.0 / bitrate + static_cast<double>(5 + payload + (5 + payload) / 4 + crc) / data_bitrate;
+  if (data_bitrate == 0) {
+    const int stuffed = (34 + payload - 1) / 4, bits = 47 + payload + stuffed;
+    return static_cast<double>(bits) / bitrate;
+  }
+  const int crc = bytes > 16 ? 32 : 27, stuffed = (5 + payload) / 4, fast_bits = 5 + payload + stuffed + crc;
+  return 34.0 / bitrate + static_cast<double>(fast_bits) / data_bitrate;
 }
 
 BusLoad planned_load(const drives::BusSetup& bus) {

@@ -107,8 +107,9 @@ Wiggle wiggle(const model::RobotModel& robot, const drives::BusSetup& bus, const
       q_sum += one.joint().q_rad;
       torque_sum += one.joint().torque_Nm;
     }
-    q_rad = q_sum / (kSettleCycles / 2);
-    torque_Nm = torque_sum / (kSettleCycles / 2);
+    constexpr int kRestCycles = kSettleCycles / 2;
+    q_rad = q_sum / kRestCycles;
+    torque_Nm = torque_sum / kRestCycles;
   };
   double q_up = 0.0, q_down = 0.0, q_back = 0.0, torque_up = 0.0, torque_down = 0.0, torque_back = 0.0;
   const double up = std::min(start_rad + options.by_rad, joint.upper_rad);

@@ -139,6 +139,7 @@ std::vector<CornerClip> make_corners(const Making& making, const ClipLibrary& li
   const double lift_tilt_rad = (0.5 * (gaits.forward.body.pelvis_tilt_rad + gaits.backward.body.pelvis_tilt_rad) +
                                 gaits.lateral.body.pelvis_tilt_rad + gaits.turn.body.pelvis_tilt_rad) /
                                3.0;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the pair refers to two gaits, which have no default
   struct Wanted {
     Corner corner;
     Pair pair;

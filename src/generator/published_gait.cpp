@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pmg/types.hpp"
+
 namespace pmg::generator {
 
 double PublishedCurve::at_rad(double phase) const {

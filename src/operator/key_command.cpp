@@ -53,7 +53,7 @@ std::optional<Key> key_named(std::string_view name) noexcept {
 }
 
 void KeyCommand::press(Key key, bool fast, std::int64_t now_ns) noexcept {
-  pressed_ns_ = sign_ns_ = now_ns;
+  pressed_ns_ = sign_ns_ = listened_ns_ = now_ns;  // a key that arrives shows that the window polls
   newest_ = key;
   if (key == Key::kRest) rest();
   if (key == Key::kUpright) upright();
@@ -84,6 +84,8 @@ void KeyCommand::release(Key key, std::int64_t now_ns) noexcept {
 void KeyCommand::release_all() noexcept {
   for (Held& held : held_) held.down = false;
 }
+
+bool KeyCommand::held() const noexcept { return std::ranges::any_of(held_, &Held::down); }
 
 void KeyCommand::rest() noexcept {
   release_all();

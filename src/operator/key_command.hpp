@@ -74,6 +74,8 @@ class KeyCommand {
 
   /// Releases keys whose time is over (kSilence_ns and the times below it).
   const Command& command(std::int64_t now_ns) noexcept;
+  /// A key with a command is down, as far as this knows.
+  bool held() const noexcept;
   /// Number of presses of keys with a command, without repetitions.
   std::int64_t presses() const noexcept { return presses_; }
 

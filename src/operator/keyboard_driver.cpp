@@ -150,6 +150,7 @@ void KeyboardDriver::follow_errands() {
 void KeyboardDriver::follow_keys() {
   const bool fresh = keys_.presses() != seen_presses_;
   if (!fresh || letting_go_) return;
+  if (!limits_known_ && keys_.held()) return;
   if (doing_ == Doing::kDriving) {
     seen_presses_ = keys_.presses();
   } else if (held_back_ || !wants_to_move()) {

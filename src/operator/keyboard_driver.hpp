@@ -32,7 +32,11 @@ class KeyboardDriver {
   /// Keeps a reference. robot: its controller's name.
   KeyboardDriver(OperatorSource& source, std::string robot, KeyReport report);
 
-  void set_limits(const CommandLimits& limits) noexcept { keys_.set_limits(limits); }
+  /// Until the robot's limits are known a key commands nothing; one that is still held then takes effect.
+  void set_limits(const CommandLimits& limits) noexcept {
+    keys_.set_limits(limits);
+    limits_known_ = true;
+  }
 
   void press(Key key, bool fast);
   void repeat(Key key, bool fast) { keys_.repeat(key, fast, now_ns()); }
@@ -86,7 +90,7 @@ class KeyboardDriver {
   std::int64_t seen_presses_ = 0;  // presses that have been handled
   std::optional<std::int8_t> mode_;
   std::int64_t session_ = 0;
-  bool held_back_ = false, letting_go_ = false, gone_ = false;
+  bool limits_known_ = false, held_back_ = false, letting_go_ = false, gone_ = false;
   std::optional<Climb> climb_;
   std::optional<ModeWish> stop_, descent_, reset_;
   std::optional<HoistWish> hoist_;

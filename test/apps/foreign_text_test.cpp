@@ -117,7 +117,7 @@ class ForeignText : public testing::Test {
       if (event.channel == "MODE" && everywhere) change.operator()<pmg_msgs::mode_t>(&pmg_msgs::mode_t::source);
       if (event.channel != "ROBOT_INFO" || !everywhere) return true;
       auto info = event.as<robot_info_t>();
-      for (std::string& name : info.joint_names) name = kForeign + name;
+      for (std::string& name : info.joint_names) name.insert(0, kForeign);
       for (std::string& file : info.bundle_file) file = kForeign;
       info.refused = {kForeign};
       info.refused_count = 1;

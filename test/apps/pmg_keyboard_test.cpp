@@ -50,7 +50,7 @@ class PmgKeyboard : public testing::Test {
       return came && !disturbed;
     };
     const auto window = [](const std::string& keys) {
-      const std::string find = "xdotool search --sync --name 'PMG: z1' windowfocus --sync ";
+      const std::string find = "xdotool search --sync --onlyvisible --name 'PMG: z1' windowfocus --sync ";
       EXPECT_EQ(std::system((find + keys + " >/dev/null 2>&1").c_str()), 0) << keys;
     };
     if (!comes("mode: passive")) return false;

@@ -103,7 +103,7 @@ TEST_F(PmgLog, BadInputIsOneClearLine) {
   expect_refused("info " + (folder_ / "absent.lcm").string(), "absent.lcm");
   expect_refused("info " + folder_.string(), "no log in this folder");
   const fs::path empty = folder_ / "empty.lcm";
-  std::ofstream{empty};
+  std::ofstream(empty).close();
   expect_refused("replay " + empty.string(), "no tick to replay");
   expect_refused(std::string("export ") + kLog, "--csv or --mcap");
   expect_refused(std::string("export ") + kLog + " --mcap /dev/full", "/dev/full");

@@ -174,10 +174,10 @@ TEST(CanRobot, DISABLED_TheTourIsTrackedAsInProcess) {
 
 /// A fault while the robot walks, and how many bus cycles later every drive is damped, or the sit-down begins.
 struct Row {
-  const char* name;
-  void (*inject)(test::EmulatedRobot&);
-  int least, most;  ///< bus cycles, as in docs/reference/safety.md
-  faults::FaultCode code;
+  const char* name = nullptr;
+  void (*inject)(test::EmulatedRobot&) = nullptr;
+  int least = 0, most = 0;  ///< bus cycles, as in docs/reference/safety.md
+  faults::FaultCode code = faults::FaultCode::kNone;
   bool sits_down = false;
 };
 

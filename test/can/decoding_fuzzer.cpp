@@ -36,6 +36,7 @@ struct Robot {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Robot robot;
   can::from_line(std::string_view(reinterpret_cast<const char*>(data), size));

@@ -46,7 +46,7 @@ int run(const std::string& name, bool gantry) {
   apps::notice({SIGINT, SIGTERM}, nullptr);
   const io::WallClock clock;
   std::int64_t next_ns = clock.now_ns();
-  std::cout << "drives of " << robot.name << " answer" << std::endl;
+  std::cout << "drives of " << robot.name << " answer\n" << std::flush;
   while (apps::interrupt_requested == 0) {
     world.read(sensed);
     drives.feel(sensed);

@@ -7,6 +7,7 @@
 
 #include "io/lcm_assembler.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static pmg::io::LcmAssembler assembler = [] {  // one for all inputs: its memory is what an attacker leaves behind
     pmg::io::LcmAssembler made;

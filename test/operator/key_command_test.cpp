@@ -97,6 +97,15 @@ TEST(KeyCommand, AWindowThatStandsStillHoldsNoKey) {
   EXPECT_EQ(window[kVx], 0.0) << "when it is back, the key must be pressed anew";
 }
 
+TEST(KeyCommand, APressThatAWindowFindsWhenItPollsForTheFirstTimeInALongWhileCounts) {
+  Window window;
+  window.now_ns += KeyCommand::kDeaf_ns + kMs;
+  window.press(Key::kForwards);
+  EXPECT_DOUBLE_EQ(window[kVx], 0.4) << "before the poll has returned";
+  window.now_ns += KeyCommand::kDeaf_ns + kMs;
+  EXPECT_EQ(window[kVx], 0.0) << "it polls no more";
+}
+
 TEST(KeyCommand, ALostReleaseIsNoticedWhenTheKeyNoLongerRepeats) {
   Window window;
   window.press(Key::kForwards);

@@ -86,6 +86,26 @@ TEST_F(KeyboardTest, OneHeldKeyTakesALimpRobotToWalking) {
   EXPECT_EQ(robot_.result().driving, control::Source::make("keyboard.1", 1));
 }
 
+TEST_F(KeyboardTest, AKeyPressedBeforeTheRobotsLimitsAreKnownTakesEffectThenIfItIsStillHeld) {
+  for (const bool held : {false, true}) {
+    KeyboardDriver early(other_, "biped", KeyReport::kPressAndRelease);
+    const auto run_early = [&](double seconds) {
+      for (; seconds > 1e-9; seconds -= kStep_s) {
+        step();
+        early.listen();
+        early.step();
+      }
+    };
+    early.press(Key::kForwards, false);
+    run_early(0.5);
+    EXPECT_EQ(mode(), Mode::kPassive) << "nobody knows how fast it may walk";
+    if (!held) early.release(Key::kForwards);
+    early.set_limits(robot_.robot.command_limits);
+    run_early(6.0);
+    EXPECT_EQ(mode(), held ? Mode::kWalk : Mode::kPassive) << early.text();
+  }
+}
+
 TEST_F(KeyboardTest, AKeyThatIsLetGoBringsVelocityToZeroWithinHalfASecondThenStandAndNeverDamps) {
   for (const bool loses_keyboard : {false, true}) {
     walk();

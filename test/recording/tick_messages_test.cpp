@@ -43,7 +43,7 @@ bool same(const T& a, const T& b) {
 /// Fields that keep what the message held before.
 template <typename Message, typename Fill>
 std::vector<std::string> untouched(Fill&& fill_it) {
-  Message one, other;
+  Message one{}, other{};
   std::vector<std::string> names;
   const auto each = [](auto&& apply) {
     std::apply([&](const auto&... field) { (apply(field), ...); }, pmg_msgs::kFields<Message>);
