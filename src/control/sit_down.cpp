@@ -46,10 +46,12 @@ SitDown::SitDown(const model::RobotModel& robot, const ClipLibrary& library, con
       own_(own_gains(robot)),
       crouch_(library.q_stand),
       from_(library.q_stand),
-      brake_kd_((options.brake_factor * own_.kd_Nm_s_per_rad).cwiseMin(guard.max_kd_Nm_s_per_rad)) {
+      brake_kd_((options.brake_factor * own_.kd_Nm_s_per_rad).cwiseMin(guard.max_kd_Nm_s_per_rad)),
+      squat_rad_(library.q_stand) {
   const StaticClip& height = library.posture[kHeight - kVelocityChannels];
   if (options_.duration_s == 0.0 || height.command.empty() || height.command.front() >= 0.0) return;
   lowest_m_ = height.command.front();
+  squat_rad_ = height.q.front();
   crouch_ = model::deepest_crouch(robot, height.q.front());
 }
 

@@ -43,9 +43,10 @@ class SitDown {
 
   const JointVector& crouch() const noexcept { return crouch_; }
   const SitDownOptions& options() const noexcept { return options_; }
-  const policy::DriveGains& gains() const noexcept { return own_; }   ///< of the joints' way
-  const JointVector& brake_kd() const noexcept { return brake_kd_; }  ///< [Nm s/rad], once it is over
-  double lowest_m() const noexcept { return lowest_m_; }              ///< of the height channel
+  const policy::DriveGains& gains() const noexcept { return own_; }     ///< of the joints' way
+  const JointVector& brake_kd() const noexcept { return brake_kd_; }    ///< [Nm s/rad], once it is over
+  double lowest_m() const noexcept { return lowest_m_; }                ///< of the height channel
+  const JointVector& squat_rad() const noexcept { return squat_rad_; }  ///< the library's squat there
 
   void start(std::int64_t now_ns) noexcept;  ///< with the reference
   /// (measured posture, targets in force, their gains) => the targets that give the same torque kp (q_des - q) under
@@ -68,6 +69,7 @@ class SitDown {
   SitDownOptions options_;
   policy::DriveGains own_;
   JointVector crouch_, from_, brake_kd_;
+  JointVector squat_rad_;
   double lowest_m_ = 0.0;
   Stage stage_ = Stage::kNone;
   std::int64_t start_ns_ = 0, joints_start_ns_ = 0;

@@ -52,6 +52,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
       sit_down_(robot, library, options.sit_down, guard_),
+      fallback_(options.sit_down.reference_s),
       target_(robot.q_stand()) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();
@@ -200,6 +201,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   motion_.reset();
   without_policy_ = false;
   target_ = motion_.reference().q;
+  fallback_.stop();
   gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
   change_over_.finish();
@@ -251,13 +253,24 @@ faults::Fault Tick::make_reference() noexcept {
   result_.reference = motion_.advance(result_.user, dt_s_);
   if (spoiler_ != nullptr) spoiler_->spoil(result_.reference);
   result_.times.generator_ns = generator.elapsed_ns();
-  if (!finite(result_.reference)) return {.code = faults::FaultCode::kReferenceNotFinite};
+  if (fallback_.active() || !finite(result_.reference)) return without_generator();
 
   const io::Lap gco(stopwatch_);
   result_.optimised = motion_.ground();
   result_.times.gco_ns = gco.elapsed_ns();
-  if (!finite(result_.optimised.command)) return {.code = faults::FaultCode::kReferenceNotFinite};
+  if (!finite(result_.optimised.command)) return without_generator();
+  good_reference_ = result_.reference;
+  good_observed_ = result_.optimised.command;
   gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;
+  return {};
+}
+
+faults::Fault Tick::without_generator() noexcept {
+  if (result_.mode != Mode::kFault) return {.code = faults::FaultCode::kReferenceNotFinite};
+  if (!fallback_.active())
+    fallback_.start(good_reference_, good_observed_, sit_down_.squat_rad(), sit_down_.lowest_m());
+  result_.reference = fallback_.advance(dt_s_);
+  result_.optimised.command = fallback_.observed();
   return {};
 }
 
@@ -326,14 +339,14 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
   result_.user = Command{};
   result_.user[kHeight] = sit_down_.lowest_m();
   if (drive(input.state).code == faults::FaultCode::kNone) return true;
-  if (without_policy_ || !finite(result_.reference)) return false;
+  if (without_policy_) return false;
   leave_policy(input.state);  // it failed meanwhile; the reference goes on alone
   return lower_reference(input);
 }
 
 void Tick::leave_policy(const model::RobotState& state) noexcept {
   without_policy_ = true;
-  change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), motion_.reference().q);
+  change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), result_.reference.q);
   set_limiter_gains(sit_down_.gains());
 }
 

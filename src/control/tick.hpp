@@ -11,6 +11,7 @@
 #include "control/command_intake.hpp"
 #include "control/entry_ramp.hpp"
 #include "control/excitation_player.hpp"
+#include "control/fallback_reference.hpp"
 #include "control/limiter.hpp"
 #include "control/mode.hpp"
 #include "control/sit_down.hpp"
@@ -137,6 +138,8 @@ class Tick {
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   faults::Fault drive(const model::RobotState& state) noexcept;
   faults::Fault make_reference() noexcept;
+  /// The generator gave no finite reference: a fault; a sit-down goes on with the fallback reference.
+  faults::Fault without_generator() noexcept;
   void excite(model::JointCommand& command) noexcept;
   faults::Fault ask_policy(const model::RobotState& state) noexcept;
   /// In Fault: begins, goes on with or ends the sit-down.
@@ -168,6 +171,9 @@ class Tick {
   Limiter limiter_;
   faults::ActionMonitor action_monitor_;
   SitDown sit_down_;
+  FallbackReference fallback_;   // in a sit-down whose generator has failed
+  Reference good_reference_;     // the last finite one
+  Command good_observed_;        // u' with it
   bool without_policy_ = false;  // in a sit-down whose policy isn't sound
   bool stop_asked_ = false;      // in this tick, by anybody
   JointVector target_;           // the policy's last good one, before ramp and limits

@@ -189,6 +189,47 @@ int asked_while_sitting(const std::function<void(ControlRig&)>& inject) {
 
 TEST(SitDown, ASoundPolicyBalancesTheRobotUntilTheReferenceHasStopped) { EXPECT_GE(asked_while_sitting(overheat), 29); }
 
+/// Spoils every reference once it is told to.
+struct GeneratorThatFails final : TickSpoiler {
+  void spoil(Reference& reference) noexcept override {
+    if (fails) reference.q.setConstant(kNan);
+  }
+  void spoil(TickResult&) noexcept override {}
+  bool fails = false;
+};
+
+TEST(SitDown, AGeneratorThatFailedForGoodIsReplacedByAWayDownThatThePolicyBalances) {
+  GeneratorThatFails generator;
+  TickOptions options = tick_options(test::biped());
+  options.spoiler = &generator;
+  ControlRig rig(test::biped(), test::clips(test::biped()), options);
+  rig.reach_walk();
+  rig.drive.command[kVx] = 0.3;
+  rig.run(1.0);
+  const Reference last = rig.tick.result().reference;
+  ASSERT_GT(last.gain, 0.0);
+  generator.fails = true;
+  while (!rig.tick.result().sitting) rig.cycle();
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kReferenceNotFinite);
+  const int before = rig.policy->calls;
+  rig.after_cycle = [&] { EXPECT_TRUE(rig.bus.finite()); };
+  rig.run(0.3);
+  EXPECT_TRUE(rig.tick.result().sitting);
+  EXPECT_GE(rig.policy->calls - before, 29);
+  const Reference& now = rig.tick.result().reference;
+  EXPECT_LT(now.gain, 0.5 * last.gain);
+  EXPECT_LT(now.command[kHeight], -0.05);
+  rig.run(0.8);
+  EXPECT_TRUE(rig.bus.damping());
+  generator.fails = false;
+  rig.reset();
+  rig.run(0.1);
+  rig.ask(Mode::kStand);
+  rig.run(3.0);
+  EXPECT_EQ(rig.mode(), Mode::kStand);
+  EXPECT_EQ(rig.tick.result().reference.command[kHeight], 0.0) << "the generator's own again";
+}
+
 TEST(SitDown, APolicyThatFailedIsNotAskedAgain) {
   for (const BreakablePolicy::Break how : {BreakablePolicy::Break::kNotANumber, BreakablePolicy::Break::kLate}) {
     EXPECT_EQ(asked_while_sitting([&](ControlRig& rig) { rig.policy->how = how; }), 0);

@@ -81,4 +81,10 @@ inline std::uint64_t campaign_robots(std::uint64_t few) {
   return asked == nullptr ? few : std::strtoull(asked, nullptr, 10);
 }
 
+/// The seed of a campaign's first robot: the variable PMG_CAMPAIGN_FIRST, or 1.
+inline std::uint64_t campaign_first() {
+  const char* asked = std::getenv("PMG_CAMPAIGN_FIRST");
+  return asked == nullptr ? 1 : std::strtoull(asked, nullptr, 10);
+}
+
 }  // namespace pmg::test
