@@ -13,6 +13,7 @@ void Supervisor::request(const ModeRequest& request) noexcept {
     reset_wanted_ = true;
   } else {
     wanted_ = request.mode;
+    wanted_since_ns_.reset();
   }
 }
 
@@ -63,6 +64,7 @@ void Supervisor::stop_now() noexcept {
 
 void Supervisor::follow_request(const SupervisorInput& input) noexcept {
   if (!wanted_) return;
+  if (!wanted_since_ns_) wanted_since_ns_ = input.evidence.now_ns;
   if (*wanted_ == Mode::kStand || *wanted_ == Mode::kWalk) {
     climb(input);
     return;
@@ -87,7 +89,11 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
         if (!input.entry_done) return;  // the request waits for the ramp
         // Without somebody who drives, or in the air, it would stop at once; and walking must not begin by itself when
         // a link comes back or the robot is set down.
-        if (may_walk(input)) mode_ = Mode::kWalk;
+        if (may_walk(input)) {
+          mode_ = Mode::kWalk;
+        } else if (only_lacks_a_command(input)) {
+          return;
+        }
       }
       wanted_.reset();
       return;
@@ -107,6 +113,13 @@ void Supervisor::climb(const SupervisorInput& input) noexcept {
 bool Supervisor::may_walk(const SupervisorInput& input) const noexcept {
   return input.command_age_s <= options_.stale_command_s && input.gco_held_ticks < options_.gco_held_ticks &&
          !input.policy_waits;
+}
+
+bool Supervisor::only_lacks_a_command(const SupervisorInput& input) const noexcept {
+  SupervisorInput with_command = input;
+  with_command.command_age_s = 0.0;
+  const double waited_s = static_cast<double>(input.evidence.now_ns - *wanted_since_ns_) * 1e-9;
+  return may_walk(with_command) && waited_s < options_.stale_command_s;
 }
 
 void Supervisor::stop_walking_if_due(const SupervisorInput& input) noexcept {

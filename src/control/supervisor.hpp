@@ -11,7 +11,7 @@ namespace pmg::control {
 
 struct SupervisorOptions {
   faults::FaultLimits fault_limits;
-  double stale_command_s = 0.2;  ///< an older driving command ends walking
+  double stale_command_s = 0.2;  ///< an older driving command ends walking; Walk waits so long for the first one
   double stop_within_s = 0.5;    ///< after this time velocity counts as zero, whatever the generator says
   /// So many ticks in a row with a held ground-aware solution end walking: u' is then a second old.
   int gco_held_ticks = 100;
@@ -60,6 +60,8 @@ class Supervisor {
   void follow_request(const SupervisorInput& input) noexcept;
   void climb(const SupervisorInput& input) noexcept;
   bool may_walk(const SupervisorInput& input) const noexcept;
+  /// Its command may be behind the request on the network.
+  bool only_lacks_a_command(const SupervisorInput& input) const noexcept;
   void stop_walking_if_due(const SupervisorInput& input) noexcept;
 
   SupervisorOptions options_;
@@ -67,6 +69,7 @@ class Supervisor {
   Mode mode_ = Mode::kPassive;
   faults::Fault fault_;
   std::optional<Mode> wanted_;
+  std::optional<std::int64_t> wanted_since_ns_;  // the first update() that knew the request
   bool reset_wanted_ = false, stop_wanted_ = false;
   std::optional<std::int64_t> stopping_since_ns_;
 };

@@ -147,7 +147,8 @@ void Drive::send_if_due() {
     source_.send_command(robot_, Command{}, kLastLease_s);  // lets go
     return;
   }
-  if (source_.clock().now_ns() < send_at_ns_) return;
+  // Before the controller is heard no command would be fresh. The first one goes out as soon as one can be.
+  if (source_.heard(robot_) == nullptr || source_.clock().now_ns() < send_at_ns_) return;
   send_at_ns_ += kPeriod_ns;
   if (send_at_ns_ < source_.clock().now_ns()) send_at_ns_ = source_.clock().now_ns();  // after a pause: no burst
   source_.send_command(robot_, phase_ == Phase::kDriving ? command_ : Command{}, kLease_s);

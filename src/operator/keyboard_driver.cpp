@@ -68,7 +68,10 @@ void KeyboardDriver::step() {
   watch_mode();
   follow_errands();
   follow_keys();
-  if (doing_ == Doing::kClimbing) follow_climb();
+  if (doing_ == Doing::kClimbing) {
+    send_if_due();  // the command must arrive before the request for Walk
+    follow_climb();
+  }
   if (doing_ != Doing::kIdle && doing_ != Doing::kClimbing) follow_drive();
   send_if_due();
   const bool ended = doing_ == Doing::kIdle && !stop_;
@@ -89,7 +92,6 @@ void KeyboardDriver::enter(Doing doing) {
 void KeyboardDriver::climb(Goal to) {
   seen_presses_ = keys_.presses();
   enter(Doing::kClimbing);
-  send_if_due();  // the command must arrive before the request for Walk
   climb_.emplace(source_, robot_, to, kTimeout_s);
 }
 
@@ -225,7 +227,7 @@ bool KeyboardDriver::bent() const noexcept {
 }
 
 void KeyboardDriver::send_if_due() {
-  if (doing_ == Doing::kIdle) return;
+  if (doing_ == Doing::kIdle || source_.heard(robot_) == nullptr) return;  // unheard: no command would be fresh
   Command command;
   if (doing_ == Doing::kDriving || doing_ == Doing::kCalming) command = asked_;
   if (now_ns() < send_at_ns_ && command == sent_) return;

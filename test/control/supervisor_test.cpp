@@ -130,13 +130,31 @@ TEST_F(SupervisorTest, WalkIsRefusedWithoutAFreshCommand) {
   for (const double age_s : {0.201, std::numeric_limits<double>::infinity()}) {
     command_age_s_ = age_s;
     ask(Mode::kWalk);
-    EXPECT_EQ(update(), Mode::kStand);
+    EXPECT_EQ(update(21), Mode::kStand);
     command_age_s_ = 0.0;
     EXPECT_EQ(update(10), Mode::kStand) << "a refused request is forgotten";
   }
   command_age_s_ = 0.2;
   ask(Mode::kWalk);
   EXPECT_EQ(update(), Mode::kWalk);
+}
+
+TEST_F(SupervisorTest, AWalkRequestThatOvertookItsFirstCommandWaitsForItAsLongAsACommandMayBeOld) {
+  for (const int ticks : {1, 19}) {
+    reach(Mode::kStand);
+    command_age_s_ = std::numeric_limits<double>::infinity();
+    ask(Mode::kWalk);
+    EXPECT_EQ(update(ticks), Mode::kStand);
+    command_age_s_ = 0.0;
+    EXPECT_EQ(update(), Mode::kWalk);
+  }
+  reach(Mode::kStand);
+  command_age_s_ = std::numeric_limits<double>::infinity();
+  ask(Mode::kWalk);
+  update();
+  ask(Mode::kStand);
+  command_age_s_ = 0.0;
+  EXPECT_EQ(update(10), Mode::kStand) << "a later request replaces it";
 }
 
 TEST_F(SupervisorTest, FaultIsLatchedUntilResetAndThenDamps) {

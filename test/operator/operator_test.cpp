@@ -12,6 +12,7 @@
 #include "operator/drive.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/words.hpp"
+#include "pmg_msgs/link_t.hpp"
 
 namespace pmg::ops {
 namespace {
@@ -253,6 +254,24 @@ TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
   EXPECT_EQ(robot_.result().mode, Mode::kStand);
   EXPECT_EQ(robot_.result().reference.command[kVx], 0.0);
   EXPECT_EQ(robot_.result().driving, control::Source{}) << "whoever comes next need not wait for its lease";
+}
+
+TEST_F(OperatorTest, ANewSourcesFirstCommandGoesBeforeItsRequestForWalk) {
+  std::vector<std::string> sent;
+  const auto note = [&sent](const char* channel) { return [&sent, channel](io::Bytes) { sent.emplace_back(channel); }; };
+  network_.link.subscribe("COMMAND", note("COMMAND"));
+  network_.link.subscribe("MODE", note("MODE"));
+  std::int64_t refused = -1;
+  network_.link.subscribe(
+      "LINK", [&refused](io::Bytes bytes) { refused = io::decode_message<pmg_msgs::link_t>(bytes)->not_fresh; });
+  OperatorSource late(network_.link, "pmg_send.9", 1, network_.clock);  // has heard nothing yet
+  Drive drive(late, "biped", forward(0.3), {.duration_s = 0.5, .climb = true});
+  for (int k = 0; k < 1000 && !drive.driving(); ++k) step(drive);
+  EXPECT_TRUE(drive.driving()) << drive.text();
+  ASSERT_GE(sent.size(), 2u);
+  EXPECT_EQ(sent.front(), "COMMAND");
+  for (int k = 0; k < 200; ++k) step(drive);  // the counts come every second
+  EXPECT_EQ(refused, 0) << "none is sent that can't be fresh";
 }
 
 TEST_F(OperatorTest, AnInterruptedWalkComesToRestToo) {
