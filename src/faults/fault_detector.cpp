@@ -68,13 +68,18 @@ Fault FaultDetector::check_state(const FaultEvidence& evidence) noexcept {
 
 Fault FaultDetector::check_age(const FaultEvidence& evidence) noexcept {
   const double age_s = static_cast<double>(evidence.now_ns - evidence.state.stamp_ns) * 1e-9;
+  const double away_s = static_cast<double>(evidence.now_ns - last_ns_.value_or(evidence.now_ns)) * 1e-9;
+  last_ns_ = evidence.now_ns;
   if (age_s <= limits_.stale_state_s) {
     stale_since_ns_.reset();
     return {};
   }
-  if (!stale_since_ns_) stale_since_ns_ = evidence.now_ns;
+  if (!stale_since_ns_) {
+    stale_since_ns_ = evidence.now_ns;
+    stale_known_s_ = away_s > limits_.stale_state_s ? limits_.stale_state_s : limits_.stale_state_again_s;
+  }
   const double known_s = static_cast<double>(evidence.now_ns - *stale_since_ns_) * 1e-9;
-  if (known_s < limits_.stale_state_again_s) return {};
+  if (known_s < stale_known_s_) return {};
   return {.code = FaultCode::kStaleState, .value = age_s, .limit = limits_.stale_state_s};
 }
 

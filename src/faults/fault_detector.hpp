@@ -29,6 +29,8 @@ struct FaultLimits {
   /// A stale state is a fault when a tick this much later still finds the state stale. A host that stops both threads
   /// for a while may wake the control thread first, which then finds an old state once; within this time the bus brings
   /// two new ones. Less than a tick, so that a thread that wakes a little early waits for no third tick.
+  /// When the control thread itself was away for longer than stale_state_s, the bus has stale_state_s from its return
+  /// on, once: a system that shares its CPUs may hold one of the two threads some 50 ms longer than the other.
   double stale_state_again_s = 0.005;
 };
 
@@ -64,6 +66,7 @@ class FaultDetector {
   void reset() noexcept {
     held_ticks_.fill(0);
     stale_since_ns_.reset();
+    last_ns_.reset();
   }
 
  private:
@@ -86,6 +89,8 @@ class FaultDetector {
   std::array<int, kFaultCodes> held_ticks_{};
   std::int64_t sample_ns_ = -1;                 // stamp of the state that the last tick judged
   std::optional<std::int64_t> stale_since_ns_;  // when a tick first found the state stale that is so still
+  double stale_known_s_ = 0.0;                  // a fault when it has been known for so long
+  std::optional<std::int64_t> last_ns_;         // of the tick before
 };
 
 }  // namespace pmg::faults

@@ -166,6 +166,15 @@ TEST_P(PmgControllerSignal, DampsClosesTheLogAndExitsWithZero) {
 
 INSTANTIATE_TEST_SUITE_P(EverySignalThatEnds, PmgControllerSignal, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
+TEST_F(PmgController, AfterALogThatWasDeletedWhileItRanItsExitCodeIsOne) {
+  RunningProgram program("pmg_controller", arguments({"--log", log()}), folder_);
+  ASSERT_TRUE(program.until([&] { return log_has_begun(); })) << program.err();
+  fs::remove_all(log());
+  ASSERT_TRUE(program.until([&] { return program.err().find("was deleted") != std::string::npos; })) << program.err();
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 1) << program.err();
+}
+
 TEST_F(PmgController, KilledInTheMiddleItsLogReadsUpToTheLastSecond) {
   RunningProgram program("pmg_controller", arguments({"--log", log()}), folder_);
   ASSERT_TRUE(program.until([&] { return log_has_begun(); })) << program.err();

@@ -338,6 +338,29 @@ TEST_F(SupervisorTest, AHostThatStopsBothThreadsIsNoFault) {
   EXPECT_EQ(update(10), Mode::kStand);
 }
 
+TEST_F(SupervisorTest, AfterAStallOfTheHostTheBusMayComeBackLaterThanTheControlThreadByTheAgeLimit) {
+  reach(Mode::kStand);
+  now_ns_ += 300'000'000;
+  frozen_stamp_ = true;
+  EXPECT_EQ(update(2), Mode::kStand) << "at once, and 10 ms later";
+  frozen_stamp_ = false;
+  EXPECT_EQ(update(10), Mode::kStand);
+  now_ns_ += 300'000'000;
+  frozen_stamp_ = true;
+  EXPECT_EQ(update(2), Mode::kStand);
+  EXPECT_EQ(update(), Mode::kFault) << "20 ms later";
+  EXPECT_EQ(supervisor_.fault().code, faults::FaultCode::kStaleState);
+}
+
+TEST_F(SupervisorTest, AControlThreadThatIsHeldUpAgainAndAgainFindsASilentBus) {
+  reach(Mode::kStand);
+  frozen_stamp_ = true;
+  now_ns_ += 40'000'000;
+  EXPECT_EQ(update(), Mode::kStand);
+  now_ns_ += 40'000'000;
+  EXPECT_EQ(update(), Mode::kFault) << "the second stall gives the bus no more time";
+}
+
 TEST_F(SupervisorTest, AResetOutsideOfFaultChangesNothing) {
   for (const Mode mode : {Mode::kPassive, Mode::kDamping, Mode::kStand, Mode::kWalk}) {
     if (mode != Mode::kPassive) reach(mode);

@@ -258,7 +258,9 @@ TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
 
 TEST_F(OperatorTest, ANewSourcesFirstCommandGoesBeforeItsRequestForWalk) {
   std::vector<std::string> sent;
-  const auto note = [&sent](const char* channel) { return [&sent, channel](io::Bytes) { sent.emplace_back(channel); }; };
+  const auto note = [&sent](const char* channel) {
+    return [&sent, channel](io::Bytes) { sent.emplace_back(channel); };
+  };
   network_.link.subscribe("COMMAND", note("COMMAND"));
   network_.link.subscribe("MODE", note("MODE"));
   std::int64_t refused = -1;
