@@ -52,6 +52,24 @@ TEST(ActionMonitor, OneReversalOrASlowOneOrOnesFarApartAreNone) {
   EXPECT_EQ(fault_tick("+-....+-....+-"), -1) << "each has left the window when the next comes";
 }
 
+/// Tick of the fault when a joint goes beyond 0.7 rad on alternating sides, once every so many ticks; -1: none in 2 s.
+int fault_tick_by_default(int every) {
+  ActionMonitor monitor{ActionMonitorOptions{}};
+  const JointVector q_ref = JointVector::Zero(5);
+  for (int k = 0; k < 200; ++k) {
+    JointVector q_des = q_ref;
+    if (k % every == 0) q_des[3] = (k / every) % 2 == 0 ? 0.701 : -0.701;
+    if (monitor.watch(q_des, q_ref).code != FaultCode::kNone) return k;
+  }
+  return -1;
+}
+
+TEST(ActionMonitor, ByDefaultTheSecondReversalInHalfASecondTripsAtOnceIfEachTakesAtMostAFifthOfASecond) {
+  EXPECT_EQ(fault_tick_by_default(1), 2);
+  EXPECT_EQ(fault_tick_by_default(20), 40) << "reversals after 0.2 s and 0.4 s";
+  EXPECT_EQ(fault_tick_by_default(21), -1) << "0.21 s is no reversal";
+}
+
 TEST(ActionMonitor, TwoJointsOnOppositeSidesAreNoReversal) {
   ActionMonitor monitor(kShort);
   const JointVector q_ref = JointVector::Zero(5);
