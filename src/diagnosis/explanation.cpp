@@ -9,15 +9,15 @@
 
 #include "calib/fit_problem.hpp"
 #include "diagnosis/intervals.hpp"
-#include "diagnosis/separation.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
+#include "effects/separation.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-std::string in_its_place(const std::string& cause, const std::string& other, const SeenSeparation& apart) {
+std::string in_its_place(const std::string& cause, const std::string& other, const effects::SeenSeparation& apart) {
   if (apart.blocks == 0) return fmt::format("{} gives indistinguishable rollouts on all runs", other);
   return fmt::format(
       "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
@@ -81,7 +81,7 @@ class Explaining {
   void add_rivals(Cause& cause, const Extension& rest) {
     Rivals rivals{{chosen_.fitted}, {cause.effect}};
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
-      const SeenSeparation apart = seen(other.extension);
+      const effects::SeenSeparation apart = seen(other.extension);
       if (!is_rival(other, apart)) continue;
       cause.evidence.push_back(in_its_place(cause.effect, other.effect, apart));
       cause.or_instead.push_back(other.effect);
@@ -91,12 +91,12 @@ class Explaining {
     if (rivals.names.size() > 1) found_.rivals.push_back(std::move(rivals));
   }
 
-  SeenSeparation seen(const Extension& other) const {
-    return seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out, other.held_out,
-                           noise_squares_, from_.options.visible_share);
+  effects::SeenSeparation seen(const Extension& other) const {
+    return effects::seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out,
+                                    other.held_out, noise_squares_, from_.options.visible_share);
   }
 
-  bool is_rival(const Trial& other, const SeenSeparation& apart) const {
+  bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
     for (const effects::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
