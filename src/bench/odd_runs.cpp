@@ -147,7 +147,8 @@ class OddRunSearch {
       for (std::size_t p = 1; p < parts.size(); ++p) {
         for (const std::size_t odd : parts[p]) {
           const auto [away_rad, hunts] = between(condition, largest, {odd});
-          if (hunts || away_rad < options_.times_usual * agree_rad) continue;
+          const bool by_chance = hunts && agree_rad > options_.times_by_chance * usual_rad;
+          if (by_chance || away_rad < options_.times_usual * agree_rad) continue;
           name(
               odd, away_rad, true,
               fmt::format("differs from {} other repeats of its condition by {} rms; they differ from each other by {} "

@@ -12,6 +12,7 @@ namespace pmg::bench {
 struct OddRunOptions {
   double times_usual = 5.0, fewest_conditions = 3.0;
   double times_nearer = 1.2, agreeing_share = 0.75, slow_share = 0.5, fast_ratio = 0.95;
+  double times_by_chance = 2.0;
   double times_neighbours = 8.0;
 };
 
@@ -34,7 +35,8 @@ struct OddRun {
 ///    them are further from, by times_nearer, is odd and left out. Else both are named and stay.
 ///  - Neither: the condition is merely noisy, and no run of it is named. The same holds where groups differ as a drive
 ///    that hunts does: the difference oscillates (its half-second means hold less than slow_share of its squares), and
-///    both move as much (fast_ratio).
+///    both move as much (fast_ratio). Repeats that agree to times_by_chance e don't hunt in step by chance, so what is
+///    far from them is odd all the same.
 /// A run without repeats is named, and stays, where it is times_neighbours further from the nearest conditions with the
 /// same command than these usually are from theirs.
 std::vector<OddRun> odd_runs(const std::vector<const BenchRun*>& runs, const std::vector<Condition>& conditions,

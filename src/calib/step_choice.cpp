@@ -13,6 +13,8 @@ const char* name(StepLimit limit) {
   switch (limit) {
     case StepLimit::kError:
       return "its error is small beside the noise";
+    case StepLimit::kResidual:
+      return "a finer step leaves no lower residual";
     case StepLimit::kCost:
       return "a finer step would cost too much";
     case StepLimit::kGiven:
@@ -45,11 +47,11 @@ IntegrationError integration_error(const bench::Bench& bench, const std::vector<
   return found;
 }
 
-ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>& runs, const JointModel& model,
-                       double noise_rms_rad, const StepOptions& options, unsigned threads) {
+ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>& runs, JointModel& model,
+                       double noise_rms_rad, const FitAtStep& refit, const StepOptions& options, unsigned threads) {
   ChosenStep chosen;
   chosen.first = chosen.error = integration_error(bench, runs, model, threads);
-  double steps = 0.0;
+  double steps = 0.0, usual_squares = -1.0;
   for (const SingleJoint& joint : runs) steps += static_cast<double>(joint.steps());
   while (chosen.error.rms_rad > options.share_of_noise * noise_rms_rad) {
     const double half_s = 0.5 * chosen.error.step_s;
@@ -58,9 +60,16 @@ ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>
       chosen.limit = StepLimit::kCost;
       break;
     }
-    IntegrationError finer = integration_error(bench, with_step(bench, runs, half_s), model, threads);
-    if (!(finer.rms_rad < chosen.error.rms_rad)) break;  // what remains isn't the integrator's
-    chosen.error = std::move(finer);
+    if (usual_squares < 0.0) usual_squares = refit(runs, model).usual_squares;
+    const std::vector<SingleJoint> finer = with_step(bench, runs, half_s);
+    const FittedAtStep there = refit(finer, model);
+    if (!(there.usual_squares < usual_squares)) {
+      chosen.limit = StepLimit::kResidual;
+      break;
+    }
+    model = there.model;
+    usual_squares = there.usual_squares;
+    chosen.error = integration_error(bench, finer, model, threads);
   }
   return chosen;
 }

@@ -41,8 +41,8 @@ class JointDiagnosisRun {
     const effects::NestedFit all(fitted, options_.threads), fit = searched(fitted);
     if (runs != nullptr) *runs = {fitted, scored, checks_};
     EffectSearch search(
-        bench_, fit, base, limits(), direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, by_),
-        by_,
+        bench_, fit, base, limits(),
+        direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
     for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
@@ -63,12 +63,18 @@ class JointDiagnosisRun {
     diagnosis_.noise_floor =
         with_integration_error(noise_, std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad));
     score(all, scored);
+    std::vector<evidence::Signature> expected;
+    if (!chosen.effects.empty()) {
+      expected =
+          evidence::CheckPower(bench_, fitted, base.scale.quantum_rad, by_.signatures).expected(diagnosis_.after);
+    }
     explanation_ = explain(search, chosen,
                            {.searched = fit,
                             .all = all,
                             .judged = *judged_,
                             .fitted = final_fit,
                             .checks = checks_,
+                            .expected = expected,
                             .noise = diagnosis_.noise_floor,
                             .options = by_,
                             .error_after = diagnosis_.held_out_after.value,
@@ -95,12 +101,18 @@ class JointDiagnosisRun {
       step.first = step.error = calib::integration_error(bench_, first.runs(), base.model, options_.threads);
       step.limit = calib::StepLimit::kGiven;
     } else {
-      step = calib::chosen_step(bench_, first.runs(), base.model, noise_.rms_rad, by_.step, options_.threads);
+      const auto refit = [&](const std::vector<calib::SingleJoint>& at_step, const calib::JointModel& start) {
+        const effects::NestedFit fit(at_step, options_.threads);
+        const calib::JointModel model = fit.fit(start, base.unknowns, static_cast<int>(by_.many_iterations)).model;
+        const fitting::BlockComparison compare(fit.blocks(), {}, std::pow(noise_.rms_rad, 2));
+        return calib::FittedAtStep{model,
+                                   std::exp(compare.mean_log_square(fit.blocks().squares(fit.residuals(model))))};
+      };
+      step = calib::chosen_step(bench_, first.runs(), base.model, noise_.rms_rad, refit, by_.step, options_.threads);
     }
     if (step.error.step_s != step.first.step_s) {
       fitted = calib::with_step(bench_, fitted, step.error.step_s);
       scored = calib::with_step(bench_, scored, step.error.step_s);
-      base.model = searched(fitted).fit(base.model, base.unknowns, static_cast<int>(by_.many_iterations)).model;
     }
     diagnosis_.noise_floor = with_integration_error(noise_, step.error.rms_rad);
     return base;

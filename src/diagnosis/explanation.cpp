@@ -37,7 +37,7 @@ class Explaining {
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;
     for (const std::string& name : chosen_.effects) {
-      const Extension rest = search_.refit_without(chosen_, name);
+      const Extension& rest = search_.refit_without(chosen_, name);
       const fitting::Comparison gain = search_.compared(rest, chosen_);
       causes.emplace_back(gain.log_gain, cause(name, rest, gain));
     }
@@ -73,8 +73,12 @@ class Explaining {
   void add_checks(Cause& cause) const {
     for (const evidence::Signature& check : from_.checks) {
       if (check.effect != cause.effect || check.agreement == evidence::Agreement::kCannotTell) continue;
+      const auto conflict = evidence::size_conflict(check, from_.expected, from_.options.signatures.power);
+      const bool agrees = check.agreement == evidence::Agreement::kAgrees;
       cause.evidence.push_back(
-          fmt::format("without a model, {} {}: {}", check.check, name(check.agreement), check.sentence));
+          fmt::format("without a model, {} {}: {}{}", check.check,
+                      agrees && conflict ? "shows the effect, but disagrees in size" : name(check.agreement),
+                      agrees && conflict ? *conflict + "; " : "", check.sentence));
     }
   }
 
@@ -82,7 +86,7 @@ class Explaining {
     Rivals rivals{{chosen_.fitted}, {cause.effect}};
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
       const effects::SeenSeparation apart = seen(other.extension);
-      if (!is_rival(other, apart)) continue;
+      if (!is_rival(other, apart) || search_.refuted(other)) continue;
       cause.evidence.push_back(in_its_place(cause.effect, other.effect, apart));
       cause.or_instead.push_back(other.effect);
       rivals.models.push_back(other.extension.fitted);
@@ -127,10 +131,8 @@ class Explaining {
     for (const effects::Effect& one : effects::catalogue()) {
       if (told.contains(one.name)) continue;
       const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
-      found_.rejected.push_back({one.name, search_.refuted(one.name)
-                                               ? "the recordings would show it without a model, and don't"
-                                           : trial == last.end() ? "a linearised look sees less in it than in others"
-                                                                 : search_.objection(*trial)});
+      found_.rejected.push_back({one.name, trial == last.end() ? "a linearised look sees less in it than in others"
+                                                               : search_.objection(*trial)});
     }
   }
 

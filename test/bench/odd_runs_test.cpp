@@ -118,6 +118,23 @@ TEST_F(OddRuns, AConditionThatIsMerelyNoisyHasNone) {
   }
 }
 
+TEST_F(OddRuns, AMotionThatIsLateIsOddWhereTheOthersAgreeAsRepeatsDo) {
+  record(3);
+  Recording& late = run("0_kp1_r1").recording;  // it oscillates as the others do, and so does the difference
+  for (int number = 0; number < 8; ++number) {
+    for (int repeat = 0; repeat < 3; ++repeat) {
+      Recording& r =
+          run(std::to_string(number % 2) + "_kp" + std::to_string(number / 2) + "_r" + std::to_string(repeat))
+              .recording;
+      for (std::size_t k = 0; k < r.q_rad.size(); ++k)
+        r.q_rad[k] = 0.8 * std::sin(25.1 * (r.t_s[k] - (&r == &late ? 0.1 : 0.0))) + noise();
+    }
+  }
+  const NoiseFloor found = floor();
+  ASSERT_EQ(found.odd_runs.size(), 1U);
+  EXPECT_EQ(found.odd_runs[0].run, "0_kp1_r1");
+}
+
 TEST_F(OddRuns, ATrajectoryThatIsNoisierThanTheOtherHasNone) {
   record(3);
   for (int kp = 0; kp < 4; ++kp) {
