@@ -104,8 +104,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
 void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
   const std::string unit = calib::position_unit(bench, true);
   std::cout << "verdict: " << name(found.verdict) << '\n';
-  if (const std::string odd = diagnosis::odd_runs_text(found.noise_floor.odd_runs); !odd.empty())
-    std::cout << odd << '\n';
+  if (const std::string odd = calib::odd_runs_text(found.noise_floor.odd_runs); !odd.empty()) std::cout << odd << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
     std::cout << fmt::format("  {}{}: error {:.4g} {} without it, {:.4g} {} with it\n", cause.effect,
                              cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),

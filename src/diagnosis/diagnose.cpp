@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/joint_floor.hpp"
 #include "calib/joint_runs.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/explanation.hpp"
-#include "diagnosis/floor.hpp"
 #include "diagnosis/intervals.hpp"
 #include "diagnosis/next_excitation.hpp"
 #include "diagnosis/residual.hpp"
@@ -32,8 +32,8 @@ class JointDiagnosisRun {
     std::vector<calib::SingleJoint> fitted = calib::read_joints(bench_, options_.fit, step_s), scored;
     if (!options_.score.empty()) scored = calib::read_joints(bench_, options_.score, step_s);
     calib::expect_apart(fitted, scored);
-    diagnosis_.noise_floor = noise_floor(bench_, fitted, by_.odd_runs);
-    leave_out_odd_runs(diagnosis_.noise_floor, fitted);
+    diagnosis_.noise_floor = calib::joint_floor(bench_, fitted, by_.odd_runs);
+    calib::leave_out_odd_runs(diagnosis_.noise_floor, fitted);
     diagnosis_.unit = bench_.rig == bench::Rig::kLinear ? "m" : "rad";
     checks_ = checks(fitted);
     report(0.02, "fitting what the simulation has");
@@ -60,8 +60,8 @@ class JointDiagnosisRun {
       diagnosis_.after = final_fit.model;
     }
     diagnosis_.step_error_after = calib::integration_error(bench_, fit.runs(), diagnosis_.after, options_.threads);
-    diagnosis_.noise_floor =
-        with_integration_error(noise_, std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad));
+    diagnosis_.noise_floor = calib::with_integration_error(
+        noise_, std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad));
     score(all, scored);
     std::vector<evidence::Signature> expected;
     if (!chosen.effects.empty()) {
@@ -114,7 +114,7 @@ class JointDiagnosisRun {
       fitted = calib::with_step(bench_, fitted, step.error.step_s);
       scored = calib::with_step(bench_, scored, step.error.step_s);
     }
-    diagnosis_.noise_floor = with_integration_error(noise_, step.error.rms_rad);
+    diagnosis_.noise_floor = calib::with_integration_error(noise_, step.error.rms_rad);
     return base;
   }
 
@@ -202,7 +202,7 @@ class JointDiagnosisRun {
   const work::Progress& progress_;
   double share_ = 0.0;
   Diagnosis diagnosis_;
-  NoiseFloor noise_;  // without the integrator's error
+  calib::JointFloor noise_;  // without the integrator's error
   std::optional<effects::NestedFit> judged_;
   std::vector<evidence::Signature> checks_;
   Explanation explanation_;

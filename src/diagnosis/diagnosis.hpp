@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/joint_floor.hpp"
 #include "calib/step_choice.hpp"
-#include "diagnosis/floor.hpp"
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 
@@ -58,7 +58,7 @@ struct Diagnosis {
   evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;
-  NoiseFloor noise_floor;                    ///< with the integrator's error
+  calib::JointFloor noise_floor;             ///< with the integrator's error
   calib::ChosenStep step;                    ///< of the simulation, chosen on the base model
   calib::IntegrationError step_error_after;  ///< of this step, with all causes
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.

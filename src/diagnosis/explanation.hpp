@@ -18,7 +18,7 @@ struct ExplainedFrom {
   const effects::NestedModel& fitted;                ///< the chosen effects, fitted to all runs
   const std::vector<evidence::Signature>& checks;    ///< model-free
   const std::vector<evidence::Signature>& expected;  ///< the same of the simulated joint with all causes
-  const NoiseFloor& noise;
+  const calib::JointFloor& noise;
   const JointDiagnosisOptions& options;
   double error_after = 0.0;  ///< mean absolute error of the judged runs with all causes [unit]
   std::string unit;

@@ -249,7 +249,8 @@ pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnos
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));
-  if (const std::string odd = odd_runs_text(diagnosis.noise_floor.odd_runs); !odd.empty()) page.paragraph(odd + ".");
+  if (const std::string odd = calib::odd_runs_text(diagnosis.noise_floor.odd_runs); !odd.empty())
+    page.paragraph(odd + ".");
   if (!shown.empty()) {
     page.heading("What the simulation makes of the runs");
     show_runs(page, bench, diagnosis, shown, threads);

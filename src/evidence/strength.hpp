@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "bench/bench.hpp"
 #include "evidence/signature.hpp"
-#include "model/actuator_parameters.hpp"
 
 namespace pmg::evidence {
 

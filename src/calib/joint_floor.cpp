@@ -1,4 +1,4 @@
-#include "diagnosis/floor.hpp"
+#include "calib/joint_floor.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "bench/noise_floor.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::calib {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr std::size_t kMostTold = 6;  // the others are in diagnosis.json
 
 }  // namespace
 
-NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::SingleJoint>& fitted,
+JointFloor joint_floor(const bench::Bench& bench, const std::vector<SingleJoint>& fitted,
                        const bench::OddRunOptions& options) {
   const std::vector<bench::BenchRun> all = bench.read_runs(bench::RowFilter(""));
   std::vector<const bench::BenchRun*> runs;
@@ -29,15 +29,15 @@ NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::Singl
             std::move(found.odd_runs)};
   }
   double squares = 0.0;
-  for (const calib::SingleJoint& joint : fitted) squares += std::pow(bench::sensor_noise_rad(joint.run().recording), 2);
+  for (const SingleJoint& joint : fitted) squares += std::pow(bench::sensor_noise_rad(joint.run().recording), 2);
   const double rms_rad = std::sqrt(squares / static_cast<double>(fitted.size()));
   return {std::sqrt(2.0 / std::numbers::pi) * rms_rad, rms_rad, false,
           "nothing was repeated: the sensor's own noise, from sixth differences of its readings",
           std::move(found.odd_runs)};
 }
 
-void leave_out_odd_runs(NoiseFloor& floor, std::vector<calib::SingleJoint>& fitted) {
-  const auto left_out = [&](const calib::SingleJoint& joint) {
+void leave_out_odd_runs(JointFloor& floor, std::vector<SingleJoint>& fitted) {
+  const auto left_out = [&](const SingleJoint& joint) {
     return std::any_of(floor.odd_runs.begin(), floor.odd_runs.end(),
                        [&](const bench::OddRun& odd) { return odd.left_out && odd.run == joint.run().file; });
   };
@@ -47,14 +47,14 @@ void leave_out_odd_runs(NoiseFloor& floor, std::vector<calib::SingleJoint>& fitt
     }
     return;
   }
-  std::vector<calib::SingleJoint> kept;
-  for (calib::SingleJoint& joint : fitted) {
+  std::vector<SingleJoint> kept;
+  for (SingleJoint& joint : fitted) {
     if (!left_out(joint)) kept.push_back(std::move(joint));
   }
   fitted = std::move(kept);
 }
 
-NoiseFloor with_integration_error(NoiseFloor floor, double error_rms_rad) {
+JointFloor with_integration_error(JointFloor floor, double error_rms_rad) {
   if (!std::isfinite(error_rms_rad)) return floor;
   const double both_rad = std::hypot(floor.rms_rad, error_rms_rad);
   if (floor.rms_rad > 0.0)
@@ -77,4 +77,4 @@ std::string odd_runs_text(const std::vector<bench::OddRun>& odd_runs) {
   return text + ". The score keeps all its runs";
 }
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::calib
