@@ -10,7 +10,7 @@ namespace pmg::calib {
 
 /// evidence::listed() gives the reason of each threshold.
 struct StepOptions {
-  double share_of_noise = 0.25, finest_share = 0.125, most_steps = 2e5;
+  double share_of_noise = 0.5, finest_share = 0.125, most_steps = 1e5;
 };
 
 /// Error of one step size: of each run, and of the usual one.

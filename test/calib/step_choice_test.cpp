@@ -59,9 +59,9 @@ TEST_F(StepChoice, KeepsAStepWhoseErrorIsSmallBesideTheNoise) {
 TEST_F(StepChoice, HalvesTheStepUntilItsErrorIsSmallBesideTheNoise) {
   const double error_rad = integration_error(bench_, runs_, model_, 1).rms_rad;
   const StepOptions options;
-  const ChosenStep found = chosen(1.3 * error_rad, options);  // 0.77 of the noise
+  const ChosenStep found = chosen(0.65 * error_rad, options);  // 1.54 times the noise
   EXPECT_DOUBLE_EQ(found.error.step_s, 0.25 * runs_.front().step_s());
-  EXPECT_LE(found.error.rms_rad, options.share_of_noise * 1.3 * error_rad);
+  EXPECT_LE(found.error.rms_rad, options.share_of_noise * 0.65 * error_rad);
   EXPECT_EQ(found.limit, StepLimit::kError);
   EXPECT_EQ(found.first.step_s, runs_.front().step_s());
 }
