@@ -48,7 +48,7 @@ class JointDiagnosisRun {
     for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     Extension chosen = search.choose();
     const Extension settled = search.refit_with_priors(chosen);
-    if (settled.fitted.squares < chosen.fitted.squares) chosen = settled;
+    if (settled.fitted.squares < by_.settled_squares * chosen.fitted.squares) chosen = settled;
     diagnosis_.before = search.base().fitted.model;
     diagnosis_.after = settled.fitted.model;
     effects::NestedModel final_fit = settled.fitted;

@@ -68,7 +68,8 @@ std::map<std::string, std::vector<double>> evident_effects(const std::vector<evi
                                                            const JointDiagnosisOptions& options) {
   std::map<std::string, std::vector<double>> found;
   for (const evidence::Signature& check : checks) {
-    if (check.agreement == evidence::Agreement::kAgrees && !in_base(check.effect, base))
+    const bool read_off = check.effect == "quantisation";  // measured_causes() decides
+    if (check.agreement == evidence::Agreement::kAgrees && !read_off && !in_base(check.effect, base))
       found[check.effect] = evidence::measured_strength(check, base, fastest_rad_s, options.signatures);
   }
   return found;

@@ -251,11 +251,10 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });
   for (std::size_t t = 0; t < trials.size(); ++t) {
-    const bool worth = t < static_cast<std::size_t>(options_.finished_effects) &&
-                       trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
-    if (!worth && !shown(trials[t].effect) && !evident(trials[t].effect) &&
-        trials.begin() + static_cast<std::ptrdiff_t>(t) != closest)
-      continue;
+    const bool among_best = t < static_cast<std::size_t>(options_.finished_effects) || evident(trials[t].effect);
+    const bool worth =
+        among_best && trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
+    if (!worth && !shown(trials[t].effect) && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
     if (!going(fmt::format("finishing {}", effects::effect(trials[t].effect).title))) return {};
     trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model), trials[t].effect);
   }

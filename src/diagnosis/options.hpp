@@ -32,6 +32,7 @@ struct JointDiagnosisOptions {
   // Cost limits of the search.
   double searched_runs = 40.0, fitted_effects = 8.0, exchanged_effects = 5.0, finished_effects = 3.0;
   double worth_finishing = 0.4, few_iterations = 4.0, many_iterations = 15.0;
+  double settled_squares = 0.995;
 
   bench::OddRunOptions odd_runs;
   calib::StepOptions step;

@@ -30,12 +30,14 @@ std::vector<Option> listed(const bench::OddRunOptions& o) {
 
 std::vector<Option> listed(const calib::StepOptions& o) {
   return {{"share_of_noise", o.share_of_noise, "",
-           "an integration error of this share adds a quarter to the noise's mean square, 0.5^2, while a residual counts as "
+           "an integration error of this share adds a quarter to the noise's mean square, 0.5^2, while a residual "
+           "counts as "
            "unexplained from several times that square on",
            "arithmetic"},
           {"finest_share", o.finest_share, "", "of the first step: three halvings, eight times the time of a rollout",
            "time of a diagnosis"},
-          {"most_steps", o.most_steps, "", "steps of all searched runs together: a finer step than this takes counts into the noise floor instead",
+          {"most_steps", o.most_steps, "",
+           "steps of all searched runs together: a finer step than this takes counts into the noise floor instead",
            "time of a diagnosis"}};
 }
 

@@ -133,6 +133,37 @@ TEST_F(Rules, WhatIsEvidentWithoutAModelIsFittedWhateverALinearLookSays) {
   EXPECT_EQ(found.causes.front().effect, "load_friction");
 }
 
+TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  std::vector<calib::SingleJoint> joints;
+  for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, 2e-4)) {
+    bench::BenchRun run = joint.run();  // the table under the rig shakes
+    for (std::size_t k = 0; k < run.recording.q_rad.size(); ++k)
+      run.recording.q_rad[k] += 0.05 * std::sin(19.0 * run.recording.t_s[k] + 2.0 * run.kp);
+    joints.emplace_back(bench_, run, joint.step_s());
+  }
+  const bench::Bench bench = written(joints);
+  DiagnoseOptions options = given_healthy();
+  EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
+  options.decide_by.remains_of_noise = 1e12;
+  EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
+}
+
+TEST_F(Rules, EffectsThatTheRunsDoNotTellApartAreAmbiguous) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.command.delay_s = 0.015;
+  const bench::Bench bench = written(test::record(bench_, truth, 4, 2e-4));
+  DiagnoseOptions options = given_healthy();
+  EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kFound);
+  options.decide_by.apart_share = 1e12;  // no rival is so much worse
+  const Diagnosis found = diagnose(bench, options);
+  EXPECT_EQ(found.verdict, evidence::Verdict::kAmbiguous);
+  EXPECT_FALSE(found.causes.at(0).or_instead.empty());
+  EXPECT_TRUE(found.next_excitation);
+}
+
 /// A trial of load-dependent friction whose folds are all for it, on runs of a joint without it.
 class Veto : public Rules {
  protected:
