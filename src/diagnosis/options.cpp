@@ -81,8 +81,6 @@ std::vector<evidence::Option> listed(const JointDiagnosisOptions& o) {
       {"many_iterations", o.many_iterations, "", "of a fit to its end", cost},
       {"settled_squares", o.settled_squares, "",
        "rivals are fitted again about the fit with priors if its squares are below this share of the search's", cost},
-      {"settled_squares", o.settled_squares, "",
-       "rivals are fitted again about the fit with priors if its squares are below this share of the search's", cost},
   };
   const auto add = [&](const std::string& prefix, std::vector<evidence::Option> options) {
     for (evidence::Option& option : options) {

@@ -22,6 +22,9 @@ std::vector<Option> listed(const bench::OddRunOptions& o) {
        assumed},
       {"fast_ratio", o.fast_ratio, "",
        "and both repeats move about as much: a joint that stalls in a fast motion moves less", assumed},
+      {"times_by_chance", o.times_by_chance, "",
+       "repeats of a drive that hunts may be in step by chance, but hardly to so many times the usual difference",
+       assumed},
       {"times_neighbours", o.times_neighbours, "",
        "a run without repeats is odd from so many times the usual distance to neighbours on: the edge of a design "
        "has two or three times the distance",
