@@ -133,6 +133,20 @@ TEST_F(Rules, WhatIsEvidentWithoutAModelIsFittedWhateverALinearLookSays) {
   EXPECT_EQ(found.causes.front().effect, "load_friction");
 }
 
+TEST_F(Rules, AFitOfWhatIsEvidentBeginsWithTheMeasuredStrength) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.friction.load_driving = truth.actuator.friction.load_backdriving = 0.2;
+  const bench::Bench bench = written(test::record(bench_, truth, 8, 2e-4));
+  DiagnoseOptions options = given_healthy();
+  options.decide_by.fitted_effects = options.decide_by.few_iterations = options.decide_by.many_iterations = 0.0;
+  const Diagnosis found = diagnose(bench, options);
+  ASSERT_FALSE(found.causes.empty());
+  ASSERT_EQ(found.causes.front().effect, "load_friction");
+  // The catalogue's own starts have 0.1 or 0.3, or 0 on one side.
+  for (const evidence::ParameterEstimate& p : found.causes.front().parameters) EXPECT_NEAR(p.estimate.value, 0.2, 0.06);
+}
+
 TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();
