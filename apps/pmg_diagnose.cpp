@@ -104,6 +104,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
 void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
   const std::string unit = calib::position_unit(bench, true);
   std::cout << "verdict: " << name(found.verdict) << '\n';
+  if (const std::string odd = calib::odd_runs_text(found.noise_floor.odd_runs); !odd.empty()) std::cout << odd << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
     std::cout << fmt::format("  {}{}: error {:.4g} {} without it, {:.4g} {} with it\n", cause.effect,
                              cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),
@@ -125,6 +126,8 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
       unit, found.held_out_before.value / floor_rad, found.held_out_after.value / floor_rad);
   std::cout << fmt::format("noise floor {:.4g} {} ({}); {:.0f} % of the way to it\n", 1e3 * floor_rad, unit,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
+  std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error {:.3g} {} rms, part of the noise floor\n",
+                           1e3 * found.step.error.step_s, name(found.step.limit), 1e3 * found.step.error.rms_rad, unit);
   std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());
   if (!found.causes.empty())
     std::cout << fmt::format("simulate with what was found: pmg_sil --motor {}\n", (out / "motor.yaml").string());

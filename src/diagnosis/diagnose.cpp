@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/noise_floor.hpp"
+#include "calib/joint_floor.hpp"
 #include "calib/joint_runs.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/explanation.hpp"
@@ -17,23 +17,6 @@
 namespace pmg::diagnosis {
 
 namespace {
-
-/// Noise floor from the bench's repeats; without repeats, from the sensor noise of the fitted runs.
-NoiseFloor noise_floor(const bench::Bench& bench, const std::vector<calib::SingleJoint>& fitted) {
-  const std::vector<bench::BenchRun> all = bench.read_runs(bench::RowFilter(""));
-  std::vector<const bench::BenchRun*> runs;
-  for (const bench::BenchRun& run : all) runs.push_back(&run);
-  const bench::NoiseFloor found = bench::noise_floor(runs);
-  if (!found.pairs.empty()) {
-    return {found.mean_absolute_rad, found.rms_rad, true,
-            fmt::format("{} pairs of repeats, each about what both have in common", found.pairs.size())};
-  }
-  double squares = 0.0;
-  for (const calib::SingleJoint& joint : fitted) squares += std::pow(bench::sensor_noise_rad(joint.run().recording), 2);
-  const double rms_rad = std::sqrt(squares / static_cast<double>(fitted.size()));
-  return {std::sqrt(2.0 / 3.141592653589793) * rms_rad, rms_rad, false,
-          "nothing was repeated: the sensor's own noise, from sixth differences of its readings"};
-}
 
 /// One diagnosis: reads the runs, fits, chooses effects, explains them, decides the verdict.
 class JointDiagnosisRun {
@@ -49,23 +32,23 @@ class JointDiagnosisRun {
     std::vector<calib::SingleJoint> fitted = calib::read_joints(bench_, options_.fit, step_s), scored;
     if (!options_.score.empty()) scored = calib::read_joints(bench_, options_.score, step_s);
     calib::expect_apart(fitted, scored);
-    diagnosis_.noise_floor = noise_floor(bench_, fitted);
+    diagnosis_.noise_floor = calib::joint_floor(bench_, fitted, by_.odd_runs);
+    calib::leave_out_odd_runs(diagnosis_.noise_floor, fitted);
     diagnosis_.unit = bench_.rig == bench::Rig::kLinear ? "m" : "rad";
     checks_ = checks(fitted);
-    if (runs != nullptr) *runs = {fitted, scored, checks_};
-    const effects::NestedFit all(fitted, options_.threads),
-        fit(calib::spread(fitted, static_cast<std::size_t>(by_.searched_runs)), options_.threads);
     report(0.02, "fitting what the simulation has");
-    const BaseModel base = base_model(bench_, options_.model, fit, by_, options_.threads);
+    const BaseModel base = base_at_chosen_step(fitted, scored);
+    const effects::NestedFit all(fitted, options_.threads), fit = searched(fitted);
+    if (runs != nullptr) *runs = {fitted, scored, checks_};
     EffectSearch search(
-        bench_, fit, base, limits(), direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, by_),
-        by_,
+        bench_, fit, base, limits(),
+        direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
     for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     Extension chosen = search.choose();
     const Extension settled = search.refit_with_priors(chosen);
-    if (settled.fitted.squares < chosen.fitted.squares) chosen = settled;
+    if (settled.fitted.squares < by_.settled_squares * chosen.fitted.squares) chosen = settled;
     diagnosis_.before = search.base().fitted.model;
     diagnosis_.after = settled.fitted.model;
     effects::NestedModel final_fit = settled.fitted;
@@ -76,13 +59,22 @@ class JointDiagnosisRun {
       diagnosis_.before = all.fit(diagnosis_.before, search.base().fitted.unknowns, 8).model;
       diagnosis_.after = final_fit.model;
     }
+    diagnosis_.step_error_after = calib::integration_error(bench_, fit.runs(), diagnosis_.after, options_.threads);
+    diagnosis_.noise_floor = calib::with_integration_error(
+        noise_, std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad));
     score(all, scored);
+    std::vector<evidence::Signature> expected;
+    if (!chosen.effects.empty()) {
+      expected =
+          evidence::CheckPower(bench_, fitted, base.scale.quantum_rad, by_.signatures).expected(diagnosis_.after);
+    }
     explanation_ = explain(search, chosen,
                            {.searched = fit,
                             .all = all,
                             .judged = *judged_,
                             .fitted = final_fit,
                             .checks = checks_,
+                            .expected = expected,
                             .noise = diagnosis_.noise_floor,
                             .options = by_,
                             .error_after = diagnosis_.held_out_after.value,
@@ -94,6 +86,38 @@ class JointDiagnosisRun {
   }
 
  private:
+  effects::NestedFit searched(const std::vector<calib::SingleJoint>& fitted) const {
+    return {calib::spread(fitted, static_cast<std::size_t>(by_.searched_runs)), options_.threads};
+  }
+
+  /// The base model, at the step that its integration error asks for. Changes the runs to this step, and adds what
+  /// remains of the error to the noise floor.
+  BaseModel base_at_chosen_step(std::vector<calib::SingleJoint>& fitted, std::vector<calib::SingleJoint>& scored) {
+    const effects::NestedFit first = searched(fitted);
+    BaseModel base = base_model(bench_, options_.model, first, by_, options_.threads);
+    noise_ = diagnosis_.noise_floor;
+    calib::ChosenStep& step = diagnosis_.step;
+    if (options_.step_s > 0.0) {
+      step.first = step.error = calib::integration_error(bench_, first.runs(), base.model, options_.threads);
+      step.limit = calib::StepLimit::kGiven;
+    } else {
+      const auto refit = [&](const std::vector<calib::SingleJoint>& at_step, const calib::JointModel& start) {
+        const effects::NestedFit fit(at_step, options_.threads);
+        const calib::JointModel model = fit.fit(start, base.unknowns, static_cast<int>(by_.many_iterations)).model;
+        const fitting::BlockComparison compare(fit.blocks(), {}, std::pow(noise_.rms_rad, 2));
+        return calib::FittedAtStep{model,
+                                   std::exp(compare.mean_log_square(fit.blocks().squares(fit.residuals(model))))};
+      };
+      step = calib::chosen_step(bench_, first.runs(), base.model, noise_.rms_rad, refit, by_.step, options_.threads);
+    }
+    if (step.error.step_s != step.first.step_s) {
+      fitted = calib::with_step(bench_, fitted, step.error.step_s);
+      scored = calib::with_step(bench_, scored, step.error.step_s);
+    }
+    diagnosis_.noise_floor = calib::with_integration_error(noise_, step.error.rms_rad);
+    return base;
+  }
+
   SearchLimits limits() const {
     const double noise = std::pow(diagnosis_.noise_floor.rms_rad, 2);
     if (options_.model) {
@@ -178,6 +202,7 @@ class JointDiagnosisRun {
   const work::Progress& progress_;
   double share_ = 0.0;
   Diagnosis diagnosis_;
+  calib::JointFloor noise_;  // without the integrator's error
   std::optional<effects::NestedFit> judged_;
   std::vector<evidence::Signature> checks_;
   Explanation explanation_;

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/single_joint.hpp"
+#include "calib/joint_floor.hpp"
+#include "calib/step_choice.hpp"
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 
@@ -26,13 +27,6 @@ struct Cause {
 struct Rejected {
   std::string effect;
   std::string why;
-};
-
-/// Lower bounds of a model's error, mean absolute and root mean square.
-struct NoiseFloor {
-  double mean_absolute_rad = 0.0, rms_rad = 0.0;
-  bool from_repeats = false;
-  std::string how;  ///< one line for people: the number of repeated pairs, or the other method of estimation
 };
 
 /// A run to record next.
@@ -64,7 +58,9 @@ struct Diagnosis {
   evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;
-  NoiseFloor noise_floor;
+  calib::JointFloor noise_floor;             ///< with the integrator's error
+  calib::ChosenStep step;                    ///< of the simulation, chosen on the base model
+  calib::IntegrationError step_error_after;  ///< of this step, with all causes
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
   evidence::Interval held_out_before, held_out_after;
   bool held_out = false;               ///< true if runs were held out; else the two errors above are from folds

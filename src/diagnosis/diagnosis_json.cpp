@@ -52,6 +52,29 @@ Json excitation_json(const NextExcitation& next) {
   return json;
 }
 
+Json odd_runs_json(const std::vector<bench::OddRun>& odd_runs) {
+  Json json = Json::array();
+  for (const bench::OddRun& odd : odd_runs) {
+    json.push_back(
+        {{"run", odd.run}, {"why", odd.why}, {"deviation", number(odd.deviation_rad)}, {"left_out", odd.left_out}});
+  }
+  return json;
+}
+
+/// Errors of the integrator are rms ones in the diagnosis' unit.
+Json integration_json(const Diagnosis& diagnosis) {
+  const calib::ChosenStep& step = diagnosis.step;
+  Json of_runs = Json::array();
+  for (const double error : step.error.of_run_rad) of_runs.push_back(number(error));
+  return {{"step_s", step.error.step_s},
+          {"why", name(step.limit)},
+          {"error", number(step.error.rms_rad)},
+          {"error_after", number(diagnosis.step_error_after.rms_rad)},
+          {"error_of_runs", of_runs},
+          {"first_step_s", step.first.step_s},
+          {"first_error", number(step.first.rms_rad)}};
+}
+
 }  // namespace
 
 Json diagnosis_json(const Diagnosis& diagnosis) {
@@ -62,6 +85,9 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   }
   json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
   json["noise_floor_from"] = diagnosis.noise_floor.how;
+  json["noise_floor_rms"] = number(diagnosis.noise_floor.rms_rad);
+  json["odd_runs"] = odd_runs_json(diagnosis.noise_floor.odd_runs);
+  json["integration"] = integration_json(diagnosis);
   json["held_out_error_before"] = number(diagnosis.held_out_before.value);
   json["held_out_error_after"] = number(diagnosis.held_out_after.value);
   json["held_out_error_before_interval"] = {number(diagnosis.held_out_before.low),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects/catalogue.hpp"
+#include "evidence/strength.hpp"
 
 namespace pmg::diagnosis {
 
@@ -50,14 +51,26 @@ std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& c
   return {thermal};
 }
 
-/// Effects that are ruled out. Not `load`: its check compares inertia with weight, and a wrong mass changes both alike.
-std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>& checks,
+/// Effects in doubt. Not `load`: its check compares inertia with weight, and a wrong mass changes both alike.
+std::vector<std::string> doubted_effects(const std::vector<evidence::Signature>& checks,
                                          const model::ActuatorParameters& base) {
   std::vector<std::string> found;
   for (const effects::Effect& one : effects::catalogue()) {
-    const bool refuted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
+    const bool doubted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
                          !some_check(checks, one.name, evidence::Agreement::kAgrees) && one.name != "load";
-    if (refuted && !in_base(one.name, base)) found.push_back(one.name);
+    if (doubted && !in_base(one.name, base)) found.push_back(one.name);
+  }
+  return found;
+}
+
+std::map<std::string, std::vector<double>> evident_effects(const std::vector<evidence::Signature>& checks,
+                                                           const model::ActuatorParameters& base, double fastest_rad_s,
+                                                           const JointDiagnosisOptions& options) {
+  std::map<std::string, std::vector<double>> found;
+  for (const evidence::Signature& check : checks) {
+    const bool read_off = check.effect == "quantisation";  // measured_causes() decides
+    if (check.agreement == evidence::Agreement::kAgrees && !read_off && !in_base(check.effect, base))
+      found[check.effect] = evidence::measured_strength(check, base, fastest_rad_s, options.signatures);
   }
   return found;
 }
@@ -65,9 +78,9 @@ std::vector<std::string> refuted_effects(const std::vector<evidence::Signature>&
 }  // namespace
 
 DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const model::ActuatorParameters& base,
-                               double noise_rms_rad, const JointDiagnosisOptions& options) {
+                               double noise_rms_rad, double fastest_rad_s, const JointDiagnosisOptions& options) {
   return {measured_causes(checks, base, noise_rms_rad, options), shown_effects(checks, base),
-          refuted_effects(checks, base)};
+          doubted_effects(checks, base), evident_effects(checks, base, fastest_rad_s, options)};
 }
 
 }  // namespace pmg::diagnosis

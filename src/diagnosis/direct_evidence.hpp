@@ -1,6 +1,7 @@
 // Model-free checks for and against causes.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,16 @@ struct DirectEvidence {
   /// Effects that the base model lacks and that a model-free check detects without a rival: thermal drift, where runs
   /// of different temperature need different torques.
   std::vector<std::string> shown;
-  /// Effects that the base model lacks and that are ruled out: a model-free check should detect the effect and does
-  /// not, and no other check detects it.
-  std::vector<std::string> refuted;
+  /// Effects that the base model lacks and that a check says the recordings don't have, while no other check detects
+  /// them. evidence::CheckPower says whether that rules out a fitted strength.
+  std::vector<std::string> doubted;
+  /// Effects that the base model lacks and that a check detects, with their strengths (evidence::measured_strength;
+  /// empty where the check has none). They get a full fit, whatever a linearised look makes of them.
+  std::map<std::string, std::vector<double>> evident;
 };
 
-/// noise_rms_rad: deviation of repeats.
+/// noise_rms_rad: deviation of repeats. fastest_rad_s: of the recordings.
 DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const model::ActuatorParameters& base,
-                               double noise_rms_rad, const JointDiagnosisOptions& options);
+                               double noise_rms_rad, double fastest_rad_s, const JointDiagnosisOptions& options);
 
 }  // namespace pmg::diagnosis

@@ -8,7 +8,6 @@
 
 #include "calib/fit_problem.hpp"
 #include "effects/catalogue.hpp"
-#include "effects/start_screen.hpp"
 
 namespace pmg::diagnosis {
 
@@ -35,6 +34,7 @@ EffectSearch::EffectSearch(const bench::Bench& bench, const effects::NestedFit& 
       limits_(limits),
       evidence_(std::move(evidence)),
       options_(options),
+      power_(bench, fit.runs(), base_.scale.quantum_rad, options_.signatures),
       progress_(std::move(progress)),
       compare_(fit.blocks(), folds(fit), limits.noise_squares),
       base_extension_(extend({}, base_.model)) {}
@@ -88,7 +88,16 @@ const MeasuredCause* EffectSearch::measured(const std::string& effect) const {
   return found == all.end() ? nullptr : &*found;
 }
 
-bool EffectSearch::refuted(const std::string& effect) const { return effects::contains(evidence_.refuted, effect); }
+bool EffectSearch::refuted(const Trial& trial) const {
+  if (!effects::contains(evidence_.doubted, trial.effect)) return false;
+  const effects::NestedModel& fitted = trial.extension.fitted;
+  const auto [known, fresh] = refuted_.try_emplace({trial.effect, fitted.squares}, false);
+  if (fresh) {
+    known->second = power_.refutes(trial.effect, fitted.model,
+                                   reset(fitted.model, trial.effect, less(trial.extension.effects, trial.effect)));
+  }
+  return known->second;
+}
 
 bool EffectSearch::shown(const std::string& effect) const { return effects::contains(evidence_.shown, effect); }
 
@@ -103,9 +112,13 @@ Extension EffectSearch::with_measured() const {
   return extend(effects, model);
 }
 
-Extension EffectSearch::refit_without(const Extension& extension, const std::string& effect) const {
-  const std::vector<std::string> kept = less(extension.effects, effect);
-  return extend(kept, reset(extension.fitted.model, effect, kept));
+const Extension& EffectSearch::refit_without(const Extension& extension, const std::string& effect) {
+  const auto [known, fresh] = without_.try_emplace({effect, extension.fitted.squares});
+  if (fresh) {
+    const std::vector<std::string> kept = less(extension.effects, effect);
+    known->second = extend(kept, reset(extension.fitted.model, effect, kept));
+  }
+  return known->second;
 }
 
 Extension EffectSearch::refit_with_priors(const Extension& extension) const {
@@ -177,12 +190,24 @@ std::string EffectSearch::objection(const Trial& trial) const {
     return fmt::format("it explains {:.0f} % of what is left, as others' forms not being quite right would",
                        100.0 * trial.share_of_rest);
   }
-  return "";
+  return refuted(trial) ? "the recordings would show it without a model at the strength that fits, and don't" : "";
+}
+
+/// The best two starts of an effect, after the strength that a model-free check measures.
+std::vector<effects::ScreenedStart> EffectSearch::screened_starts(const effects::StartScreen& screen,
+                                                                  const effects::Effect& effect) const {
+  std::vector<effects::ScreenedStart> starts = screen.best(effect, base_.scale);
+  starts.resize(std::min<std::size_t>(2, starts.size()));
+  const auto evident = evidence_.evident.find(effect.name);
+  if (evident == evidence_.evident.end() || evident->second.empty()) return starts;
+  const std::vector<effects::ScreenedStart> measured = screen.at(effect, evident->second);
+  starts.insert(starts.end(), measured.begin(), measured.end());
+  return starts;
 }
 
 /// (extension) => (trials of the effects that it lacks): screened by the linearised fit, the most promising ones
 /// fitted.
-std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
+std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bool all_evident) {
   struct Promising {
     const effects::Effect* effect = nullptr;
     std::vector<effects::ScreenedStart> starts;
@@ -190,25 +215,28 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   const effects::StartScreen screen(fit_, current.fitted);
   std::vector<Promising> promising;
   for (const effects::Effect& one : effects::catalogue()) {
-    if (effects::contains(current.effects, one.name) || refuted(one.name)) continue;
+    if (effects::contains(current.effects, one.name)) continue;
     if (!going(fmt::format("looking at {}", one.title))) return {};
-    std::vector<effects::ScreenedStart> starts = screen.best(one, base_.scale);
+    std::vector<effects::ScreenedStart> starts = screened_starts(screen, one);
     if (!starts.empty()) promising.push_back({&one, std::move(starts)});
   }
   std::stable_sort(promising.begin(), promising.end(), [this](const Promising& a, const Promising& b) {
     const bool a_shown = shown(a.effect->name), b_shown = shown(b.effect->name);
     return a_shown != b_shown ? a_shown : a.starts.front().squares < b.starts.front().squares;
   });
-  promising.resize(std::min(promising.size(), static_cast<std::size_t>(most)));
+  const auto evident = [&](const std::string& name) { return all_evident && evidence_.evident.contains(name); };
+  const auto last = promising.begin() + std::min<std::ptrdiff_t>(std::ssize(promising), std::lround(most));
+  promising.erase(std::remove_if(last, promising.end(), [&](const Promising& p) { return !evident(p.effect->name); }),
+                  promising.end());
   std::vector<Trial> trials;
   for (const Promising& p : promising) {
     if (!going(fmt::format("fitting {}", p.effect->title))) return {};
     const std::vector<std::string> effects = with(current.effects, p.effect->name);
     Extension best;
     best.fitted.squares = std::numeric_limits<double>::infinity();
-    for (std::size_t s = 0; s < std::min<std::size_t>(2, p.starts.size()); ++s) {
+    for (const effects::ScreenedStart& start : p.starts) {
       const effects::NestedModel fitted =
-          fit_.fit(p.starts[s].model, unknowns(effects), static_cast<int>(options_.few_iterations), &screen.jacobian());
+          fit_.fit(start.model, unknowns(effects), static_cast<int>(options_.few_iterations), &screen.jacobian());
       if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}};
     }
     fit_.linearise(best.fitted, &screen.jacobian());
@@ -223,8 +251,9 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });
   for (std::size_t t = 0; t < trials.size(); ++t) {
-    const bool worth = t < static_cast<std::size_t>(options_.finished_effects) &&
-                       trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
+    const bool among_best = t < static_cast<std::size_t>(options_.finished_effects) || evident(trials[t].effect);
+    const bool worth =
+        among_best && trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
     if (!worth && !shown(trials[t].effect) && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
     if (!going(fmt::format("finishing {}", effects::effect(trials[t].effect).title))) return {};
     trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model), trials[t].effect);
@@ -233,7 +262,7 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most) {
   return trials;
 }
 
-std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, options_.fitted_effects); }
+std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, options_.fitted_effects, true); }
 
 double EffectSearch::usual_rest(const Extension& extension) const {
   Eigen::VectorXd squares(static_cast<Eigen::Index>(extension.fitted.blocks.size()));
@@ -247,13 +276,15 @@ fitting::Comparison EffectSearch::compared(const Extension& first, const Extensi
   return compare_(first.held_out, second.held_out);
 }
 
-std::vector<Trial> EffectSearch::alternatives(const Extension& without, const std::string& effect) {
-  std::vector<Trial> trials = tried(without, options_.exchanged_effects);
+const std::vector<Trial>& EffectSearch::alternatives(const Extension& without, const std::string& effect) {
+  const auto [known, fresh] = alternatives_.try_emplace({effect, without.fitted.squares});
+  if (!fresh) return known->second;
+  known->second = tried(without, options_.exchanged_effects, false);
   // An effect that contains this one as a special case explains as much: the simpler one stands.
-  std::erase_if(trials, [&](const Trial& trial) {
+  std::erase_if(known->second, [&](const Trial& trial) {
     return trial.effect == effect || effects::contains(effects::effect(trial.effect).contains, effect);
   });
-  return trials;
+  return known->second;
 }
 
 }  // namespace pmg::diagnosis

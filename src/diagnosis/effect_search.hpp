@@ -1,13 +1,17 @@
 // Stepwise search for the effects that the runs need: nested extensions of the base model, chosen by cross-validation.
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/base_model.hpp"
 #include "diagnosis/direct_evidence.hpp"
 #include "diagnosis/options.hpp"
 #include "effects/folds.hpp"
+#include "effects/start_screen.hpp"
+#include "evidence/power.hpp"
 #include "work/progress.hpp"
 
 namespace pmg::diagnosis {
@@ -50,12 +54,13 @@ class EffectSearch {
   /// Costs some hundred rollouts of all runs for each effect that is added.
   Extension choose();
   /// (extension without an effect, that effect) => (fits of other effects in its place, the best first). Costs up to
-  /// five fits.
-  std::vector<Trial> alternatives(const Extension& without, const std::string& effect);
+  /// five fits; nothing when asked again, as choose() and the explanation of its result do.
+  const std::vector<Trial>& alternatives(const Extension& without, const std::string& effect);
   /// (extension) => (fits with one more effect each, the best first). Costs up to eight fits.
   std::vector<Trial> additions(const Extension& to);
-  /// (extension, effect) => (extension without the effect, fitted again to its end). Costs one fit.
-  Extension refit_without(const Extension& extension, const std::string& effect) const;
+  /// (extension, effect) => (extension without the effect, fitted again to its end). Costs one fit; nothing when asked
+  /// again.
+  const Extension& refit_without(const Extension& extension, const std::string& effect);
 
   /// (extension) => (the same effects, fitted again with priors on the base model's numbers: half of each tolerance is
   /// one standard deviation). Without priors the base model takes over part of the effects. Two starts: the extension,
@@ -66,8 +71,9 @@ class EffectSearch {
   const MeasuredCause* measured(const std::string& effect) const;
   /// A model-free check detects the effect, not its size.
   bool shown(const std::string& effect) const;
-  /// A model-free check should detect the effect and does not.
-  bool refuted(const std::string& effect) const;
+  /// A model-free check should detect the effect at its fitted strength and does not. Costs simulated checks, once for
+  /// each fit of an effect in doubt.
+  bool refuted(const Trial& trial) const;
 
   /// Why the trial is not convincing, or "".
   std::string objection(const Trial& trial) const;
@@ -86,10 +92,12 @@ class EffectSearch {
   Extension with_measured() const;
   Extension extend(const std::vector<std::string>& effects, const calib::JointModel& start) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
-  std::vector<Trial> tried(const Extension& without, double most);
+  std::vector<Trial> tried(const Extension& without, double most, bool all_evident);
   const Trial* chosen(const std::vector<Trial>& trials) const;
   Extension pruned(Extension current, const Extension& before);
   Extension exchanged(Extension current);
+  std::vector<effects::ScreenedStart> screened_starts(const effects::StartScreen& screen,
+                                                      const effects::Effect& effect) const;
   bool going(const std::string& text);
 
   const bench::Bench& bench_;
@@ -98,10 +106,15 @@ class EffectSearch {
   SearchLimits limits_;
   DirectEvidence evidence_;
   JointDiagnosisOptions options_;
+  mutable evidence::CheckPower power_;
+  mutable std::map<std::pair<std::string, double>, bool> refuted_;  // by effect and squares of the fit
   work::Progress progress_;
   fitting::BlockComparison compare_;
   Extension base_extension_;
   std::vector<Trial> last_additions_;
+  // What was fitted before, by an effect and the squares of the extension that it was asked of.
+  std::map<std::pair<std::string, double>, Extension> without_;
+  std::map<std::pair<std::string, double>, std::vector<Trial>> alternatives_;
   bool stopped_ = false;
 };
 

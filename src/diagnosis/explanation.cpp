@@ -9,15 +9,15 @@
 
 #include "calib/fit_problem.hpp"
 #include "diagnosis/intervals.hpp"
-#include "diagnosis/separation.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
+#include "effects/separation.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-std::string in_its_place(const std::string& cause, const std::string& other, const SeenSeparation& apart) {
+std::string in_its_place(const std::string& cause, const std::string& other, const effects::SeenSeparation& apart) {
   if (apart.blocks == 0) return fmt::format("{} gives indistinguishable rollouts on all runs", other);
   return fmt::format(
       "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
@@ -37,7 +37,7 @@ class Explaining {
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;
     for (const std::string& name : chosen_.effects) {
-      const Extension rest = search_.refit_without(chosen_, name);
+      const Extension& rest = search_.refit_without(chosen_, name);
       const fitting::Comparison gain = search_.compared(rest, chosen_);
       causes.emplace_back(gain.log_gain, cause(name, rest, gain));
     }
@@ -73,16 +73,20 @@ class Explaining {
   void add_checks(Cause& cause) const {
     for (const evidence::Signature& check : from_.checks) {
       if (check.effect != cause.effect || check.agreement == evidence::Agreement::kCannotTell) continue;
+      const auto conflict = evidence::size_conflict(check, from_.expected, from_.options.signatures.power);
+      const bool agrees = check.agreement == evidence::Agreement::kAgrees;
       cause.evidence.push_back(
-          fmt::format("without a model, {} {}: {}", check.check, name(check.agreement), check.sentence));
+          fmt::format("without a model, {} {}: {}{}", check.check,
+                      agrees && conflict ? "shows the effect, but disagrees in size" : name(check.agreement),
+                      agrees && conflict ? *conflict + "; " : "", check.sentence));
     }
   }
 
   void add_rivals(Cause& cause, const Extension& rest) {
     Rivals rivals{{chosen_.fitted}, {cause.effect}};
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
-      const SeenSeparation apart = seen(other.extension);
-      if (!is_rival(other, apart)) continue;
+      const effects::SeenSeparation apart = seen(other.extension);
+      if (!is_rival(other, apart) || search_.refuted(other)) continue;
       cause.evidence.push_back(in_its_place(cause.effect, other.effect, apart));
       cause.or_instead.push_back(other.effect);
       rivals.models.push_back(other.extension.fitted);
@@ -91,12 +95,12 @@ class Explaining {
     if (rivals.names.size() > 1) found_.rivals.push_back(std::move(rivals));
   }
 
-  SeenSeparation seen(const Extension& other) const {
-    return seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out, other.held_out,
-                           noise_squares_, from_.options.visible_share);
+  effects::SeenSeparation seen(const Extension& other) const {
+    return effects::seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out,
+                                    other.held_out, noise_squares_, from_.options.visible_share);
   }
 
-  bool is_rival(const Trial& other, const SeenSeparation& apart) const {
+  bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
     for (const effects::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
@@ -127,10 +131,8 @@ class Explaining {
     for (const effects::Effect& one : effects::catalogue()) {
       if (told.contains(one.name)) continue;
       const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
-      found_.rejected.push_back({one.name, search_.refuted(one.name)
-                                               ? "the recordings would show it without a model, and don't"
-                                           : trial == last.end() ? "a linearised look sees less in it than in others"
-                                                                 : search_.objection(*trial)});
+      found_.rejected.push_back({one.name, trial == last.end() ? "a linearised look sees less in it than in others"
+                                                               : search_.objection(*trial)});
     }
   }
 

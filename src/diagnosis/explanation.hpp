@@ -12,12 +12,13 @@
 namespace pmg::diagnosis {
 
 struct ExplainedFrom {
-  const effects::NestedFit& searched;              ///< the runs of the search
-  const effects::NestedFit& all;                   ///< all fitted runs
-  const effects::NestedFit& judged;                ///< the runs of the reported errors
-  const effects::NestedModel& fitted;              ///< the chosen effects, fitted to all runs
-  const std::vector<evidence::Signature>& checks;  ///< model-free
-  const NoiseFloor& noise;
+  const effects::NestedFit& searched;                ///< the runs of the search
+  const effects::NestedFit& all;                     ///< all fitted runs
+  const effects::NestedFit& judged;                  ///< the runs of the reported errors
+  const effects::NestedModel& fitted;                ///< the chosen effects, fitted to all runs
+  const std::vector<evidence::Signature>& checks;    ///< model-free
+  const std::vector<evidence::Signature>& expected;  ///< the same of the simulated joint with all causes
+  const calib::JointFloor& noise;
   const JointDiagnosisOptions& options;
   double error_after = 0.0;  ///< mean absolute error of the judged runs with all causes [unit]
   std::string unit;

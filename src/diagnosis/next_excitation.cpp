@@ -9,7 +9,7 @@
 #include <map>
 
 #include "diagnosis/excitation_candidates.hpp"
-#include "diagnosis/separation.hpp"
+#include "effects/separation.hpp"
 #include "work/parallel.hpp"
 
 namespace pmg::diagnosis {
@@ -35,11 +35,11 @@ bool are_one_torque(const std::string& a, const std::string& b, const model::Act
 /// Two rival models, the first taken as the truth.
 struct Pair {
   std::size_t rivals, truth, other;
-  Separation separation;
+  effects::Separation separation;
 };
 
 /// A candidate run: its blocks for every pair.
-using Seen = std::vector<Separation::Blocks>;
+using Seen = std::vector<effects::Separation::Blocks>;
 
 class Campaign {
  public:
@@ -55,7 +55,7 @@ class Campaign {
             if (t < o) same_here_.emplace_back(rivals[g].names[t], rivals[g].names[o]);
             continue;
           }
-          pairs_.push_back({g, t, o, Separation(models[t], models[o], wanted.noise_squares)});
+          pairs_.push_back({g, t, o, effects::Separation(models[t], models[o], wanted.noise_squares)});
         }
       }
     }
@@ -109,7 +109,7 @@ class Campaign {
   double total(const Seen* further) const {
     double sum = 0.0;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      const Separation& separation = pairs_[p].separation;
+      const effects::Separation& separation = pairs_[p].separation;
       const double deviations =
           further == nullptr ? separation.expected_deviations() : separation.expected_deviations_with((*further)[p]);
       sum += std::min(wanted_.enough, deviations / wanted_.deviations);

@@ -1,5 +1,7 @@
 #include "diagnosis/options.hpp"
 
+#include "evidence/bench_options.hpp"
+
 namespace pmg::diagnosis {
 
 std::vector<evidence::Option> listed(const JointDiagnosisOptions& o) {
@@ -77,11 +79,18 @@ std::vector<evidence::Option> listed(const JointDiagnosisOptions& o) {
       {"worth_finishing", o.worth_finishing, "", "share of the best gain from which a fit is continued", cost},
       {"few_iterations", o.few_iterations, "", "Gauss-Newton iterations of a first fit", cost},
       {"many_iterations", o.many_iterations, "", "of a fit to its end", cost},
+      {"settled_squares", o.settled_squares, "",
+       "rivals are fitted again about the fit with priors if its squares are below this share of the search's", cost},
   };
-  for (evidence::Option& option : listed(o.signatures)) {
-    option.name = "signatures." + option.name;
-    all.push_back(std::move(option));
-  }
+  const auto add = [&](const std::string& prefix, std::vector<evidence::Option> options) {
+    for (evidence::Option& option : options) {
+      option.name = prefix + option.name;
+      all.push_back(std::move(option));
+    }
+  };
+  add("odd_runs.", evidence::listed(o.odd_runs));
+  add("step.", evidence::listed(o.step));
+  add("signatures.", listed(o.signatures));
   return all;
 }
 

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "bench/odd_runs.hpp"
+#include "calib/step_choice.hpp"
 #include "evidence/signature_options.hpp"
 
 namespace pmg::diagnosis {
@@ -30,11 +32,15 @@ struct JointDiagnosisOptions {
   // Cost limits of the search.
   double searched_runs = 40.0, fitted_effects = 8.0, exchanged_effects = 5.0, finished_effects = 3.0;
   double worth_finishing = 0.4, few_iterations = 4.0, many_iterations = 15.0;
+  double settled_squares = 0.995;
 
+  bench::OddRunOptions odd_runs;
+  calib::StepOptions step;
   evidence::SignatureOptions signatures;
 };
 
-/// Every number of the struct, in its order; those of the signatures at the end, as "signatures.NAME".
+/// Every number of the struct, in its order; those of a struct within it at the end, as
+/// "signatures.NAME".
 std::vector<evidence::Option> listed(const JointDiagnosisOptions& options);
 
 }  // namespace pmg::diagnosis

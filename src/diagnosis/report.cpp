@@ -125,6 +125,11 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
     page.paragraph(fmt::format("Noise floor: mean absolute {} {}, rms {}; {}.",
                                thousandths(diagnosis.noise_floor.mean_absolute_rad), calib::position_unit(bench, true),
                                thousandths(diagnosis.noise_floor.rms_rad), diagnosis.noise_floor.how));
+    page.paragraph(
+        fmt::format("The simulation's step is {:.3g} ms ({}); its integrator's error is {} {} rms, and part "
+                    "of the floor.",
+                    1e3 * diagnosis.step.error.step_s, name(diagnosis.step.limit),
+                    thousandths(diagnosis.step.error.rms_rad), calib::position_unit(bench, true)));
   }
 }
 
@@ -244,6 +249,8 @@ pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnos
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));
+  if (const std::string odd = calib::odd_runs_text(diagnosis.noise_floor.odd_runs); !odd.empty())
+    page.paragraph(odd + ".");
   if (!shown.empty()) {
     page.heading("What the simulation makes of the runs");
     show_runs(page, bench, diagnosis, shown, threads);

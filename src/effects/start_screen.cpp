@@ -115,6 +115,16 @@ void StartScreen::screen_wave(const Effect& effect, const std::string& amplitude
   if (std::isfinite(start.squares)) into.push_back(start);
 }
 
+std::vector<ScreenedStart> StartScreen::at(const Effect& effect, const std::vector<double>& values) const {
+  ScreenedStart start{current_.model, 0.0};
+  for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
+  const fitting::Residuals there = fit_.residuals(start.model);
+  if (there.empty()) return {};
+  refit_linearly(there, effect, start);
+  if (!std::isfinite(start.squares)) return {};
+  return {start};
+}
+
 std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchScale& scale) const {
   std::vector<ScreenedStart> found;
   for (const std::vector<double>& values : starts(effect, current_.model, scale)) {

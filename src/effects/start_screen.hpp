@@ -21,6 +21,9 @@ class StartScreen {
   /// start value, two for each wave.
   std::vector<ScreenedStart> best(const Effect& effect, const BenchScale& scale) const;
 
+  /// (effect, values of its parameters) => (the start with these values; none if it can't be simulated).
+  std::vector<ScreenedStart> at(const Effect& effect, const std::vector<double>& values) const;
+
   /// At the current model.
   const RolloutJacobian& jacobian() const { return jacobian_; }
 

@@ -80,7 +80,7 @@ class BalanceChecks {
     const bool sure = must_be_positive ? e.t() > options_.sure_deviations : std::abs(e.t()) > options_.sure_deviations;
     if (sure && e.share > worth_share) {
       s.agreement = Agreement::kAgrees;
-    } else if (e.share_upper < options_.disagrees_share * worth_share) {
+    } else if (std::abs(e.t()) <= options_.sure_deviations && e.share_upper < options_.disagrees_share * worth_share) {
       s.agreement = Agreement::kDisagrees;
     }
     s.sentence = fmt::format("{}: {:.3g} {} (deviation {:.2g}), {:.2f} % of the drive", what, e.coefficient, unit,

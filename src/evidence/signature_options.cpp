@@ -85,6 +85,18 @@ void add(std::vector<Option>& all, const RestOptions& o) {
         "ratio of the highest gain to the lowest that the check needs: it tells a dead band from friction", kAssumed}});
 }
 
+void add(std::vector<Option>& all, const PowerOptions& o) {
+  all.insert(all.end(),
+             {{"power.refuting_log_ratio", o.refuting_log_ratio, "",
+               "a check refutes an effect from this logarithm of the likelihoods' ratio on: three deviations, 3^2 / 2",
+               kAssumed},
+              {"power.compatible_deviations", o.compatible_deviations, "",
+               "and if its value is within so many deviations of the simulated joint's without the effect", kAssumed},
+              {"power.size_deviations", o.size_deviations, "",
+               "a check and a fit differ in size from so many deviations on", kAssumed},
+              {"power.size_share", o.size_share, "", "and from this share of the larger of both sizes on", kAssumed}});
+}
+
 }  // namespace
 
 std::vector<Option> listed(const SignatureOptions& o) {
@@ -141,6 +153,7 @@ std::vector<Option> listed(const SignatureOptions& o) {
   add(all, o.shape);
   add(all, o.onset);
   add(all, o.rest);
+  add(all, o.power);
   return all;
 }
 

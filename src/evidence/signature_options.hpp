@@ -37,6 +37,12 @@ struct RestOptions {
   double stood_s = 0.3, range_of_noise = 8.0, range_rad = 5e-4, fewest_rests = 8.0, gain_ratio = 1.5;
 };
 
+/// When a check refutes an effect, and when check and fit agree in size.
+struct PowerOptions {
+  double refuting_log_ratio = 4.5, compatible_deviations = 3.0;
+  double size_deviations = 3.0, size_share = 0.5;
+};
+
 /// Each share is relative to the drive's root mean square. listed() gives units and reasons.
 struct SignatureOptions {
   double sure_deviations = 4.0;
@@ -63,6 +69,7 @@ struct SignatureOptions {
   ShapeOptions shape;
   OnsetOptions onset;
   RestOptions rest;
+  PowerOptions power;
 };
 
 /// Every number of the struct, in its order; those of a struct within it as "balance.window_s".

@@ -28,7 +28,7 @@ struct ActuatorTorque {
 /// No heap, no I/O; one object per joint. The joint's integrator is semi-implicit Euler with the same step.
 class ActuatorModel {
  public:
-  static constexpr int kDelaySteps = 128;  ///< the longest delay, in steps
+  static constexpr int kDelaySteps = 512;  ///< the longest delay, in steps: 64 ms of the finest, 0.125 ms
 
   /// Throws std::invalid_argument if the delay is longer than kDelaySteps or a value makes no sense.
   ActuatorModel(const model::ActuatorParameters& parameters, double step_s);

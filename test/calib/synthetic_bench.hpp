@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -38,9 +39,10 @@ inline bench::Bench pd_bench(bool pendulum) {
   return bench;
 }
 
-/// Runs of the bench as the model moves them, with noise of the sensor.
+/// Runs of the bench as the model moves them, with noise of the sensor; simulated with the step, or with the one that
+/// fits use.
 inline std::vector<calib::SingleJoint> record(const bench::Bench& bench, const calib::JointModel& truth, int count,
-                                              double noise_rad = 0.0, unsigned seed = 1) {
+                                              double noise_rad = 0.0, unsigned seed = 1, double step_s = 0.0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 1.0);
   const bool pendulum = bench.rig == bench::Rig::kPendulum;
@@ -53,7 +55,7 @@ inline std::vector<calib::SingleJoint> record(const bench::Bench& bench, const c
     run.kd = number < 2 ? 0.8 : 1.6;  // of one kd alone nothing tells it from viscous friction
     run.load = {0.02 + 0.01 * number, pendulum ? 1.0 + 0.5 * number : 0.0, 0.0};
     run.recording = excitation(number);
-    const calib::SingleJoint joint(bench, run, calib::simulation_step_s(bench));
+    const calib::SingleJoint joint(bench, run, step_s > 0.0 ? step_s : calib::simulation_step_s(bench));
     run.recording.q_rad = joint.rollout(truth);
     for (double& q_rad : run.recording.q_rad) q_rad += noise_rad * noise(random);
     joints.emplace_back(bench, run, calib::simulation_step_s(bench));
@@ -68,13 +70,17 @@ inline void write_bench(const std::filesystem::path& folder, const std::vector<c
   yaml << "rig: pendulum\nunits: {q: rad, t: s}\nsample_rate_hz: 100\ndrive:\n  law: position_pd\nloads:\n";
   std::ofstream rows(folder / "runs.csv");
   rows << "file,trajectory,repeat,kp_Nm_per_rad,kd_Nm_s_per_rad,load_mass_kg\n";
-  double mass_kg = 1.0;
+  std::map<double, double> masses_kg;  // by the load's inertia, which differs from load to load
   for (const calib::SingleJoint& joint : joints) {
     const bench::BenchRun& run = joint.run();
-    yaml << fmt::format("  - {{mass_kg: {}, length_m: 0.1, inertia_kg_m2: {}, gravity_Nm: {}}}\n", mass_kg,
-                        run.load.inertia_kg_m2, run.load.gravity_Nm);
-    rows << fmt::format("{},{},0,{},{},{}\n", run.file, run.trajectory, run.kp, run.kd, mass_kg);
-    mass_kg += 1.0;
+    const auto [load, fresh] =
+        masses_kg.try_emplace(run.load.inertia_kg_m2, 1.0 + static_cast<double>(masses_kg.size()));
+    const double mass_kg = load->second;
+    if (fresh) {
+      yaml << fmt::format("  - {{mass_kg: {}, length_m: 0.1, inertia_kg_m2: {}, gravity_Nm: {}}}\n", mass_kg,
+                          run.load.inertia_kg_m2, run.load.gravity_Nm);
+    }
+    rows << fmt::format("{},{},{},{},{},{}\n", run.file, run.trajectory, run.repeat, run.kp, run.kd, mass_kg);
     std::ofstream csv(folder / "runs" / run.file);
     csv << "t_s,q_cmd_rad,q_rad\n";
     for (std::size_t k = 0; k < run.recording.t_s.size(); ++k) {

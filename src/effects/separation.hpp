@@ -5,7 +5,7 @@
 
 #include "effects/nested_fit.hpp"
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 /// Expected separation if one model is the truth: the mean over blocks of log(other's mean square / truth's), over its
 /// standard error. The other model is refitted, along its linearisation, to the recorded runs and the further ones.
@@ -15,7 +15,7 @@ namespace pmg::diagnosis {
 class Separation {
  public:
   /// Both linearised at the recorded runs. noise_squares: mean square that no model goes below [rad^2].
-  Separation(const effects::NestedModel& truth, const effects::NestedModel& other, double noise_squares);
+  Separation(const NestedModel& truth, const NestedModel& other, double noise_squares);
 
   /// Blocks of one further run: residuals of the other model against the true model's rollout.
   using Blocks = std::vector<fitting::NormalEquations>;
@@ -28,7 +28,7 @@ class Separation {
  private:
   double expected(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient, const Blocks* further) const;
 
-  const effects::NestedModel& other_;
+  const NestedModel& other_;
   double usual_squares_, noise_squares_;
   double old_blocks_ = 0.0, old_squares_ = 0.0;  // recorded blocks, and their squared differences of logarithms
   Eigen::MatrixXd information_;
@@ -46,8 +46,8 @@ struct SeenSeparation {
 /// Compares held-out squares (fitting/folds.hpp) in the blocks where the mean square d^2 of the difference of both
 /// rollouts exceeds visible_share of the first model's, beyond the noise (geometric mean over blocks). In the other
 /// blocks, form errors that both models share would pass for a difference.
-SeenSeparation seen_separation(const effects::NestedFit& fit, const calib::JointModel& first,
-                               const calib::JointModel& other, const Eigen::VectorXd& first_held_out,
-                               const Eigen::VectorXd& other_held_out, double noise_squares, double visible_share);
+SeenSeparation seen_separation(const NestedFit& fit, const calib::JointModel& first, const calib::JointModel& other,
+                               const Eigen::VectorXd& first_held_out, const Eigen::VectorXd& other_held_out,
+                               double noise_squares, double visible_share);
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

@@ -1,16 +1,16 @@
-#include "diagnosis/separation.hpp"
+#include "effects/separation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace pmg::diagnosis {
+namespace pmg::effects {
 
 namespace {
 
 double mean_square(const fitting::NormalEquations& block) { return block.squares / std::max(1.0, block.samples); }
 
 /// Geometric mean of the blocks' mean squares.
-double usual_square(const effects::NestedModel& model, double noise_squares) {
+double usual_square(const NestedModel& model, double noise_squares) {
   if (model.blocks.empty()) return noise_squares;
   double sum = 0.0;
   for (const fitting::NormalEquations& block : model.blocks)
@@ -35,7 +35,7 @@ struct Sums {
 
 }  // namespace
 
-Separation::Separation(const effects::NestedModel& truth, const effects::NestedModel& other, double noise_squares)
+Separation::Separation(const NestedModel& truth, const NestedModel& other, double noise_squares)
     : other_(other),
       usual_squares_(usual_square(truth, noise_squares)),
       noise_squares_(noise_squares),
@@ -89,9 +89,9 @@ void Separation::add(const Blocks& run) {
   added_.insert(added_.end(), run.begin(), run.end());
 }
 
-SeenSeparation seen_separation(const effects::NestedFit& fit, const calib::JointModel& first,
-                               const calib::JointModel& other, const Eigen::VectorXd& first_held_out,
-                               const Eigen::VectorXd& other_held_out, double noise_squares, double visible_share) {
+SeenSeparation seen_separation(const NestedFit& fit, const calib::JointModel& first, const calib::JointModel& other,
+                               const Eigen::VectorXd& first_held_out, const Eigen::VectorXd& other_held_out,
+                               double noise_squares, double visible_share) {
   fitting::Residuals differences = fit.residuals(first);
   const fitting::Residuals others = fit.residuals(other);
   for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= others[i];
@@ -116,4 +116,4 @@ SeenSeparation seen_separation(const effects::NestedFit& fit, const calib::Joint
   return {sum / std::sqrt(blocks * std::max(variance, 1e-300)), sum / expected, static_cast<int>(blocks)};
 }
 
-}  // namespace pmg::diagnosis
+}  // namespace pmg::effects

@@ -1,0 +1,56 @@
+// The integrator's error in rollouts of a joint, and the simulation step that it asks for.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "calib/single_joint.hpp"
+
+namespace pmg::calib {
+
+/// evidence::listed() gives the reason of each threshold.
+struct StepOptions {
+  double share_of_noise = 0.5, finest_share = 0.125, most_steps = 1e5;
+};
+
+/// Error of one step size: of each run, and of the usual one.
+struct IntegrationError {
+  double step_s = 0.0;
+  double rms_rad = 0.0;            ///< median over the runs: a run that sticks in one rollout only doesn't decide
+  std::vector<double> of_run_rad;  ///< rms of each run
+};
+
+/// (bench, runs at their step h, model) => (error of h), 2 rms(reading(h) - reading(h / 2)): semi-implicit Euler is of
+/// first order, so half the step leaves half the error. Infinite where the model can't be simulated with half the step.
+/// Costs two rollouts of every run, one of them with half the step.
+IntegrationError integration_error(const bench::Bench& bench, const std::vector<SingleJoint>& runs,
+                                   const JointModel& model, unsigned threads);
+
+enum class StepLimit { kError, kResidual, kCost, kGiven };
+const char* name(StepLimit limit);
+
+struct ChosenStep {
+  IntegrationError error;               ///< of the step chosen
+  IntegrationError first;               ///< of the step that the runs had
+  StepLimit limit = StepLimit::kError;  ///< what ended the choice
+};
+
+/// A model fitted at one step, and its usual residual (geometric mean over blocks of the mean squares) [rad^2].
+struct FittedAtStep {
+  JointModel model;
+  double usual_squares = 0.0;
+};
+using FitAtStep = std::function<FittedAtStep(const std::vector<SingleJoint>& runs, const JointModel& start)>;
+
+/// (bench, runs, model fitted to them, rms noise floor, refit) => (step; the model becomes the one fitted at it).
+/// Halves the runs' step until its error is at most share_of_noise of the floor, and stops before where
+///  - the model fitted at half the step has no lower residual: what was recorded then is no finer than this step (a
+///    simulation), or something else outweighs the integrator;
+///  - the step would be below finest_share of the first, or the runs together would take more than most_steps.
+ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>& runs, JointModel& model,
+                       double noise_rms_rad, const FitAtStep& refit, const StepOptions& options, unsigned threads);
+
+/// The same runs with another simulation step.
+std::vector<SingleJoint> with_step(const bench::Bench& bench, const std::vector<SingleJoint>& runs, double step_s);
+
+}  // namespace pmg::calib
