@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "robot_states.hpp"
@@ -127,6 +128,54 @@ TEST_P(ContactProblemOf, AttitudeChangeIsThatOfTheTorso) {
       EXPECT_NEAR(lever.head<2>().norm(), expected.head<2>().norm(), 1e-9);
     }
   }
+}
+
+/// Two feet under the base's origin disagree: the left one moves at 0.4 m/s and turns at 0.2 rad/s with the weight
+/// 0.25, the right one at -0.2 m/s and 0.1 rad/s with the weight 1. The prior wants 0.6 m/s and -0.5 rad/s with the
+/// weight 0.5 on its residual. By hand, each unknown is the mean of its three wishes with the weights 0.25, 1 and
+/// 0.5^2:
+///   v' = (0.25 (-0.4) + 1 (0.2) + 0.25 (0.6)) / 1.5, omega' = (0.25 (-0.2) + 1 (-0.1) + 0.25 (-0.5)) / 1.5,
+///   h' = (1 (0.02) + 0.25 (-0.06)) / 1.25 for a lowest sole point 0.02 m further down than at stand.
+TEST(ContactProblem, WeighsFeetHeightAndPriorAsWorkedOutByHand) {
+  ContactTerms terms;
+  terms.standing_height_m = 0.8;
+  terms.foot[kLeft].velocity_H = {0.4, 0.0, 0.0};
+  terms.foot[kLeft].omega_H = {0.0, 0.0, 0.2};
+  terms.foot[kRight].velocity_H = {-0.2, 0.0, 0.0};
+  terms.foot[kRight].omega_H = {0.0, 0.0, 0.1};
+  for (const Foot foot : {kLeft, kRight}) terms.foot[foot].lever_H = {0.0, 0.0, -0.82};
+  terms.foot[kLeft].weight = 0.25;
+  terms.foot[kRight].weight = 1.0;
+  for (const Foot foot : {kLeft, kRight}) terms.foot[foot].sqrt_weight = std::sqrt(terms.foot[foot].weight);
+  terms.height_share = {0.0, 1.0};
+  terms.sqrt_height_weight = 1.0;
+  terms.prior = {0.6, 0.0, 0.0, -0.5, -0.06, 0.0, 0.0};
+  terms.prior_weight.fill(0.5);
+
+  using Problem = ContactProblem<5>;
+  Eigen::Matrix<double, Problem::NUM_RESIDUALS, 1> r;
+  Eigen::Matrix<double, Problem::NUM_RESIDUALS, 5> J;
+  const Eigen::Matrix<double, 5, 1> zero = Eigen::Matrix<double, 5, 1>::Zero();
+  Problem{terms}(zero.data(), r.data(), J.data());  // linear in the unknowns: one step is the solution
+  const Eigen::Matrix<double, 5, 1> x = -(J.transpose() * J).ldlt().solve(J.transpose() * r);
+  EXPECT_NEAR(x[kXVx], (0.25 * -0.4 + 0.2 + 0.25 * 0.6) / 1.5, 1e-12);
+  EXPECT_NEAR(x[kXOmega], (0.25 * -0.2 - 0.1 + 0.25 * -0.5) / 1.5, 1e-12);
+  EXPECT_NEAR(x[kXHeight], (0.02 + 0.25 * -0.06) / 1.25, 1e-12);
+  EXPECT_NEAR(x[kXVy], 0.0, 1e-12);
+  EXPECT_NEAR(x[kXVz], 0.0, 1e-12);
+}
+
+TEST_P(ContactProblemOf, TakesTheReferencesContactWeightsAndTheGivenPrior) {
+  RandomReferences references(robot, 12);
+  TermsOf terms_of(robot);
+  Reference reference = references.next();
+  test::set_contact(reference, 0.25, 0.81);
+  const ContactTerms terms = terms_of(reference, 0.3);
+  EXPECT_NEAR(terms.foot[kLeft].sqrt_weight, 0.5, 1e-12);
+  EXPECT_NEAR(terms.foot[kRight].sqrt_weight, 0.9, 1e-12);
+  EXPECT_NEAR(terms.sqrt_height_weight, 1.0, 1e-12) << "min(1, 0.25 + 0.81)";
+  EXPECT_NEAR(terms.sqrt_level_weight, 0.45, 1e-12) << "sqrt(0.25 * 0.81)";
+  for (const double weight : terms.prior_weight) EXPECT_NEAR(weight, 0.3, 1e-12);
 }
 
 }  // namespace

@@ -80,6 +80,13 @@ TEST(OnnxPolicyFile, ANetworkThatGivesOtherActionsThanInTrainingIsRefused) {
               HasSubstr("golden pair 0"));
 }
 
+// The tolerance is 1e-4: float32 actions of order one differ by 1e-6 between two machines.
+TEST(OnnxPolicyFile, AnActionThatDiffersByTwiceTheToleranceIsRefusedAndByHalfIsNot) {
+  const std::string trained = "\"action\": [-0.336349";
+  EXPECT_THAT(refusal_after(trained, "\"action\": [-0.336549"), HasSubstr("golden pair 0"));
+  EXPECT_EQ(refusal_after(trained, "\"action\": [-0.336399"), "was accepted");
+}
+
 TEST(OnnxPolicyFile, ANetworkWhoseWeightsAreNoNumbersIsRefused) {
   const std::string weights = "w0J";  // name, then raw data with its length in two bytes
   LinearPolicyFile policy;
