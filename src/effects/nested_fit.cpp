@@ -59,9 +59,8 @@ NestedModel NestedFit::fit(const calib::JointModel& start, const std::vector<Unk
     found.ranges.push_back(unknowns[i].range());
     found.coordinates[static_cast<Eigen::Index>(i)] = unknowns[i].coordinate(calib::value(start, unknowns[i].name));
   }
-  const fitting::Minimum best =
-      fitting::gauss_newton(problem(found, known), found.coordinates,
-                            {.most_iterations = most_iterations, .relative_tolerance = kEnough});
+  const fitting::Minimum best = fitting::gauss_newton(
+      problem(found, known), found.coordinates, {.most_iterations = most_iterations, .relative_tolerance = kEnough});
   found.coordinates = best.x;
   found.squares = best.squares;
   found.model = model_at(found, best.x);
