@@ -33,6 +33,7 @@ class NestedFit {
 
   const std::vector<calib::SingleJoint>& runs() const { return runs_; }
   const fitting::Blocks& blocks() const { return blocks_; }
+  unsigned threads() const { return threads_; }
 
   /// One rollout of every run.
   fitting::Residuals residuals(const calib::JointModel& model) const {

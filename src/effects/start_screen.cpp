@@ -5,12 +5,14 @@
 #include <limits>
 
 #include "calib/fit_problem.hpp"
+#include "calib/joint_runs.hpp"
 
 namespace pmg::effects {
 
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
+constexpr std::size_t kRunsForOrders = 10;  // a hundred orders of a wave are screened on so many runs first
 constexpr double kPi = 3.141592653589793;
 
 }  // namespace
@@ -125,10 +127,26 @@ std::vector<ScreenedStart> StartScreen::at(const Effect& effect, const std::vect
   return {start};
 }
 
+/// Start values of a wave over the joint's angle. With many runs only those that are best on a few of them: there are
+/// about a hundred orders, and each costs two rollouts of every run.
+std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, const BenchScale& scale) const {
+  if (fit_.runs().size() <= 2 * kRunsForOrders) return starts(effect, current_.model, scale);
+  const NestedFit few(calib::spread(fit_.runs(), kRunsForOrders), fit_.threads());
+  std::vector<std::vector<double>> found;
+  for (const ScreenedStart& start : StartScreen(few, current_).best(effect, scale)) {
+    std::vector<double> values;
+    for (const std::string& parameter : effect.parameters) values.push_back(calib::value(start.model, parameter));
+    found.push_back(std::move(values));
+  }
+  return found;
+}
+
 std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchScale& scale) const {
   std::vector<ScreenedStart> found;
-  for (const std::vector<double>& values : starts(effect, current_.model, scale)) {
-    if (effect.name == "cogging") {
+  const bool waves = effect.name == "cogging";
+  for (const std::vector<double>& values :
+       waves ? promising_waves(effect, scale) : starts(effect, current_.model, scale)) {
+    if (waves) {
       calib::JointModel flat = current_.model;
       flat.actuator.ripple.order = values[1];
       screen_wave(effect, "ripple.amplitude_Nm", "ripple.phase_rad", values[0], flat, found);

@@ -33,6 +33,7 @@ class StartScreen {
                    std::vector<ScreenedStart>& into) const;
   void screen_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
                    const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
+  std::vector<std::vector<double>> promising_waves(const Effect& effect, const BenchScale& scale) const;
   void refit_linearly(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const;
 
   const NestedFit& fit_;

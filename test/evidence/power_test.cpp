@@ -53,6 +53,13 @@ TEST_F(Power, ACheckWithoutThePowerToSeeAStrengthRefutesNothing) {
   EXPECT_FALSE(power.refutes("load_friction", with_load_friction(made_.truth, 1e-4), made_.truth));
 }
 
+TEST_F(Power, ACheckThatWouldDenyEvenThisStrengthRefutesNothing) {
+  options_.friction_share = 10.0;
+  options_.sure_deviations = 1e9;
+  CheckPower power(made_.bench, joints_, 0.0, options_);
+  EXPECT_FALSE(power.refutes("load_friction", with_load_friction(made_.truth, 0.2), made_.truth));
+}
+
 TEST_F(Power, AValueThatTheJointWithoutTheEffectWouldNotGiveRefutesNothing) {
   // The joint has the effect; a threshold that calls any strength too small makes the check disagree.
   const RandomBench has =
