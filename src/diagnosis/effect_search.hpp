@@ -97,7 +97,7 @@ class EffectSearch {
   Extension pruned(Extension current, const Extension& before);
   Extension exchanged(Extension current);
   std::vector<effects::ScreenedStart> screened_starts(const effects::StartScreen& screen,
-                                                      const effects::Effect& effect) const;
+                                                      const effects::Effect& effect, bool measured) const;
   bool going(const std::string& text);
 
   const bench::Bench& bench_;
