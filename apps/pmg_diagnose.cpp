@@ -126,7 +126,7 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
       unit, found.held_out_before.value / floor_rad, found.held_out_after.value / floor_rad);
   std::cout << fmt::format("noise floor {:.4g} {} ({}); {:.0f} % of the way to it\n", 1e3 * floor_rad, unit,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
-  std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error {:.3g} {} rms, part of the noise floor\n",
+  std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error {:.3g} {} rms\n",
                            1e3 * found.step.error.step_s, name(found.step.limit), 1e3 * found.step.error.rms_rad, unit);
   std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());
   if (!found.causes.empty())

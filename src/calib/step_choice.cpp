@@ -1,5 +1,6 @@
 #include "calib/step_choice.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -12,7 +13,7 @@ namespace pmg::calib {
 const char* name(StepLimit limit) {
   switch (limit) {
     case StepLimit::kError:
-      return "its error is small beside the noise";
+      return "its error is small beside residual or noise";
     case StepLimit::kResidual:
       return "a finer step leaves no lower residual";
     case StepLimit::kCost:
@@ -51,16 +52,16 @@ ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>
                        double noise_rms_rad, const FitAtStep& refit, const StepOptions& options, unsigned threads) {
   ChosenStep chosen;
   chosen.first = chosen.error = integration_error(bench, runs, model, threads);
-  double steps = 0.0, usual_squares = -1.0;
+  double steps = 0.0, usual_squares = refit(runs, model).usual_squares;
   for (const SingleJoint& joint : runs) steps += static_cast<double>(joint.steps());
-  while (chosen.error.rms_rad > options.share_of_noise * noise_rms_rad) {
+  while (chosen.error.rms_rad >
+         options.share_of_noise * std::sqrt(std::max(usual_squares, noise_rms_rad * noise_rms_rad))) {
     const double half_s = 0.5 * chosen.error.step_s;
     steps *= 2.0;
     if (steps > options.most_steps || half_s < (1.0 - 1e-9) * options.finest_share * chosen.first.step_s) {
       chosen.limit = StepLimit::kCost;
       break;
     }
-    if (usual_squares < 0.0) usual_squares = refit(runs, model).usual_squares;
     const std::vector<SingleJoint> finer = with_step(bench, runs, half_s);
     const FittedAtStep there = refit(finer, model);
     if (!(there.usual_squares < usual_squares)) {

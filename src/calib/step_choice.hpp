@@ -35,17 +35,18 @@ struct ChosenStep {
   StepLimit limit = StepLimit::kError;  ///< what ended the choice
 };
 
-/// A model fitted at one step, and its usual residual (geometric mean over blocks of the mean squares) [rad^2].
+/// A model fitted at one step, and its usual residual: the geometric mean over blocks of the mean squares [rad^2].
 struct FittedAtStep {
   JointModel model;
   double usual_squares = 0.0;
 };
 using FitAtStep = std::function<FittedAtStep(const std::vector<SingleJoint>& runs, const JointModel& start)>;
 
-/// (bench, runs, model fitted to them, rms noise floor, refit) => (step; the model becomes the one fitted at it).
-/// Halves the runs' step until its error is at most share_of_noise of the floor, and stops before where
+/// (bench, runs, model, rms noise floor, refit) => (step; the model becomes the one fitted at it). Halves the runs'
+/// step until its error is at most share_of_noise of the residual, or of the floor if that is larger. An error that is
+/// small beside the residual of a model without effects decides nothing. Stops before where
 ///  - the model fitted at half the step has no lower residual: what was recorded then is no finer than this step (a
-///    simulation), or something else outweighs the integrator;
+///    simulation);
 ///  - the step would be below finest_share of the first, or the runs together would take more than most_steps.
 ChosenStep chosen_step(const bench::Bench& bench, const std::vector<SingleJoint>& runs, JointModel& model,
                        double noise_rms_rad, const FitAtStep& refit, const StepOptions& options, unsigned threads);

@@ -60,8 +60,7 @@ class JointDiagnosisRun {
       diagnosis_.after = final_fit.model;
     }
     diagnosis_.step_error_after = calib::integration_error(bench_, fit.runs(), diagnosis_.after, options_.threads);
-    diagnosis_.noise_floor = calib::with_integration_error(
-        noise_, std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad));
+    count_integration_error(search.usual_rest(chosen));
     score(all, scored);
     std::vector<evidence::Signature> expected;
     if (!chosen.effects.empty()) {
@@ -105,8 +104,8 @@ class JointDiagnosisRun {
         const effects::NestedFit fit(at_step, options_.threads);
         const calib::JointModel model = fit.fit(start, base.unknowns, static_cast<int>(by_.many_iterations)).model;
         const fitting::BlockComparison compare(fit.blocks(), {}, std::pow(noise_.rms_rad, 2));
-        return calib::FittedAtStep{model,
-                                   std::exp(compare.mean_log_square(fit.blocks().squares(fit.residuals(model))))};
+        const double usual_squares = std::exp(compare.mean_log_square(fit.blocks().squares(fit.residuals(model))));
+        return calib::FittedAtStep{model, usual_squares - std::pow(noise_.rms_rad, 2)};
       };
       step = calib::chosen_step(bench_, first.runs(), base.model, noise_.rms_rad, refit, by_.step, options_.threads);
     }
@@ -114,8 +113,23 @@ class JointDiagnosisRun {
       fitted = calib::with_step(bench_, fitted, step.error.step_s);
       scored = calib::with_step(bench_, scored, step.error.step_s);
     }
-    diagnosis_.noise_floor = calib::with_integration_error(noise_, step.error.rms_rad);
+    if (!small_error()) diagnosis_.noise_floor = calib::with_integration_error(noise_, step.error.rms_rad);
     return base;
+  }
+
+  /// True if the search needs no allowance for the integrator.
+  bool small_error() const {
+    return diagnosis_.step.limit == calib::StepLimit::kError || diagnosis_.step.limit == calib::StepLimit::kResidual;
+  }
+
+  /// (mean square that remains beyond the noise): what is left of the integrator's error counts as noise. An error that
+  /// was small beside the base model's residual counts as far as there is a rest that it may have made. None counts
+  /// where the recordings are no finer than the step.
+  void count_integration_error(double rest_squares) {
+    double error_rad = std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad);
+    if (small_error()) error_rad = std::min(diagnosis_.step_error_after.rms_rad, std::sqrt(rest_squares));
+    if (diagnosis_.step.limit == calib::StepLimit::kResidual) error_rad = 0.0;
+    diagnosis_.noise_floor = calib::with_integration_error(noise_, error_rad);
   }
 
   SearchLimits limits() const {

@@ -193,15 +193,15 @@ std::string EffectSearch::objection(const Trial& trial) const {
   return refuted(trial) ? "the recordings would show it without a model at the strength that fits, and don't" : "";
 }
 
-/// The best two starts of an effect, after the strength that a model-free check measures.
+/// The best two starts of an effect; if wanted, also the strength that a model-free check measures.
 std::vector<effects::ScreenedStart> EffectSearch::screened_starts(const effects::StartScreen& screen,
-                                                                  const effects::Effect& effect) const {
+                                                                  const effects::Effect& effect, bool measured) const {
   std::vector<effects::ScreenedStart> starts = screen.best(effect, base_.scale);
   starts.resize(std::min<std::size_t>(2, starts.size()));
   const auto evident = evidence_.evident.find(effect.name);
-  if (evident == evidence_.evident.end() || evident->second.empty()) return starts;
-  const std::vector<effects::ScreenedStart> measured = screen.at(effect, evident->second);
-  starts.insert(starts.end(), measured.begin(), measured.end());
+  if (!measured || evident == evidence_.evident.end() || evident->second.empty()) return starts;
+  const std::vector<effects::ScreenedStart> further = screen.at(effect, evident->second);
+  starts.insert(starts.end(), further.begin(), further.end());
   return starts;
 }
 
@@ -217,7 +217,7 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
   for (const effects::Effect& one : effects::catalogue()) {
     if (effects::contains(current.effects, one.name)) continue;
     if (!going(fmt::format("looking at {}", one.title))) return {};
-    std::vector<effects::ScreenedStart> starts = screened_starts(screen, one);
+    std::vector<effects::ScreenedStart> starts = screened_starts(screen, one, all_evident);
     if (!starts.empty()) promising.push_back({&one, std::move(starts)});
   }
   std::stable_sort(promising.begin(), promising.end(), [this](const Promising& a, const Promising& b) {

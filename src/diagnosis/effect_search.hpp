@@ -96,8 +96,8 @@ class EffectSearch {
   const Trial* chosen(const std::vector<Trial>& trials) const;
   Extension pruned(Extension current, const Extension& before);
   Extension exchanged(Extension current);
-  std::vector<effects::ScreenedStart> screened_starts(const effects::StartScreen& screen,
-                                                      const effects::Effect& effect) const;
+  std::vector<effects::ScreenedStart> screened_starts(const effects::StartScreen& screen, const effects::Effect& effect,
+                                                      bool measured) const;
   bool going(const std::string& text);
 
   const bench::Bench& bench_;

@@ -126,8 +126,8 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
                                thousandths(diagnosis.noise_floor.mean_absolute_rad), calib::position_unit(bench, true),
                                thousandths(diagnosis.noise_floor.rms_rad), diagnosis.noise_floor.how));
     page.paragraph(
-        fmt::format("The simulation's step is {:.3g} ms ({}); its integrator's error is {} {} rms, and part "
-                    "of the floor.",
+        fmt::format("The simulation's step is {:.3g} ms ({}); its integrator's error is {} {} rms with the "
+                    "base model.",
                     1e3 * diagnosis.step.error.step_s, name(diagnosis.step.limit),
                     thousandths(diagnosis.step.error.rms_rad), calib::position_unit(bench, true)));
   }

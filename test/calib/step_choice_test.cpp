@@ -27,7 +27,7 @@ class StepChoice : public testing::Test {
   ChosenStep chosen(double noise_rms_rad, const StepOptions& options = {}) const {
     JointModel model = model_;
     const FitAtStep refit = [](const std::vector<SingleJoint>& runs, const JointModel& start) {
-      return FittedAtStep{start, runs.front().step_s()};
+      return FittedAtStep{start, 1e-15 * runs.front().step_s()};
     };
     return chosen_step(bench_, runs_, model, noise_rms_rad, refit, options, 1);
   }
@@ -76,10 +76,21 @@ TEST_F(StepChoice, StopsWhereAFinerStepCostsTooMuch) {
   EXPECT_DOUBLE_EQ(chosen(1e-9, cheap).error.step_s, runs_.front().step_s() / 2.0);
 }
 
+TEST_F(StepChoice, KeepsAStepWhoseErrorIsSmallBesideTheResidual) {
+  const double error_rad = integration_error(bench_, runs_, model_, 1).rms_rad;
+  JointModel model = model_;
+  const FitAtStep refit = [&](const std::vector<SingleJoint>&, const JointModel& start) {
+    return FittedAtStep{start, 9.0 * error_rad * error_rad};
+  };
+  const ChosenStep found = chosen_step(bench_, runs_, model, 1e-9, refit, {}, 1);
+  EXPECT_EQ(found.error.step_s, runs_.front().step_s());
+  EXPECT_EQ(found.limit, StepLimit::kError);
+}
+
 TEST_F(StepChoice, KeepsAStepWhereAFinerOneLeavesNoLowerResidual) {
   JointModel model = model_;
   const FitAtStep refit = [](const std::vector<SingleJoint>&, const JointModel& start) {
-    return FittedAtStep{start, 1.0};
+    return FittedAtStep{start, 1e-20};
   };
   const ChosenStep found = chosen_step(bench_, runs_, model, 1e-9, refit, {}, 1);
   EXPECT_EQ(found.error.step_s, runs_.front().step_s());
