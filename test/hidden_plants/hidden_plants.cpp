@@ -9,7 +9,7 @@
 #include "campaign.hpp"
 #include "io/whole_file.hpp"
 #include "prepared_plant.hpp"
-#include "score.hpp"
+#include "tally.hpp"
 
 namespace {
 

@@ -1,0 +1,39 @@
+// What the scores of many hidden plants amount to.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "blind_plants/score.hpp"
+
+namespace pmg::hidden {
+
+/// A share that is promised, and how many of how many kept it.
+struct Promise {
+  std::string what;
+  bool at_least = true;
+  double promised = 0.0;
+  int kept = 0, of = 0;
+  double share() const { return of == 0 ? 0.0 : static_cast<double>(kept) / of; }
+  bool holds() const { return of == 0 || (at_least ? share() >= promised : share() <= promised); }
+  /// The probability of no better a count than this if the promise just held: below a few per cent it doesn't.
+  double chance() const;
+};
+
+struct Tally {
+  std::vector<Score> scores;
+  std::vector<Promise> promises;
+  double median_width = 0.0;  ///< of the parameters' intervals, as a share of the truth
+};
+
+/// Reads the results of a campaign: every *.json of the folder. Throws std::runtime_error when there is none.
+Tally tally(const std::filesystem::path& results);
+
+/// The tables as Markdown.
+std::string markdown(const Tally& tally);
+/// The same for machines: promises, median width, and a row a plant.
+nlohmann::ordered_json json(const Tally& tally);
+
+}  // namespace pmg::hidden
