@@ -125,21 +125,21 @@ std::vector<Form> strange_forms() {
          m.drive.integral_per_s = draw.spread(0.8, 4.0);
          return {};
        }},
-      {"lost_commands", "in bursts", "Gilbert 1960", kOwnDrive,
-       [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-         m.command.loss_burst = draw.uniform(0.03, 0.12) * rig.sample_rate_hz;
-         m.command.loss = draw.uniform(0.15, 0.4);
+      {"lost_commands", "while somebody else has the bus", "Davis, Burns, Bril, Lukkien 2007", kOwnDrive,
+       [](Draw& draw, const Rig&, Machine& m) -> Planted {
+         m.command.loss_period_s = draw.uniform(0.25, 0.6);
+         m.command.loss = draw.uniform(0.2, 0.5);
          return {};
        }},
-      {"lost_readings", "in bursts", "Gilbert 1960", kAny,
-       [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-         m.sensor.loss_burst = draw.uniform(0.03, 0.1) * rig.sample_rate_hz;
-         m.sensor.loss = draw.uniform(0.2, 0.5);
+      {"lost_readings", "while somebody else has the bus", "Davis, Burns, Bril, Lukkien 2007", kAny,
+       [](Draw& draw, const Rig&, Machine& m) -> Planted {
+         m.sensor.loss_period_s = draw.uniform(0.25, 0.6);
+         m.sensor.loss = draw.uniform(0.1, 0.35);
          return {};
        }},
       {"dwell", "sticks harder the longer it rests", "Rabinowicz 1958", kAny,
        [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-         m.friction.dwell_Nm = draw.spread(0.4, 1.2) * rig.scale_Nm();
+         m.friction.dwell_Nm = draw.spread(0.8, 2.5) * rig.scale_Nm();
          m.friction.dwell_s = draw.uniform(0.1, 0.5);
          return {};
        }},

@@ -109,7 +109,7 @@ struct Machine {
     double delay_s = 0.0, delay_jitter = 0.0;  ///< each command is late by delay (1 +- jitter) (Nilsson 1998)
     double rate_limit_rad_s = kNever, acceleration_rad_s2 = kNever;  ///< of the position command; with the second: a profile
     double hold_s = 0.0;                                           ///< the drive takes a new command once in so long
-    double loss = 0.0, loss_burst = 1.0;  ///< share of bursts, and their mean length (Gilbert 1960)
+    double loss = 0.0, loss_period_s = 1.0;  ///< share of each period in which commands don't arrive
   } command;
 
   struct Sensor {
@@ -127,7 +127,7 @@ struct Machine {
     double lag_s = 0.0;    ///< of what the drive sees
     double delay_s = 0.0;  ///< of what the drive sees and of what is recorded
     double hold_s = 0.0;   ///< the drive sees a new reading once in so long
-    double loss = 0.0, loss_burst = 1.0;  ///< of recorded readings: the one before stays
+    double loss = 0.0, loss_period_s = 1.0;  ///< the same of recorded readings: the one before stays
   } sensor;
 
   /// At the rotor, or at the load where a spring is before it.

@@ -60,20 +60,12 @@ class ReadingNoise {
   double phase_, wander_ = 0.0;
 };
 
-/// Lost one after the other in bursts (Gilbert 1960).
-class Losses {
- public:
-  Losses(double share, double burst, Draw draw) : share_(share), burst_(burst), draw_(draw) {}
-  bool next() {
-    lost_ = lost_ ? !draw_.chance(1.0 / burst_) : draw_.chance(share_ / burst_);
-    return lost_ && share_ > 0.0;
-  }
-
- private:
-  double share_, burst_;
-  Draw draw_;
-  bool lost_ = false;
-};
+/// Somebody else has the bus for a share of each period. The same in every run: what differed from repeat to repeat
+/// would be noise to a bench.
+bool lost(double share, double period_s, double t_s) {
+  const double into = t_s / period_s - std::floor(t_s / period_s);
+  return into > 1.0 - share;
+}
 
 /// What differs from run to run.
 Machine machine_of_run(const Machine& machine, const Rig& rig, std::size_t index, Draw draw) {
@@ -148,25 +140,26 @@ Recording record(const Machine& machine, const Rig& rig, std::uint64_t seed, std
   joint.reset(rig.noise.start_rad * start.normal(), command_at(rig, r, gains, 0), temperature_C(rig, index));
   WanderingPush push(rig.noise, drawn(3));
   ReadingNoise noise(rig.noise, drawn(4));
-  Losses lost_commands(machine.command.loss, machine.command.loss_burst, drawn(5));
-  Losses lost_readings(machine.sensor.loss, machine.sensor.loss_burst, drawn(6));
-  Draw thermometer = drawn(7);
+  Draw thermometer = drawn(5);
   Command before = command_at(rig, r, gains, 0);
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     const double reading = joint.reading_rad(noise.next(r.t_s[k]));
-    const bool stale = lost_readings.next() && k > 0;
+    const bool stale = k > 0 && lost(machine.sensor.loss, machine.sensor.loss_period_s, r.t_s[k]);
     r.q_rad.push_back(stale ? r.q_rad.back() : reading);
     r.temp_C.push_back(0.1 * std::round(10.0 * (temperature_C(rig, index) + 0.1 * thermometer.normal())));
     if (k + 1 == r.t_s.size()) break;
     Command command = command_at(rig, r, gains, k);
-    if (lost_commands.next()) command.q_rad = before.q_rad, command.dq_rad_s = before.dq_rad_s;
+    if (lost(machine.command.loss, machine.command.loss_period_s, r.t_s[k])) {
+      command.q_rad = before.q_rad;
+      command.dq_rad_s = before.dq_rad_s;
+    }
     joint.tell(command);
     before = command;
     const double period_s = (r.t_s[k + 1] - r.t_s[k]) * (1.0 - rig.noise.clock_share);
     const int pieces = std::max(1, static_cast<int>(std::round(period_s / kPushStep_s)));
     for (int i = 0; i < pieces; ++i) joint.advance(period_s / pieces, push.next(period_s / pieces));
   }
-  drop_out(rig, drawn(8), r.q_rad);
+  drop_out(rig, drawn(6), r.q_rad);
   return r;
 }
 
