@@ -10,7 +10,6 @@ namespace pmg::hidden {
 
 namespace {
 
-constexpr int kIterations = 5;
 constexpr double kDifference = 0.02;  // of a parameter's scale, for the Jacobian
 
 std::vector<calib::SingleJoint> read(const std::filesystem::path& folder, const std::string& filter) {
@@ -46,12 +45,12 @@ model::ActuatorParameters changed(const std::vector<CalibratedParameter>& unknow
 }  // namespace
 
 model::ActuatorParameters calibrated(model::ActuatorParameters model, const std::vector<CalibratedParameter>& sought,
-                                     const std::filesystem::path& healthy_bench) {
+                                     const std::filesystem::path& healthy_bench, int iterations) {
   const std::vector<calib::SingleJoint> joints = read(healthy_bench, kFitFilter);
   const auto count = static_cast<Eigen::Index>(sought.size());
   Eigen::VectorXd missed = residuals(model, joints);
   double damping = 1e-3;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     Eigen::MatrixXd jacobian(missed.size(), count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::VectorXd step = kDifference * Eigen::VectorXd::Unit(count, i);

@@ -18,7 +18,7 @@ struct CalibratedParameter {
 /// Fits the parameters to the bench's fitted rows by Levenberg-Marquardt from the model given, so that what the plant's
 /// simulation and the project's do differently is in the model as it would be in a real calibration.
 model::ActuatorParameters calibrated(model::ActuatorParameters model, const std::vector<CalibratedParameter>& sought,
-                                     const std::filesystem::path& healthy_bench);
+                                     const std::filesystem::path& healthy_bench, int iterations);
 
 /// Mean absolute error [rad] of the model's rollouts over the rows that the filter keeps.
 double rollout_error_rad(const model::ActuatorParameters& model, const std::filesystem::path& bench,

@@ -6,6 +6,8 @@ namespace pmg::hidden {
 
 namespace {
 
+constexpr int kIterations = 5;
+
 std::vector<CalibratedParameter> unknowns(const Rig& rig, const model::ActuatorParameters& nominal) {
   std::vector<std::string> names = {"transmission.armature_kg_m2", "friction.coulomb_Nm"};
   if (rig.healthy.drive.servo)
@@ -51,7 +53,7 @@ model::ActuatorParameters nominal_model(const Rig& rig) {
 
 model::ActuatorParameters calibrated_model(const Rig& rig, const std::filesystem::path& healthy_bench) {
   const model::ActuatorParameters nominal = nominal_model(rig);
-  return calibrated(nominal, unknowns(rig, nominal), healthy_bench);
+  return calibrated(nominal, unknowns(rig, nominal), healthy_bench, kIterations);
 }
 
 }  // namespace pmg::hidden

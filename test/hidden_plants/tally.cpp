@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -95,13 +94,6 @@ std::string by_effect(const std::vector<Score>& scores) {
 }
 
 }  // namespace
-
-double Promise::chance() const {
-  if (of == 0) return 1.0;
-  const boost::math::binomial_distribution<> expected(of, promised);
-  if (at_least) return boost::math::cdf(expected, kept);
-  return kept == 0 ? 1.0 : boost::math::cdf(boost::math::complement(expected, kept - 1));
-}
 
 Tally tally(const std::filesystem::path& results) {
   std::vector<std::filesystem::path> files;

@@ -6,21 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "blind_plants/promise.hpp"
 #include "blind_plants/score.hpp"
 
 namespace pmg::hidden {
-
-/// A share that is promised, and how many of how many kept it.
-struct Promise {
-  std::string what;
-  bool at_least = true;
-  double promised = 0.0;
-  int kept = 0, of = 0;
-  double share() const { return of == 0 ? 0.0 : static_cast<double>(kept) / of; }
-  bool holds() const { return of == 0 || (at_least ? share() >= promised : share() <= promised); }
-  /// The probability of no better a count than this if the promise just held: below a few per cent it doesn't.
-  double chance() const;
-};
 
 struct Tally {
   std::vector<Score> scores;

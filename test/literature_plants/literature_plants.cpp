@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "apps/program.hpp"
+#include "blind_plants/promise.hpp"
 #include "campaign.hpp"
 #include "campaign_report.hpp"
 #include "io/whole_file.hpp"
@@ -25,14 +26,14 @@ Examples:
   literature_plants forms                                    # every form with its source
 
 Even seeds only; with --final odd seeds only, which nobody looks at before the final report.
-Exit codes: 0 done, 1 a rate is below what --at-least asks for, 2 bad input, 130 interrupted (run goes on from there).)";
+Exit codes: 0 done, 1 a rate is out of the question for what --likely asks, 2 bad input, 130 interrupted (run goes on from there).)";
 
 struct Arguments {
   std::string seeds = "0:60";
   fs::path out, results, json;
   unsigned workers = 1;
   bool final = false, keep = false;
-  std::vector<std::string> at_least;
+  std::vector<std::string> likely;
 };
 
 std::vector<std::uint64_t> chosen_seeds(const Arguments& arguments) {
@@ -75,14 +76,17 @@ int run(const Arguments& arguments) {
   return apps::interrupt_requested != 0 ? kInterrupted : kOk;
 }
 
-/// "clean kept clean=0.8": the share must be that or more.
-bool holds(const literature::CampaignReport& report, const std::string& demand) {
-  const std::size_t equals = demand.rfind('=');
-  if (equals == std::string::npos) throw std::invalid_argument("--at-least '" + demand + "'; expected NAME=SHARE");
-  const literature::Rate& rate = literature::rate(report, demand.substr(0, equals));
-  if (rate.of > 0 && rate.share >= std::stod(demand.substr(equals + 1))) return true;
-  std::cerr << fmt::format("{}: {} of {}; expected a share of at least {}\n", rate.what, rate.kept, rate.of,
-                           demand.substr(equals + 1));
+/// "clean kept clean >= 0.95" or "found with a false cause <= 0.1".
+bool likely(const literature::CampaignReport& report, const std::string& demand) {
+  const std::size_t at = std::min(demand.find(" >= "), demand.find(" <= "));
+  if (at == std::string::npos) {
+    throw std::invalid_argument(fmt::format("--likely '{}'; expected NAME >= SHARE or NAME <= SHARE", demand));
+  }
+  const literature::Rate& rate = literature::rate(report, demand.substr(0, at));
+  const hidden::Promise promise{rate.what, demand[at + 1] == '>', std::stod(demand.substr(at + 4)), rate.kept, rate.of};
+  if (rate.of > 0 && promise.is_likely()) return true;
+  std::cerr << fmt::format("{}: {} of {}; {} {} is unlikely\n", rate.what, rate.kept, rate.of,
+                           promise.at_least ? "at least" : "at most", promise.promised);
   return false;
 }
 
@@ -96,7 +100,7 @@ int report(const Arguments& arguments) {
   std::cout << literature::markdown(report);
   if (!arguments.json.empty()) io::write_whole_file(arguments.json, literature::report_json(report).dump(1) + "\n");
   bool all = true;
-  for (const std::string& demand : arguments.at_least) all = holds(report, demand) && all;
+  for (const std::string& demand : arguments.likely) all = likely(report, demand) && all;
   return all ? kOk : kBroken;
 }
 
@@ -134,7 +138,8 @@ int main(int argc, char** argv) {
   CLI::App* report_command = app.add_subcommand("report", "what the results amount to");
   report_command->add_option("RESULTS", arguments.results, "file that run wrote")->required();
   report_command->add_option("--json", arguments.json, "write it for machines, too");
-  report_command->add_option("--at-least", arguments.at_least, "NAME=SHARE of a row, as in 'clean kept clean=0.8'");
+  report_command->add_option("--likely", arguments.likely,
+                             "fail if a row's count is out of the question for that share: 'clean kept clean >= 0.95'");
   CLI::App* forms_command = app.add_subcommand("forms", "every form with its source");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM});

@@ -19,10 +19,10 @@ struct Share {
   std::uint64_t count;
 };
 constexpr Share kStrata[] = {{Stratum::kSingle, 5},
-                             {Stratum::kDouble, 4},
+                             {Stratum::kDouble, 5},
                              {Stratum::kClean, 4},
                              {Stratum::kStrange, 3},
-                             {Stratum::kFault, 4}};
+                             {Stratum::kFault, 3}};
 
 /// The place of a seed in its block, and how many of its stratum came before it.
 struct Turn {
@@ -79,7 +79,10 @@ LiteraturePlant plant_forms(const std::vector<Form>& forms, std::uint64_t seed, 
   for (const Form& form : forms) needs = both(needs, form.needs);
   plant.rig = draw_rig(draw, needs);
   const bool sags = std::any_of(forms.begin(), forms.end(), [](const Form& form) { return form.effect == std::string("supply_sag"); });
-  if (sags) plant.rig.records_bus = false;  // a recorded bus is an input
+  if (sags) {  // a recorded bus is an input
+    plant.rig.records_bus = false;
+    plant.rig.bus_fall = 0.0;
+  }
   plant.machine = plant.rig.healthy;
   // Each effect draws from its own stream, so that the machine without it has the others as they are.
   const auto planted = [&](std::size_t i, Machine& machine) {

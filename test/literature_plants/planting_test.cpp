@@ -120,9 +120,9 @@ TEST(LiteraturePlants, EvenAndOddSeedsHaveTheSameStrata) {
   }
   EXPECT_EQ(even, odd);
   EXPECT_EQ(even[Stratum::kClean], 60);
-  EXPECT_GE(even[Stratum::kDouble], 55);
-  EXPECT_GE(even[Stratum::kFault], 55);
-  EXPECT_GE(even[Stratum::kStrange], 45);
+  EXPECT_EQ(even[Stratum::kDouble], 75);
+  EXPECT_EQ(even[Stratum::kFault], 45);
+  EXPECT_EQ(even[Stratum::kStrange], 45);
 }
 
 TEST(LiteraturePlants, WarmBenchesAreAsOftenWithoutConsequence) {

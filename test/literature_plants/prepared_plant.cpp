@@ -16,6 +16,7 @@ namespace pmg::literature {
 namespace {
 
 constexpr std::uint64_t kCalibrationTake = 1, kRepeatTake = 2;
+constexpr int kIterations = 12;              // by then the worst of a hundred calibrations had settled
 constexpr double kUnreadable_floors = 1e3;  // of files that the reader refuses
 
 /// The rig's numbers as the actuator model has them: where a calibration begins.
@@ -152,7 +153,7 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
   write_bench(healthy, plant, plant.rig.healthy, kCalibrationTake, false);
   write_bench(prepared.bench, plant, plant.machine, 0, true);
   const model::ActuatorParameters nominal = nominal_model(plant.rig);
-  prepared.base = hidden::calibrated(nominal, sought(plant.rig, nominal), healthy);
+  prepared.base = hidden::calibrated(nominal, sought(plant.rig, nominal), healthy, kIterations);
 
   const double floor_rad = noise_floor_rad(plant);
   nlohmann::json effects = nlohmann::json::array(), faults = nlohmann::json::array();

@@ -90,7 +90,8 @@ void draw_torque(Draw& draw, Rig& rig) {
 /// What a good calibration of the healthy joint has in it besides.
 void draw_known_effects(Draw& draw, Rig& rig) {
   Machine& m = rig.healthy;
-  if (draw.chance(0.3)) {
+  const bool holds_position = m.drive.law != Law::kTorque;  // without, stick-slip never goes the same way twice
+  if (holds_position && draw.chance(0.3)) {
     m.friction.stribeck_Nm = draw.uniform(0.2, 0.5) * m.friction.coulomb_Nm;
     m.friction.stribeck_rad_s = draw.uniform(0.15, 0.5);
   } else if (!rig.horizontal && draw.chance(0.25)) {
@@ -111,6 +112,7 @@ void draw_design(Draw& draw, Rig& rig, const RigNeeds& needs) {
   rig.gains.resize(gains);
   rig.loads.resize(loads);
   std::vector<std::size_t> others = {1, 2, 3, 4, 5};
+  if (torque) others.pop_back();  // nothing creeps evenly under a torque
   draw.shuffle(others);
   const bool smooth = torque || rig.commands_speed;
   for (std::size_t t = 0; t < trajectories; ++t) {
@@ -137,7 +139,8 @@ void draw_noise(Draw& draw, Rig& rig) {
   n.push_corner_s = draw.spread(0.03, 0.3);
   n.start_rad = draw.uniform(0.0, 0.004);
   if (rig.healthy.drive.law != Law::kCascade && draw.chance(0.5)) n.jitter = draw.uniform(0.02, 0.25);
-  if (draw.chance(0.3)) n.clock_share = 1e-4 * draw.normal();
+  const bool own_clock = rig.healthy.drive.law != Law::kCascade;  // a cascade records its own ticks
+  if (own_clock && draw.chance(0.3)) n.clock_share = 1e-4 * draw.normal();
   if (draw.chance(0.3)) n.dropouts_per_s = draw.uniform(0.05, 0.5);
   for (std::size_t l = 0; l < rig.loads.size(); ++l) rig.mass_factor.push_back(1.0 + 0.001 * draw.normal());
 }
