@@ -15,8 +15,8 @@ struct Promise {
   bool holds() const { return of == 0 || (at_least ? share() >= promised : share() <= promised); }
   /// The probability of no better a count than this if the promise just held.
   double chance() const;
-  /// False if a diagnosis that just keeps the promise would give so bad a count once in fifty campaigns at most. With few
-  /// plants a share says little: 15 of 18 is below 90 % and quite usual.
+  /// False if a diagnosis that just keeps the promise would give so bad a count once in fifty campaigns at most. With
+  /// few plants a share says little: 15 of 18 is below 90 % and quite usual.
   bool is_likely() const { return chance() >= 0.02; }
 };
 

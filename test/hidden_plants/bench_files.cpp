@@ -64,7 +64,7 @@ class BenchWriter {
     rows_ += fmt::format("{},{},{},{},{:.5f},{:.5f},{}\n", file, trajectory, repeat, gains, run.load.mass_kg,
                          run.load.length_m, scored ? "score" : "fit");
     write_text(folder_ / "runs" / file,
-          csv(record(plant_, hidden_.rig, hidden_.seed, run), hidden_.rig.records_temperature));
+               csv(record(plant_, hidden_.rig, hidden_.seed, run), hidden_.rig.records_temperature));
   }
 
   void finish() {

@@ -86,7 +86,8 @@ void write_bench(const std::filesystem::path& folder, const LiteraturePlant& pla
   const Law law = rig.healthy.drive.law;
   std::vector<FiledRun> files;
   for (std::size_t i = 0; i < rig.runs.size(); ++i) {
-    files.push_back({i, rig.gains[rig.runs[i].gains], rig.loads[rig.runs[i].load], record(machine, rig, plant.seed, i, take)});
+    files.push_back(
+        {i, rig.gains[rig.runs[i].gains], rig.loads[rig.runs[i].load], record(machine, rig, plant.seed, i, take)});
   }
   if (spoiled) {
     for (const DataFault& fault : plant.faults) spoil(fault, files);

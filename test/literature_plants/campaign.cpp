@@ -82,7 +82,8 @@ std::vector<json> read_results(const std::filesystem::path& file) {
       results.push_back(json::parse(line));
       seed_of(results.back());
     } catch (const json::exception&) {
-      throw std::runtime_error(fmt::format("{}:{}: no result of a plant; expected a line that run wrote", file.string(), number));
+      throw std::runtime_error(
+          fmt::format("{}:{}: no result of a plant; expected a line that run wrote", file.string(), number));
     }
   }
   std::sort(results.begin(), results.end(), [](const json& a, const json& b) { return seed_of(a) < seed_of(b); });
@@ -94,13 +95,14 @@ void run(const Campaign& campaign, const std::vector<std::uint64_t>& seeds) {
   for (const json& result : read_results(campaign.results)) {
     const std::uint64_t seed = seed_of(result);
     if (!seeds.empty() && seed % 2 != seeds.front() % 2) {
-      throw std::invalid_argument(fmt::format("{} has seed {}; even and odd seeds don't go into one file",
-                                              campaign.results.string(), seed));
+      throw std::invalid_argument(
+          fmt::format("{} has seed {}; even and odd seeds don't go into one file", campaign.results.string(), seed));
     }
     done.insert(seed);
   }
   std::vector<std::uint64_t> left;
-  std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(left), [&](std::uint64_t s) { return !done.contains(s); });
+  std::copy_if(seeds.begin(), seeds.end(), std::back_inserter(left),
+               [&](std::uint64_t s) { return !done.contains(s); });
   if (campaign.results.has_parent_path()) std::filesystem::create_directories(campaign.results.parent_path());
   mend(campaign.results);
   std::mutex mutex;

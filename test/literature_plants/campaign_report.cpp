@@ -50,7 +50,8 @@ std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
       [](const Judgement& j) { return j.counts && (j.score.kind == "single" || j.score.kind == "double"); },
       [](const Judgement& j) { return j.score.ambiguous; }));
   rates.push_back(rate_of("doubles: both named", all, counted("double"), right));
-  rates.push_back(rate_of("data faults named", all, counted("fault"), [](const Judgement& j) { return j.fault_named; }));
+  rates.push_back(
+      rate_of("data faults named", all, counted("fault"), [](const Judgement& j) { return j.fault_named; }));
   rates.push_back(rate_of("data faults named, with their runs and without a false cause", all, counted("fault"),
                           [](const Judgement& j) { return j.right && j.fault_placed; }));
   rates.push_back(rate_of("clean kept clean", all, counted("clean"), right));
@@ -66,8 +67,11 @@ std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
 
 std::string row(const Judgement& j) {
   return fmt::format("| {} | {} | {} | {} | {} | {}{} | {:.1f} |\n", j.score.seed, j.score.kind, j.law, j.score.planted,
-                     j.score.said, !j.counts ? "weak" : j.right ? "yes" : "no", j.false_cause ? ", false cause" : "",
-                     j.score.seconds);
+                     j.score.said,
+                     !j.counts ? "weak"
+                     : j.right ? "yes"
+                               : "no",
+                     j.false_cause ? ", false cause" : "", j.score.seconds);
 }
 
 }  // namespace
@@ -86,7 +90,8 @@ CampaignReport report_of(std::vector<Judgement> judgements) {
 }
 
 const Rate& rate(const CampaignReport& report, const std::string& what) {
-  const auto found = std::find_if(report.rates.begin(), report.rates.end(), [&](const Rate& r) { return r.what == what; });
+  const auto found =
+      std::find_if(report.rates.begin(), report.rates.end(), [&](const Rate& r) { return r.what == what; });
   if (found == report.rates.end()) throw std::out_of_range("no rate is called '" + what + "'");
   return *found;
 }

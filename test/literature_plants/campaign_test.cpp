@@ -26,18 +26,17 @@ fs::path scratch(const char* name) {
 }
 
 json effect(const std::string& name, double floors) {
-  return {{"effect", name},         {"form", "some form"}, {"source", "somebody"}, {"moves_floors", floors},
-          {"parameters", json::object()}, {"same_here", json::array()}};
+  return {{"effect", name},         {"form", "some form"},          {"source", "somebody"},
+          {"moves_floors", floors}, {"parameters", json::object()}, {"same_here", json::array()}};
 }
 
 json fault(const std::string& kind, const std::vector<std::string>& runs, const std::vector<std::string>& same = {}) {
-  return {{"kind", kind}, {"column", "q_rad"},   {"runs", runs},     {"factor", 1.0},
+  return {{"kind", kind},       {"column", "q_rad"},   {"runs", runs},     {"factor", 1.0},
           {"shift_samples", 0}, {"moves_floors", 9.0}, {"same_here", same}};
 }
 
 json result(const std::string& kind, const json& effects, const json& faults, const json& diagnosis, int seed = 2) {
-  return {{"truth",
-           {{"seed", seed}, {"kind", kind}, {"law", "position_pd"}, {"effects", effects}, {"faults", faults}}},
+  return {{"truth", {{"seed", seed}, {"kind", kind}, {"law", "position_pd"}, {"effects", effects}, {"faults", faults}}},
           {"diagnosis", diagnosis},
           {"seconds", 1.0},
           {"prepared_s", 1.0}};
@@ -78,7 +77,9 @@ TEST(LiteratureCampaign, GoesOnAfterAKillAndKeepsEvenAndOddApart) {
 
 TEST(LiteratureJudgement, ADoubleNeedsBothAndNothingElse) {
   const json both = json::array({effect("delay", 5.0), effect("gain", 4.0)});
-  const auto right = [&](const json& diagnosis) { return judge(result("double", both, json::array(), diagnosis)).right; };
+  const auto right = [&](const json& diagnosis) {
+    return judge(result("double", both, json::array(), diagnosis)).right;
+  };
   EXPECT_TRUE(right(said("found", {"gain", "delay"})));
   EXPECT_FALSE(right(said("found", {"gain"})));
   EXPECT_FALSE(right(said("found", {"gain", "delay", "cogging"})));
@@ -161,9 +162,9 @@ TEST(LiteraturePlants, PlantedNumbersAreAllThatTheModelLacks) {
     for (const auto& [name, value] : planted.at("parameters").items()) {
       model::actuator_parameter(name).in(model) = value.get<double>();
     }
-    EXPECT_LT(hidden::rollout_error_rad(model, prepared.bench, hidden::kScoreFilter),
-              prepared.truth.at("healthy_error_rad").get<double>() +
-                  0.5 * prepared.truth.at("noise_floor_rad").get<double>())
+    EXPECT_LT(
+        hidden::rollout_error_rad(model, prepared.bench, hidden::kScoreFilter),
+        prepared.truth.at("healthy_error_rad").get<double>() + 0.5 * prepared.truth.at("noise_floor_rad").get<double>())
         << seed;
   }
 }

@@ -17,8 +17,8 @@ void Drive::reset(const Command& command) {
 
 void Drive::tell(double t_s, const Command& command) {
   newest_ = command;  // switching off, gains and the bus don't travel
-  const double late_s =
-      m_.command.delay_s * (1.0 + (m_.command.delay_jitter > 0.0 ? draw_.uniform(-1.0, 1.0) : 0.0) * m_.command.delay_jitter);
+  const double late_s = m_.command.delay_s * (1.0 + (m_.command.delay_jitter > 0.0 ? draw_.uniform(-1.0, 1.0) : 0.0) *
+                                                        m_.command.delay_jitter);
   told_.push_back({t_s + late_s, command});
 }
 
@@ -34,8 +34,8 @@ void Drive::take(double t_s) {
   }
 }
 
-/// A rate limit, or a profile with an acceleration limit as well (Biagiotti, Melchiorri 2008): towards the target at the
-/// speed from which it can still brake.
+/// A rate limit, or a profile with an acceleration limit as well (Biagiotti, Melchiorri 2008): towards the target at
+/// the speed from which it can still brake.
 void Drive::shape(double h_s) {
   const double away_rad = taken_.q_rad - shaped_rad_, most_rad_s = m_.command.rate_limit_rad_s;
   if (!std::isfinite(m_.command.acceleration_rad_s2)) {
@@ -43,9 +43,8 @@ void Drive::shape(double h_s) {
     return;
   }
   const double a = m_.command.acceleration_rad_s2;
-  const double wanted_rad_s =
-      std::copysign(std::min(most_rad_s, std::min(std::sqrt(2.0 * a * std::abs(away_rad)), std::abs(away_rad) / h_s)),
-                    away_rad);
+  const double wanted_rad_s = std::copysign(
+      std::min(most_rad_s, std::min(std::sqrt(2.0 * a * std::abs(away_rad)), std::abs(away_rad) / h_s)), away_rad);
   shaped_rad_s_ += std::clamp(wanted_rad_s - shaped_rad_s_, -a * h_s, a * h_s);
   shaped_rad_ += h_s * shaped_rad_s_;
 }
@@ -90,7 +89,8 @@ double Drive::late(double t_s, double output) {
   return outputs_.front().first <= t_s - m_.drive.torque_delay_s + 1e-9 ? outputs_.front().second : 0.0;
 }
 
-/// Motor torque T = k (duty V - back_emf w). The bridge takes duty T from the bus, which loses a share s duty T of itself:
+/// Motor torque T = k (duty V - back_emf w). The bridge takes duty T from the bus, which loses a share s duty T of
+/// itself:
 ///   T = k (duty V (1 - lost - s duty T) - back_emf w)  =>  T (1 + s k V duty^2) = k (duty V (1 - lost) - back_emf w).
 DriveOutput Drive::bridge(double duty, double motor_rad_s, double h_s) {
   const Machine::Drive& d = m_.drive;

@@ -97,7 +97,9 @@ DataFault draw_fault(Draw& draw, std::size_t kind, Rig& rig) {
       break;
     case kSign: {
       const std::string feed_forward = feed_forward_column(rig);
-      fault.column = !feed_forward.empty() && draw.chance(0.5) ? feed_forward : draw.chance(0.5) ? "q_rad" : "q_cmd_rad";
+      fault.column = !feed_forward.empty() && draw.chance(0.5) ? feed_forward
+                     : draw.chance(0.5)                        ? "q_rad"
+                                                               : "q_cmd_rad";
       if (rig.healthy.drive.law == Law::kTorque && fault.column == "q_cmd_rad") fault.column = "q_rad";
       fault.runs = draw_runs(draw, rig);
       fault.factor = -1.0;
@@ -130,7 +132,8 @@ DataFault draw_fault(Draw& draw, std::size_t kind, Rig& rig) {
       fault.column = torque || draw.chance(0.6) ? "q_rad" : "q_cmd_rad";
       fault.runs = draw_runs(draw, rig);
       const double late_s = draw.sign() * draw.spread(0.015, 0.06);
-      fault.shift = static_cast<int>(std::copysign(std::max(1.0, std::round(std::abs(late_s) * rig.sample_rate_hz)), late_s));
+      fault.shift =
+          static_cast<int>(std::copysign(std::max(1.0, std::round(std::abs(late_s) * rig.sample_rate_hz)), late_s));
       // Readings late in every run: what a delay of commands would do as well.
       const bool late = (fault.shift > 0) == (fault.column == "q_rad");
       if (late && fault.runs.size() == rig.runs.size()) fault.same_here = {"delay"};

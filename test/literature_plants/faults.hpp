@@ -10,16 +10,16 @@
 namespace pmg::literature {
 
 /// As a diagnosis names it: data_faults[].kind.
-inline constexpr const char* kFaultKinds[] = {"units_of_feed_forward", "degrees",     "flipped_sign", "wrong_mass",
+inline constexpr const char* kFaultKinds[] = {"units_of_feed_forward", "degrees",      "flipped_sign", "wrong_mass",
                                               "gain_factor",           "swapped_runs", "time_shift"};
 
 struct DataFault {
   std::string kind;
-  std::string column;             ///< of runs/*.csv or runs.csv; empty where none is meant
-  std::vector<std::size_t> runs;  ///< that have the fault, by index
-  double factor = 1.0;            ///< truth over what the files say, or what is written over the truth
-  int shift = 0;                  ///< samples by which the column comes later
-  std::string text;               ///< for people
+  std::string column;                  ///< of runs/*.csv or runs.csv; empty where none is meant
+  std::vector<std::size_t> runs;       ///< that have the fault, by index
+  double factor = 1.0;                 ///< truth over what the files say, or what is written over the truth
+  int shift = 0;                       ///< samples by which the column comes later
+  std::string text;                    ///< for people
   std::vector<std::string> same_here;  ///< effects of the catalogue that would explain the same files
 };
 

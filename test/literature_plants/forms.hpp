@@ -18,7 +18,7 @@ using Planted = std::vector<PlantedParameter>;
 
 inline constexpr RigNeeds kAny{};
 inline constexpr RigNeeds kWeight{.weight = true};
-inline constexpr RigNeeds kCurrent{.laws = kPd};                              ///< a drive that regulates its current
+inline constexpr RigNeeds kCurrent{.laws = kPd};                             ///< a drive that regulates its current
 inline constexpr RigNeeds kOwnDrive{.laws = kPd | kServoLaw | kCascadeLaw};  ///< a drive that closes a loop
 
 inline constexpr PlantedParameter::How kAdds = PlantedParameter::How::kAdds;

@@ -54,9 +54,7 @@ const std::vector<Form> kRateLimit = {
      }},
     {"rate_limit", "of the output", "Klyde, McRuer, Myers 1997", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       const double one = m.drive.law == Law::kPositionPd ? rig.scale_Nm()
-                          : m.drive.law == Law::kServo    ? 1.0
-                                                          : 10.0;
+       const double one = m.drive.law == Law::kPositionPd ? rig.scale_Nm() : m.drive.law == Law::kServo ? 1.0 : 10.0;
        m.drive.output_rate_per_s = draw.spread(8.0, 40.0) * one;
        return {};
      }},
@@ -131,12 +129,18 @@ const std::vector<Form> kGains = {
        m.drive.kp_factor *= by;
        return {{"drive.kp_scale", kScales, by}};
      }},
-    {"gain", "of all torque", "Gautier, Briot 2014", {.laws = kPd | kCascadeLaw, .weight = true},
+    {"gain",
+     "of all torque",
+     "Gautier, Briot 2014",
+     {.laws = kPd | kCascadeLaw, .weight = true},
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.torque_factor = factor(draw);
        return {};
      }},
-    {"gain", "falls with torque: a saturated core", "Hanselman 2006", {.laws = kPd, .weight = true},
+    {"gain",
+     "falls with torque: a saturated core",
+     "Hanselman 2006",
+     {.laws = kPd, .weight = true},
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.saturation_per_Nm = draw.spread(0.1, 0.4) / rig.scale_Nm();
        return {};
@@ -144,7 +148,7 @@ const std::vector<Form> kGains = {
 };
 
 const std::vector<Form> kDeadBand = {
-    {"dead_band", "jumps", "servo firmware; Gelb, Vander Velde 1968", kOwnDrive,
+    {"dead_band", "jumps", "Gelb, Vander Velde 1968", kOwnDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.dead_band_rad = band_rad(draw);
        return {{"drive.dead_band_rad", kIs, m.drive.dead_band_rad}};

@@ -16,7 +16,10 @@ const std::vector<Form> kThermal = {
        m.thermal.friction_per_K = -draw.uniform(0.012, 0.035);
        return {{"thermal.friction_per_K", kIs, m.thermal.friction_per_K}};
      }},
-    {"thermal_drift", "only viscous friction thins", "Bittencourt, Gunnarsson 2012", {.laws = kPd | kCascadeLaw, .warm = true},
+    {"thermal_drift",
+     "only viscous friction thins",
+     "Bittencourt, Gunnarsson 2012",
+     {.laws = kPd | kCascadeLaw, .warm = true},
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.viscous_Nm_s_per_rad += draw.spread(0.1, 0.25) * rig.scale_Nm() / 2.0;
        m.thermal.viscous_per_K = -draw.uniform(0.02, 0.05);
@@ -45,7 +48,8 @@ const std::vector<Form> kSelfHeating = {
        m.thermal.friction_per_J = -draw.spread(0.8, 3.0) / rig.scale_Nm();
        return {};
      }},
-    {"self_heating", "torque falls with the winding's heat", "Urata, Hirose, Namiki, Nakanishi, Mizuuchi, Inaba 2008", kWeight,
+    {"self_heating", "torque falls with the winding's heat", "Urata, Hirose, Namiki, Nakanishi, Mizuuchi, Inaba 2008",
+     kWeight,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.thermal.torque_per_Nm2_s = draw.spread(0.04, 0.15) / (rig.scale_Nm() * rig.scale_Nm());
        m.thermal.cooling_s = draw.uniform(10.0, 60.0);

@@ -95,7 +95,8 @@ const std::vector<Form> kCompliance = {
        spring(draw, rig, m);
        m.transmission.stiffness_Nm_per_rad *= 0.6;
        const double twist_rad = rig.scale_Nm() / m.transmission.stiffness_Nm_per_rad;
-       m.transmission.hardening_Nm_per_rad3 = draw.uniform(1.0, 4.0) * m.transmission.stiffness_Nm_per_rad / (twist_rad * twist_rad);
+       m.transmission.hardening_Nm_per_rad3 =
+           draw.uniform(1.0, 4.0) * m.transmission.stiffness_Nm_per_rad / (twist_rad * twist_rad);
        return {};
      }},
     {"compliance", "sensor before the gear", "Sweet, Good 1985", kOwnDrive,

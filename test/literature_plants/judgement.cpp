@@ -103,11 +103,11 @@ std::string planted_text(const json& truth) {
   }
   for (const json& fault : truth.at("faults")) {
     const std::size_t runs = fault.at("runs").size();
-    text += fmt::format("{} {} x {:.3g} in {} run{} ({:.1f})", fault.at("kind").get<std::string>(),
-                        fault.at("column").get<std::string>(),
-                        fault.at("shift_samples") != 0 ? fault.at("shift_samples").get<double>()
-                                                       : fault.at("factor").get<double>(),
-                        runs, runs == 1 ? "" : "s", fault.at("moves_floors").get<double>());
+    text += fmt::format(
+        "{} {} x {:.3g} in {} run{} ({:.1f})", fault.at("kind").get<std::string>(),
+        fault.at("column").get<std::string>(),
+        fault.at("shift_samples") != 0 ? fault.at("shift_samples").get<double>() : fault.at("factor").get<double>(),
+        runs, runs == 1 ? "" : "s", fault.at("moves_floors").get<double>());
   }
   return text;
 }

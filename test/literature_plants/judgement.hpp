@@ -10,8 +10,8 @@
 namespace pmg::literature {
 
 struct Judgement {
-  hidden::Score score;  ///< of causes against planted effects
-  bool counts = false;  ///< clean, or every planted effect or fault moves the bench by two noise floors
+  hidden::Score score;        ///< of causes against planted effects
+  bool counts = false;        ///< clean, or every planted effect or fault moves the bench by two noise floors
   bool fault_named = false;   ///< its kind is among data_faults, or an effect that would make the same files is found
   bool fault_placed = false;  ///< and its runs are those that have it
   bool false_cause = false;   ///< verdict found, and a cause or a data fault that isn't there

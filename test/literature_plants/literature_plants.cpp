@@ -8,6 +8,7 @@
 #include "blind_plants/promise.hpp"
 #include "campaign.hpp"
 #include "campaign_report.hpp"
+#include "forms_table.hpp"
 #include "io/whole_file.hpp"
 #include "prepared_plant.hpp"
 
@@ -30,9 +31,10 @@ Exit codes: 0 done, 1 a rate is out of the question for what --likely asks, 2 ba
 
 struct Arguments {
   std::string seeds = "0:60";
-  fs::path out, results, json;
+  fs::path out, json;
+  std::vector<fs::path> results;
   unsigned workers = 1;
-  bool final = false, keep = false;
+  bool final = false, keep = false, again = false;
   std::vector<std::string> likely;
 };
 
@@ -43,7 +45,8 @@ std::vector<std::uint64_t> chosen_seeds(const Arguments& arguments) {
     const std::uint64_t first = std::stoul(arguments.seeds.substr(0, colon));
     const std::uint64_t last = std::stoul(arguments.seeds.substr(colon + 1));
     if (last < first) throw std::invalid_argument("");
-    return literature::seeds_for(arguments.final ? literature::Use::kFinal : literature::Use::kDevelopment, first, last);
+    return literature::seeds_for(arguments.final ? literature::Use::kFinal : literature::Use::kDevelopment, first,
+                                 last);
   } catch (const std::logic_error&) {
     throw std::invalid_argument(fmt::format("--seeds {}; expected FIRST:LAST, as in 0:60", arguments.seeds));
   }
@@ -69,10 +72,15 @@ int run(const Arguments& arguments) {
     const literature::Judgement j = literature::judge(result);
     std::cout << fmt::format("{:3} {:7} planted {}; said {}: {} ({:.1f} s)\n", j.score.seed, j.score.kind,
                              j.score.planted.empty() ? "nothing" : j.score.planted, j.score.said,
-                             !j.counts ? "weak" : j.right ? "right" : "wrong", j.score.seconds)
+                             !j.counts ? "weak"
+                             : j.right ? "right"
+                                       : "wrong",
+                             j.score.seconds)
               << std::flush;
   };
-  literature::run(campaign, chosen_seeds(arguments));
+  const std::vector<std::uint64_t> seeds = chosen_seeds(arguments);
+  if (arguments.again) fs::remove(arguments.out);
+  literature::run(campaign, seeds);
   return apps::interrupt_requested != 0 ? kInterrupted : kOk;
 }
 
@@ -92,10 +100,11 @@ bool likely(const literature::CampaignReport& report, const std::string& demand)
 
 int report(const Arguments& arguments) {
   std::vector<literature::Judgement> judgements;
-  for (const nlohmann::json& result : literature::read_results(arguments.results)) {
-    judgements.push_back(literature::judge(result));
+  for (const fs::path& file : arguments.results) {
+    const std::vector<nlohmann::json> results = literature::read_results(file);
+    if (results.empty()) throw std::runtime_error(file.string() + ": no results; expected a file that run wrote");
+    for (const nlohmann::json& result : results) judgements.push_back(literature::judge(result));
   }
-  if (judgements.empty()) throw std::runtime_error(arguments.results.string() + ": no results; expected the file of run");
   const literature::CampaignReport report = literature::report_of(std::move(judgements));
   std::cout << literature::markdown(report);
   if (!arguments.json.empty()) io::write_whole_file(arguments.json, literature::report_json(report).dump(1) + "\n");
@@ -105,14 +114,7 @@ int report(const Arguments& arguments) {
 }
 
 int forms() {
-  std::cout << "| effect | form | source |\n|---|---|---|\n";
-  for (const literature::Form& f : literature::catalogue_forms()) {
-    std::cout << fmt::format("| {} | {} | {} |\n", f.effect, f.form, f.source);
-  }
-  std::cout << "\n| off the catalogue | form | source |\n|---|---|---|\n";
-  for (const literature::Form& f : literature::strange_forms()) {
-    std::cout << fmt::format("| {} | {} | {} |\n", f.effect, f.form, f.source);
-  }
+  std::cout << literature::forms_table();
   return kOk;
 }
 
@@ -134,9 +136,10 @@ int main(int argc, char** argv) {
   CLI::App* run_command = of_seeds("run", "diagnose; seeds that have a result already are left");
   run_command->add_option("--out", arguments.out, "file to which a line a plant is appended")->required();
   run_command->add_option("--workers", arguments.workers, "threads")->capture_default_str()->check(CLI::Range(1, 64));
+  run_command->add_flag("--again", arguments.again, "drop the file's results first");
   run_command->add_flag("--keep", arguments.keep, "keep the benches, in OUT.plants");
   CLI::App* report_command = app.add_subcommand("report", "what the results amount to");
-  report_command->add_option("RESULTS", arguments.results, "file that run wrote")->required();
+  report_command->add_option("RESULTS", arguments.results, "files that run wrote")->required();
   report_command->add_option("--json", arguments.json, "write it for machines, too");
   report_command->add_option("--likely", arguments.likely,
                              "fail if a row's count is out of the question for that share: 'clean kept clean >= 0.95'");

@@ -68,9 +68,9 @@ enum class QuantumForm {
 };
 
 enum class SensorPlay {
-  kPlay,   ///< the play operator (Krasnosel'skii, Pokrovskii 1989)
-  kSmooth, ///< Bouc (1967) and Wen (1976): the play winds up exponentially
-  kRelay,  ///< half a width ahead or behind, by the last direction (Preisach 1935)
+  kPlay,    ///< the play operator (Krasnosel'skii, Pokrovskii 1989)
+  kSmooth,  ///< Bouc (1967) and Wen (1976): the play winds up exponentially
+  kRelay,   ///< half a width ahead or behind, by the last direction (Preisach 1935)
 };
 
 /// Neutral by default: rigid, without friction, and the drive does what its law says.
@@ -88,45 +88,46 @@ struct Machine {
     double hold_s = 0.0;  ///< the output is computed once in so long (Astrom, Wittenmark 1997)
     double kp_factor = 1.0, kd_factor = 1.0, torque_factor = 1.0;  ///< real over named
     double saturation_per_Nm = 0.0;  ///< torque = t / (1 + saturation |t|): an iron core (Hanselman 2006)
-    double limit = kNever;            ///< of the output: Nm, duty or V
+    double limit = kNever;           ///< of the output: Nm, duty or V
     double torque_per_unit = 1.0;    ///< servo: Nm per V; cascade: Nm per V; else 1
     double back_emf = 0.0;           ///< servo: V s/rad
     DeadBandForm dead_form = DeadBandForm::kJump;
     double dead_band_rad = 0.0, dead_output = 0.0;  ///< of the error; of the output, in its unit
     SagForm sag_form = SagForm::kResistance;
-    double sag_per_Nm = 0.0;    ///< share of the bus that is lost per Nm at full duty
-    double sag_time_s = 0.5;    ///< of the battery's capacitor
+    double sag_per_Nm = 0.0;       ///< share of the bus that is lost per Nm at full duty
+    double sag_time_s = 0.5;       ///< of the battery's capacitor
     double sag_limit_Nm = kNever;  ///< kLimit: torque at full duty that the supply can feed
     SpeedForm speed_form = SpeedForm::kLine;
     double stall_torque_Nm = kNever, no_load_rad_s = kNever, power_W = kNever;
     double output_rate_per_s = kNever;  ///< of the output: an actuator's rate limit (Klyde, McRuer, Myers 1997)
-    double integral_per_s = 0.0;       ///< output += integral kp (error), conditional anti-windup (Astrom, Hagglund 1995)
-    double offset_when_on_Nm = 0.0;    ///< a current sensor's zero
-    double torque_delay_s = 0.0;       ///< of commands and readings alike: the loop's computation
+    double integral_per_s = 0.0;     ///< output += integral kp (error), conditional anti-windup (Astrom, Hagglund 1995)
+    double offset_when_on_Nm = 0.0;  ///< a current sensor's zero
+    double torque_delay_s = 0.0;     ///< of commands and readings alike: the loop's computation
   } drive;
 
   struct Command {
     double delay_s = 0.0, delay_jitter = 0.0;  ///< each command is late by delay (1 +- jitter) (Nilsson 1998)
-    double rate_limit_rad_s = kNever, acceleration_rad_s2 = kNever;  ///< of the position command; with the second: a profile
-    double hold_s = 0.0;                                           ///< the drive takes a new command once in so long
+    double rate_limit_rad_s = kNever,
+           acceleration_rad_s2 = kNever;     ///< of the position command; with the second: a profile
+    double hold_s = 0.0;                     ///< the drive takes a new command once in so long
     double loss = 0.0, loss_period_s = 1.0;  ///< share of each period in which commands don't arrive
   } command;
 
   struct Sensor {
     bool before_gear = false;  ///< on the motor's side of the shaft
     double offset_rad = 0.0;
-    double offset_spread_rad = 0.0;                        ///< another offset in each run (homing)
-    double slip_rad = 0.0, slip_at = 1.0;                  ///< from that share of the session on
-    double drift_rad = 0.0, drift_s = 2.0;                 ///< drift (1 - exp(-t / drift_s))
+    double offset_spread_rad = 0.0;         ///< another offset in each run (homing)
+    double slip_rad = 0.0, slip_at = 1.0;   ///< from that share of the session on
+    double drift_rad = 0.0, drift_s = 2.0;  ///< drift (1 - exp(-t / drift_s))
     double eccentricity_rad = 0.0, eccentricity_phase_rad = 0.0, eccentricity_order = 1.0, eccentricity_second = 0.0;
     QuantumForm quantum_form = QuantumForm::kRound;
     double quantum_rad = 0.0;
     SensorPlay play_form = SensorPlay::kPlay;
     double play_rad = 0.0;  ///< from end to end
     LagForm lag_form = LagForm::kFirstOrder;
-    double lag_s = 0.0;    ///< of what the drive sees
-    double delay_s = 0.0;  ///< of what the drive sees and of what is recorded
-    double hold_s = 0.0;   ///< the drive sees a new reading once in so long
+    double lag_s = 0.0;                      ///< of what the drive sees
+    double delay_s = 0.0;                    ///< of what the drive sees and of what is recorded
+    double hold_s = 0.0;                     ///< the drive sees a new reading once in so long
     double loss = 0.0, loss_period_s = 1.0;  ///< the same of recorded readings: the one before stays
   } sensor;
 
@@ -159,7 +160,7 @@ struct Machine {
     double cogging_Nm = 0.0, cogging_order = 1.0, cogging_phase_rad = 0.0;
     double second_share = 0.0;   ///< of the amplitude, at twice the order (Zhu, Howe 2000)
     double current_share = 0.0;  ///< ripple in proportion to the drive's torque (Holtz, Springob 1996)
-    double offset_Nm = 0.0, preload_Nm_per_rad = 0.0;  ///< offset - preload q: a preloaded spring
+    double offset_Nm = 0.0, preload_Nm_per_rad = 0.0;                  ///< offset - preload q: a preloaded spring
     double latch_Nm = 0.0, latch_at_rad = 0.0, latch_width_rad = 0.1;  ///< a magnet's detent at one angle (Yonnet 1981)
   } ripple;
 
@@ -173,7 +174,7 @@ struct Machine {
 
   /// A mass on a loose screw creeps outwards while gravity and the swing pull at it by more than the screw holds.
   struct Screw {
-    double most_share = 0.0;       ///< of the arm's length
+    double most_share = 0.0;  ///< of the arm's length
     double holds_m_s2 = 9.81, creep_s = 0.1;
     double length_m = 0.2;
   } screw;

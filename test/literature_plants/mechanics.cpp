@@ -56,8 +56,8 @@ void Mechanics::move(double duration_s, const Forces& forces) {
       continue;
     }
     const int direction = slides_;
-    const double passed_s = solver_.advance(slopes, state_, left_s,
-                                            [&](const State& at) { return at[speed()] * direction; });
+    const double passed_s =
+        solver_.advance(slopes, state_, left_s, [&](const State& at) { return at[speed()] * direction; });
     if (passed_s < left_s || state_[speed()] * direction < 0.0) {
       state_[speed()] = 0.0;
       slides_ = 0;
@@ -90,9 +90,8 @@ double Mechanics::outside_Nm(const State& at, const Forces& forces) const {
 double Mechanics::motor_Nm(const State& at, const Forces& forces, double speed_rad_s) const {
   const Machine::Ripple& r = machine_.ripple;
   const double angle_rad = at[elastic_ ? kMotor : kLoad];
-  double torque_Nm =
-      drive_torque_Nm(machine_, forces.drive, forces.scales.torque, angle_rad, speed_rad_s) + r.offset_Nm -
-      r.preload_Nm_per_rad * angle_rad;
+  double torque_Nm = drive_torque_Nm(machine_, forces.drive, forces.scales.torque, angle_rad, speed_rad_s) +
+                     r.offset_Nm - r.preload_Nm_per_rad * angle_rad;
   if (r.cogging_Nm != 0.0) {
     const double turn = r.cogging_order * angle_rad + r.cogging_phase_rad;
     torque_Nm += r.cogging_Nm * (std::sin(turn) + r.second_share * std::sin(2.0 * turn + 1.0));
@@ -114,9 +113,8 @@ double Mechanics::shaft_Nm(const State& at) const {
   const double pressed_rad = std::abs(twist_rad) - 0.5 * t.backlash_rad;
   if (pressed_rad <= 0.0) return soft_Nm;
   const double side = sign(twist_rad), closing_rad_s = side * rate_rad_s;
-  const double damping = t.contact == ContactForm::kHuntCrossley
-                             ? t.damping_Nm_s_per_rad * pressed_rad / kContact_rad
-                             : t.damping_Nm_s_per_rad;
+  const double damping = t.contact == ContactForm::kHuntCrossley ? t.damping_Nm_s_per_rad * pressed_rad / kContact_rad
+                                                                 : t.damping_Nm_s_per_rad;
   return soft_Nm + side * std::max(0.0, t.stiffness_Nm_per_rad * pressed_rad + damping * closing_rad_s);
 }
 

@@ -89,7 +89,8 @@ TEST(Mechanics, WhatFrictionTakesIsMissingFromTheEnergy) {
   Machine dry = pendulum(), smooth = pendulum(), geared = pendulum(), bristle = pendulum();
   dry.friction = {.coulomb_Nm = 0.1, .viscous_Nm_s_per_rad = 0.02, .stribeck_Nm = 0.1, .stribeck_rad_s = 0.3};
   smooth.friction = {.dry = DryForm::kTanh, .coulomb_Nm = 0.1, .power_Nm = 0.02, .power_exponent = 2.0};
-  geared.friction = {.coulomb_Nm = 0.1, .load_form = LoadForm::kPowerFlow, .load_driving = 0.3, .load_backdriving = 0.2};
+  geared.friction = {
+      .coulomb_Nm = 0.1, .load_form = LoadForm::kPowerFlow, .load_driving = 0.3, .load_backdriving = 0.2};
   bristle.friction = {.dry = DryForm::kLuGre, .coulomb_Nm = 0.1, .bristle_rad = 0.01};
   for (const Machine& machine : {dry, smooth, geared}) {
     Mechanics mechanics(machine);

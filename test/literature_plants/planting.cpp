@@ -18,11 +18,8 @@ struct Share {
   Stratum stratum;
   std::uint64_t count;
 };
-constexpr Share kStrata[] = {{Stratum::kSingle, 5},
-                             {Stratum::kDouble, 5},
-                             {Stratum::kClean, 4},
-                             {Stratum::kStrange, 3},
-                             {Stratum::kFault, 3}};
+constexpr Share kStrata[] = {
+    {Stratum::kSingle, 5}, {Stratum::kDouble, 5}, {Stratum::kClean, 4}, {Stratum::kStrange, 3}, {Stratum::kFault, 3}};
 
 /// The place of a seed in its block, and how many of its stratum came before it.
 struct Turn {
@@ -40,7 +37,8 @@ Turn turn_of(std::uint64_t seed) {
   return {};
 }
 
-/// The count-th of things that take turns, in another order each time round; even and odd seeds have orders of their own.
+/// The count-th of things that take turns, in another order each time round; even and odd seeds have orders of their
+/// own.
 std::size_t in_turn(std::size_t size, std::uint64_t count, std::uint64_t seed, std::uint64_t what) {
   std::vector<std::size_t> order(size);
   for (std::size_t i = 0; i < size; ++i) order[i] = i;
@@ -78,7 +76,8 @@ LiteraturePlant plant_forms(const std::vector<Form>& forms, std::uint64_t seed, 
   RigNeeds needs = more;
   for (const Form& form : forms) needs = both(needs, form.needs);
   plant.rig = draw_rig(draw, needs);
-  const bool sags = std::any_of(forms.begin(), forms.end(), [](const Form& form) { return form.effect == std::string("supply_sag"); });
+  const bool sags = std::any_of(forms.begin(), forms.end(),
+                                [](const Form& form) { return form.effect == std::string("supply_sag"); });
   if (sags) {  // a recorded bus is an input
     plant.rig.records_bus = false;
     plant.rig.bus_fall = 0.0;
@@ -152,8 +151,7 @@ LiteraturePlant plant_of(std::uint64_t seed) {
     const std::vector<Form> forms = forms_of(turn, seed, draw);
     const bool faulty = turn.stratum == Stratum::kFault;
     const std::size_t kind = faulty ? in_turn(std::size(kFaultKinds), turn.count, seed, 4) : 0;
-    LiteraturePlant plant =
-        plant_forms(forms, seed, attempt, draw, faulty ? needs_of_fault(kind) : RigNeeds{});
+    LiteraturePlant plant = plant_forms(forms, seed, attempt, draw, faulty ? needs_of_fault(kind) : RigNeeds{});
     plant.stratum = turn.stratum;
     if (faulty) plant.faults.push_back(draw_fault(draw, kind, plant.rig));
     plant.sound_rig = plant.rig;

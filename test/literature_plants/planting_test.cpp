@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 
 #include "effects/catalogue.hpp"
+#include "forms_table.hpp"
 #include "prepared_plant.hpp"
 
 namespace pmg::literature {
@@ -26,11 +29,18 @@ TEST(LiteratureForms, EveryEffectOfTheCatalogueHasThreeFormsAndEachFormItsSource
   EXPECT_GE(strange_forms().size(), 7U);
 }
 
+TEST(LiteratureForms, ThePageHasThemAll) {
+  std::ifstream stream(std::filesystem::path(PMG_SOURCE_DIR) / "docs/explanation/hidden-plants.md");
+  const std::string page((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  EXPECT_NE(page.find(forms_table()), std::string::npos) << "print it with: literature_plants forms";
+}
+
 /// Mean absolute difference of two machines on the rig, over three of its runs.
 double apart_rad(const LiteraturePlant& plant, const Machine& a, const Machine& b) {
   double sum_rad = 0.0;
   for (const std::size_t run : {std::size_t{0}, plant.rig.runs.size() / 2, plant.rig.runs.size() - 1}) {
-    sum_rad += mean_absolute_difference_rad(record(a, plant.rig, plant.seed, run), record(b, plant.rig, plant.seed, run));
+    sum_rad +=
+        mean_absolute_difference_rad(record(a, plant.rig, plant.seed, run), record(b, plant.rig, plant.seed, run));
   }
   return sum_rad / 3.0;
 }
@@ -55,8 +65,8 @@ struct Shown {
   double from_clean = 0.0, from_siblings = std::numeric_limits<double>::infinity();
 };
 
-/// In noise floors of the form's own rig: how far the form is from the healthy joint, and from the nearest other form of
-/// its effect with the same draws, so of the same strength where they share numbers.
+/// In noise floors of the form's own rig: how far the form is from the healthy joint, and from the nearest other form
+/// of its effect with the same draws, so of the same strength where they share numbers.
 Shown shown(const Form& form, const std::vector<Form>& siblings, std::uint64_t seed) {
   const LiteraturePlant plant = plant_with(form, seed);
   const double floor_rad = repeat_rad(plant);
@@ -74,8 +84,9 @@ Shown shown(const Form& form, const std::vector<Form>& siblings, std::uint64_t s
 }
 
 // A form that doesn't differ from a clean joint by two noise floors, or from its siblings by a quarter of one, would be
-// no form of its own: with a thousand samples a run, and noise that is correlated over 0.1 s, a quarter is five standard
-// deviations of the mean. Strengths are random, so the best of a few seeds is taken; weak plants don't count in a report.
+// no form of its own: with a thousand samples a run, and noise that is correlated over 0.1 s, a quarter is five
+// standard deviations of the mean. Strengths are random, so the best of a few seeds is taken; weak plants don't count
+// in a report.
 TEST(LiteratureForms, EachShowsBesideACleanJointAndBesideItsSiblings) {
   const std::vector<Form> all = catalogue_forms();
   for (const Form& form : all) {
@@ -91,7 +102,8 @@ TEST(LiteratureForms, EachShowsBesideACleanJointAndBesideItsSiblings) {
   }
   for (const Form& form : strange_forms()) {
     double best = 0.0;
-    for (std::uint64_t seed = 2; seed <= 12 && best < 2.0; seed += 2) best = std::max(best, shown(form, {}, seed).from_clean);
+    for (std::uint64_t seed = 2; seed <= 12 && best < 2.0; seed += 2)
+      best = std::max(best, shown(form, {}, seed).from_clean);
     EXPECT_GE(best, 2.0) << form.effect;
   }
 }
@@ -107,9 +119,11 @@ TEST(LiteraturePlants, TheSameSeedGivesTheSameRecordings) {
 TEST(LiteraturePlants, TwoMachinesMeetTheSameNoise) {
   const LiteraturePlant plant = plant_of(18);  // clean
   Machine other = plant.machine;
-  EXPECT_EQ(mean_absolute_difference_rad(record(plant.machine, plant.rig, 18, 3), record(other, plant.rig, 18, 3)), 0.0);
+  EXPECT_EQ(mean_absolute_difference_rad(record(plant.machine, plant.rig, 18, 3), record(other, plant.rig, 18, 3)),
+            0.0);
   other.sensor.offset_rad = 1e-5;
-  EXPECT_LT(mean_absolute_difference_rad(record(plant.machine, plant.rig, 18, 3), record(other, plant.rig, 18, 3)), 1e-3);
+  EXPECT_LT(mean_absolute_difference_rad(record(plant.machine, plant.rig, 18, 3), record(other, plant.rig, 18, 3)),
+            1e-3);
 }
 
 TEST(LiteraturePlants, EvenAndOddSeedsHaveTheSameStrata) {

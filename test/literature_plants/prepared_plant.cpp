@@ -16,7 +16,7 @@ namespace pmg::literature {
 namespace {
 
 constexpr std::uint64_t kCalibrationTake = 1, kRepeatTake = 2;
-constexpr int kIterations = 12;              // by then the worst of a hundred calibrations had settled
+constexpr int kIterations = 12;             // by then the worst of a hundred calibrations had settled
 constexpr double kUnreadable_floors = 1e3;  // of files that the reader refuses
 
 /// The rig's numbers as the actuator model has them: where a calibration begins.
@@ -104,19 +104,16 @@ double fault_moves_floors(const DataFault& fault, const model::ActuatorParameter
 nlohmann::json effect_json(const PlantedEffect& effect, const PreparedPlant& prepared, double floor_rad) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const PlantedParameter& p : effect.parameters) parameters[p.name] = in_motor_file(p, prepared.base);
-  return {{"effect", effect.form.effect},
-          {"form", effect.form.form},
-          {"source", effect.form.source},
-          {"moves_floors", moves_floors(prepared.plant, effect.without, floor_rad)},
-          {"parameters", parameters},
-          {"same_here", same_here(effect.form, prepared.plant.machine)}};
+  return {{"effect", effect.form.effect}, {"form", effect.form.form},
+          {"source", effect.form.source}, {"moves_floors", moves_floors(prepared.plant, effect.without, floor_rad)},
+          {"parameters", parameters},     {"same_here", same_here(effect.form, prepared.plant.machine)}};
 }
 
 nlohmann::json fault_json(const DataFault& fault, double floors) {
   nlohmann::json files = nlohmann::json::array();
   for (const std::size_t run : fault.runs) files.push_back(file_of(run));
-  return {{"kind", fault.kind},     {"column", fault.column},         {"runs", files},
-          {"factor", fault.factor}, {"shift_samples", fault.shift}, {"moves_floors", floors},
+  return {{"kind", fault.kind},          {"column", fault.column},       {"runs", files},
+          {"factor", fault.factor},      {"shift_samples", fault.shift}, {"moves_floors", floors},
           {"same_here", fault.same_here}};
 }
 

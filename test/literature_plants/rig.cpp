@@ -20,7 +20,8 @@ Load disc(Draw& draw, double mass_kg, double length_m) {
 }
 
 void draw_loads(Draw& draw, Rig& rig, double mass_kg, double length_m) {
-  rig.loads = {disc(draw, mass_kg, length_m), disc(draw, mass_kg * draw.uniform(1.4, 2.1), length_m * draw.uniform(0.9, 1.1))};
+  rig.loads = {disc(draw, mass_kg, length_m),
+               disc(draw, mass_kg * draw.uniform(1.4, 2.1), length_m * draw.uniform(0.9, 1.1))};
 }
 
 /// From a wrist to a knee.
@@ -155,9 +156,7 @@ void draw_temperature(Draw& draw, Rig& rig, const RigNeeds& needs) {
 
 }  // namespace
 
-double Rig::scale_Nm() const {
-  return horizontal ? kUsual_rad_s2 * scale_inertia_kg_m2() : loads.front().gravity_Nm;
-}
+double Rig::scale_Nm() const { return horizontal ? kUsual_rad_s2 * scale_inertia_kg_m2() : loads.front().gravity_Nm; }
 
 RigNeeds both(const RigNeeds& a, const RigNeeds& b) {
   return {a.laws & b.laws, a.weight || b.weight, a.two_loads || b.two_loads, a.warm || b.warm};
@@ -173,8 +172,8 @@ Rig draw_rig(Draw& draw, const RigNeeds& needs) {
   Rig rig;
   constexpr double kRates_hz[] = {100.0, 125.0, 200.0, 250.0};
   rig.sample_rate_hz = kRates_hz[draw.below(4)];
-  rig.healthy.drive.law = law == kPd          ? Law::kPositionPd
-                          : law == kServoLaw  ? Law::kServo
+  rig.healthy.drive.law = law == kPd           ? Law::kPositionPd
+                          : law == kServoLaw   ? Law::kServo
                           : law == kCascadeLaw ? Law::kCascade
                                                : Law::kTorque;
   if (law == kPd) draw_position_pd(draw, rig);

@@ -35,7 +35,7 @@ enum class NoiseForm { kWhite, kLaplace, kHum, kWander };
 /// What makes two recordings of one run differ.
 struct Noise {
   NoiseForm form = NoiseForm::kWhite;
-  double sensor_rad = 3e-4;  ///< rms
+  double sensor_rad = 3e-4;                    ///< rms
   double push_Nm = 0.02, push_corner_s = 0.1;  ///< rms of a slow random torque on the load, its correlation time
   double start_rad = 3e-3;                     ///< rms of where the joint hangs at first
   double jitter = 0.0;                         ///< of the times between samples, as a share of the period

@@ -122,7 +122,8 @@ Sensor::Seen Sensor::filtered(double t_s, const Seen& raw) {
     }
     case LagForm::kTracking: {  // x'' = w^2 (q - x) - 2 w x', of delay 2 / w at low frequency
       const double w = 2.0 / s_.lag_s;
-      filtered_rad_s_ = (filtered_rad_s_ + h * w * w * (raw.q_rad - filtered_rad_)) / (1.0 + 2.0 * w * h + w * w * h * h);
+      filtered_rad_s_ =
+          (filtered_rad_s_ + h * w * w * (raw.q_rad - filtered_rad_)) / (1.0 + 2.0 * w * h + w * w * h * h);
       filtered_rad_ += h * filtered_rad_s_;
       return {filtered_rad_, filtered_rad_s_};
     }

@@ -45,7 +45,8 @@ void sines(Draw& draw, double rate_hz, double reach_rad, std::size_t until, std:
     const double t_s = static_cast<double>(q.size()) / rate_hz - start;
     double sum = 0.0;
     for (const double order : kOrders) {
-      sum += std::sin(2.0 * std::numbers::pi * base_hz * order * t_s - std::numbers::pi * order * (order - 1.0) / 8.0) / order;
+      sum += std::sin(2.0 * std::numbers::pi * base_hz * order * t_s - std::numbers::pi * order * (order - 1.0) / 8.0) /
+             order;
     }
     q.push_back(std::min(1.0, 2.0 * t_s) * 0.6 * reach_rad * sum);
   }
@@ -53,7 +54,8 @@ void sines(Draw& draw, double rate_hz, double reach_rad, std::size_t until, std:
 
 /// A sweep whose amplitude falls as its frequency rises.
 void sweep(Draw& draw, double rate_hz, double reach_rad, std::size_t until, std::vector<double>& q) {
-  const double start = static_cast<double>(q.size()) / rate_hz, low_hz = draw.uniform(0.2, 0.4), high_hz = draw.uniform(2.0, 4.0);
+  const double start = static_cast<double>(q.size()) / rate_hz, low_hz = draw.uniform(0.2, 0.4),
+               high_hz = draw.uniform(2.0, 4.0);
   const double whole_s = static_cast<double>(until) / rate_hz - start;
   while (q.size() < until) {
     const double t_s = static_cast<double>(q.size()) / rate_hz - start, ratio = high_hz / low_hz;
@@ -63,7 +65,8 @@ void sweep(Draw& draw, double rate_hz, double reach_rad, std::size_t until, std:
 }
 
 /// Back and forth at one pace over ways of different length.
-void strokes(Draw& draw, double rate_hz, double pace_rad_s, double reach_rad, std::size_t until, std::vector<double>& q) {
+void strokes(Draw& draw, double rate_hz, double pace_rad_s, double reach_rad, std::size_t until,
+             std::vector<double>& q) {
   double side = draw.sign();
   while (q.size() < until) {
     const double from = q.back(), to = side * draw.uniform(0.15, 1.0) * reach_rad;
