@@ -143,7 +143,7 @@ TEST(LiteratureReport, CountsOnlyWhatCountsAndSaysHowSureItIs) {
 // The two simulations agree where nothing is hidden: the calibration of a healthy joint leaves about what noise leaves,
 // 1 / sqrt(2) of a floor, and half a floor for what neither model has of the other (the loop's ticks, for one).
 TEST(LiteraturePlants, AHealthyJointIsCalibratedToItsNoise) {
-  for (const std::uint64_t seed : {18ULL, 24ULL, 26ULL, 28ULL}) {  // position PD, servo, torque, cascade
+  for (const std::uint64_t seed : {20ULL, 24ULL, 26ULL, 66ULL}) {  // clean: position PD, servo, torque, cascade
     const PreparedPlant prepared = prepare(seed, scratch("healthy"));
     EXPECT_LT(prepared.truth.at("healthy_error_rad").get<double>(),
               1.2 * prepared.truth.at("noise_floor_rad").get<double>())
