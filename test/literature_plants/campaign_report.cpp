@@ -46,6 +46,9 @@ std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
   std::vector<Rate> rates;
   rates.push_back(rate_of("singles named", all, counted("single"), right));
   rates.push_back(rate_of(
+      "one effect or two: all named", all,
+      [](const Judgement& j) { return j.counts && (j.score.kind == "single" || j.score.kind == "double"); }, right));
+  rates.push_back(rate_of(
       "verdict ambiguous, of singles and doubles", all,
       [](const Judgement& j) { return j.counts && (j.score.kind == "single" || j.score.kind == "double"); },
       [](const Judgement& j) { return j.score.ambiguous; }));

@@ -113,6 +113,18 @@ TEST(LiteratureJudgement, AnEffectThatMakesTheSameFilesIsRightForItsFault) {
   EXPECT_FALSE(j.false_cause);
 }
 
+TEST(LiteratureJudgement, WhatDescribesAPartOfTheFormMayBeNamedBesideItAndIsntEnough) {
+  json tanh = effect("coulomb", 9.0);
+  tanh["besides"] = {"stribeck"};
+  const auto judged = [&](const std::vector<std::string>& causes) {
+    return judge(result("single", json::array({tanh}), json::array(), said("found", causes)));
+  };
+  EXPECT_TRUE(judged({"coulomb", "stribeck"}).right);
+  EXPECT_FALSE(judged({"coulomb", "stribeck"}).false_cause);
+  EXPECT_FALSE(judged({"stribeck"}).right);
+  EXPECT_FALSE(judged({"coulomb", "delay"}).right);
+}
+
 TEST(LiteratureJudgement, CleanAndStrangePlantsAreAccusedByAnyCause) {
   EXPECT_TRUE(judge(result("clean", json::array(), json::array(), said("none", {}))).right);
   EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("found", {"delay"}))).right);

@@ -39,13 +39,17 @@ const std::vector<Form> kCoulomb = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        return {{"friction.coulomb_Nm", kAdds, more_coulomb_Nm(draw, rig, m)}};
      }},
-    {"coulomb", "hyperbolic tangent of speed", "Andersson, Soderberg, Bjorklund 2007", kAny,
+    {"coulomb",
+     "hyperbolic tangent of speed",
+     "Andersson, Soderberg, Bjorklund 2007",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        more_coulomb_Nm(draw, rig, m);
        m.friction.dry = DryForm::kTanh;
        m.friction.smoothing_rad_s = draw.spread(0.03, 0.15);
        return {};
-     }},
+     },
+     {"stribeck", "viscous"}},
     {"coulomb", "short bristle", "Dahl 1968", kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        const double more_Nm = more_coulomb_Nm(draw, rig, m);
@@ -74,12 +78,16 @@ const std::vector<Form> kViscous = {
        m.friction.power_exponent = 2.0;
        return {};
      }},
-    {"viscous", "power below 1: grease", "Waiboer, Aarts, Jonker 2005", kAny,
+    {"viscous",
+     "power below 1: grease",
+     "Waiboer, Aarts, Jonker 2005",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.power_Nm = torque_Nm(draw, rig, 0.06, 0.3);
        m.friction.power_exponent = draw.uniform(0.5, 0.7);
        return {};
-     }},
+     },
+     {"coulomb", "stribeck"}},
 };
 
 const std::vector<Form> kStribeck = {
@@ -93,11 +101,15 @@ const std::vector<Form> kStribeck = {
        stribeck(draw, rig, m, 1.0);
        return {};
      }},
-    {"stribeck", "exponent 0.5", "Bo, Pavelescu 1982", kAny,
+    {"stribeck",
+     "exponent 0.5",
+     "Bo, Pavelescu 1982",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        stribeck(draw, rig, m, 0.5);
        return {};
-     }},
+     },
+     {"coulomb", "viscous"}},
     {"stribeck", "Lorentz's curve", "Hess, Soom 1990", kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        stribeck(draw, rig, m, 2.0);
@@ -130,19 +142,27 @@ const std::vector<Form> kDirection = {
        m.friction.asymmetry = draw.sign() * draw.uniform(0.3, 0.7);
        return {{"friction.asymmetry", kIs, m.friction.asymmetry}};
      }},
-    {"direction_friction", "viscous", "Canudas de Wit, Astrom, Braun 1987", kAny,
+    {"direction_friction",
+     "viscous",
+     "Canudas de Wit, Astrom, Braun 1987",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.viscous_Nm_s_per_rad += torque_Nm(draw, rig, 0.05, 0.15) / 2.0;
        m.friction.viscous_asymmetry = draw.sign() * draw.uniform(0.5, 0.9);
        return {};
-     }},
-    {"direction_friction", "Stribeck", "Armstrong-Helouvry 1991", kAny,
+     },
+     {"viscous"}},
+    {"direction_friction",
+     "Stribeck",
+     "Armstrong-Helouvry 1991",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.stribeck_Nm += torque_Nm(draw, rig, 0.05, 0.15);
        m.friction.stribeck_rad_s = draw.spread(0.2, 0.6);
        m.friction.stribeck_asymmetry = draw.sign() * draw.uniform(0.6, 1.0);
        return {};
-     }},
+     },
+     {"stribeck"}},
 };
 
 }  // namespace

@@ -24,7 +24,8 @@ const std::vector<Form> kThermal = {
        m.friction.viscous_Nm_s_per_rad += draw.spread(0.1, 0.25) * rig.scale_Nm() / 2.0;
        m.thermal.viscous_per_K = -draw.uniform(0.02, 0.05);
        return {};
-     }},
+     },
+     {"viscous"}},
     {"thermal_drift", "magnets lose torque", "Hanselman 2006", kWarmDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.thermal.torque_per_K = -draw.uniform(0.003, 0.007);

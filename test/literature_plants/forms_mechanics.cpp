@@ -66,13 +66,17 @@ const std::vector<Form> kBacklash = {
        m.friction.at_load = true;
        return {width};
      }},
-    {"backlash", "soft spring in the gap", "Nordin, Gutman 2002", kAny,
+    {"backlash",
+     "soft spring in the gap",
+     "Nordin, Gutman 2002",
+     kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        play(draw, rig, m);
        m.transmission.contact = ContactForm::kSoftGap;
        m.transmission.gap_stiffness_Nm_per_rad = rig.scale_Nm() / draw.uniform(0.1, 0.3);
        return {};
-     }},
+     },
+     {"compliance"}},
     {"backlash", "sensor before the gear", "Nordin, Gutman 2002", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        play(draw, rig, m);

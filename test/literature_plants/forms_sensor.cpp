@@ -49,8 +49,12 @@ const std::vector<Form> kQuantisation = {
      [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kRound); }},
     {"quantisation", "truncates", "Widrow, Kollar 2008", kAny,
      [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kFloor); }},
-    {"quantisation", "with a comparator's hysteresis", "Horowitz, Hill 2015", kAny,
-     [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kHysteresis); }},
+    {"quantisation",
+     "with a comparator's hysteresis",
+     "Horowitz, Hill 2015",
+     kAny,
+     [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kHysteresis); },
+     {"hysteresis"}},
 };
 
 const std::vector<Form> kZero = {

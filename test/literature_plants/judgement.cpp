@@ -26,14 +26,17 @@ const json& list(const json& object, const char* key) {
   return object.contains(key) ? object.at(key) : kEmpty;
 }
 
-/// For the score, what would explain the same files may be found and needn't be: an effect of no size.
+/// For the score, what would explain the same files, and what describes a part of a form, may be found and needn't be:
+/// an effect of no size.
 json truth_of_effects(const json& truth) {
   json of_effects = truth;
-  for (const json& fault : list(truth, "faults")) {
-    for (const json& effect : list(fault, "same_here")) {
-      of_effects["effects"].push_back({{"effect", effect}, {"moves_floors", 0.0}, {"parameters", json::object()}});
+  const auto allow = [&](const json& names) {
+    for (const json& name : names) {
+      of_effects["effects"].push_back({{"effect", name}, {"moves_floors", 0.0}, {"parameters", json::object()}});
     }
-  }
+  };
+  for (const json& fault : list(truth, "faults")) allow(list(fault, "same_here"));
+  for (const json& effect : list(truth, "effects")) allow(list(effect, "besides"));
   return of_effects;
 }
 

@@ -33,6 +33,8 @@ struct Form {
   RigNeeds needs;
   /// Draws a strength and puts the effect into the machine. Returns the numbers that mean the same in motor.yaml.
   std::vector<PlantedParameter> (*plant)(hidden::Draw&, const Rig&, Machine&);
+  /// Effects that describe a part of the form: they may be named beside it.
+  std::vector<std::string> besides = {};
 };
 
 /// All forms of the catalogue's effects; those of one effect stand together.

@@ -104,9 +104,13 @@ double fault_moves_floors(const DataFault& fault, const model::ActuatorParameter
 nlohmann::json effect_json(const PlantedEffect& effect, const PreparedPlant& prepared, double floor_rad) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const PlantedParameter& p : effect.parameters) parameters[p.name] = in_motor_file(p, prepared.base);
-  return {{"effect", effect.form.effect}, {"form", effect.form.form},
-          {"source", effect.form.source}, {"moves_floors", moves_floors(prepared.plant, effect.without, floor_rad)},
-          {"parameters", parameters},     {"same_here", same_here(effect.form, prepared.plant.machine)}};
+  const double floors = moves_floors(prepared.plant, effect.without, floor_rad);
+  nlohmann::json one = {{"effect", effect.form.effect}, {"form", effect.form.form}, {"source", effect.form.source}};
+  one["moves_floors"] = floors;
+  one["parameters"] = parameters;
+  one["same_here"] = same_here(effect.form, prepared.plant.machine);
+  one["besides"] = effect.form.besides;
+  return one;
 }
 
 nlohmann::json fault_json(const DataFault& fault, double floors) {

@@ -12,9 +12,9 @@ namespace pmg::literature {
 struct PreparedPlant {
   LiteraturePlant plant;
   model::ActuatorParameters base;  ///< the healthy joint's calibration
-  /// seed, kind, law, effects: [{effect, form, source, moves_floors, parameters, same_here}],
+  /// seed, kind, law, effects: [{effect, form, source, moves_floors, parameters, same_here, besides}],
   /// faults: [{kind, column, runs, factor, shift_samples, moves_floors, same_here}], noise_floor_rad,
-  /// healthy_error_rad, error_rad, warms_K, records_temperature.
+  /// healthy_error_rad, warms_K, records_temperature.
   nlohmann::json truth;
   std::filesystem::path bench;
 };
