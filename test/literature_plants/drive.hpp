@@ -28,7 +28,7 @@ class Drive {
 
  private:
   struct Told {
-    double arrives_s;
+    double arrives_s = 0.0;
     Command command;
   };
   void take(double t_s);

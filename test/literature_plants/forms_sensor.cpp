@@ -47,8 +47,12 @@ const std::vector<Form> kLag = {
 const std::vector<Form> kQuantisation = {
     {"quantisation", "rounds", "Widrow, Kollar 2008", kAny,
      [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kRound); }},
-    {"quantisation", "truncates", "Widrow, Kollar 2008", kAny,
-     [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kFloor); }},
+    {"quantisation",
+     "truncates",  // which is rounding half a step lower
+     "Widrow, Kollar 2008",
+     kAny,
+     [](Draw& draw, const Rig&, Machine& m) { return quantum(draw, m, QuantumForm::kFloor); },
+     {"zero_offset"}},
     {"quantisation",
      "with a comparator's hysteresis",
      "Horowitz, Hill 2015",

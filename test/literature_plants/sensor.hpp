@@ -33,7 +33,7 @@ class Sensor {
 
   Machine::Sensor s_;
   struct Sample {
-    double t_s;
+    double t_s = 0.0;
     Seen shown;
   };
   std::deque<Sample> past_;      // as shown
