@@ -3,19 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
+
+#include "blind_plants/files.hpp"
 
 namespace pmg::hidden {
 
 namespace {
-
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error(file.string() + " cannot be written");
-}
 
 std::string bench_yaml(const Rig& rig) {
   std::string text = fmt::format(
@@ -70,13 +63,13 @@ class BenchWriter {
         hidden_.rig.healthy.drive.servo ? fmt::format("{}", run.kp) : fmt::format("{},{}", run.kp, run.kd);
     rows_ += fmt::format("{},{},{},{},{:.5f},{:.5f},{}\n", file, trajectory, repeat, gains, run.load.mass_kg,
                          run.load.length_m, scored ? "score" : "fit");
-    write(folder_ / "runs" / file,
-          csv(record(plant_, hidden_.rig, hidden_.seed, run), hidden_.rig.records_temperature));
+    write_text(folder_ / "runs" / file,
+               csv(record(plant_, hidden_.rig, hidden_.seed, run), hidden_.rig.records_temperature));
   }
 
   void finish() {
-    write(folder_ / "bench.yaml", bench_yaml(hidden_.rig));
-    write(folder_ / "runs.csv", rows_);
+    write_text(folder_ / "bench.yaml", bench_yaml(hidden_.rig));
+    write_text(folder_ / "runs.csv", rows_);
   }
 
  private:

@@ -16,10 +16,6 @@ struct FurtherRun {
   int repeat = 0;
 };
 
-/// The rows to fit and to score, in the column `use` of runs.csv.
-inline constexpr const char* kFitFilter = "use == fit";
-inline constexpr const char* kScoreFilter = "use == score";
-
 /// Writes bench.yaml, runs.csv and runs/. plant: whose recordings; take: of which day. Throws std::runtime_error when a
 /// file can't be written.
 void write_bench(const std::filesystem::path& folder, const HiddenPlant& hidden, const PlantParameters& plant,

@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "bench_files.hpp"
+#include "blind_plants/files.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "prepared_plant.hpp"

@@ -9,7 +9,7 @@
 #include "campaign.hpp"
 #include "io/whole_file.hpp"
 #include "prepared_plant.hpp"
-#include "score.hpp"
+#include "tally.hpp"
 
 namespace {
 
@@ -17,10 +17,6 @@ namespace fs = std::filesystem;
 using namespace pmg;
 
 enum ExitCode { kOk = 0, kBroken = 1, kBadInput = 2, kInterrupted = 130 };
-
-// What would happen once in so many runs to a diagnosis that just keeps its promises. With few plants a share says
-// little: 15 of 18 is below 90 % and quite usual.
-constexpr double kUnlikely = 0.02;
 
 constexpr const char* kTablesBegin = "<!-- tables, written by hidden_plants -->\n\n";
 
@@ -114,7 +110,7 @@ int table(const Arguments& arguments) {
   if (!arguments.json.empty()) io::write_whole_file(arguments.json, hidden::json(tally).dump(1) + "\n");
   bool kept = true;
   for (const hidden::Promise& p : tally.promises) {
-    const bool broken = arguments.require == "promised" ? !p.holds() : p.chance() < kUnlikely;
+    const bool broken = arguments.require == "promised" ? !p.holds() : !p.is_likely();
     if (arguments.require == "nothing" || !broken) continue;
     std::cerr << fmt::format("broken: {}: {} of {}, promised {} {:.0f} %\n", p.what, p.kept, p.of,
                              p.at_least ? "at least" : "at most", 100.0 * p.promised);

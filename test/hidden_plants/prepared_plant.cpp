@@ -1,11 +1,11 @@
 #include "prepared_plant.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
 
 #include "base_model.hpp"
 #include "bench_files.hpp"
+#include "blind_plants/calibration.hpp"
+#include "blind_plants/files.hpp"
 #include "calib/fit_problem.hpp"
 #include "sim/motor_file.hpp"
 
@@ -14,13 +14,6 @@ namespace pmg::hidden {
 namespace {
 
 constexpr std::uint64_t kCalibrationTake = 1, kRepeatTake = 2;
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error(file.string() + " cannot be written");
-}
 
 /// Dropouts aren't noise that anybody has to model.
 double noise_floor_rad(const HiddenPlant& hidden) {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base_model.hpp"
-#include "bench_files.hpp"
+#include "blind_plants/calibration.hpp"
+#include "blind_plants/files.hpp"
 
 namespace pmg::hidden {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "blind_plants/randomness.hpp"
 #include "plant_parameters.hpp"
-#include "randomness.hpp"
 
 namespace pmg::hidden {
 

@@ -1,6 +1,8 @@
-#include "score.hpp"
+#include "blind_plants/score.hpp"
 
 #include <gtest/gtest.h>
+
+#include "tally.hpp"
 
 namespace pmg::hidden {
 namespace {

@@ -1,0 +1,196 @@
+// The campaign's file, the rule of even and odd seeds, and how a diagnosis is judged.
+#include "campaign.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "blind_plants/calibration.hpp"
+#include "blind_plants/files.hpp"
+#include "campaign_report.hpp"
+#include "judgement.hpp"
+#include "prepared_plant.hpp"
+
+namespace pmg::literature {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+fs::path scratch(const char* name) {
+  const fs::path folder = fs::path(testing::TempDir()) / "literature_plants" / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+json effect(const std::string& name, double floors) {
+  return {{"effect", name},         {"form", "some form"},          {"source", "somebody"},
+          {"moves_floors", floors}, {"parameters", json::object()}, {"same_here", json::array()}};
+}
+
+json fault(const std::string& kind, const std::vector<std::string>& runs, const std::vector<std::string>& same = {}) {
+  return {{"kind", kind},       {"column", "q_rad"},   {"runs", runs},     {"factor", 1.0},
+          {"shift_samples", 0}, {"moves_floors", 9.0}, {"same_here", same}};
+}
+
+json result(const std::string& kind, const json& effects, const json& faults, const json& diagnosis, int seed = 2) {
+  return {{"truth", {{"seed", seed}, {"kind", kind}, {"law", "position_pd"}, {"effects", effects}, {"faults", faults}}},
+          {"diagnosis", diagnosis},
+          {"seconds", 1.0},
+          {"prepared_s", 1.0}};
+}
+
+json said(const std::string& verdict, const std::vector<std::string>& causes, const json& faults = json::array()) {
+  json all = json::array();
+  for (const std::string& cause : causes) all.push_back({{"effect", cause}, {"parameters", json::object()}});
+  return {{"verdict", verdict}, {"causes", all}, {"data_faults", faults}};
+}
+
+json said_fault(const std::string& kind, const std::vector<std::string>& runs) {
+  return json::array({{{"kind", kind}, {"where", {{"run", runs}}}, {"correction", ""}, {"evidence", ""}}});
+}
+
+TEST(LiteratureSeeds, OddOnesAreOnlyForTheFinalReport) {
+  EXPECT_THAT(seeds_for(Use::kDevelopment, 1, 7), testing::ElementsAre(2, 4, 6));
+  EXPECT_THAT(seeds_for(Use::kFinal, 1, 7), testing::ElementsAre(1, 3, 5, 7));
+}
+
+TEST(LiteratureCampaign, GoesOnAfterAKillAndKeepsEvenAndOddApart) {
+  const fs::path file = scratch("resume") / "results.jsonl";
+  const std::string whole = result("clean", json::array(), json::array(), said("none", {}), 4).dump();
+  hidden::write_text(file, whole + "\n" + whole.substr(0, 20));
+  EXPECT_EQ(read_results(file).size(), 1U);
+  Campaign campaign{.results = file};
+  std::vector<int> made;
+  campaign.each = [&](const json& one) { made.push_back(one.at("truth").at("seed").get<int>()); };
+  campaign.interrupted = [&] { return !made.empty(); };
+  run(campaign, {4, 18});
+  EXPECT_THAT(made, testing::ElementsAre(18));  // 4 was there
+  EXPECT_EQ(read_results(file).size(), 2U);
+  EXPECT_FALSE(fs::exists(file.string() + ".plants"));
+  EXPECT_THROW(run(campaign, {5}), std::invalid_argument);
+  hidden::write_text(file, "not a result\n");
+  EXPECT_THROW(read_results(file), std::runtime_error);
+}
+
+TEST(LiteratureJudgement, ADoubleNeedsBothAndNothingElse) {
+  const json both = json::array({effect("delay", 5.0), effect("gain", 4.0)});
+  const auto right = [&](const json& diagnosis) {
+    return judge(result("double", both, json::array(), diagnosis)).right;
+  };
+  EXPECT_TRUE(right(said("found", {"gain", "delay"})));
+  EXPECT_FALSE(right(said("found", {"gain"})));
+  EXPECT_FALSE(right(said("found", {"gain", "delay", "cogging"})));
+  EXPECT_FALSE(right(said("found", {"gain", "delay"}, said_fault("degrees", {"run00.csv"}))));
+  const json weak = json::array({effect("delay", 5.0), effect("gain", 0.5)});
+  EXPECT_FALSE(judge(result("double", weak, json::array(), said("found", {"delay"}))).counts);
+}
+
+TEST(LiteratureJudgement, AFaultIsNamedByItsKindAndPlacedByItsRuns) {
+  const json planted = json::array({fault("degrees", {"run03.csv"})});
+  const auto judged = [&](const json& diagnosis) { return judge(result("fault", json::array(), planted, diagnosis)); };
+  const Judgement good = judged(said("none", {}, said_fault("degrees", {"run03.csv"})));
+  EXPECT_TRUE(good.counts && good.fault_named && good.fault_placed && good.right);
+  const Judgement elsewhere = judged(said("none", {}, said_fault("degrees", {"run04.csv"})));
+  EXPECT_TRUE(elsewhere.fault_named);
+  EXPECT_FALSE(elsewhere.fault_placed);
+  const Judgement other = judged(said("none", {}, said_fault("flipped_sign", {"run03.csv"})));
+  EXPECT_FALSE(other.fault_named);
+  EXPECT_TRUE(other.false_cause);
+  EXPECT_TRUE(judged(said("found", {"gain"})).false_cause);
+  EXPECT_FALSE(judged(said("unexplained", {})).false_cause);
+  json silent = said("none", {});
+  silent.erase("data_faults");
+  EXPECT_FALSE(judged(silent).fault_named);
+}
+
+TEST(LiteratureJudgement, AnEffectThatMakesTheSameFilesIsRightForItsFault) {
+  const json planted = json::array({fault("time_shift", {"run00.csv"}, {"delay"})});
+  const Judgement j = judge(result("fault", json::array(), planted, said("found", {"delay"})));
+  EXPECT_TRUE(j.right);
+  EXPECT_FALSE(j.false_cause);
+}
+
+TEST(LiteratureJudgement, WhatDescribesAPartOfTheFormMayBeNamedBesideItAndIsntEnough) {
+  json tanh = effect("coulomb", 9.0);
+  tanh["besides"] = {"stribeck"};
+  const auto judged = [&](const std::vector<std::string>& causes) {
+    return judge(result("single", json::array({tanh}), json::array(), said("found", causes)));
+  };
+  EXPECT_TRUE(judged({"coulomb", "stribeck"}).right);
+  EXPECT_FALSE(judged({"coulomb", "stribeck"}).false_cause);
+  EXPECT_FALSE(judged({"stribeck"}).right);
+  EXPECT_FALSE(judged({"coulomb", "delay"}).right);
+}
+
+TEST(LiteratureJudgement, CleanAndStrangePlantsAreAccusedByAnyCause) {
+  EXPECT_TRUE(judge(result("clean", json::array(), json::array(), said("none", {}))).right);
+  EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("found", {"delay"}))).right);
+  EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("none", {}, said_fault("degrees", {})))).right);
+  const json strange = json::array({effect("lugre", 8.0)});
+  EXPECT_TRUE(judge(result("strange", strange, json::array(), said("unexplained", {}))).right);
+  const Judgement wrong = judge(result("strange", strange, json::array(), said("found", {"stribeck"})));
+  EXPECT_TRUE(!wrong.right && wrong.false_cause);
+}
+
+TEST(LiteratureReport, CountsOnlyWhatCountsAndSaysHowSureItIs) {
+  std::vector<Judgement> judgements;
+  for (int i = 0; i < 8; ++i) {
+    judgements.push_back(judge(result("single", json::array({effect("delay", i < 2 ? 1.0 : 5.0)}), json::array(),
+                                      said("found", {i == 7 ? "gain" : "delay"}))));
+  }
+  const CampaignReport report = report_of(judgements);
+  const Rate& named = rate(report, "singles named");
+  EXPECT_EQ(named.kept, 5);
+  EXPECT_EQ(named.of, 6);
+  EXPECT_LT(named.low, 5.0 / 6.0);
+  EXPECT_GT(named.high, 5.0 / 6.0);
+  EXPECT_EQ(rate(report, "found with a false cause").kept, 1);
+  EXPECT_THROW(rate(report, "no such rate"), std::out_of_range);
+  EXPECT_NE(markdown(report).find("| weak |"), std::string::npos);
+}
+
+// The two simulations agree where nothing is hidden: the calibration of a healthy joint leaves about what noise leaves,
+// 1 / sqrt(2) of a floor, and half a floor for what neither model has of the other (the loop's ticks, for one).
+TEST(LiteraturePlants, AHealthyJointIsCalibratedToItsNoise) {
+  for (const std::uint64_t seed : {20ULL, 24ULL, 26ULL, 66ULL}) {  // clean: position PD, servo, torque, cascade
+    const PreparedPlant prepared = prepare(seed, scratch("healthy"));
+    EXPECT_LT(prepared.truth.at("healthy_error_rad").get<double>(),
+              1.2 * prepared.truth.at("noise_floor_rad").get<double>())
+        << seed;
+  }
+}
+
+// The planted numbers, put into the calibration, bring the project's simulation back to what it leaves of the healthy
+// joint, where the form is the project's.
+TEST(LiteraturePlants, PlantedNumbersAreAllThatTheModelLacks) {
+  for (const std::uint64_t seed : {0ULL, 2ULL}) {  // sensor lag of first order, torque-speed line
+    const PreparedPlant prepared = prepare(seed, scratch("numbers"));
+    model::ActuatorParameters model = prepared.base;
+    const json& planted = prepared.truth.at("effects").front();
+    ASSERT_GE(planted.at("moves_floors").get<double>(), 2.0);
+    for (const auto& [name, value] : planted.at("parameters").items()) {
+      model::actuator_parameter(name).in(model) = value.get<double>();
+    }
+    EXPECT_LT(
+        hidden::rollout_error_rad(model, prepared.bench, hidden::kScoreFilter),
+        prepared.truth.at("healthy_error_rad").get<double>() + 0.5 * prepared.truth.at("noise_floor_rad").get<double>())
+        << seed;
+  }
+}
+
+TEST(LiteraturePlants, NothingInTheBenchTellsWhatIsHidden) {
+  const PreparedPlant prepared = prepare(2, scratch("blind"));
+  for (const auto& entry : fs::recursive_directory_iterator(prepared.bench)) {
+    EXPECT_NE(entry.path().filename(), "truth.json");
+    if (!entry.is_regular_file() || entry.path().parent_path().filename() == "runs") continue;
+    std::ifstream stream(entry.path());
+    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    EXPECT_EQ(text.find(prepared.plant.effects.front().form.effect), std::string::npos) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace pmg::literature

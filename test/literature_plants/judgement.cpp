@@ -1,0 +1,134 @@
+#include "judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace pmg::literature {
+
+namespace {
+
+using nlohmann::json;
+
+/// A string, or a list of strings.
+std::set<std::string> strings(const json& value) {
+  if (value.is_string()) return {value.get<std::string>()};
+  std::set<std::string> all;
+  for (const json& one : value) {
+    if (one.is_string()) all.insert(one.get<std::string>());
+  }
+  return all;
+}
+
+const json& list(const json& object, const char* key) {
+  static const json kEmpty = json::array();
+  return object.contains(key) ? object.at(key) : kEmpty;
+}
+
+/// For the score, what would explain the same files, and what describes a part of a form, may be found and needn't be:
+/// an effect of no size.
+json truth_of_effects(const json& truth) {
+  json of_effects = truth;
+  const auto allow = [&](const json& names) {
+    for (const json& name : names) {
+      of_effects["effects"].push_back({{"effect", name}, {"moves_floors", 0.0}, {"parameters", json::object()}});
+    }
+  };
+  for (const json& fault : list(truth, "faults")) allow(list(fault, "same_here"));
+  for (const json& effect : list(truth, "effects")) allow(list(effect, "besides"));
+  return of_effects;
+}
+
+bool placed(const json& planted, const json& said) {
+  const json where = said.contains("where") ? said.at("where") : json::object();
+  if (!where.contains("run")) return true;
+  return strings(where.at("run")) == strings(planted.at("runs"));
+}
+
+void judge_faults(const json& truth, const json& diagnosis, Judgement& judgement) {
+  for (const json& said : list(diagnosis, "data_faults")) {
+    bool meant = false;
+    for (const json& planted : list(truth, "faults")) {
+      if (planted.at("kind") != said.at("kind")) continue;
+      meant = judgement.fault_named = true;
+      judgement.fault_placed = judgement.fault_placed || placed(planted, said);
+    }
+    judgement.false_fault = judgement.false_fault || !meant;
+  }
+  if (diagnosis.at("verdict") != "found") return;
+  for (const json& planted : list(truth, "faults")) {
+    const std::set<std::string> same = strings(list(planted, "same_here"));
+    for (const json& cause : diagnosis.at("causes")) {
+      if (same.contains(cause.at("effect").get<std::string>())) judgement.fault_named = judgement.fault_placed = true;
+    }
+  }
+}
+
+}  // namespace
+
+Judgement judge(const json& result) {
+  const json &truth = result.at("truth"), &diagnosis = result.at("diagnosis");
+  Judgement j;
+  json of_effects = result;
+  of_effects["truth"] = truth_of_effects(truth);
+  j.score = hidden::score(of_effects);
+  j.score.planted = planted_text(truth);
+  j.score.said = said_text(diagnosis);
+  j.law = truth.at("law").get<std::string>();
+  j.floors = std::numeric_limits<double>::infinity();
+  for (const char* key : {"effects", "faults"}) {
+    for (const json& one : truth.at(key)) j.floors = std::min(j.floors, one.at("moves_floors").get<double>());
+  }
+  j.counts = j.floors >= hidden::kStrong_floors;
+  judge_faults(truth, diagnosis, j);
+  // Off the catalogue no cause is right.
+  const bool strange = j.score.kind == "strange";
+  j.false_cause =
+      (j.score.verdict == "found" && (strange ? !diagnosis.at("causes").empty() : j.score.accused)) || j.false_fault;
+  j.right = j.score.kind == "clean"   ? !j.score.accused && !j.false_fault
+            : strange                 ? j.score.verdict == "unexplained" && !j.false_fault
+            : j.score.kind == "fault" ? j.fault_named && !j.false_cause
+                                      : j.score.named && !j.false_fault;
+  if (diagnosis.contains("residual_extension") && diagnosis.at("residual_extension").is_object()) {
+    const json& extension = diagnosis.at("residual_extension");
+    j.extension_better =
+        extension.at("held_out_error_after").get<double>() < extension.at("held_out_error_before").get<double>();
+  }
+  return j;
+}
+
+std::string planted_text(const json& truth) {
+  std::string text;
+  for (const json& effect : truth.at("effects")) {
+    text += fmt::format("{}{}, {} ({:.1f})", text.empty() ? "" : "; ", effect.at("effect").get<std::string>(),
+                        effect.at("form").get<std::string>(), effect.at("moves_floors").get<double>());
+  }
+  for (const json& fault : truth.at("faults")) {
+    const std::size_t runs = fault.at("runs").size();
+    text += fmt::format(
+        "{} {} x {:.3g} in {} run{} ({:.1f})", fault.at("kind").get<std::string>(),
+        fault.at("column").get<std::string>(),
+        fault.at("shift_samples") != 0 ? fault.at("shift_samples").get<double>() : fault.at("factor").get<double>(),
+        runs, runs == 1 ? "" : "s", fault.at("moves_floors").get<double>());
+  }
+  return text;
+}
+
+std::string said_text(const json& diagnosis) {
+  std::string text = diagnosis.at("verdict").get<std::string>(), between = ": ";
+  for (const json& cause : diagnosis.at("causes")) {
+    text += between + cause.at("effect").get<std::string>();
+    for (const auto& [key, word] : {std::pair{"same_here", " = "}, std::pair{"or_instead", " or "}}) {
+      for (const json& other : list(cause, key)) text += word + other.get<std::string>();
+    }
+    between = ", ";
+  }
+  for (const json& fault : list(diagnosis, "data_faults")) {
+    text += between + "data fault " + fault.at("kind").get<std::string>();
+    between = ", ";
+  }
+  return text;
+}
+
+}  // namespace pmg::literature
