@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/single_joint.hpp"
+#include "data_faults/examine.hpp"
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 
@@ -61,6 +62,7 @@ struct NextExcitation {
 };
 
 struct Diagnosis {
+  data_faults::Examination data;  ///< faults of the data, and what the verdict was found with
   evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;

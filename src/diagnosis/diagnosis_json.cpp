@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "data_faults/data_faults_report.hpp"
+
 namespace pmg::diagnosis {
 
 namespace {
@@ -60,6 +62,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   for (const Rejected& rejected : diagnosis.rejected) {
     json["rejected"].push_back({{"effect", rejected.effect}, {"why", rejected.why}});
   }
+  data_faults::add_to(json, diagnosis.data);
   json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
   json["noise_floor_from"] = diagnosis.noise_floor.how;
   json["held_out_error_before"] = number(diagnosis.held_out_before.value);

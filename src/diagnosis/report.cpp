@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "calib/fit_results.hpp"
+#include "data_faults/data_faults_report.hpp"
 #include "diagnosis/residual_pictures.hpp"
 #include "effects/catalogue.hpp"
 #include "pages/text.hpp"
@@ -243,6 +244,7 @@ pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnos
                              unsigned threads) {
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
+  data_faults::show_faults(page, diagnosis.data);
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));
   if (!shown.empty()) {
     page.heading("What the simulation makes of the runs");
