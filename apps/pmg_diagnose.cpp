@@ -69,9 +69,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--fit", arguments.fit,
                  "rows of runs.csv to diagnose, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
   app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
-  app.add_option("--data-faults", arguments.data_faults,
-                 "faulty data: leave-out (single faulty runs are left out, the rest stays as it is), correct (go on with the "
-                 "corrections) or keep")
+  app.add_option(
+         "--data-faults", arguments.data_faults,
+         "faulty data: leave-out (single faulty runs are left out, the rest stays as it is), correct (go on with the "
+         "corrections) or keep")
       ->check(CLI::IsMember({"leave-out", "correct", "keep"}))
       ->capture_default_str();
   app.add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();

@@ -9,6 +9,8 @@ namespace pmg::bench {
 
 namespace {
 
+constexpr double kRounding_s = 1e-9;
+
 /// Keeps the samples from first to last of every column.
 void cut(Recording& r, std::size_t first, std::size_t last) {
   const auto keep = [&](auto& column) {
@@ -54,8 +56,8 @@ void shift(Recording& r, const std::vector<Column>& columns, double shift_s) {
     }
   }
   std::size_t first = 0, last = r.t_s.size() - 1;
-  while (first < last && r.t_s[first] + shift_s < r.t_s.front()) ++first;
-  while (last > first && r.t_s[last] + shift_s > r.t_s.back()) --last;
+  while (first < last && r.t_s[first] + shift_s < r.t_s.front() - kRounding_s) ++first;
+  while (last > first && r.t_s[last] + shift_s > r.t_s.back() + kRounding_s) --last;
   cut(r, first, last);
 }
 

@@ -37,8 +37,8 @@ struct Correction {
   /// the value is unknown: such samples are cut off all columns.
   std::vector<Column> columns{};
   double factor = 1.0, shift_s = 0.0;
-  double kp_factor = 1.0, kd_factor = 1.0;  ///< right gain over the row's
-  double load_factor = 1.0;                 ///< right inertia and gravity over those of bench.yaml
+  double kp_factor = 1.0, kd_factor = 1.0;    ///< right gain over the row's
+  double load_factor = 1.0;                   ///< right inertia and gravity over those of bench.yaml
   std::optional<RowConditions> conditions{};  ///< what the row should have said
 };
 

@@ -8,10 +8,10 @@ namespace pmg::data_faults {
 /// y(t + lag) = offset + factor x(t), at the lag with the largest |correlation|.
 struct Alignment {
   double factor = 0.0;
-  double correlation = 0.0;          ///< at the lag
+  double correlation = 0.0;            ///< at the lag
   double correlation_unshifted = 0.0;  ///< at lag 0
-  double lag_s = 0.0;                ///< positive: y is later than x
-  bool known = false;                ///< false where a column hardly changes or too few samples are left
+  double lag_s = 0.0;                  ///< positive: y is later than x
+  bool known = false;                  ///< false where a column hardly changes or too few samples are left
 };
 
 /// Samples where x or y is NaN don't count. Lags from -before_s to after_s are tried.

@@ -24,8 +24,8 @@ struct Pair {
   std::string expected;  ///< in words
   std::vector<double> (*of)(const bench::Bench&, const bench::BenchRun&);
   std::vector<WrongUnit> units;
-  double may_lag_s;         ///< a reading may be filtered
-  double strange_factor;    ///< a factor beyond it is a fault though no unit is known for it
+  double may_lag_s;       ///< a reading may be filtered
+  double strange_factor;  ///< a factor beyond it is a fault though no unit is known for it
 };
 
 std::vector<double> derivative_of_readings(const bench::Bench& bench, const bench::BenchRun& run) {
@@ -65,8 +65,8 @@ struct Finding {
   bool faulty() const { return turned || strange || shifted || !unit.name.empty(); }
   bool same_as(const Finding& other, double sample_s) const {
     const bool factor = turned == other.turned && strange == other.strange && unit.name == other.unit.name;
-    const bool time = shifted == other.shifted &&
-                      (!shifted || std::abs(by.lag_s - other.by.lag_s) <= std::max(2.5 * sample_s, 0.2 * std::abs(by.lag_s)));
+    const bool time = shifted == other.shifted && (!shifted || std::abs(by.lag_s - other.by.lag_s) <=
+                                                                   std::max(2.5 * sample_s, 0.2 * std::abs(by.lag_s)));
     return factor && time;
   }
 };
@@ -91,18 +91,18 @@ void describe(const Finding& one, const std::vector<double>& factors, const std:
               std::vector<DataFault>& into) {
   const double factor = fitting::median(factors), lag_s = fitting::median(lags_s);
   const std::string where = place_of(column, files);
-  const std::string measured =
-      fmt::format("{} is {:.4g} times {} (median of {} runs, correlation {:.3f})", column, factor, pair.expected,
-                  factors.size(), std::abs(one.by.correlation));
+  const std::string measured = fmt::format("{} is {:.4g} times {} (median of {} runs, correlation {:.3f})", column,
+                                           factor, pair.expected, factors.size(), std::abs(one.by.correlation));
   if (one.turned || one.strange || !one.unit.name.empty()) {
-    const double by = (one.turned ? -1.0 : 1.0) / (one.strange                ? std::abs(factor)
+    const double by = (one.turned ? -1.0 : 1.0) / (one.strange             ? std::abs(factor)
                                                    : one.unit.name.empty() ? 1.0
                                                                            : one.unit.per_unit);
     const bool sign_only = one.turned && one.unit.name.empty() && !one.strange;
     DataFault fault{.kind = sign_only ? Kind::kSign : Kind::kUnit, .where = where, .correction = {}};
-    fault.correction = sign_only              ? fmt::format("turn the sign of {}", column)
-                       : one.unit.name.empty() ? fmt::format("multiply {} by {:.4g}: its unit is another one", column, by)
-                                               : fmt::format("{} is in {}: multiply it by {:.6g}", column, one.unit.name, by);
+    fault.correction = sign_only ? fmt::format("turn the sign of {}", column)
+                       : one.unit.name.empty()
+                           ? fmt::format("multiply {} by {:.4g}: its unit is another one", column, by)
+                           : fmt::format("{} is in {}: multiply it by {:.6g}", column, one.unit.name, by);
     fault.evidence = {measured};
     fault.files = files;
     fault.fixes = {{.files = files, .columns = {pair.column}, .factor = by}};
@@ -112,8 +112,8 @@ void describe(const Finding& one, const std::vector<double>& factors, const std:
     DataFault fault{.kind = Kind::kTimeShift, .where = where, .correction = {}};
     fault.correction = fmt::format("{} is {:.4g} s {}: move it by {:.4g} s", column, std::abs(lag_s),
                                    lag_s > 0.0 ? "late" : "early", -lag_s);
-    fault.evidence = {fmt::format("{} correlates with {} by {:.3f} if it is moved by {:.4g} s, by {:.3f} as it is", column,
-                                  pair.expected, std::abs(one.by.correlation), -lag_s,
+    fault.evidence = {fmt::format("{} correlates with {} by {:.3f} if it is moved by {:.4g} s, by {:.3f} as it is",
+                                  column, pair.expected, std::abs(one.by.correlation), -lag_s,
                                   std::abs(one.by.correlation_unshifted))};
     fault.files = files;
     fault.fixes = {{.files = files, .columns = {pair.column}, .shift_s = lag_s}};

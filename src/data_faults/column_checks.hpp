@@ -32,8 +32,8 @@ Alignment following(const bench::Bench& bench, const bench::BenchRun& run, doubl
 /// How the recorded speed follows the derivative of the readings; unknown without such a column.
 Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& run, double longest_s);
 
-/// Faults of columns that follow from other columns: dq_cmd from q_cmd; dq from q; a recorded torque or voltage from the
-/// drive's law. only_commands: dq_cmd alone, and only what all runs show.
+/// Faults of columns that follow from other columns: dq_cmd from q_cmd; dq from q; a recorded torque or voltage from
+/// the drive's law. only_commands: dq_cmd alone, and only what all runs show.
 std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                              const DataFaultOptions& options, bool only_commands);
 

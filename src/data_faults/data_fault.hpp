@@ -22,11 +22,11 @@ const char* name(Kind kind);
 
 struct DataFault {
   Kind kind = Kind::kUnit;
-  std::string where;                          ///< the column, run or row, by the names of the bench's files
-  std::string correction;                     ///< one sentence for people
-  std::vector<std::string> evidence{};        ///< sentences with numbers
-  std::vector<bench::Correction> fixes{};     ///< the correction for machines
-  std::vector<std::string> files{};           ///< runs that it touches; empty: all
+  std::string where;                       ///< the column, run or row, by the names of the bench's files
+  std::string correction;                  ///< one sentence for people
+  std::vector<std::string> evidence{};     ///< sentences with numbers
+  std::vector<bench::Correction> fixes{};  ///< the correction for machines
+  std::vector<std::string> files{};        ///< runs that it touches; empty: all
 };
 
 }  // namespace pmg::data_faults

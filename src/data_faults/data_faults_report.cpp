@@ -30,7 +30,7 @@ void add_to(Json& whole, const Examination& examination) {
     json["runs"] = fault.files.empty() ? Json("all") : Json(fault.files);
     json["factor"] = factor_of(fault);
     json["shift_s"] = fault.fixes.empty() ? 0.0 : fault.fixes.front().shift_s;
- found.push_back(json);
+    found.push_back(json);
   }
   whole["data_faults"] = found;
   whole["data_faults_handled"] = {{"by", name(examination.handling)},
@@ -49,9 +49,10 @@ std::string handling_text(const Examination& examination) {
                        examination.left_out.size() > 1 ? "s" : "", fmt::join(examination.left_out, ", "));
   }
   if (examination.uncorrected()) {
-    text += fmt::format("{}The verdict is of data with faults: don't trust it. Mend the files, or go on with the "
-                        "corrections: --data-faults correct",
-                        text.empty() ? "" : " ");
+    text += fmt::format(
+        "{}The verdict is of data with faults: don't trust it. Mend the files, or go on with the "
+        "corrections: --data-faults correct",
+        text.empty() ? "" : " ");
   }
   return text;
 }
@@ -72,7 +73,8 @@ void show_faults(pages::Page& page, const Examination& examination) {
                fmt::format("Data faults: {}. {}", examination.faults.size(), handling_text(examination)));
   pages::Table table{.header = {"fault", "where", "correction", "evidence"}, .rows = {}};
   for (const DataFault& fault : examination.faults) {
-    table.rows.push_back({name(fault.kind), fault.where, fault.correction, fmt::format("{}", fmt::join(fault.evidence, "; "))});
+    table.rows.push_back(
+        {name(fault.kind), fault.where, fault.correction, fmt::format("{}", fmt::join(fault.evidence, "; "))});
   }
   page.table(table);
 }

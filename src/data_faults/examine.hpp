@@ -45,8 +45,8 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
                                         const std::optional<model::ActuatorParameters>& model,
                                         const DataFaultOptions& options, unsigned threads);
 
-/// (bench, filters of runs.csv, the simulation's model or none) => (examination of all runs that a filter keeps). Throws
-/// as Bench::read_runs.
+/// (bench, filters of runs.csv, the simulation's model or none) => (examination of all runs that a filter keeps).
+/// Throws as Bench::read_runs.
 Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress = {});

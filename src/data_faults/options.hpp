@@ -17,7 +17,7 @@ struct DataFaultOptions {
   // What the model says of a run.
   double clear_gain = 2.0, usual_error = 2.0, usual_deviations = 3.0;
   double column_gain = 2.0;
-  double shift_gain = 1.6, longest_delay_s = 0.1;
+  double shift_gain = 1.6, lone_shift_gain = 2.5, longest_delay_s = 0.1;
   double row_gain = 1.5, pair_gain = 1.25;
   // Loads, gains and feed-forward.
   double least_mass_factor = 1.17, mass_gain = 1.25, least_gain_factor = 1.35, gain_gain = 1.3;

@@ -49,10 +49,10 @@ DataFault fault_of(const Examined& e, const Candidate& candidate, const std::str
   fault.correction = candidate.unit.empty()
                          ? fmt::format("turn the sign of {}", columns)
                          : fmt::format("{} is in {}: multiply it by {:.6g}", columns, candidate.unit, candidate.factor);
-  fault.evidence = {measured,
-                    fmt::format("the joint's model misses the corrected readings by {:.2g} times what it misses them by "
-                                "as they are",
-                                std::exp(-gain))};
+  fault.evidence = {
+      measured, fmt::format("the joint's model misses the corrected readings by {:.2g} times what it misses them by "
+                            "as they are",
+                            std::exp(-gain))};
   fault.fixes = {{.files = {}, .columns = candidate.columns, .factor = candidate.factor}};
   return fault;
 }
@@ -70,7 +70,8 @@ void name_turned(const Examined& e, DataFault& fault, std::vector<Candidate>& ca
   if (!signs.empty()) {
     const bool readings = fitting::median(signs) < 0.0;
     fault.where = place_of(readings ? q : command, {});
-    fault.evidence.push_back(fmt::format("the recorded speed {} the readings", readings ? "contradicts" : "agrees with"));
+    fault.evidence.push_back(
+        fmt::format("the recorded speed {} the readings", readings ? "contradicts" : "agrees with"));
     fault.fixes.front().columns = candidates[readings ? 0 : 1].columns;
   } else {
     constexpr double kTold = 0.05;  // of ln of the error
@@ -80,13 +81,15 @@ void name_turned(const Examined& e, DataFault& fault, std::vector<Candidate>& ca
     fault.fixes.front().columns = candidates[readings ? 0 : 1].columns;
     fault.where = place_of(readings ? q : command, {});
     if (std::abs(turned_q - turned_command) < kTold) {
-      fault.evidence.push_back(fmt::format("nothing else in the recordings tells {} from {}: the joint is the same "
-                                           "either way",
-                                           q, command));
+      fault.evidence.push_back(
+          fmt::format("nothing else in the recordings tells {} from {}: the joint is the same "
+                      "either way",
+                      q, command));
       fault.where += fmt::format(" (or {})", readings ? command : q);
     }
   }
-  fault.correction = fmt::format("turn the sign of {}", bench::column_name(fault.fixes.front().columns.front(), e.linear()));
+  fault.correction =
+      fmt::format("turn the sign of {}", bench::column_name(fault.fixes.front().columns.front(), e.linear()));
 }
 
 }  // namespace
@@ -135,8 +138,8 @@ std::vector<DataFault> position_faults(const Examined& e) {
   });
   const bool turned = share([](const Follows& f) { return f.turned; }) >= enough;
   const bool unit = !middle.unit.empty() && share([&](const Follows& f) {
-    return f.unit == middle.unit && f.column == middle.column;
-  }) >= enough;
+                                              return f.unit == middle.unit && f.column == middle.column;
+                                            }) >= enough;
   const double sign = turned ? -1.0 : 1.0;
   if (unit) {
     candidates.push_back({{middle.column}, sign / middle.per_unit, middle.unit});
@@ -151,9 +154,9 @@ std::vector<DataFault> position_faults(const Examined& e) {
   const bench::Correction fix{.files = {}, .columns = first.columns, .factor = first.factor};
   const double gain = relative_loss(e, e.runs()) - relative_loss(e, e.with({fix}));
   if (gain < std::log(e.options().column_gain)) return {};
-  const std::string measured =
-      fmt::format("{} moves {:.3g} times as far as {} (median of {} runs)", bench::column_name(Column::kPosition, e.linear()),
-                  fitting::median(slopes), bench::column_name(Column::kPositionCommand, e.linear()), slopes.size());
+  const std::string measured = fmt::format("{} moves {:.3g} times as far as {} (median of {} runs)",
+                                           bench::column_name(Column::kPosition, e.linear()), fitting::median(slopes),
+                                           bench::column_name(Column::kPositionCommand, e.linear()), slopes.size());
   DataFault fault = fault_of(e, first, measured, gain);
   if (candidates.size() > 1) name_turned(e, fault, candidates);
   return {fault};

@@ -15,11 +15,13 @@ namespace pmg::data_faults {
 
 namespace {
 
-constexpr double kBlocksOfRun = 12.0;  // a run counts as so many independent observations: six seconds, half a second each
-constexpr double kGainDeviation = 0.15;   // of ln of a gain or torque constant that bench.yaml gives
+constexpr double kBlocksOfRun =
+    12.0;  // a run counts as so many independent observations: six seconds, half a second each
+constexpr double kGainDeviation = 0.15;    // of ln of a gain or torque constant that bench.yaml gives
 constexpr double kTrustedDeviation = 0.3;  // of ln of a number of the given model: friction changes from day to day
 // Twice the simulation's own: the model's error, not its numbers, is compared.
 constexpr double kCoarsestStep_s = 0.002;
+constexpr double kGains[] = {1.0, 2.0, 0.5, 4.0, 0.25};
 constexpr int kScreened = 160, kScreenedRuns = 6;
 constexpr double kLargestFactor = 100.0;
 const double kSenseless = std::log(1e3);  // of a model that diverges: above all real ones
@@ -56,20 +58,22 @@ std::vector<RunFactors> factors_of_runs(std::size_t runs, const std::vector<Shar
   return found;
 }
 
-/// Simulated minus measured reading; 0 for dropouts. Throws std::invalid_argument on impossible parameters.
+/// Simulated minus measured reading; 0 for dropouts and while the drive is off: a free swing magnifies every error.
+/// Throws std::invalid_argument on impossible parameters.
 Eigen::VectorXd residual(const calib::SingleJoint& joint, const calib::JointModel& model) {
   const bench::Recording& r = joint.run().recording;
   const std::vector<double> simulated_rad = joint.rollout(model);
   Eigen::VectorXd found(static_cast<Eigen::Index>(simulated_rad.size()));
   for (std::size_t k = 0; k < simulated_rad.size(); ++k) {
-    found[static_cast<Eigen::Index>(k)] = r.valid[k] ? simulated_rad[k] - r.q_rad[k] : 0.0;
+    const bool counts = r.valid[k] && (r.enabled.empty() || r.enabled[k]);
+    found[static_cast<Eigen::Index>(k)] = counts ? simulated_rad[k] - r.q_rad[k] : 0.0;
   }
   return found;
 }
 
 double log_of(const Eigen::VectorXd& residual_rad, double noise_rad) {
-  const double mean_square = residual_rad.squaredNorm() / static_cast<double>(residual_rad.size());
-  const double found = 0.5 * std::log(mean_square + noise_rad * noise_rad);
+  const auto counting = static_cast<double>((residual_rad.array() != 0.0).count());
+  const double found = 0.5 * std::log(residual_rad.squaredNorm() / std::max(1.0, counting) + noise_rad * noise_rad);
   return std::isfinite(found) ? found : kSenseless;
 }
 
@@ -77,7 +81,10 @@ double log_of(const Eigen::VectorXd& residual_rad, double noise_rad) {
 
 QuickModel::QuickModel(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given,
                        unsigned threads)
-    : bench_(&bench), given_(given.has_value()), threads_(threads), step_s_(std::min(kCoarsestStep_s, 0.5 / bench.sample_rate_hz)) {
+    : bench_(&bench),
+      given_(given.has_value()),
+      threads_(threads),
+      step_s_(std::min(kCoarsestStep_s, 0.5 / bench.sample_rate_hz)) {
   start_.actuator = given.value_or(bench.known);
 }
 
@@ -102,15 +109,24 @@ std::vector<double> QuickModel::log_errors(const std::vector<calib::SingleJoint>
   return found;
 }
 
-std::vector<effects::Unknown> QuickModel::unknowns(const std::vector<calib::SingleJoint>& runs) const {
+std::vector<effects::Unknown> QuickModel::unknowns(const std::vector<calib::SingleJoint>& runs,
+                                                   const std::vector<std::string>& extra) const {
   std::vector<std::string> names = calib::basic_parameters(*bench_);
   const bool voltage = bench_->law == bench::DriveLaw::kServoVoltage;
-  for (const char* name : {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s", "ripple.offset_Nm",
-                           "drive.torque_per_unit_Nm"}) {
+  for (const char* name : {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s",
+                           "ripple.offset_Nm", "drive.torque_per_unit_Nm"}) {
     const bool torque = name == std::string("drive.torque_per_unit_Nm");
     if (torque && bench_->law != bench::DriveLaw::kCascadePd) continue;
     if (voltage && name == std::string("friction.viscous_Nm_s_per_rad")) continue;  // the back-EMF damps
     if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+  }
+  const bool switched_off = std::any_of(runs.begin(), runs.end(), [](const calib::SingleJoint& joint) {
+    const std::vector<bool>& enabled = joint.run().recording.enabled;
+    return std::find(enabled.begin(), enabled.end(), false) != enabled.end();
+  });
+  if (voltage && switched_off) names.emplace_back("drive.brake_when_disabled");
+  for (const std::string& name : extra) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   const effects::BenchScale scale = effects::scale_of(*bench_, runs, start_);
   std::vector<effects::Unknown> found;
@@ -131,23 +147,28 @@ std::vector<effects::Unknown> QuickModel::unknowns(const std::vector<calib::Sing
   return found;
 }
 
-/// The best of many points of the unknowns that nobody knows.
+/// The best of many points of the unknowns that nobody knows, and of a few gains: one may act by a factor of its
+/// number.
 calib::JointModel QuickModel::screened(const std::vector<calib::SingleJoint>& runs,
                                        const std::vector<effects::Unknown>& unknowns) const {
   const std::vector<calib::SingleJoint> few = calib::spread(runs, kScreenedRuns);
-  std::vector<calib::JointModel> models(kScreened, start_);
+  std::vector<calib::JointModel> models(given_ ? std::size(kGains) : kScreened, start_);
   constexpr int kBases[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
-  for (int n = 0; n < kScreened; ++n) {
+  for (int n = 0; n < static_cast<int>(models.size()); ++n) {
     std::size_t dimension = 0;
     for (const effects::Unknown& u : unknowns) {
       const double share = halton(n + 1, kBases[dimension++ % std::size(kBases)]);
-      if (u.deviation > 0.0) continue;
+      calib::JointModel& model = models[static_cast<std::size_t>(n)];
+      if (u.name == "drive.kp_scale" && u.deviation > 0.0) {
+        calib::set(model, u.name,
+                   calib::value(start_, u.name) * kGains[static_cast<std::size_t>(n) % std::size(kGains)]);
+      }
+      if (given_ || u.deviation > 0.0) continue;
       const double low = u.coordinate(u.lower), high = u.coordinate(u.upper);
       const bool torque = !u.logarithmic;  // friction and offsets are small beside the drive's torque
-      calib::set(models[static_cast<std::size_t>(n)], u.name,
-                 torque ? share * std::min(u.upper, u.typical) : u.value(low + share * (high - low)));
-      if (u.name == "ripple.offset_Nm") calib::set(models[static_cast<std::size_t>(n)], u.name, 0.0);
-      if (u.name == "command.delay_s") calib::set(models[static_cast<std::size_t>(n)], u.name, 0.5 * share * u.upper);
+      calib::set(model, u.name, torque ? share * std::min(u.upper, u.typical) : u.value(low + share * (high - low)));
+      if (u.name == "ripple.offset_Nm") calib::set(model, u.name, 0.0);
+      if (u.name == "command.delay_s") calib::set(model, u.name, 0.5 * share * u.upper);
     }
   }
   std::vector<double> losses(models.size(), 0.0);
@@ -223,38 +244,71 @@ QuickFit QuickModel::minimised(const std::vector<calib::SingleJoint>& runs,
   return fit;
 }
 
+/// The errors of a fit's model.
+QuickFit QuickModel::at(const std::vector<calib::SingleJoint>& runs, QuickFit fit) const {
+  fit.factors.clear();
+  fit.log_error = log_errors(runs, fit.model);
+  fit.loss = 0.0;
+  for (const double log : fit.log_error) fit.loss += log / static_cast<double>(runs.size());
+  return fit;
+}
+
 /// A rate limit has no effect where it is infinite, so that no step leads to it: it is tried at a few values.
-QuickFit QuickModel::with_rate_limit(const std::vector<calib::SingleJoint>& runs, QuickFit fit) const {
+QuickFit QuickModel::with_rate_limit(const std::vector<calib::SingleJoint>& runs, const QuickFit& fit) const {
   constexpr double kWorth = 0.1;  // a tenth of the error
   const effects::BenchScale scale = effects::scale_of(*bench_, runs, fit.model);
   QuickFit best = fit;
   for (const double share : {0.3, 0.5, 0.7, 0.85, 1.0, 1.3}) {
     QuickFit tried = fit;
     tried.model.actuator.command.rate_limit_rad_s = share * scale.speed_rad_s;
-    tried.log_error = log_errors(runs, tried.model);
-    tried.loss = 0.0;
-    for (const double log : tried.log_error) tried.loss += log / static_cast<double>(runs.size());
+    tried.extra = {"command.rate_limit_rad_s"};
+    tried = at(runs, tried);
     if (tried.loss < best.loss) best = tried;
   }
-  return best.loss < fit.loss - kWorth ? best : fit;
+  return best.loss < fit.loss - kWorth ? refit(runs, best, {}) : fit;
+}
+
+QuickFit QuickModel::with_best_effect(const std::vector<calib::SingleJoint>& runs, const QuickFit& fit) const {
+  constexpr std::size_t kRefitted = 3, kStarts = 6, kRuns = 8;
+  const std::vector<calib::SingleJoint> few = calib::spread(runs, kRuns);
+  const effects::BenchScale scale = effects::scale_of(*bench_, runs, fit.model);
+  std::vector<QuickFit> tried;
+  for (const effects::Effect& effect : effects::catalogue()) {
+    QuickFit best = fit;
+    best.loss = std::numeric_limits<double>::infinity();
+    const std::vector<std::vector<double>> starts = effects::starts(effect, fit.model, scale);
+    const std::size_t stride = std::max<std::size_t>(1, starts.size() / kStarts);
+    for (std::size_t s = 0; s < starts.size(); s += stride) {
+      const std::vector<double>& values = starts[s];
+      QuickFit one = fit;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string& name = effect.parameters[i];
+        calib::set(one.model, name, values[i]);
+        if (!effects::is_jagged(name)) one.extra.push_back(name);
+      }
+      one = at(few, one);
+      if (one.loss < best.loss) best = one;
+    }
+    if (std::isfinite(best.loss)) tried.push_back(best);
+  }
+  std::sort(tried.begin(), tried.end(), [](const QuickFit& a, const QuickFit& b) { return a.loss < b.loss; });
+  tried.resize(std::min(kRefitted, tried.size()));
+  QuickFit best = fit;
+  for (const QuickFit& one : tried) {
+    const QuickFit refitted = refit(runs, one, {}, 4);
+    if (refitted.loss < best.loss) best = refitted;
+  }
+  return best;
 }
 
 QuickFit QuickModel::fit(const std::vector<calib::SingleJoint>& runs) const {
-  const std::vector<effects::Unknown> free = unknowns(runs);
-  QuickFit fit{.model = given_ ? start_ : screened(runs, free), .factors = {}};
-  fit = minimised(runs, free, fit, {}, 8);
-  const QuickFit limited = with_rate_limit(runs, fit);
-  if (limited.loss == fit.loss) return fit;
-  return refit(runs, limited, {});
+  const std::vector<effects::Unknown> free = unknowns(runs, {});
+  return with_rate_limit(runs, minimised(runs, free, {.model = screened(runs, free)}, {}, 8));
 }
 
 QuickFit QuickModel::refit(const std::vector<calib::SingleJoint>& runs, const QuickFit& from,
                            const std::vector<SharedFactor>& shared, int most_iterations) const {
-  std::vector<effects::Unknown> free = unknowns(runs);
-  if (std::isfinite(from.model.actuator.command.rate_limit_rad_s)) {
-    free.push_back(effects::unknown("command.rate_limit_rad_s", *bench_, effects::scale_of(*bench_, runs, from.model)));
-  }
-  return minimised(runs, free, from, shared, most_iterations);
+  return minimised(runs, unknowns(runs, from.extra), from, shared, most_iterations);
 }
 
 }  // namespace pmg::data_faults

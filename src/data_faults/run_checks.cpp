@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <mutex>
 
 #include "bench/noise_floor.hpp"
 #include "data_faults/column_checks.hpp"
 #include "data_faults/position_checks.hpp"
+#include "data_faults/row_checks.hpp"
 #include "data_faults/trajectory_checks.hpp"
 #include "fitting/statistics.hpp"
 
@@ -20,24 +19,7 @@ namespace {
 
 using bench::Column;
 
-/// One explanation of a run, and by how much it lowers ln of the run's error.
-struct Explained {
-  DataFault fault;
-  double gain = 0.0;
-  bool sure = false;
-};
-
-double log_error_with(const Examined& e, std::size_t run, const bench::Correction& fix) {
-  bench::BenchRun corrected = e.runs()[run];
-  bench::correct(corrected, fix);
-  return e.model().log_error(e.model().joint(corrected), e.fitted().model);
-}
-
-std::string gain_text(double before, double after, const Examined& e) {
-  const char* unit = e.linear() ? "m" : "rad";
-  return fmt::format("the model that fits the other runs misses this one by {:.3g} {} as it is, by {:.3g} {} corrected",
-                     std::exp(before), unit, std::exp(after), unit);
-}
+constexpr std::size_t kFewestRuns = 3;  // two runs that differ don't say which of them is wrong
 
 /// The column of the positions that is at fault in one run. Another run of the trajectory had the same commands, if the
 /// commands are right.
@@ -57,27 +39,59 @@ Column turned_column(const Examined& e, std::size_t run, double factor, bool& to
   return Column::kPosition;
 }
 
-/// Signs and units of the positions of one run.
-void try_positions(const Examined& e, std::size_t run, std::vector<Explained>& into) {
-  const Follows by = follows(e, e.runs()[run]);
-  if (!by.known || (!by.turned && by.unit.empty())) return;
+/// One correction of the positions of one run, judged by the model. Weak drives hardly follow fast commands, so that
+/// no correlation is asked for.
+void try_position(const Examined& e, std::size_t run, Column column, const std::string& unit, double factor,
+                  std::vector<Explained>& into) {
   const std::string file = e.runs()[run].file;
-  bench::Correction fix{.files = {file}, .columns = {by.column}, .factor = (by.turned ? -1.0 : 1.0) / by.per_unit};
+  bench::Correction fix{.files = {file}, .columns = {column}, .factor = factor};
   bool told = true;
-  if (by.unit.empty()) fix.columns = {turned_column(e, run, -1.0, told)};
+  if (unit.empty()) fix.columns = {turned_column(e, run, -1.0, told)};
   // In another unit the readings are missed by another error: a share of their size counts.
-  const double scale = by.column == Column::kPosition && !by.unit.empty() ? std::log(by.per_unit) : 0.0;
+  const double scale = column == Column::kPosition && !unit.empty() ? -std::log(factor) : 0.0;
   const double before = e.log_error()[run] - scale, after = log_error_with(e, run, fix);
-  const std::string column = bench::column_name(fix.columns.front(), e.linear());
-  DataFault fault{.kind = by.unit.empty() ? Kind::kSign : Kind::kUnit, .where = place_of(column, {file}), .correction = {}};
+  const std::string name = bench::column_name(fix.columns.front(), e.linear());
+  DataFault fault{.kind = unit.empty() ? Kind::kSign : Kind::kUnit, .where = place_of(name, {file}), .correction = {}};
   if (!told) fault.where += fmt::format(" (or {})", bench::column_name(Column::kPositionCommand, e.linear()));
-  fault.correction = by.unit.empty() ? fmt::format("turn the sign of {} in {}", column, file)
-                                     : fmt::format("{} of {} is in {}: multiply it by {:.6g}", column, file, by.unit, fix.factor);
-  fault.evidence = {fmt::format("readings move {:.3g} times as far as commands", by.slope), gain_text(before, after, e)};
+  fault.correction = unit.empty() ? fmt::format("turn the sign of {} in {}", name, file)
+                                  : fmt::format("{} of {} is in {}: multiply it by {:.6g}", name, file, unit, factor);
+  const Follows by = follows(e, e.runs()[run]);
+  fault.evidence = {fmt::format("readings move {:.3g} times as far as commands (correlation {:.2f})", by.slope, by.correlation),
+                    gain_text(e, before, after)};
   fault.fixes = {fix};
   fault.files = {file};
   into.push_back({fault, before - after,
                   before - after > std::log(e.options().clear_gain) && after < e.usual_log_error()});
+}
+
+/// Signs and units of the positions of one run.
+void try_positions(const Examined& e, std::size_t run, std::vector<Explained>& into) {
+  if (e.log_error()[run] < fitting::median(e.log_error())) return;  // no worse than the others
+  const Follows by = follows(e, e.runs()[run]);
+  try_position(e, run, Column::kPosition, "", -1.0, into);
+  for (const WrongUnit& unit : position_units(e.linear())) {
+    try_position(e, run, Column::kPositionCommand, unit.name, 1.0 / unit.per_unit, into);
+    if (by.known && by.unit == unit.name && by.column == Column::kPosition)
+      try_position(e, run, Column::kPosition, unit.name, 1.0 / unit.per_unit, into);
+  }
+}
+
+/// The sign of one run's feed-forward.
+void try_feed_forward(const Examined& e, std::size_t run, std::vector<Explained>& into) {
+  const std::vector<double>& tau = e.runs()[run].recording.tau_ff_Nm;
+  if (std::all_of(tau.begin(), tau.end(), [](double value) { return value == 0.0; })) return;
+  const std::string file = e.runs()[run].file;
+  const bench::Correction fix{.files = {file}, .columns = {Column::kFeedForward}, .factor = -1.0};
+  const double before = e.log_error()[run], after = log_error_with(e, run, fix);
+  const std::string column = bench::column_name(Column::kFeedForward, e.linear());
+  const DataFault fault{.kind = Kind::kSign,
+                        .where = place_of(column, {file}),
+                        .correction = fmt::format("turn the sign of {} in {}", column, file),
+                        .evidence = {gain_text(e, before, after)},
+                        .fixes = {fix},
+                        .files = {file}};
+  into.push_back(
+      {fault, before - after, before - after > std::log(e.options().clear_gain) && after < e.usual_log_error()});
 }
 
 /// Lag of the readings behind the model [s], and ln of the error there.
@@ -97,36 +111,19 @@ Shift best_shift(const Examined& e, std::size_t run) {
     double squares = 0.0, n = 0.0;
     for (long k = std::max(0L, -lag); k < std::min(count, count - lag); ++k) {
       const auto there = static_cast<std::size_t>(k + lag);
-      if (!r.valid[there]) continue;
+      if (!r.valid[there] || (!r.enabled.empty() && !r.enabled[there])) continue;
       squares += std::pow(simulated[static_cast<std::size_t>(k)] - r.q_rad[there], 2);
       n += 1.0;
     }
     const double log = 0.5 * std::log(squares / std::max(1.0, n) + noise);
-    if (n > 0.5 * static_cast<double>(count) && log < best.log_error) best = {static_cast<double>(lag) * e.sample_s(), log};
+    if (n > 0.3 * static_cast<double>(count) && log < best.log_error)
+      best = {static_cast<double>(lag) * e.sample_s(), log};
   }
   return best;
 }
 
 double least_shift_s(const Examined& e) {
   return std::max(e.options().shift_samples * e.sample_s(), e.options().least_shift_s);
-}
-
-bool same_condition(const bench::BenchRun& a, const bench::BenchRun& b) {
-  return a.kp == b.kp && a.kd == b.kd && a.load == b.load;
-}
-
-/// Runs that physics treats like this one: its repeats; without repeats, the runs of its trajectory; else all others.
-std::vector<std::size_t> siblings(const Examined& e, std::size_t run) {
-  const bench::BenchRun& one = e.runs()[run];
-  std::vector<std::size_t> repeats, trajectory, others;
-  for (std::size_t i = 0; i < e.runs().size(); ++i) {
-    if (i == run) continue;
-    others.push_back(i);
-    if (e.runs()[i].trajectory != one.trajectory) continue;
-    trajectory.push_back(i);
-    if (same_condition(e.runs()[i], one)) repeats.push_back(i);
-  }
-  return !repeats.empty() ? repeats : !trajectory.empty() ? trajectory : others;
 }
 
 /// A shift that a sibling shows, too, is physics: fast motion lags, and a weak drive lags more.
@@ -146,124 +143,37 @@ void try_shift(const Examined& e, std::size_t run, const std::vector<Shift>& shi
   fault.where = place_of(column, {file}) + " against " + bench::column_name(Column::kPositionCommand, e.linear());
   fault.correction = fmt::format("{} of {} is {:.3g} s {}: move it by {:.3g} s", column, file, std::abs(lag_s),
                                  lag_s > 0.0 ? "late" : "early", -lag_s);
-  fault.evidence = {fmt::format("the readings of the most similar run lie {:.3g} s from the model's, these {:.3g} s", usual_s,
-                                shifts[run].lag_s),
-                    gain_text(before, after, e)};
+  fault.evidence = {fmt::format("the readings of the most similar run lie {:.3g} s from the model's, these {:.3g} s",
+                                usual_s, shifts[run].lag_s),
+                    gain_text(e, before, after)};
   fault.fixes = {fix};
   fault.files = {file};
-  into.push_back({fault, before - after,
-                  before - after > std::log(e.options().shift_gain) && after < e.usual_log_error()});
-}
-
-std::string condition_text(const bench::BenchRun& run) {
-  return fmt::format("kp {:.4g}, kd {:.4g}, load {:.4g} kg m^2 and {:.4g} Nm", run.kp, run.kd, run.load.inertia_kg_m2,
-                     run.load.gravity_Nm);
-}
-
-/// Gains and load of another row.
-struct OtherRow {
-  std::size_t like = 0;  ///< a run with these gains and load
-  double gain = 0.0, log_error = 0.0;
-  bool any = false;
-};
-
-OtherRow best_row(const Examined& e, std::size_t run) {
-  std::vector<std::size_t> distinct;
-  for (std::size_t i = 0; i < e.runs().size(); ++i) {
-    const bool seen = std::any_of(distinct.begin(), distinct.end(),
-                                  [&](std::size_t other) { return same_condition(e.runs()[i], e.runs()[other]); });
-    if (!seen) distinct.push_back(i);
-  }
-  OtherRow best;
-  for (const std::size_t other : distinct) {
-    if (same_condition(e.runs()[run], e.runs()[other])) continue;
-    bench::RowConditions conditions = conditions_of(e.runs()[other]);
-    const double log = log_error_with(e, run, {.files = {}, .columns = {}, .conditions = conditions});
-    if (best.any && log >= best.log_error) continue;
-    best = {other, e.log_error()[run] - log, log, true};
-  }
-  return best;
-}
-
-bench::Correction row_fix(const Examined& e, std::size_t run, std::size_t like) {
-  bench::RowConditions conditions = conditions_of(e.runs()[like]);
-  conditions.trajectory = e.runs()[run].trajectory;
-  conditions.repeat = e.runs()[run].repeat;
-  return {.files = {e.runs()[run].file}, .columns = {}, .conditions = conditions};
-}
-
-Explained swapped_rows(const Examined& e, std::size_t a, std::size_t b, const OtherRow& of_a, const OtherRow& of_b) {
-  const std::string &first = e.runs()[a].file, &second = e.runs()[b].file;
-  return {.fault = {.kind = Kind::kSwappedRuns,
-                    .where = fmt::format("runs.csv, rows {} and {}", first, second),
-                    .correction = fmt::format("exchange the files {} and {} in runs.csv", first, second),
-                    .evidence = {fmt::format("{}: {}", first, gain_text(e.log_error()[a], of_a.log_error, e)),
-                                 fmt::format("{}: {}", second, gain_text(e.log_error()[b], of_b.log_error, e))},
-                    .fixes = {row_fix(e, a, b), row_fix(e, b, a)},
-                    .files = {first, second}},
-          .gain = of_a.gain + of_b.gain,
-          .sure = true};
-}
-
-/// Rows of runs.csv with the gains and load of other rows.
-void try_rows(const Examined& e, std::vector<Explained>& into) {
-  const DataFaultOptions& o = e.options();
-  const double usual = e.usual_log_error(), middle = fitting::median(e.log_error());
-  struct Suspect {
-    std::size_t run;
-    OtherRow row;
-  };
-  std::vector<Suspect> suspects;
-  for (std::size_t run = 0; run < e.runs().size(); ++run) {
-    if (e.log_error()[run] < middle) continue;  // no worse than the others
-    const OtherRow row = best_row(e, run);
-    const std::vector<std::size_t> like = siblings(e, run);
-    const bool unlike = std::all_of(like.begin(), like.end(), [&](std::size_t sibling) {
-      return !same_condition(e.runs()[sibling], e.runs()[run]) ||
-             e.log_error()[run] - e.log_error()[sibling] > 0.5 * row.gain;
-    });
-    if (row.any && unlike && row.gain > std::log(o.pair_gain) && row.log_error < usual) suspects.push_back({run, row});
-  }
-  for (const Suspect& a : suspects) {
-    for (const Suspect& b : suspects) {
-      if (b.run <= a.run || !same_condition(e.runs()[a.row.like], e.runs()[b.run]) ||
-          !same_condition(e.runs()[b.row.like], e.runs()[a.run])) {
-        continue;
-      }
-      if (a.row.gain + b.row.gain < 2.0 * std::log(o.row_gain)) continue;
-      into.push_back(swapped_rows(e, a.run, b.run, a.row, b.row));
-    }
-    if (a.row.gain < std::log(o.clear_gain) || e.log_error()[a.run] < usual) continue;
-    const std::string file = e.runs()[a.run].file;
-    into.push_back({.fault = {.kind = Kind::kRow,
-                              .where = fmt::format("runs.csv, row {}", file),
-                              .correction = fmt::format("{} was recorded with {}, as {} was", file,
-                                                        condition_text(e.runs()[a.row.like]), e.runs()[a.row.like].file),
-                              .evidence = {gain_text(e.log_error()[a.run], a.row.log_error, e)},
-                              .fixes = {row_fix(e, a.run, a.row.like)},
-                              .files = {file}},
-                    .gain = a.row.gain,
-                    .sure = true});
-  }
+  // Wrong gains or a wrong load make a run late or early, too: then another row explains it better than a shift.
+  const bool repeated = same_condition(e.runs()[siblings(e, run).front()], e.runs()[run]);
+  const double least = repeated ? e.options().shift_gain : e.options().lone_shift_gain;
+  const bool sure = before - after > std::log(least) && after < e.usual_log_error() &&
+                    after < lowest_log_error_of_rows(e, run);
+  into.push_back({fault, before - after, sure});
 }
 
 }  // namespace
 
-std::vector<DataFault> clearest_run_fault(const Examined& e) {
+std::vector<DataFault> clearest_position_fault(const Examined& e) {
   std::vector<Explained> all;
+  for (std::size_t run = 0; run < e.runs().size(); ++run) try_positions(e, run, all);
+  return clearest(all);
+}
+
+std::vector<DataFault> clearest_run_fault(const Examined& e) {
+  if (e.runs().size() < kFewestRuns) return {};
+  std::vector<Explained> all = row_explanations(e);
   std::vector<Shift> shifts;
   for (std::size_t run = 0; run < e.runs().size(); ++run) shifts.push_back(best_shift(e, run));
   for (std::size_t run = 0; run < e.runs().size(); ++run) {
-    try_positions(e, run, all);
-    if (e.runs().size() > 2) try_shift(e, run, shifts, all);
+    try_shift(e, run, shifts, all);
+    try_feed_forward(e, run, all);
   }
-  if (e.runs().size() > 2) try_rows(e, all);
-  const Explained* best = nullptr;
-  for (const Explained& one : all) {
-    if (one.sure && (best == nullptr || one.gain > best->gain)) best = &one;
-  }
-  if (best == nullptr) return {};
-  return {best->fault};
+  return clearest(all);
 }
 
 std::vector<DataFault> common_shift(const Examined& e) {
@@ -274,7 +184,7 @@ std::vector<DataFault> common_shift(const Examined& e) {
     gains.push_back(e.log_error()[run] - shift.log_error);
   }
   const double lag_s = fitting::median(lags_s), delay_s = e.fitted().model.actuator.command.delay_s;
-  const bool early = lag_s < -least_shift_s(e), late = delay_s + lag_s > e.options().longest_delay_s;
+  const bool early = lag_s<-least_shift_s(e), late = delay_s + lag_s> e.options().longest_delay_s;
   if ((!early && !late) || fitting::median(gains) < std::log(e.options().shift_gain)) return {};
   const double whole_s = early ? lag_s : delay_s + lag_s;
   const std::string column = bench::column_name(Column::kPosition, e.linear());
@@ -284,7 +194,8 @@ std::vector<DataFault> common_shift(const Examined& e) {
            .correction = fmt::format("{} is {:.3g} s {}: move it by {:.3g} s", column, std::abs(whole_s),
                                      early ? "early" : "late", -whole_s),
            .evidence = {early ? fmt::format("readings move {:.3g} s before their commands: no drive does that", -lag_s)
-                              : fmt::format("readings move {:.3g} s after their commands: more than a drive's delay", whole_s)},
+                              : fmt::format("readings move {:.3g} s after their commands: more than a drive's delay",
+                                            whole_s)},
            .fixes = {{.files = {}, .columns = {Column::kPosition}, .shift_s = whole_s}}}};
 }
 

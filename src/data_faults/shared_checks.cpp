@@ -48,10 +48,18 @@ class Groups {
 
   const std::vector<Group>& all() const { return groups_; }
 
+  /// The same groups beside the effect that explains the runs best without a factor.
+  Groups beside_physics() const {
+    Groups found = *this;
+    found.without_ = e_->model().with_best_effect(joints_, without_);
+    return found;
+  }
+
   /// One factor for these groups together.
   Tried with(const std::vector<std::size_t>& which) const {
     SharedFactor shared{.of = of_, .runs = {}};
-    for (const std::size_t g : which) shared.runs.insert(shared.runs.end(), groups_[g].runs.begin(), groups_[g].runs.end());
+    for (const std::size_t g : which)
+      shared.runs.insert(shared.runs.end(), groups_[g].runs.begin(), groups_[g].runs.end());
     Tried tried{.fit = e_->model().refit(joints_, without_, {shared}, kIterations)};
     tried.factor = tried.fit.factors.front();
     tried.loss = tried.fit.loss;
@@ -119,6 +127,11 @@ Odd odd_one(const Groups& groups, double least_factor, double least_gain, const 
   const double share = static_cast<double>(groups.all()[static_cast<std::size_t>(found.group)].runs.size()) /
                        static_cast<double>(groups.runs());
   if (groups.common().loss - found.tried.loss < share * std::log(o.better_than_common)) return {};
+  // What one effect of the catalogue explains, too, is physics.
+  const Tried beside = groups.beside_physics().with({static_cast<std::size_t>(found.group)});
+  if (!beyond(beside.factor, least_factor) || beside.gain < std::log(least_gain)) return {};
+  if (beside.gain < o.factor_deviations * beside.gain_deviation) return {};
+  found.tried = beside;  // the better model knows the factor better
   return found;
 }
 
@@ -148,16 +161,15 @@ DataFault gain_text(const Examined& e, const std::string& column, double value, 
 
 bool firmware_factor(double factor, double tolerance) {
   constexpr double kFactors[] = {2.0, 4.0, 8.0, 10.0, 16.0, 32.0, 57.29577951308232, 64.0, 100.0};
-  return std::any_of(std::begin(kFactors), std::end(kFactors), [&](double known) {
-    return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance;
-  });
+  return std::any_of(std::begin(kFactors), std::end(kFactors),
+                     [&](double known) { return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance; });
 }
 
 std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
   const DataFaultOptions& o = e.options();
   const bool kp = of == &RunFactors::kp;
   const std::string unit = e.linear() ? "m" : "rad";
-  const std::string column = !kp                                                      ? "kd_Nm_s_per_rad"
+  const std::string column = !kp                                               ? "kd_Nm_s_per_rad"
                              : e.bench().law == bench::DriveLaw::kServoVoltage ? "kp_firmware"
                                                                                : "kp_Nm_per_rad";
   const Groups groups(e, of);
@@ -189,7 +201,8 @@ std::vector<DataFault> mass_fault(const Examined& e) {
   for (std::size_t l = 0; l < e.bench().loads.size(); ++l) {
     const bench::BenchLoad& load = e.bench().loads[l];
     if (load.load.inertia_kg_m2 != inertia) continue;
-    fault.where = fmt::format("bench.yaml, loads[{}] (mass_kg {:.6g}, length_m {:.6g})", l, load.mass_kg, load.length_m);
+    fault.where =
+        fmt::format("bench.yaml, loads[{}] (mass_kg {:.6g}, length_m {:.6g})", l, load.mass_kg, load.length_m);
     fault.correction = fmt::format("mass_kg {:.4g} instead of {:.4g}: ", load.mass_kg * factor, load.mass_kg);
   }
   fault.correction += fmt::format("inertia and gravity times {:.3g}", factor);
@@ -206,7 +219,8 @@ std::vector<DataFault> gain_fault(const Examined& e) {
   if (!found.empty()) return found;
   // All gains: beyond what a drive's gain is off by.
   const double factor = e.fitted().model.actuator.drive.kp_scale / e.bench().known.drive.kp_scale;
-  if (e.bench().law != bench::DriveLaw::kPositionPd || !beyond(factor, 1.0 + 0.5 * (e.options().least_common_gain - 1.0)))
+  if (e.bench().law != bench::DriveLaw::kPositionPd ||
+      !beyond(factor, 1.0 + 0.5 * (e.options().least_common_gain - 1.0)))
     return {};
   const Groups groups(e, &RunFactors::kp);
   const Tried common = groups.common();
@@ -236,15 +250,18 @@ std::vector<DataFault> feed_forward_fault(const Examined& e) {
     std::string what;
     double factor;
   };
-  std::vector<Candidate> candidates = {{"as it is", 1.0}, {"thousandths of its unit", 1e-3}, {"thousands of its unit", 1e3},
-                                       {"kilogram-force", 9.80665}, {"kilogram-force centimetres", 0.0980665},
-                                       {"another unit", 4.0},       {"another unit", 0.25},
+  std::vector<Candidate> candidates = {{"as it is", 1.0},
+                                       {"thousandths of its unit", 1e-3},
+                                       {"thousands of its unit", 1e3},
+                                       {"kilogram-force", 9.80665},
+                                       {"kilogram-force centimetres", 0.0980665},
+                                       {"another unit", 4.0},
+                                       {"another unit", 0.25},
                                        {"another unit", 0.0}};
   if (volts) {
     candidates.push_back({"volts", constant});
     candidates.push_back({"newtons that were divided by the torque constant twice", 1.0 / constant});
-    if (e.bench().law == bench::DriveLaw::kServoVoltage)
-      candidates.push_back({"duty", constant * e.bench().supply_V});
+    if (e.bench().law == bench::DriveLaw::kServoVoltage) candidates.push_back({"duty", constant * e.bench().supply_V});
   }
   struct Outcome {
     double factor, loss;
@@ -263,7 +280,8 @@ std::vector<DataFault> feed_forward_fault(const Examined& e) {
       outcomes.push_back({sign * candidate.factor, loss, candidate.what, from});
     }
   }
-  std::stable_sort(outcomes.begin() + 1, outcomes.end(), [](const Outcome& a, const Outcome& b) { return a.loss < b.loss; });
+  std::stable_sort(outcomes.begin() + 1, outcomes.end(),
+                   [](const Outcome& a, const Outcome& b) { return a.loss < b.loss; });
   constexpr std::size_t kRefitted = 6;
   outcomes.resize(std::min(outcomes.size(), kRefitted));
   for (Outcome& outcome : outcomes) {
@@ -274,7 +292,8 @@ std::vector<DataFault> feed_forward_fault(const Examined& e) {
   const Outcome best = *std::min_element(outcomes.begin(), outcomes.end(),
                                          [](const Outcome& a, const Outcome& b) { return a.loss < b.loss; });
   const double share = static_cast<double>(with.size()) / static_cast<double>(joints.size());
-  if (best.factor == 1.0 || best.factor == 0.0 || as_is.loss - best.loss < share * std::log(o.feed_forward_gain)) return {};
+  if (best.factor == 1.0 || best.factor == 0.0 || as_is.loss - best.loss < share * std::log(o.feed_forward_gain))
+    return {};
   const bool sign_only = best.factor == -1.0;
   const std::string column = bench::column_name(bench::Column::kFeedForward, e.linear());
   DataFault fault{.kind = sign_only ? Kind::kSign : Kind::kUnit, .where = place_of(column, {}), .correction = {}};

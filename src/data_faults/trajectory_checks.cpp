@@ -46,7 +46,8 @@ bench::RowConditions conditions_of(const bench::BenchRun& run) {
 bool same_commands(const bench::BenchRun& a, const bench::BenchRun& b, double factor, const DataFaultOptions& options) {
   const std::vector<double>&x = a.recording.q_cmd_rad, &y = b.recording.q_cmd_rad;
   const std::size_t count = std::min(x.size(), y.size());
-  if (static_cast<double>(std::max(x.size(), y.size()) - count) > kLengthShare * static_cast<double>(count)) return false;
+  if (static_cast<double>(std::max(x.size(), y.size()) - count) > kLengthShare * static_cast<double>(count))
+    return false;
   double apart = 0.0, size = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     apart += std::pow(factor * x[k] - y[k], 2);
@@ -90,14 +91,13 @@ std::vector<DataFault> trajectory_faults(const Runs& runs, const DataFaultOption
     if (partner != strangers.end()) {
       done[partner->run] = true;
       const bench::BenchRun& other = runs[partner->run];
-      found.push_back(
-          {.kind = Kind::kSwappedRuns,
-           .where = fmt::format("runs.csv, rows {} and {}", run.file, other.file),
-           .correction = fmt::format("exchange the files {} and {} in runs.csv", run.file, other.file),
-           .evidence = {fmt::format("{} has the commands of the trajectory {}, {} those of {}", run.file, one.looks_like,
-                                    other.file, run.trajectory)},
-           .fixes = {row_of(run, conditions_of(other)), row_of(other, conditions_of(run))},
-           .files = {run.file, other.file}});
+      found.push_back({.kind = Kind::kSwappedRuns,
+                       .where = fmt::format("runs.csv, rows {} and {}", run.file, other.file),
+                       .correction = fmt::format("exchange the files {} and {} in runs.csv", run.file, other.file),
+                       .evidence = {fmt::format("{} has the commands of the trajectory {}, {} those of {}", run.file,
+                                                one.looks_like, other.file, run.trajectory)},
+                       .fixes = {row_of(run, conditions_of(other)), row_of(other, conditions_of(run))},
+                       .files = {run.file, other.file}});
       continue;
     }
     bench::RowConditions named = conditions_of(run);

@@ -61,7 +61,10 @@ PlantedFault wrong_gain(Random& random, Runs& runs, double bench::BenchRun::*gai
   const double chosen = *std::next(values.begin(), static_cast<long>(any(random, values.size())));
   constexpr double kFactors[] = {2.0, 0.5, 4.0, 0.25};
   const double factor = all ? kFactors[2 + any(random, 2)] : kFactors[any(random, 4)];
-  PlantedFault fault{.kind = "gain_factor", .where = {gain == &bench::BenchRun::kp ? "kp" : "kd"}, .files = {}, .factor = 1.0 / factor};
+  PlantedFault fault{.kind = "gain_factor",
+                     .where = {gain == &bench::BenchRun::kp ? "kp" : "kd"},
+                     .files = {},
+                     .factor = 1.0 / factor};
   for (bench::BenchRun& run : runs) {
     if (!all && run.*gain != chosen) continue;
     if (!all) fault.files.push_back(run.file);
@@ -91,7 +94,8 @@ PlantedFault swapped_rows(Random& random, Runs& runs) {
 
 PlantedFault shifted(Random& random, const bench::Bench& bench, Runs& runs, Column column, bool all) {
   if (bench::values(runs.front().recording, column).empty()) return {};
-  const std::vector<std::string> files = all ? std::vector<std::string>{} : std::vector{runs[any(random, runs.size())].file};
+  const std::vector<std::string> files =
+      all ? std::vector<std::string>{} : std::vector{runs[any(random, runs.size())].file};
   // Of all runs only what no drive's delay explains: readings before their commands, or long after them.
   const double sign = column == Column::kPosition && all ? -1.0 : any(random, 2) == 0 ? 1.0 : -1.0;
   const double shift_s = sign * between(random, std::max(0.05, 5.0 / bench.sample_rate_hz), 0.15);
@@ -130,10 +134,8 @@ const std::map<std::string, Plant>& kinds() {
        [](Random&, const bench::Bench&, Runs& runs) {
          return scaled(runs, {}, Column::kPositionCommand, -1.0, "sign", {"q_cmd"});
        }},
-      {"readings turned",
-       [](Random&, const bench::Bench&, Runs& runs) {
-         return scaled(runs, {}, Column::kPosition, -1.0, "sign", {" q_"});
-       }},
+      {"readings turned", [](Random&, const bench::Bench&,
+                             Runs& runs) { return scaled(runs, {}, Column::kPosition, -1.0, "sign", {" q_"}); }},
       {"readings turned, one run",
        [](Random& random, const bench::Bench&, Runs& runs) {
          return scaled(runs, one_of(random, runs), Column::kPosition, -1.0, "sign", {" q_"});
@@ -143,28 +145,20 @@ const std::map<std::string, Plant>& kinds() {
          return scaled(runs, one_of(random, runs), Column::kPositionCommand, -1.0, "sign", {"q_cmd"});
        }},
       {"mass", [](Random& random, const bench::Bench&, Runs& runs) { return wrong_mass(random, runs); }},
-      {"gain of some rows",
-       [](Random& random, const bench::Bench&, Runs& runs) {
-         return wrong_gain(random, runs, &bench::BenchRun::kp, false);
-       }},
+      {"gain of some rows", [](Random& random, const bench::Bench&,
+                               Runs& runs) { return wrong_gain(random, runs, &bench::BenchRun::kp, false); }},
       {"gain of all rows",
        [](Random& random, const bench::Bench& bench, Runs& runs) {
          if (bench.law != bench::DriveLaw::kPositionPd) return PlantedFault{};
          return wrong_gain(random, runs, &bench::BenchRun::kp, true);
        }},
       {"swapped rows", [](Random& random, const bench::Bench&, Runs& runs) { return swapped_rows(random, runs); }},
-      {"readings shifted, one run",
-       [](Random& random, const bench::Bench& bench, Runs& runs) {
-         return shifted(random, bench, runs, Column::kPosition, false);
-       }},
-      {"readings early, all runs",
-       [](Random& random, const bench::Bench& bench, Runs& runs) {
-         return shifted(random, bench, runs, Column::kPosition, true);
-       }},
-      {"speed shifted",
-       [](Random& random, const bench::Bench& bench, Runs& runs) {
-         return shifted(random, bench, runs, Column::kSpeed, true);
-       }},
+      {"readings shifted, one run", [](Random& random, const bench::Bench& bench,
+                                       Runs& runs) { return shifted(random, bench, runs, Column::kPosition, false); }},
+      {"readings early, all runs", [](Random& random, const bench::Bench& bench,
+                                      Runs& runs) { return shifted(random, bench, runs, Column::kPosition, true); }},
+      {"speed shifted", [](Random& random, const bench::Bench& bench,
+                           Runs& runs) { return shifted(random, bench, runs, Column::kSpeed, true); }},
       {"speed in degrees",
        [](Random&, const bench::Bench&, Runs& runs) {
          return if_there(runs, Column::kSpeed,

@@ -21,6 +21,7 @@ struct PlantedFault {
 std::vector<std::string> planted_kinds();
 
 /// Plants the fault into the runs, at places and sizes drawn from the seed. Empty kind: the bench can't have it.
-PlantedFault plant(const std::string& what, unsigned seed, const bench::Bench& bench, std::vector<bench::BenchRun>& runs);
+PlantedFault plant(const std::string& what, unsigned seed, const bench::Bench& bench,
+                   std::vector<bench::BenchRun>& runs);
 
 }  // namespace pmg::test

@@ -237,7 +237,8 @@ TEST(ActuatorModel, WarmsByTheSquareOfItsTorqueAndCools) {
                          kStep_s);
   const auto friction_Nm = [&](double wish_Nm, double for_s) {
     ActuatorTorque torque;
-    for (int k = 0; k < std::lround(for_s / kStep_s); ++k) torque = actuator.step({.feed_forward_Nm = wish_Nm}, 0.0, 1.0);
+    for (int k = 0; k < std::lround(for_s / kStep_s); ++k)
+      torque = actuator.step({.feed_forward_Nm = wish_Nm}, 0.0, 1.0);
     return wish_Nm - torque.torque_Nm;
   };
   // 3 Nm with 5 s of cooling settle at 3^2 * 5 = 45 Nm^2 s. Tolerance: one step, and e^-8 of the way is left.
