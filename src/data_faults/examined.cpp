@@ -68,7 +68,8 @@ double Examined::usual_log_error() const {
   std::vector<double> apart;
   for (const double log : log_error_) apart.push_back(std::abs(log - middle));
   const double deviation = fitting::median(apart) / fitting::kNormalMedianDeviation;
-  return middle + std::max(std::log(options_.usual_error), options_.usual_deviations * deviation);
+  return middle + std::clamp(options_.usual_deviations * deviation, std::log(options_.usual_error),
+                             std::log(options_.largest_usual_error));
 }
 
 }  // namespace pmg::data_faults

@@ -23,6 +23,7 @@ constexpr double kTrustedDeviation = 0.3;  // of ln of a number of the given mod
 constexpr double kCoarsestStep_s = 0.002;
 constexpr double kGains[] = {1.0, 2.0, 0.5, 4.0, 0.25};
 constexpr int kScreened = 160, kScreenedRuns = 6;
+constexpr double kLightRotor = 0.01;  // of the whole inertia: a lighter rotor moves nothing
 constexpr double kLargestFactor = 100.0;
 const double kSenseless = std::log(1e3);  // of a model that diverges: above all real ones
 
@@ -133,6 +134,7 @@ std::vector<effects::Unknown> QuickModel::unknowns(const std::vector<calib::Sing
   for (const std::string& name : names) {
     effects::Unknown u = effects::unknown(name, *bench_, scale);
     if (name == "command.delay_s") u.upper = std::min(u.upper, (sim::ActuatorModel::kDelaySteps - 1) * step_s_);
+    if (name == "transmission.armature_kg_m2") u.lower = std::max(u.lower, kLightRotor * scale.inertia_kg_m2);
     const double known = calib::value(start_, name);
     const bool listed = std::find(bench_->unknown.begin(), bench_->unknown.end(), name) != bench_->unknown.end();
     const bool drive = name.starts_with("drive.");
@@ -234,7 +236,12 @@ QuickFit QuickModel::minimised(const std::vector<calib::SingleJoint>& runs,
   };
   for (int round = 0; round < 3; ++round) {
     weigh();
-    x = fitting::gauss_newton(problem, x, {.most_iterations = most_iterations, .relative_tolerance = 1e-3}).x;
+    x = fitting::gauss_newton(problem, x,
+                              {.most_iterations = most_iterations,
+                               .relative_tolerance = 1e-3,
+                               .most_tries = 12,  // from a screened start the first step may be far too long
+                               .longest_step = 0.2})
+            .x;
   }
   weigh();
   QuickFit fit = at(x);

@@ -15,6 +15,10 @@ std::vector<DataFault> clearest(const std::vector<Explained>& explanations) {
   return {best->fault};
 }
 
+bool mends(const Examined& e, double before, double after) {
+  return after < e.usual_log_error() || before - after > std::log(e.options().overwhelming_gain);
+}
+
 double log_error_with(const Examined& e, std::size_t run, const bench::Correction& fix) {
   bench::BenchRun corrected = e.runs()[run];
   bench::correct(corrected, fix);
