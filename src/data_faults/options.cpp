@@ -42,7 +42,8 @@ std::vector<evidence::Option> listed(const DataFaultOptions& o) {
       {"largest_usual_error", o.largest_usual_error, "", "which count up to so many times the median", plants},
       {"column_gain", o.column_gain, "", "clear_gain of a column of all runs", plants},
       {"shift_gain", o.shift_gain, "", "clear_gain of a run's shift", plants},
-      {"lone_shift_gain", o.lone_shift_gain, "", "the same of a run that has no repeat: fast motion lags, too", "random benches"},
+      {"lone_shift_gain", o.lone_shift_gain, "", "the same of a run that has no repeat: fast motion lags, too",
+       "random benches"},
       {"longest_delay_s", o.longest_delay_s, "s", "a drive's delay is shorter", assumed},
       {"row_gain", o.row_gain, "",
        "two rows stand for each other if exchanging them divides both errors by so much, in "

@@ -15,7 +15,8 @@ struct DataFaultOptions {
   double sensor_lag_s = 0.04, shift_samples = 2.5, least_shift_s = 0.012, shift_rest = 0.3, longest_shift_s = 0.3;
   double law_factor = 3.0, command_difference = 0.02;
   // What the model says of a run.
-  double clear_gain = 2.0, overwhelming_gain = 6.0, usual_error = 2.0, usual_deviations = 3.0, largest_usual_error = 5.0;
+  double clear_gain = 2.0, overwhelming_gain = 6.0, usual_error = 2.0, usual_deviations = 3.0,
+         largest_usual_error = 5.0;
   double column_gain = 2.0;
   double shift_gain = 1.6, lone_shift_gain = 2.5, longest_delay_s = 0.1;
   double row_gain = 1.5, pair_gain = 1.25;

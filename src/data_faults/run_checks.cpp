@@ -56,12 +56,12 @@ void try_position(const Examined& e, std::size_t run, Column column, const std::
   fault.correction = unit.empty() ? fmt::format("turn the sign of {} in {}", name, file)
                                   : fmt::format("{} of {} is in {}: multiply it by {:.6g}", name, file, unit, factor);
   const Follows by = follows(e, e.runs()[run]);
-  fault.evidence = {fmt::format("readings move {:.3g} times as far as commands (correlation {:.2f})", by.slope, by.correlation),
-                    gain_text(e, before, after)};
+  fault.evidence = {
+      fmt::format("readings move {:.3g} times as far as commands (correlation {:.2f})", by.slope, by.correlation),
+      gain_text(e, before, after)};
   fault.fixes = {fix};
   fault.files = {file};
-  into.push_back({fault, before - after,
-                  before - after > std::log(e.options().clear_gain) && mends(e, before, after)});
+  into.push_back({fault, before - after, before - after > std::log(e.options().clear_gain) && mends(e, before, after)});
 }
 
 /// Signs and units of the positions of one run.
@@ -90,8 +90,7 @@ void try_feed_forward(const Examined& e, std::size_t run, std::vector<Explained>
                         .evidence = {gain_text(e, before, after)},
                         .fixes = {fix},
                         .files = {file}};
-  into.push_back(
-      {fault, before - after, before - after > std::log(e.options().clear_gain) && mends(e, before, after)});
+  into.push_back({fault, before - after, before - after > std::log(e.options().clear_gain) && mends(e, before, after)});
 }
 
 /// Lag of the readings behind the model [s], and ln of the error there.
@@ -151,8 +150,8 @@ void try_shift(const Examined& e, std::size_t run, const std::vector<Shift>& shi
   // Wrong gains or a wrong load make a run late or early, too: then another row explains it better than a shift.
   const bool repeated = same_condition(e.runs()[siblings(e, run).front()], e.runs()[run]);
   const double least = repeated ? e.options().shift_gain : e.options().lone_shift_gain;
-  const bool sure = before - after > std::log(least) && mends(e, before, after) &&
-                    after < lowest_log_error_of_rows(e, run);
+  const bool sure =
+      before - after > std::log(least) && mends(e, before, after) && after < lowest_log_error_of_rows(e, run);
   into.push_back({fault, before - after, sure});
 }
 

@@ -18,8 +18,8 @@ struct Explained {
 /// The sure explanation with the largest gain; empty if there is none.
 std::vector<DataFault> clearest(const std::vector<Explained>& explanations);
 
-/// True if a correction that takes ln of a run's error from `before` to `after` makes the run a usual one, or divides the
-/// error so often that nothing else can be meant.
+/// True if a correction that takes ln of a run's error from `before` to `after` makes the run a usual one, or divides
+/// the error so often that nothing else can be meant.
 bool mends(const Examined& examined, double before, double after);
 
 /// ln of the corrected run's error, by the model that fits all runs.

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 std::string text(const std::vector<DataFault>& faults) {
   std::string found;
-  for (const DataFault& fault : faults) found += fault.where + ": " + fault.correction + "; " + fault.evidence.back() + '\n';
+  for (const DataFault& fault : faults)
+    found += fault.where + ": " + fault.correction + "; " + fault.evidence.back() + '\n';
   return found;
 }
 
@@ -66,9 +67,8 @@ const std::vector<Effect>& effects() {
   return kEffects;
 }
 
-INSTANTIATE_TEST_SUITE_P(DataFaults, SoundData, testing::ValuesIn(effects()), [](const auto& effect) {
-  return std::string(effect.param.name);
-});
+INSTANTIATE_TEST_SUITE_P(DataFaults, SoundData, testing::ValuesIn(effects()),
+                         [](const auto& effect) { return std::string(effect.param.name); });
 
 TEST(SoundData, HaveNoFaultsWithFeedForwardAndSpeeds) {
   const test::RandomBench made = test::cascade_bench(31);

@@ -51,7 +51,8 @@ TEST(Correction, MovesAColumnAndCutsWhatIsUnknown) {
 
 TEST(Correction, GivesARowOtherGainsAndLoad) {
   BenchRun run = run_with_ramp();
-  correct(run, {.conditions = RowConditions{.trajectory = "steps", .repeat = 1, .kp = 20.0, .kd = 0.5, .load = {0.04, 3.0}}});
+  correct(run, {.conditions =
+                    RowConditions{.trajectory = "steps", .repeat = 1, .kp = 20.0, .kd = 0.5, .load = {0.04, 3.0}}});
   EXPECT_EQ(run.trajectory, "steps");
   EXPECT_DOUBLE_EQ(run.kp, 20.0);
   EXPECT_DOUBLE_EQ(run.load.gravity_Nm, 3.0);

@@ -63,12 +63,13 @@ TEST_P(PlantedFault, IsNamedWithItsPlaceAndItsCorrectionAndNothingElseIs) {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const char* what :
-       {"command in degrees", "readings in degrees", "command in degrees, one run", "command turned", "readings turned, one run",
-        "command turned, one run", "mass", "gain of some rows", "gain of all rows", "swapped rows",
-        "readings shifted, one run", "readings early, all runs"}) {
+       {"command in degrees", "readings in degrees", "command in degrees, one run", "command turned",
+        "readings turned, one run", "command turned, one run", "mass", "gain of some rows", "gain of all rows",
+        "swapped rows", "readings shifted, one run", "readings early, all runs"}) {
     all.push_back({what, 3, position_pd});
   }
-  for (const char* what : {"command in degrees", "readings turned, one run", "swapped rows", "readings shifted, one run"})
+  for (const char* what :
+       {"command in degrees", "readings turned, one run", "swapped rows", "readings shifted, one run"})
     all.push_back({what, 4, servo});
   for (const char* what : {"speed shifted", "speed in degrees", "readings turned"})
     all.push_back({what, 5, test::bench_with_speed});
@@ -80,14 +81,16 @@ std::vector<Case> cases() {
 INSTANTIATE_TEST_SUITE_P(DataFaults, PlantedFault, testing::ValuesIn(cases()), [](const auto& one) {
   std::string text = one.param.what + "_" + std::to_string(one.param.seed);
   std::erase(text, ',');
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
   return text;
 });
 
 TEST(PlantedFaults, OneDoesNotHideAnother) {
   test::RandomBench made = test::random_bench(8);
   bench::correct(made.runs[2], {.columns = {bench::Column::kPosition}, .factor = -1.0});
-  for (bench::BenchRun& run : made.runs) bench::correct(run, {.columns = {bench::Column::kPositionCommand}, .factor = 57.29578});
+  for (bench::BenchRun& run : made.runs)
+    bench::correct(run, {.columns = {bench::Column::kPositionCommand}, .factor = 57.29578});
   const std::vector<DataFault> found = find_data_faults(made.bench, made.runs, std::nullopt, {}, 1);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].kind, Kind::kUnit);
