@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "calib/fit_results.hpp"
+#include "data_faults/data_faults_report.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/next_excitation_files.hpp"
@@ -51,6 +52,7 @@ struct Arguments {
   std::string fit, score, joint;
   double step_s = 0.0;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
+  std::string data_faults = "leave-out";
   bool json = false;
 };
 
@@ -67,6 +69,12 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--fit", arguments.fit,
                  "rows of runs.csv to diagnose, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
   app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
+  app.add_option(
+         "--data-faults", arguments.data_faults,
+         "faulty data: leave-out (single faulty runs are left out, the rest stays as it is), correct (go on with the "
+         "corrections) or keep")
+      ->check(CLI::IsMember({"leave-out", "correct", "keep"}))
+      ->capture_default_str();
   app.add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
   app.add_option("--threads", arguments.threads, "at most")->check(apps::in_range(1, 256));
   app.add_option("--step", arguments.step_s, "of the simulation [s]; chosen if not given")
@@ -103,7 +111,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
 
 void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
   const std::string unit = calib::position_unit(bench, true);
-  std::cout << "verdict: " << name(found.verdict) << '\n';
+  std::cout << data_faults::faults_text(found.data) << "verdict: " << name(found.verdict) << '\n';
   if (const std::string odd = calib::odd_runs_text(found.noise_floor.odd_runs); !odd.empty()) std::cout << odd << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
     std::cout << fmt::format("  {}{}: error {:.4g} {} without it, {:.4g} {} with it\n", cause.effect,
@@ -163,6 +171,7 @@ int diagnose(Arguments arguments) {
   options.threads = arguments.threads;
   options.seed = arguments.seed;
   options.step_s = arguments.step_s;
+  options.data.handling = data_faults::handling_of(arguments.data_faults);
   if (!arguments.model.empty()) options.model = given_model(arguments);
   if (arguments.joint.empty()) arguments.joint = bench.joint_name();
   const auto begin = std::chrono::steady_clock::now();

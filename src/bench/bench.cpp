@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -149,6 +150,12 @@ BenchRun describe(const Bench& bench, std::size_t row) {
 
 }  // namespace
 
+double Bench::feed_forward_output(double torque_Nm, double supply) const {
+  if (torque_Nm == 0.0) return 0.0;
+  const bool constant_unknown = std::find(unknown.begin(), unknown.end(), "drive.torque_per_unit_Nm") != unknown.end();
+  return constant_unknown ? std::nan("") : torque_Nm / (known.drive.torque_per_unit_Nm * supply);
+}
+
 std::string Bench::joint_name() const {
   return joint.empty() ? std::filesystem::weakly_canonical(folder).filename().string() : joint;
 }
@@ -192,13 +199,17 @@ std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const work::Prog
   const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque};
   for (std::size_t row = 0; row < kept.size(); ++row) {
     if (!kept[row]) continue;
-    found.push_back(describe(*this, row));
-    found.back().recording = read_recording(folder / "runs" / found.back().file, format);
+    BenchRun run = describe(*this, row);
+    if (std::find(left_out.begin(), left_out.end(), run.file) != left_out.end()) continue;
+    run.recording = read_recording(folder / "runs" / run.file, format);
+    for (const Correction& correction : corrections) correct(run, correction);
+    found.push_back(std::move(run));
     if (!progress(static_cast<double>(row + 1) / static_cast<double>(kept.size()))) break;
   }
   if (found.empty()) {
-    throw std::invalid_argument(fmt::format("{}: no run matches '{}' among {}; expected at least one",
-                                            runs.file.string(), filter.text(), kept.size()));
+    throw std::invalid_argument(fmt::format("{}: no run matches '{}' among {}{}; expected at least one",
+                                            runs.file.string(), filter.text(), kept.size(),
+                                            left_out.empty() ? "" : fmt::format(", {} left out", left_out.size())));
   }
   return found;
 }

@@ -6,20 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "bench/correction.hpp"
 #include "bench/csv_table.hpp"
+#include "bench/joint_load.hpp"
 #include "bench/recording.hpp"
 #include "bench/row_filter.hpp"
 #include "model/actuator_parameters.hpp"
 #include "work/progress.hpp"
 
 namespace pmg::bench {
-
-/// The load of the joint: everything that it moves except its own rotor. On a linear rig in kg and N.
-struct JointLoad {
-  double inertia_kg_m2 = 0.0;  ///< about the axis
-  double gravity_Nm = 0.0;     ///< gravity's torque on the joint is -gravity_Nm sin(q - hangs_at_rad)
-  double hangs_at_rad = 0.0;   ///< angle at which the load hangs at rest; 0 except for a robot's joints
-};
 
 enum class Rig { kPendulum, kHorizontal, kLinear, kRobot };
 enum class DriveLaw { kServoVoltage, kPositionPd, kCascadePd, kTorque };
@@ -55,10 +50,15 @@ struct Bench {
   double supply_V = 1.0;                    ///< supply voltage if no bus voltage is recorded
   std::vector<BenchLoad> loads;
   CsvTable runs;
+  std::vector<Correction> corrections;  ///< of what the files say; none of them until somebody asks for it
+  std::vector<std::string> left_out;    ///< files of runs that are not read
 
-  /// (filter) => (its rows with their recordings, checked). After an interruption: the rows read so far. Throws
-  /// files::ConfigError; std::invalid_argument if the filter keeps no row.
+  /// (filter) => (its rows with their recordings, checked and corrected, without those left out). After an
+  /// interruption: the rows read so far. Throws files::ConfigError; std::invalid_argument if the filter keeps no row.
   std::vector<BenchRun> read_runs(const RowFilter& filter, const work::Progress& progress = {}) const;
+  /// (feed-forward torque, supply voltage or 1) => (what the drive adds to its output for it [unit of output]):
+  /// torque / (torque_per_unit supply). NaN if bench.yaml doesn't know the drive's torque constant.
+  double feed_forward_output(double torque_Nm, double supply) const;
   /// Default name of the joint in motor.yaml: the joint of bench.yaml, or the folder's name.
   std::string joint_name() const;
 };

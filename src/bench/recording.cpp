@@ -110,6 +110,7 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   recording.q_cmd_rad = column("q_cmd");
   recording.q_rad = column("q");
   recording.dq_cmd_rad_s = if_there("dq_cmd" + rate);
+  recording.dq_rad_s = if_there("dq" + rate);
   recording.tau_ff_Nm = if_there("tau_ff" + force);
   recording.torque_Nm = if_there("torque" + force);
   recording.bus_V = if_there("bus_V");

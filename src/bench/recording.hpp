@@ -10,7 +10,7 @@ namespace pmg::bench {
 struct Recording {
   std::filesystem::path file;
   std::vector<double> t_s, q_cmd_rad, q_rad;  ///< never empty
-  std::vector<double> dq_cmd_rad_s, tau_ff_Nm, torque_Nm, bus_V, drive_V, temp_C;
+  std::vector<double> dq_cmd_rad_s, dq_rad_s, tau_ff_Nm, torque_Nm, bus_V, drive_V, temp_C;
   std::vector<bool> enabled;
   /// One flag per sample; false for a dropout of the sensor: a single reading far from both of its neighbours.
   std::vector<bool> valid;

@@ -19,8 +19,8 @@ sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& ru
   input.kp = run.kp;
   input.kd = run.kd;
   if (!r.dq_cmd_rad_s.empty()) input.dq_rad_s = r.dq_cmd_rad_s[sample];
-  if (!r.tau_ff_Nm.empty()) input.feed_forward = r.tau_ff_Nm[sample];
-  if (bench.law == bench::DriveLaw::kTorque) input.feed_forward = r.torque_Nm[sample];
+  if (!r.tau_ff_Nm.empty()) input.feed_forward_Nm = r.tau_ff_Nm[sample];
+  if (bench.law == bench::DriveLaw::kTorque) input.feed_forward_Nm = r.torque_Nm[sample];
   if (bench.law == bench::DriveLaw::kServoVoltage) input.supply = r.bus_V.empty() ? bench.supply_V : r.bus_V[sample];
   if (!r.enabled.empty()) input.enabled = r.enabled[sample];
   if (!r.temp_C.empty())
@@ -94,10 +94,15 @@ void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
   double q_rad = start_rad(model), dq_rad_s = 0.0;
   const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
   const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
-  actuator.reset_at_rest(input(0), q_rad, gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad));
+  const auto told = [&](std::size_t step) {
+    sim::ActuatorInput now = input(step);
+    now.feed_forward_Nm *= model.feed_forward_scale;
+    return now;
+  };
+  actuator.reset_at_rest(told(0), q_rad, gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad));
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
-    const sim::ActuatorTorque drive = actuator.step(input(k), q_rad, dq_rad_s);
+    const sim::ActuatorTorque drive = actuator.step(told(k), q_rad, dq_rad_s);
     const double torque_Nm =
         drive.torque_Nm - (gravity_Nm != 0.0 ? gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad) : 0.0);
     dq_rad_s += step_s_ * torque_Nm / (inertia_kg_m2 - step_s_ * drive.slope_Nm_s_per_rad);

@@ -14,6 +14,7 @@ namespace pmg::calib {
 struct JointModel {
   model::ActuatorParameters actuator;
   double inertia_scale = 1.0, gravity_scale = 1.0;  ///< of the bench's loads
+  double feed_forward_scale = 1.0;                  ///< of the recorded feed-forward
 };
 
 /// Errors of a rollout, summed over the recording's valid samples.

@@ -210,7 +210,7 @@ class JointDiagnosisRun {
                                                      : evidence::Verdict::kFound;
   }
 
-  const bench::Bench& bench_;
+  const bench::Bench bench_;
   const DiagnoseOptions& options_;
   const JointDiagnosisOptions& by_;
   const work::Progress& progress_;
@@ -226,7 +226,11 @@ class JointDiagnosisRun {
 
 Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs,
                    const work::Progress& progress) {
-  return JointDiagnosisRun(bench, options, progress).run(runs);
+  const data_faults::Examination data =
+      data_faults::examine(bench, {options.fit, options.score}, options.model, options.data, options.threads, progress);
+  Diagnosis found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, progress).run(runs);
+  found.data = data;
+  return found;
 }
 
 }  // namespace pmg::diagnosis

@@ -19,6 +19,7 @@ struct DiagnoseOptions {
   unsigned seed = 1;    ///< of the bootstrap
   double step_s = 0.0;  ///< of the simulation; 0 chooses
   JointDiagnosisOptions decide_by{};
+  data_faults::ExamineOptions data{};  ///< search for data faults, and what happens to faulty data
 };
 
 /// The runs and the checks behind a diagnosis, for the report's pictures.

@@ -8,6 +8,7 @@
 
 #include "calib/joint_floor.hpp"
 #include "calib/step_choice.hpp"
+#include "data_faults/examine.hpp"
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 
@@ -55,6 +56,7 @@ struct NextExcitation {
 };
 
 struct Diagnosis {
+  data_faults::Examination data;  ///< faults of the data, and what the verdict was found with
   evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;

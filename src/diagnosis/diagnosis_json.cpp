@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "data_faults/data_faults_report.hpp"
+
 namespace pmg::diagnosis {
 
 namespace {
@@ -83,6 +85,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   for (const Rejected& rejected : diagnosis.rejected) {
     json["rejected"].push_back({{"effect", rejected.effect}, {"why", rejected.why}});
   }
+  data_faults::add_to(json, diagnosis.data);
   json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
   json["noise_floor_from"] = diagnosis.noise_floor.how;
   json["noise_floor_rms"] = number(diagnosis.noise_floor.rms_rad);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "calib/fit_results.hpp"
+#include "data_faults/data_faults_report.hpp"
 #include "diagnosis/residual_pictures.hpp"
 #include "effects/catalogue.hpp"
 #include "pages/text.hpp"
@@ -18,14 +19,6 @@ namespace {
 
 const std::vector<calib::SingleJoint>& shown_runs(const Diagnosis& diagnosis, const DiagnosedRuns& runs) {
   return diagnosis.held_out && !runs.scored.empty() ? runs.scored : runs.fitted;
-}
-
-/// Title of an effect; an unknown name, from another version of the catalogue, is shown as it is.
-std::string title(const std::string& name) {
-  for (const effects::Effect& effect : effects::catalogue()) {
-    if (effect.name == name) return effect.title;
-  }
-  return name;
 }
 
 pages::Tone tone(evidence::Verdict verdict) {
@@ -150,15 +143,15 @@ void show_causes(pages::Page& page, const bench::Bench& bench, const Diagnosis& 
                                 "error with it [" + unit + "]", "could also be"},
                      .rows = {}};
   for (const Cause& cause : diagnosis.causes) {
-    table.rows.push_back({title(cause.effect), parameter_lines(cause), thousandths(cause.held_out_error_before),
-                          thousandths(cause.held_out_error_after),
+    table.rows.push_back({effects::title(cause.effect), parameter_lines(cause),
+                          thousandths(cause.held_out_error_before), thousandths(cause.held_out_error_after),
                           fmt::format("{}", fmt::join(cause.or_instead, ", "))});
   }
   if (!table.rows.empty()) page.table(table);
   show_gain(page, bench, diagnosis);
   for (const Cause& cause : diagnosis.causes) {
     if (cause.evidence.empty()) continue;
-    page.paragraph(fmt::format("{}: {}", title(cause.effect), fmt::join(cause.evidence, "; ")));
+    page.paragraph(fmt::format("{}: {}", effects::title(cause.effect), fmt::join(cause.evidence, "; ")));
   }
 }
 
@@ -174,8 +167,8 @@ void show_next(pages::Page& page, const NextExcitation& next) {
   if (next.pairs.empty()) return;
   pages::Table table{.header = {"two effects", "expected to part by [deviations]"}, .rows = {}};
   for (const ExpectedPair& pair : next.pairs) {
-    table.rows.push_back(
-        {fmt::format("{}, {}", title(pair.first), title(pair.second)), fmt::format("{:.1f}", pair.deviations)});
+    table.rows.push_back({fmt::format("{}, {}", effects::title(pair.first), effects::title(pair.second)),
+                          fmt::format("{:.1f}", pair.deviations)});
   }
   page.table(table);
 }
@@ -184,7 +177,7 @@ void show_rejected(pages::Page& page, const std::vector<Rejected>& rejected) {
   if (rejected.empty()) return;
   page.heading("What it is not");
   pages::Table table{.header = {"effect", "why not"}, .rows = {}};
-  for (const Rejected& one : rejected) table.rows.push_back({title(one.effect), one.why});
+  for (const Rejected& one : rejected) table.rows.push_back({effects::title(one.effect), one.why});
   page.table(table);
 }
 
@@ -196,7 +189,7 @@ void show_checks(pages::Page& page, const std::vector<evidence::Signature>& chec
   for (const evidence::Signature& check : checks) {
     const evidence::Interval& v = check.value;
     table.rows.push_back(
-        {title(check.effect),
+        {effects::title(check.effect),
          check.agreement == evidence::Agreement::kAgrees      ? "show it"
          : check.agreement == evidence::Agreement::kDisagrees ? "would show it, and don't"
                                                               : "can't tell",
@@ -212,9 +205,9 @@ void show_checks(pages::Page& page, const std::vector<evidence::Signature>& chec
 std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs) {
   std::vector<std::string> causes;
   for (const Cause& cause : diagnosis.causes) {
-    std::string text = title(cause.effect);
-    for (const std::string& other : cause.same_here) text += " (on this rig the same as " + title(other) + ")";
-    for (const std::string& other : cause.or_instead) text += " or " + title(other);
+    std::string text = effects::title(cause.effect);
+    for (const std::string& other : cause.same_here) text += " (on this rig the same as " + effects::title(other) + ")";
+    for (const std::string& other : cause.or_instead) text += " or " + effects::title(other);
     causes.push_back(text);
   }
   std::string text;
@@ -248,6 +241,7 @@ pages::Page diagnosis_report(const bench::Bench& bench, const Diagnosis& diagnos
                              unsigned threads) {
   const std::vector<calib::SingleJoint>& shown = shown_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: what the simulation gets wrong", bench.folder.filename().string()));
+  data_faults::show_faults(page, diagnosis.data);
   page.verdict(tone(diagnosis.verdict), verdict_text(bench, diagnosis, runs));
   if (const std::string odd = calib::odd_runs_text(diagnosis.noise_floor.odd_runs); !odd.empty())
     page.paragraph(odd + ".");

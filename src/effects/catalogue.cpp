@@ -135,6 +135,13 @@ const Effect& effect(std::string_view name) {
   throw std::invalid_argument(fmt::format("no effect is called '{}'; expected one of {}", name, names));
 }
 
+std::string title(const std::string& name) {
+  for (const Effect& one : effects()) {
+    if (one.name == name) return one.title;
+  }
+  return name;
+}
+
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }

@@ -26,6 +26,9 @@ std::span<const Effect> catalogue();
 /// The effect of that name. Throws std::invalid_argument that lists the valid names.
 const Effect& effect(std::string_view name);
 
+/// Title of an effect; an unknown name, from another version of the catalogue, is its own title.
+std::string title(const std::string& name);
+
 /// True if the name of an effect or a parameter is in the list.
 bool contains(const std::vector<std::string>& names, const std::string& name);
 

@@ -61,9 +61,9 @@ void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion
       const double dq_cmd_rad_s = r.dq_cmd_rad_s.empty() ? 0.0 : r.dq_cmd_rad_s[k];
       wish += p.kd_scale * run.kd * (dq_cmd_rad_s - motion.dq_rad_s[k]);
     }
-    if (!r.tau_ff_Nm.empty()) wish += r.tau_ff_Nm[k];
     const bool servo = bench.law == bench::DriveLaw::kServoVoltage;
     const double supply = !servo ? 1.0 : r.bus_V.empty() ? bench.supply_V : r.bus_V[k];
+    if (!r.tau_ff_Nm.empty()) wish += bench.feed_forward_output(r.tau_ff_Nm[k], supply);
     const double given = std::isnan(wish) ? wish : std::clamp(wish, -p.limit, p.limit);
     motion.drive.push_back(enabled ? given * supply : 0.0);
     motion.at_limit.push_back(enabled && std::abs(given) >= 0.999 * p.limit);

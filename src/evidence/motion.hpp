@@ -12,8 +12,9 @@ namespace pmg::evidence {
 /// One value per sample of the recording.
 struct Motion {
   std::vector<double> dq_rad_s, ddq_rad_s2;  ///< derivatives of a local parabola; NaN at the ends
-  /// Output of the drive's law for the recorded error, clamp(kp e + kd de/dt + tau_ff) * supply (Nm for a position PD,
-  /// volts for a servo), or the recorded torque. 0 while switched off; NaN where the law needs dq and it is missing.
+  /// Output of the drive's law for the recorded error, clamp(kp e + kd de/dt + output for tau_ff) * supply (Nm
+  /// for a position PD, volts for a servo), or the recorded torque. 0 while switched off; NaN where the law needs dq or
+  /// the torque constant and lacks it.
   std::vector<double> drive;
   std::vector<bool> at_limit;        ///< the drive's output is saturated
   std::vector<double> gravity_Nm;    ///< gravity torque of the load, G sin(q - hangs_at)

@@ -79,6 +79,9 @@ void TorqueBalance::read(const bench::BenchRun& run) {
   const double still = std::max(still_rad_s(r, sample_s_, options_), options_.still_share * fastest_rad_s);
   std::vector<BalancePoint> points(r.t_s.size() - 1);
   std::vector<bool> usable(points.size());
+  const bool convertible = std::all_of(r.tau_ff_Nm.begin(), r.tau_ff_Nm.end(), [&](double tau_Nm) {
+    return std::isfinite(bench_->feed_forward_output(tau_Nm, 1.0));
+  });
   for (std::size_t k = 0; k < points.size(); ++k) {
     BalancePoint& p = points[k];
     p.q_rad = 0.5 * (r.q_rad[k] + r.q_rad[k + 1]);
@@ -91,7 +94,7 @@ void TorqueBalance::read(const bench::BenchRun& run) {
     const bool on = r.enabled.empty() || (r.enabled[k] && r.enabled[k + 1]);
     const bool off = !r.enabled.empty() && !r.enabled[k] && !r.enabled[k + 1];
     usable[k] = (when_ == While::kOn ? on : off) && r.valid[k] && r.valid[k + 1] && std::isfinite(p.load_Nm) &&
-                std::isfinite(p.dq_rad_s);
+                std::isfinite(p.dq_rad_s) && convertible;
   }
   runs_.push_back(std::move(points));
   usable_.push_back(std::move(usable));
@@ -124,7 +127,7 @@ void TorqueBalance::shape(const CommandShape& shape) {
           const double command_rad_s = r.dq_cmd_rad_s.empty() ? 0.0 : delayed(r.dq_cmd_rad_s, k);
           wish += p.kd_scale * run.kd * (command_rad_s - (r.q_rad[k + 1] - r.q_rad[k]) / sample_s_);
         }
-        if (!r.tau_ff_Nm.empty()) wish += delayed(r.tau_ff_Nm, k);
+        if (!r.tau_ff_Nm.empty()) wish += bench_->feed_forward_output(delayed(r.tau_ff_Nm, k), supply);
         point.drive = std::clamp(wish, -p.limit, p.limit) * supply;
       }
       if (point.drive * last_drive < 0.0) last_turn_s = r.t_s[k];

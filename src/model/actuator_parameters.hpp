@@ -20,7 +20,8 @@ struct ActuatorParameters {
     bool operator==(const Command&) const = default;
   } command;
 
-  /// output = clip(kp e + kd de + feed-forward, +-limit); torque = torque_per_unit (output supply - back_emf dq).
+  /// output = clip(kp e + kd de + feed-forward torque / (torque_per_unit supply), +-limit);
+  /// torque = torque_per_unit (output supply - back_emf dq).
   struct Drive {
     double kp_scale = 1.0, kd_scale = 1.0;  ///< real gain over nominal gain
     double limit = std::numeric_limits<double>::infinity();

@@ -66,7 +66,7 @@ void ActuatorModel::reset(double q_rad) noexcept {
 void ActuatorModel::reset_at_rest(const ActuatorInput& input, double q_rad, double load_Nm) noexcept {
   reset(q_rad);
   const ActuatorModel stepped = *this;
-  past_.fill({input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward});
+  past_.fill({input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward_Nm});
   told_before_ = true;
   command_rad_ = input.q_rad;
   if (thermal_) warm(input.temperature_C);
@@ -137,7 +137,7 @@ ActuatorModel::Told ActuatorModel::delayed(const Told& now) noexcept {
   const Told& b = past_[static_cast<std::size_t>(later == 0 ? kSize - 1 : later - 1)];
   const auto between = [share](double x, double y) { return x + share * (y - x); };
   return {between(a.q_rad, b.q_rad), between(a.dq_rad_s, b.dq_rad_s), between(a.kp, b.kp), between(a.kd, b.kd),
-          between(a.feed_forward, b.feed_forward)};
+          between(a.feed_forward_Nm, b.feed_forward_Nm)};
 }
 
 /// command + clamp(q_command - command, -rate_limit h, rate_limit h).
@@ -163,7 +163,7 @@ double ActuatorModel::sensed_velocity(double dq_rad_s) noexcept {
 
 ActuatorModel::Line ActuatorModel::drive(const ActuatorInput& input, double q_rad, double dq_rad_s) noexcept {
   const model::ActuatorParameters::Drive& p = parameters_.drive;
-  Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward};
+  Told told{input.q_rad, input.dq_rad_s, input.kp, input.kd, input.feed_forward_Nm};
   if (delaying_) told = delayed(told);
   command_rad_ = rate_limited_ ? limited(told.q_rad) : told.q_rad;
   const double q_sensed_rad = sensed(q_rad);
@@ -194,7 +194,10 @@ ActuatorModel::Line ActuatorModel::powered(const Told& told, double supply, doub
     held_for_s_ = std::min(held_for_s_ - parameters_.command.hold_s, step_s_);
     double error_rad = command_rad_ - q_sensed_rad;
     if (std::abs(error_rad) < p.dead_band_rad) error_rad = 0.0;
-    const double wish = p.kp_scale * told.kp * error_rad + kd * (told.dq_rad_s - dq_sensed_rad_s) + told.feed_forward;
+    // Newton metres are newton metres under every law: the drive divides them by its torque constant (that of the
+    // reference temperature, because it does not know its winding's) and by its supply.
+    const double forward = told.feed_forward_Nm / (p.torque_per_unit_Nm * supply);
+    const double wish = p.kp_scale * told.kp * error_rad + kd * (told.dq_rad_s - dq_sensed_rad_s) + forward;
     held_output_ = std::clamp(wish, -p.limit, p.limit);
     follows_speed = follows_speed && held_output_ == wish && parameters_.command.hold_s <= step_s_;
   } else {

@@ -10,9 +10,9 @@ namespace pmg::sim {
 /// The drive's command and supply. Units as in ActuatorParameters.
 struct ActuatorInput {
   double q_rad = 0.0, dq_rad_s = 0.0;
-  double kp = 0.0, kd = 0.0;  ///< [unit of output per rad, per rad/s]
-  double feed_forward = 0.0;  ///< [unit of output]
-  double supply = 1.0;        ///< bus voltage of a voltage servo
+  double kp = 0.0, kd = 0.0;     ///< [unit of output per rad, per rad/s]
+  double feed_forward_Nm = 0.0;  ///< torque under every drive law; the drive converts it to its own output
+  double supply = 1.0;           ///< bus voltage of a voltage servo
   bool enabled = true;
   double temperature_C = model::kReferenceTemperature_C;  ///< of gear and winding
 };
@@ -67,7 +67,7 @@ class ActuatorModel {
   };
   /// The drive's command after its delay.
   struct Told {
-    double q_rad, dq_rad_s, kp, kd, feed_forward;
+    double q_rad, dq_rad_s, kp, kd, feed_forward_Nm;
   };
   Told delayed(const Told& now) noexcept;
   double limited(double q_command_rad) noexcept;

@@ -192,7 +192,7 @@ void World::set_drives(const model::JointCommand& command) noexcept {
                               .dq_rad_s = command.dq[j],
                               .kp = command.kp[j],
                               .kd = command.kd[j],
-                              .feed_forward = command.tau_ff[j],
+                              .feed_forward_Nm = command.tau_ff[j],
                               .temperature_C = kDriveTemperature_degC};
     apply(model_, data_, j, w.motors[index].step(input, q_rad, dq_rad_s), dq_rad_s);
   }

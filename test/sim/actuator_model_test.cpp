@@ -45,9 +45,26 @@ model::ActuatorParameters with(const std::function<void(model::ActuatorParameter
 TEST(ActuatorModel, IsAPdWhenNeutral) {
   ActuatorModel actuator({}, kStep_s);
   const ActuatorTorque torque =
-      actuator.step({.q_rad = 0.5, .dq_rad_s = 0.2, .kp = 30.0, .kd = 2.0, .feed_forward = 0.7}, 0.1, -0.3);
+      actuator.step({.q_rad = 0.5, .dq_rad_s = 0.2, .kp = 30.0, .kd = 2.0, .feed_forward_Nm = 0.7}, 0.1, -0.3);
   EXPECT_DOUBLE_EQ(torque.torque_Nm, 30.0 * 0.4 + 2.0 * 0.5 + 0.7);
   EXPECT_DOUBLE_EQ(torque.slope_Nm_s_per_rad, -2.0);
+}
+
+TEST(ActuatorModel, NewtonMetresAreNewtonMetresUnderEveryDriveLaw) {
+  const model::ActuatorParameters::Drive position_pd{.limit = 20.0}, servo{.limit = 1.0, .torque_per_unit_Nm = 0.3},
+      cascade{.limit = 10.0, .torque_per_unit_Nm = 35.0};
+  const auto torque_Nm = [](const model::ActuatorParameters::Drive& drive, double supply, double wish_Nm) {
+    const auto parameters = with([&](auto& p) { p.drive = drive; });
+    const ActuatorInput input{.kp = 5.0, .feed_forward_Nm = wish_Nm, .supply = supply};
+    return ActuatorModel(parameters, kStep_s).step(input, 0.0, 0.0).torque_Nm;
+  };
+  for (const double wish_Nm : {-2.5, 0.7, 2.6}) {
+    EXPECT_NEAR(torque_Nm(position_pd, 1.0, wish_Nm), wish_Nm, 1e-12);
+    EXPECT_NEAR(torque_Nm(servo, 12.0, wish_Nm), wish_Nm, 1e-12);
+    EXPECT_NEAR(torque_Nm(servo, 9.0, wish_Nm), wish_Nm, 1e-12) << "the drive divides by its bus";
+    EXPECT_NEAR(torque_Nm(cascade, 1.0, wish_Nm), wish_Nm, 1e-12);
+  }
+  EXPECT_NEAR(torque_Nm(servo, 12.0, 100.0), 0.3 * 12.0, 1e-12) << "full duty is all there is";
 }
 
 TEST(ActuatorModel, HoldsAtRestAgainstLessThanItsDryFriction) {
@@ -108,7 +125,7 @@ TEST(ActuatorModel, LimitsTheRateOfCommands) {
 TEST(ActuatorModel, GivesNoMoreThanItsTorqueSpeedLine) {
   const auto parameters = with([](auto& p) { p.drive.stall_torque_Nm = 10.0, p.drive.no_load_rad_s = 8.0; });
   const auto torque_Nm = [&](double wish_Nm, double dq_rad_s) {
-    return ActuatorModel(parameters, kStep_s).step({.feed_forward = wish_Nm}, 0.0, dq_rad_s).torque_Nm;
+    return ActuatorModel(parameters, kStep_s).step({.feed_forward_Nm = wish_Nm}, 0.0, dq_rad_s).torque_Nm;
   };
   EXPECT_DOUBLE_EQ(torque_Nm(50.0, 0.0), 10.0);
   EXPECT_DOUBLE_EQ(torque_Nm(50.0, 4.0), 5.0);
@@ -126,7 +143,7 @@ TEST(ActuatorModel, LosesOfItsBusWhatTheBridgeTakesFromIt) {
   for (const double duty : {-1.0, 0.5, 0.05}) {
     for (const double dq_rad_s : {0.0, 3.0}) {
       const double torque_Nm =
-          ActuatorModel(parameters, kStep_s).step({.feed_forward = duty, .supply = 12.0}, 0.0, dq_rad_s).torque_Nm;
+          ActuatorModel(parameters, kStep_s).step({.q_rad = duty, .kp = 1.0, .supply = 12.0}, 0.0, dq_rad_s).torque_Nm;
       const double bus_V = 12.0 * (1.0 - sag_per_Nm * duty * torque_Nm);
       EXPECT_NEAR(torque_Nm, 0.3 * (duty * bus_V - back_emf_V_s_per_rad * dq_rad_s), 1e-12 * full_Nm) << duty;
     }
@@ -205,7 +222,7 @@ TEST(ActuatorModel, RubsLessAndPullsLessWhenWarm) {
   });
   const auto torque_Nm = [&](double temperature_C, double wish_Nm, double dq_rad_s) {
     ActuatorModel actuator(parameters, kStep_s);
-    return actuator.step({.feed_forward = wish_Nm, .temperature_C = temperature_C}, 0.0, dq_rad_s).torque_Nm;
+    return actuator.step({.feed_forward_Nm = wish_Nm, .temperature_C = temperature_C}, 0.0, dq_rad_s).torque_Nm;
   };
   EXPECT_DOUBLE_EQ(torque_Nm(25.0, 0.0, 1.0), -2.0);
   EXPECT_NEAR(torque_Nm(45.0, 0.0, 1.0), -2.0 * std::exp(-0.4), 1e-12);
@@ -220,7 +237,8 @@ TEST(ActuatorModel, WarmsByTheSquareOfItsTorqueAndCools) {
                          kStep_s);
   const auto friction_Nm = [&](double wish_Nm, double for_s) {
     ActuatorTorque torque;
-    for (int k = 0; k < std::lround(for_s / kStep_s); ++k) torque = actuator.step({.feed_forward = wish_Nm}, 0.0, 1.0);
+    for (int k = 0; k < std::lround(for_s / kStep_s); ++k)
+      torque = actuator.step({.feed_forward_Nm = wish_Nm}, 0.0, 1.0);
     return wish_Nm - torque.torque_Nm;
   };
   // 3 Nm with 5 s of cooling settle at 3^2 * 5 = 45 Nm^2 s. Tolerance: one step, and e^-8 of the way is left.

@@ -112,7 +112,7 @@ Step step_at(int k) {
                 .dq_rad_s = 0.2,
                 .kp = 60.0,
                 .kd = 2.0,
-                .feed_forward = 0.7 * std::cos(5.0 * t),
+                .feed_forward_Nm = 0.7 * std::cos(5.0 * t),
                 .supply = 1.0 - 0.1 * std::sin(7.0 * t),
                 .enabled = k < 70 || k >= 80,
                 .temperature_C = 25.0 + 15.0 * std::sin(4.0 * t)};
@@ -127,7 +127,7 @@ ordered_json inputs() {
                      {"dq_des_rad_s", input.dq_rad_s},
                      {"kp", input.kp},
                      {"kd", input.kd},
-                     {"feed_forward", input.feed_forward},
+                     {"feed_forward_Nm", input.feed_forward_Nm},
                      {"supply", input.supply},
                      {"enabled", input.enabled},
                      {"temperature_C", input.temperature_C},

@@ -148,7 +148,7 @@ class ActuatorModel:
         return torch.maximum(torch.minimum(self.sensor_at, q + half), q - half)
 
     def step(
-        self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward=0.0, supply=1.0, enabled=True, temperature_C=REFERENCE_TEMPERATURE_C
+        self, q_des, kp, kd, q, dq, dq_des=0.0, feed_forward_Nm=0.0, supply=1.0, enabled=True, temperature_C=REFERENCE_TEMPERATURE_C
     ) -> tuple[torch.Tensor, torch.Tensor]:
         """Torque [Nm] and its slope in the joint's speed [Nm s/rad] during the step that begins at (q, dq)."""
         p, h = self.p, self.step_s
@@ -159,7 +159,7 @@ class ActuatorModel:
         self.load.copy_(torch.where(self.elastic, self.load, carried))
         friction_factor, torque_factor = self._warm(temperature_C)
         unit = p["drive.torque_per_unit_Nm"] * torque_factor
-        torque, slope = self._drive(q_des, kp, kd, q, motor_speed, dq_des, feed_forward, supply, enabled, unit)
+        torque, slope = self._drive(q_des, kp, kd, q, motor_speed, dq_des, feed_forward_Nm, supply, enabled, unit)
         self.driven.copy_(torque)
         dry, dry_slope = self._dry_friction(motor_speed, friction_factor)
         viscous = p["friction.viscous_Nm_s_per_rad"] * friction_factor
@@ -204,15 +204,17 @@ class ActuatorModel:
         self.lagged_speed.add_(self.step_s / (self.p["sensor.velocity_lag_s"] + self.step_s) * (dq - self.lagged_speed))
         return torch.where(self.velocity_lagging, self.lagged_speed, dq)
 
-    def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward, supply, enabled, unit) -> tuple[torch.Tensor, torch.Tensor]:
+    def _drive(self, q_des, kp, kd, q, dq, dq_des, feed_forward_Nm, supply, enabled, unit) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
-        q_des, dq_des, kp, kd, feed_forward = self._told(q_des, dq_des, kp, kd, feed_forward)
+        q_des, dq_des, kp, kd, feed_forward_Nm = self._told(q_des, dq_des, kp, kd, feed_forward_Nm)
         self.command.copy_(self._limited(q_des))
         sensed = self._sensed(q)
         dq_sensed = self._sensed_speed(torch.where(self.lagging, (sensed - self.sensed_before) / self.step_s, dq))
         self.sensed_before.copy_(sensed)
         if enabled:
-            wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + feed_forward
+            # Newton metres under every law: the drive divides by its torque constant at the reference temperature and by its supply.
+            forward = feed_forward_Nm / (p["drive.torque_per_unit_Nm"] * supply)
+            wish = p["drive.kp_scale"] * kp * self._error(sensed) + p["drive.kd_scale"] * kd * (dq_des - dq_sensed) + forward
             return self._powered(wish, kd, supply, dq, unit)
         brake = (p["drive.brake_when_disabled"] * unit * p["drive.back_emf_s_per_rad"]).expand_as(dq)
         return -brake * dq, -brake

@@ -26,7 +26,7 @@ def run(model: ActuatorModel, dtype) -> tuple[torch.Tensor, torch.Tensor]:
             everywhere(s["q_rad"]),
             everywhere(s["dq_rad_s"]),
             s["dq_des_rad_s"],
-            s["feed_forward"],
+            s["feed_forward_Nm"],
             s["supply"],
             s["enabled"],
             s["temperature_C"],

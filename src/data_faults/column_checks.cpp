@@ -1,0 +1,224 @@
+#include "data_faults/column_checks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "evidence/motion.hpp"
+#include "fitting/statistics.hpp"
+
+namespace pmg::data_faults {
+
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// A column and what it should be by the others.
+struct Pair {
+  bench::Column column;
+  std::string expected;  ///< in words
+  std::vector<double> (*of)(const bench::Bench&, const bench::BenchRun&);
+  std::vector<WrongUnit> units;
+  double may_lag_s;       ///< a reading may be filtered
+  double strange_factor;  ///< a factor beyond it is a fault though no unit is known for it
+};
+
+std::vector<double> derivative_of_readings(const bench::Bench& bench, const bench::BenchRun& run) {
+  return evidence::motion(bench, run).dq_rad_s;
+}
+
+/// Central differences; unknown beside a jump.
+std::vector<double> derivative_of_commands(const bench::Bench&, const bench::BenchRun& run) {
+  const bench::Recording& r = run.recording;
+  std::vector<double> found(r.t_s.size(), kNothing);
+  for (std::size_t k = 1; k + 1 < r.t_s.size(); ++k) {
+    found[k] = (r.q_cmd_rad[k + 1] - r.q_cmd_rad[k - 1]) / (r.t_s[k + 1] - r.t_s[k - 1]);
+  }
+  for (const std::size_t step : evidence::command_steps(r)) {
+    for (std::size_t k = step < 2 ? 0 : step - 2; k < std::min(step + 3, found.size()); ++k) found[k] = kNothing;
+  }
+  return found;
+}
+
+/// Output of the drive's law for the recorded errors, in Nm or V; unknown at the limit.
+std::vector<double> output_of_law(const bench::Bench& bench, const bench::BenchRun& run) {
+  bench::BenchRun computed = run;
+  computed.recording.torque_Nm.clear();
+  evidence::Motion motion = evidence::motion(bench, computed);
+  for (std::size_t k = 0; k < motion.drive.size(); ++k) {
+    const bool on = run.recording.enabled.empty() || run.recording.enabled[k];
+    if (motion.at_limit[k] || !on || !run.recording.valid[k]) motion.drive[k] = kNothing;
+  }
+  return motion.drive;
+}
+
+struct Finding {
+  std::size_t run;
+  Alignment by;
+  WrongUnit unit;  ///< empty: none
+  bool turned = false, strange = false, shifted = false;
+  bool faulty() const { return turned || strange || shifted || !unit.name.empty(); }
+  bool same_as(const Finding& other, double sample_s) const {
+    const bool factor = turned == other.turned && strange == other.strange && unit.name == other.unit.name;
+    const bool time = shifted == other.shifted && (!shifted || std::abs(by.lag_s - other.by.lag_s) <=
+                                                                   std::max(2.5 * sample_s, 0.2 * std::abs(by.lag_s)));
+    return factor && time;
+  }
+};
+
+Finding judged(std::size_t run, const Alignment& by, const Pair& pair, double sample_s, const DataFaultOptions& o) {
+  Finding found{.run = run, .by = by, .unit = {}};
+  if (!by.known || std::abs(by.correlation) < o.sure_correlation) return found;
+  found.turned = by.factor < 0.0;
+  found.unit = unit_of_factor(std::abs(by.factor), pair.units, o.unit_tolerance);
+  const double size = std::max(std::abs(by.factor), 1.0 / std::abs(by.factor));
+  found.strange = found.unit.name.empty() && size > pair.strange_factor;
+  const double least_s = std::max(o.shift_samples * sample_s, o.least_shift_s);
+  const double before = 1.0 - std::pow(by.correlation_unshifted, 2), after = 1.0 - std::pow(by.correlation, 2);
+  const bool late = by.lag_s > std::max(least_s, pair.may_lag_s), early = by.lag_s < -least_s;
+  found.shifted = (late || early) && after < o.shift_rest * before;
+  return found;
+}
+
+/// One fault of those runs that show the same.
+void describe(const Finding& one, const std::vector<double>& factors, const std::vector<double>& lags_s,
+              const Pair& pair, const std::string& column, const std::vector<std::string>& files,
+              std::vector<DataFault>& into) {
+  const double factor = fitting::median(factors), lag_s = fitting::median(lags_s);
+  const std::string where = place_of(column, files);
+  const std::string measured = fmt::format("{} is {:.4g} times {} (median of {} runs, correlation {:.3f})", column,
+                                           factor, pair.expected, factors.size(), std::abs(one.by.correlation));
+  if (one.turned || one.strange || !one.unit.name.empty()) {
+    const double by = (one.turned ? -1.0 : 1.0) / (one.strange             ? std::abs(factor)
+                                                   : one.unit.name.empty() ? 1.0
+                                                                           : one.unit.per_unit);
+    const bool sign_only = one.turned && one.unit.name.empty() && !one.strange;
+    DataFault fault{.kind = sign_only ? Kind::kSign : Kind::kUnit, .where = where, .correction = {}};
+    fault.correction = sign_only ? fmt::format("turn the sign of {}", column)
+                       : one.unit.name.empty()
+                           ? fmt::format("multiply {} by {:.4g}: its unit is another one", column, by)
+                           : fmt::format("{} is in {}: multiply it by {:.6g}", column, one.unit.name, by);
+    fault.evidence = {measured};
+    fault.files = files;
+    fault.fixes = {{.files = files, .columns = {pair.column}, .factor = by}};
+    into.push_back(fault);
+  }
+  if (one.shifted) {
+    DataFault fault{.kind = Kind::kTimeShift, .where = where, .correction = {}};
+    fault.correction = fmt::format("{} is {:.4g} s {}: move it by {:.4g} s", column, std::abs(lag_s),
+                                   lag_s > 0.0 ? "late" : "early", -lag_s);
+    fault.evidence = {fmt::format("{} correlates with {} by {:.3f} if it is moved by {:.4g} s, by {:.3f} as it is",
+                                  column, pair.expected, std::abs(one.by.correlation), -lag_s,
+                                  std::abs(one.by.correlation_unshifted))};
+    fault.files = files;
+    fault.fixes = {{.files = files, .columns = {pair.column}, .shift_s = lag_s}};
+    into.push_back(fault);
+  }
+}
+
+void check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, const Pair& pair,
+           const DataFaultOptions& o, std::vector<DataFault>& into) {
+  const double sample_s = 1.0 / bench.sample_rate_hz;
+  std::vector<Finding> findings;
+  std::size_t informative = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::vector<double>& column = bench::values(runs[i].recording, pair.column);
+    if (column.empty()) continue;
+    const Alignment by = align(pair.of(bench, runs[i]), column, sample_s, o.longest_shift_s, o.longest_shift_s);
+    if (by.known && std::abs(by.correlation) >= o.sure_correlation) ++informative;
+    const Finding one = judged(i, by, pair, sample_s, o);
+    if (one.faulty()) findings.push_back(one);
+  }
+  const std::string column = bench::column_name(pair.column, bench.rig == bench::Rig::kLinear);
+  while (!findings.empty()) {
+    const Finding first = findings.front();
+    std::vector<double> factors, lags_s;
+    std::vector<std::string> files;
+    std::erase_if(findings, [&](const Finding& one) {
+      if (!first.same_as(one, sample_s)) return false;
+      factors.push_back(one.by.factor);
+      lags_s.push_back(one.by.lag_s);
+      files.push_back(runs[one.run].file);
+      return true;
+    });
+    const bool all = static_cast<double>(files.size()) >= o.same_kind_share * static_cast<double>(informative);
+    describe(first, factors, lags_s, pair, column, all ? std::vector<std::string>{} : files, into);
+  }
+}
+
+}  // namespace
+
+std::vector<WrongUnit> position_units(bool linear) {
+  if (linear) return {{"millimetres", 1000.0}, {"centimetres", 100.0}, {"inches", 1.0 / 0.0254}};
+  return {{"degrees", 180.0 / std::numbers::pi}, {"turns", 0.5 / std::numbers::pi}, {"milliradians", 1000.0}};
+}
+
+WrongUnit unit_of_factor(double factor, const std::vector<WrongUnit>& units, double tolerance) {
+  for (const WrongUnit& unit : units) {
+    if (std::abs(std::log(factor / unit.per_unit)) < tolerance) return unit;
+  }
+  return {};
+}
+
+std::string place_of(const std::string& column, const std::vector<std::string>& files) {
+  constexpr std::size_t kNamed = 6;
+  if (files.empty()) return fmt::format("column {} of all runs", column);
+  const std::vector<std::string> first(files.begin(),
+                                       files.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, files.size())));
+  const std::string more = files.size() > kNamed ? fmt::format(" and {} more", files.size() - kNamed) : "";
+  return fmt::format("column {} of {}{}", column, fmt::join(first, ", "), more);
+}
+
+Alignment following(const bench::Bench& bench, const bench::BenchRun& run, double longest_s) {
+  const bench::Recording& r = run.recording;
+  std::vector<double> reading = r.q_rad;
+  for (std::size_t k = 0; k < reading.size(); ++k) {
+    if (!r.valid[k] || (!r.enabled.empty() && !r.enabled[k])) reading[k] = kNothing;
+  }
+  return align(r.q_cmd_rad, reading, 1.0 / bench.sample_rate_hz, longest_s, longest_s);
+}
+
+Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& run, double longest_s) {
+  if (run.recording.dq_rad_s.empty()) return {};
+  return align(derivative_of_readings(bench, run), run.recording.dq_rad_s, 1.0 / bench.sample_rate_hz, longest_s,
+               longest_s);
+}
+
+std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                             const DataFaultOptions& o, bool only_commands) {
+  const bool linear = bench.rig == bench::Rig::kLinear;
+  std::vector<WrongUnit> speeds = position_units(linear);
+  if (!linear) speeds.push_back({"revolutions per minute", 30.0 / std::numbers::pi});
+  std::vector<DataFault> found;
+  if (only_commands) {
+    check(bench, runs,
+          {bench::Column::kSpeedCommand, "the derivative of the position command", derivative_of_commands, speeds, 0.0,
+           o.strange_factor},
+          o, found);
+    std::erase_if(found, [](const DataFault& fault) { return !fault.files.empty(); });
+    return found;
+  }
+  check(bench, runs,
+        {bench::Column::kSpeedCommand, "the derivative of the position command", derivative_of_commands, speeds, 0.0,
+         o.strange_factor},
+        o, found);
+  check(bench, runs,
+        {bench::Column::kSpeed, "the derivative of the readings", derivative_of_readings, speeds, o.sensor_lag_s,
+         o.strange_factor},
+        o, found);
+  if (bench.law == bench::DriveLaw::kTorque) return found;
+  const std::vector<WrongUnit> torques = {{"thousandths", 1000.0}};
+  const bool torque = bench.law == bench::DriveLaw::kPositionPd;
+  check(bench, runs,
+        {torque ? bench::Column::kTorque : bench::Column::kDriveVoltage, "the output of the drive's law", output_of_law,
+         torques, o.longest_delay_s, o.law_factor},
+        o, found);
+  return found;
+}
+
+}  // namespace pmg::data_faults

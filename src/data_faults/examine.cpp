@@ -1,0 +1,119 @@
+#include "data_faults/examine.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "data_faults/column_checks.hpp"
+#include "data_faults/position_checks.hpp"
+#include "data_faults/run_checks.hpp"
+#include "data_faults/shared_checks.hpp"
+#include "data_faults/trajectory_checks.hpp"
+
+namespace pmg::data_faults {
+
+namespace {
+
+/// Adds what was found and corrects the runs. True if something was found.
+bool take(const std::vector<DataFault>& faults, Examined& runs, std::vector<DataFault>& into) {
+  for (const DataFault& fault : faults) runs.apply(fault.fixes);
+  into.insert(into.end(), faults.begin(), faults.end());
+  return !faults.empty();
+}
+
+/// Faults that the model tells, one at a time, the clearest first: each is corrected before the next one is looked for.
+void take_what_the_model_tells(Examined& runs, std::vector<DataFault>& into) {
+  runs.fit();
+  if (take(common_shift(runs), runs, into)) runs.fit();
+  while (static_cast<double>(into.size()) < runs.options().most_faults) {
+    // What many runs share before what one run shows: a gain that acts by another factor makes all its rows look wrong.
+    if (!take(clearest_position_fault(runs), runs, into) && !take(feed_forward_fault(runs), runs, into) &&
+        !take(gain_fault(runs), runs, into) && !take(mass_fault(runs), runs, into) &&
+        !take(clearest_run_fault(runs), runs, into)) {
+      return;
+    }
+    runs.fit();
+  }
+}
+
+}  // namespace
+
+Handling handling_of(const std::string& name) {
+  if (name == "leave-out") return Handling::kLeaveOut;
+  if (name == "correct") return Handling::kCorrect;
+  if (name == "keep") return Handling::kKeep;
+  throw std::invalid_argument("'" + name + "' for faulty data; expected leave-out, correct or keep");
+}
+
+const char* name(Handling handling) {
+  return handling == Handling::kLeaveOut ? "leave-out" : handling == Handling::kCorrect ? "correct" : "keep";
+}
+
+bool Examination::uncorrected() const {
+  if (corrected) return false;
+  return std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
+    if (fault.files.empty()) return true;
+    return std::any_of(fault.files.begin(), fault.files.end(), [&](const std::string& file) {
+      return std::find(left_out.begin(), left_out.end(), file) == left_out.end();
+    });
+  });
+}
+
+std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                        const std::optional<model::ActuatorParameters>& model,
+                                        const DataFaultOptions& options, unsigned threads) {
+  std::vector<DataFault> found;
+  Examined examined(bench, runs, model, options, threads);
+  if (bench.law != bench::DriveLaw::kTorque) {
+    take(position_faults(examined), examined, found);
+    take(derived_column_faults(bench, examined.runs(), options, true), examined, found);
+    take(trajectory_faults(examined.runs(), options), examined, found);
+    take_what_the_model_tells(examined, found);
+  }
+  take(derived_column_faults(bench, examined.runs(), options, false), examined, found);
+  return found;
+}
+
+Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
+                    const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
+                    unsigned threads, const work::Progress& progress) {
+  if (progress.report) progress.report(0.0, "looking for faults of the data");
+  std::vector<bench::BenchRun> runs;
+  for (std::size_t f = 0; f < filters.size(); ++f) {
+    if (f > 0 && filters[f].empty()) continue;  // no runs are held out
+    for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filters[f]))) {
+      const bool there =
+          std::any_of(runs.begin(), runs.end(), [&](const bench::BenchRun& other) { return other.file == run.file; });
+      if (!there) runs.push_back(std::move(run));
+    }
+  }
+  Examination found =
+      examination(find_data_faults(bench, runs, model, options.decide_by, threads), runs, options.handling);
+  found.options = options.decide_by;
+  return found;
+}
+
+Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling) {
+  Examination found{.faults = std::move(faults), .handling = handling};
+  found.corrected = handling == Handling::kCorrect && !found.faults.empty();
+  if (handling != Handling::kLeaveOut) return found;
+  for (const DataFault& fault : found.faults) {
+    std::vector<std::string> left_out = found.left_out;
+    for (const std::string& file : fault.files) {
+      if (std::find(left_out.begin(), left_out.end(), file) == left_out.end()) left_out.push_back(file);
+    }
+    if (2 * left_out.size() <= runs.size()) found.left_out = left_out;
+  }
+  return found;
+}
+
+bench::Bench examined_bench(const bench::Bench& bench, const Examination& examination) {
+  std::vector<bench::Correction> corrections;
+  if (examination.corrected) {
+    for (const DataFault& fault : examination.faults) {
+      corrections.insert(corrections.end(), fault.fixes.begin(), fault.fixes.end());
+    }
+  }
+  return bench::corrected(bench, corrections, examination.left_out);
+}
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,60 @@
+// Looks for data faults in a bench before any physics is fitted, and decides what the diagnosis goes on with.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/bench.hpp"
+#include "data_faults/data_fault.hpp"
+#include "data_faults/options.hpp"
+#include "model/actuator_parameters.hpp"
+#include "work/progress.hpp"
+
+namespace pmg::data_faults {
+
+/// What happens to faulty data.
+enum class Handling {
+  kLeaveOut,  ///< faulty runs are left out, as long as half of the runs stay; what all runs share stays as it is
+  kCorrect,   ///< the corrections are applied
+  kKeep,      ///< the data stay as they are
+};
+
+/// "leave-out", "correct" or "keep". Throws std::invalid_argument on another name.
+Handling handling_of(const std::string& name);
+
+const char* name(Handling handling);
+
+struct ExamineOptions {
+  DataFaultOptions decide_by{};
+  Handling handling = Handling::kLeaveOut;
+};
+
+struct Examination {
+  std::vector<DataFault> faults;
+  Handling handling = Handling::kLeaveOut;
+  std::vector<std::string> left_out{};  ///< files of runs
+  bool corrected = false;               ///< the diagnosis goes on with the corrections
+  DataFaultOptions options{};           ///< thresholds in force
+  bool uncorrected() const;             ///< faults are left in the data that the diagnosis goes on with
+};
+
+/// (bench, its runs, the simulation's model or none) => (faults, in the order in which they were found). The same input
+/// gives the same result with any number of threads.
+std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                        const std::optional<model::ActuatorParameters>& model,
+                                        const DataFaultOptions& options, unsigned threads);
+
+/// (bench, filters of runs.csv, the simulation's model or none) => (examination of all runs that a filter keeps).
+/// Throws as Bench::read_runs.
+Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
+                    const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
+                    unsigned threads, const work::Progress& progress = {});
+
+/// (faults, runs, handling) => (what the diagnosis goes on with).
+Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling);
+
+/// The bench as the diagnosis goes on with it.
+bench::Bench examined_bench(const bench::Bench& bench, const Examination& examination);
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,51 @@
+#include "data_faults/run_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace pmg::data_faults {
+
+std::vector<DataFault> clearest(const std::vector<Explained>& explanations) {
+  const Explained* best = nullptr;
+  for (const Explained& one : explanations) {
+    if (one.sure && (best == nullptr || one.gain > best->gain)) best = &one;
+  }
+  if (best == nullptr) return {};
+  return {best->fault};
+}
+
+bool mends(const Examined& e, double before, double after) {
+  return after < e.usual_log_error() || before - after > std::log(e.options().overwhelming_gain);
+}
+
+double log_error_with(const Examined& e, std::size_t run, const bench::Correction& fix) {
+  bench::BenchRun corrected = e.runs()[run];
+  bench::correct(corrected, fix);
+  return e.model().log_error(e.model().joint(corrected), e.fitted().model);
+}
+
+std::string gain_text(const Examined& e, double before, double after) {
+  const char* unit = e.linear() ? "m" : "rad";
+  return fmt::format("the model that fits the other runs misses this one by {:.3g} {} as it is, by {:.3g} {} corrected",
+                     std::exp(before), unit, std::exp(after), unit);
+}
+
+bool same_condition(const bench::BenchRun& a, const bench::BenchRun& b) {
+  return a.kp == b.kp && a.kd == b.kd && a.load == b.load;
+}
+
+std::vector<std::size_t> siblings(const Examined& e, std::size_t run) {
+  const bench::BenchRun& one = e.runs()[run];
+  std::vector<std::size_t> repeats, trajectory, others;
+  for (std::size_t i = 0; i < e.runs().size(); ++i) {
+    if (i == run) continue;
+    others.push_back(i);
+    if (e.runs()[i].trajectory != one.trajectory) continue;
+    trajectory.push_back(i);
+    if (same_condition(e.runs()[i], one)) repeats.push_back(i);
+  }
+  return !repeats.empty() ? repeats : !trajectory.empty() ? trajectory : others;
+}
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,235 @@
+#include "data_faults/shared_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "data_faults/column_checks.hpp"
+#include "fitting/statistics.hpp"
+
+namespace pmg::data_faults {
+
+namespace {
+
+constexpr int kIterations = 5;
+
+/// Runs that have one value of a number in common; indices into the few runs that are fitted.
+struct Group {
+  std::vector<std::size_t> runs;
+  double value = 0.0;
+};
+
+/// A fit with one factor free, and how well the runs like it.
+struct Tried {
+  QuickFit fit;
+  double factor = 1.0, loss = 0.0;
+  double gain = 0.0, gain_deviation = 0.0;  ///< mean over the group's runs of the fall of ln error, and its deviation
+};
+
+class Groups {
+ public:
+  Groups(const Examined& examined, double RunFactors::*of) : e_(&examined), of_(of) {
+    std::map<double, Group> found;
+    for (std::size_t i = 0; i < e_->few().size(); ++i) {
+      const bench::BenchRun& run = e_->runs()[e_->few()[i]];
+      const double value = of == &RunFactors::kp ? run.kp : of == &RunFactors::kd ? run.kd : run.load.inertia_kg_m2;
+      found[value].runs.push_back(i);
+      found[value].value = value;
+    }
+    for (auto& [value, group] : found) {
+      if (value != 0.0) groups_.push_back(group);
+    }
+    joints_ = e_->few_of(e_->runs());
+    // The same number of steps without a factor: what is left of the fit's own way is no gain of a factor.
+    without_ = e_->model().refit(joints_, e_->fitted(), {}, kIterations);
+  }
+
+  const std::vector<Group>& all() const { return groups_; }
+
+  /// The same groups beside the effect that explains the runs best without a factor.
+  Groups beside_physics() const {
+    Groups found = *this;
+    found.without_ = e_->model().with_best_effect(joints_, without_);
+    return found;
+  }
+
+  /// One factor for these groups together.
+  Tried with(const std::vector<std::size_t>& which) const {
+    SharedFactor shared{.of = of_, .runs = {}};
+    for (const std::size_t g : which)
+      shared.runs.insert(shared.runs.end(), groups_[g].runs.begin(), groups_[g].runs.end());
+    Tried tried{.fit = e_->model().refit(joints_, without_, {shared}, kIterations)};
+    tried.factor = tried.fit.factors.front();
+    tried.loss = tried.fit.loss;
+    std::vector<double> gains;
+    for (const std::size_t run : shared.runs) gains.push_back(without_.log_error[run] - tried.fit.log_error[run]);
+    double squares = 0.0;
+    for (const double gain : gains) tried.gain += gain / static_cast<double>(gains.size());
+    for (const double gain : gains) squares += std::pow(gain - tried.gain, 2);
+    const auto n = static_cast<double>(gains.size());
+    tried.gain_deviation = gains.size() < 2 ? 0.0 : std::sqrt(squares / (n - 1.0) / n);
+    return tried;
+  }
+
+  Tried common() const {
+    std::vector<std::size_t> every(groups_.size());
+    for (std::size_t g = 0; g < every.size(); ++g) every[g] = g;
+    return with(every);
+  }
+
+  /// All factors at once, each expected near 1: which group stands apart.
+  std::vector<double> together() const {
+    std::vector<SharedFactor> shared;
+    for (const Group& group : groups_) shared.push_back({.of = of_, .runs = group.runs, .deviation = 0.3});
+    return e_->model().refit(joints_, without_, shared, kIterations).factors;
+  }
+
+  double loss() const { return without_.loss; }
+  std::size_t runs() const { return joints_.size(); }
+
+ private:
+  const Examined* e_;
+  double RunFactors::*of_;
+  std::vector<Group> groups_;
+  std::vector<calib::SingleJoint> joints_;
+  QuickFit without_;
+};
+
+bool beyond(double factor, double least) { return std::abs(std::log(factor)) > std::log(least); }
+
+/// The group whose factor alone explains the runs, clearly better than a common factor of all groups does; -1 if none.
+struct Odd {
+  int group = -1;
+  Tried tried;
+};
+
+Odd odd_one(const Groups& groups, double least_factor, double least_gain, const DataFaultOptions& o) {
+  Odd found;
+  if (groups.all().size() < 2) return found;
+  const std::vector<double> together = groups.together();
+  const auto [low, high] = std::minmax_element(together.begin(), together.end());
+  if (!beyond(*high / *low, least_factor)) return found;
+  for (std::size_t g = 0; g < groups.all().size(); ++g) {
+    std::vector<double> others;
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      if (i != g) others.push_back(std::log(together[i]));
+    }
+    if (std::abs(std::log(together[g]) - fitting::median(others)) < 0.5 * std::log(least_factor)) continue;
+    const Tried tried = groups.with({g});
+    if (!beyond(tried.factor, least_factor) || tried.gain < std::log(least_gain)) continue;
+    if (tried.gain < o.factor_deviations * tried.gain_deviation) continue;
+    if (found.group < 0 || tried.loss < found.tried.loss) found = {static_cast<int>(g), tried};
+  }
+  if (found.group < 0) return found;
+  // What all groups share is physics, or another fault.
+  const double share = static_cast<double>(groups.all()[static_cast<std::size_t>(found.group)].runs.size()) /
+                       static_cast<double>(groups.runs());
+  if (groups.common().loss - found.tried.loss < share * std::log(o.better_than_common)) return {};
+  // What one effect of the catalogue explains, too, is physics.
+  const Tried beside = groups.beside_physics().with({static_cast<std::size_t>(found.group)});
+  if (!beyond(beside.factor, least_factor) || beside.gain < std::log(least_gain)) return {};
+  if (beside.gain < o.factor_deviations * beside.gain_deviation) return {};
+  found.tried = beside;  // the better model knows the factor better
+  return found;
+}
+
+std::string deviation_text(const Tried& tried) {
+  return fmt::format("with this factor the model's error on these runs falls to {:.2g} of what it is without",
+                     std::exp(-tried.gain));
+}
+
+std::vector<std::string> files_with(const Examined& e, const std::function<bool(const bench::BenchRun&)>& holds) {
+  std::vector<std::string> files;
+  for (const bench::BenchRun& run : e.runs()) {
+    if (holds(run)) files.push_back(run.file);
+  }
+  return files;
+}
+
+DataFault gain_text(const Examined& e, const std::string& column, double value, double factor, const Tried& tried) {
+  DataFault fault{.kind = Kind::kGainFactor, .where = {}, .correction = {}};
+  const bool one = value > 0.0;
+  fault.where = one ? fmt::format("runs.csv, column {}, rows with {:.6g}", column, value)
+                    : fmt::format("runs.csv, column {}, all rows", column);
+  fault.correction = fmt::format("{} acts as {:.3g} times its number{}", column, factor,
+                                 one ? fmt::format(": {:.4g} instead of {:.4g}", value * factor, value) : "");
+  fault.evidence = {fmt::format("{} runs of {} were compared", e.few().size(), e.runs().size()), deviation_text(tried)};
+  return fault;
+}
+
+bool firmware_factor(double factor, double tolerance) {
+  constexpr double kFactors[] = {2.0, 4.0, 8.0, 10.0, 16.0, 32.0, 57.29577951308232, 64.0, 100.0};
+  return std::any_of(std::begin(kFactors), std::end(kFactors),
+                     [&](double known) { return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance; });
+}
+
+std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
+  const DataFaultOptions& o = e.options();
+  const bool kp = of == &RunFactors::kp;
+  const std::string unit = e.linear() ? "m" : "rad";
+  const std::string column = !kp                                               ? "kd_Nm_s_per_rad"
+                             : e.bench().law == bench::DriveLaw::kServoVoltage ? "kp_firmware"
+                                                                               : "kp_Nm_per_rad";
+  const Groups groups(e, of);
+  if (groups.all().empty()) return {};
+  const Odd odd = odd_one(groups, o.least_gain_factor, o.gain_gain, o);
+  // Friction and speed limits change what a damping does by any factor: of kd only a firmware's factor is believed.
+  if (odd.group >= 0 && (kp || firmware_factor(odd.tried.factor, o.unit_tolerance))) {
+    const double value = groups.all()[static_cast<std::size_t>(odd.group)].value;
+    DataFault fault = gain_text(e, column, value, odd.tried.factor, odd.tried);
+    fault.files = files_with(e, [&](const bench::BenchRun& run) { return (kp ? run.kp : run.kd) == value; });
+    bench::Correction fix{.files = fault.files, .columns = {}};
+    (kp ? fix.kp_factor : fix.kd_factor) = odd.tried.factor;
+    fault.fixes = {fix};
+    return {fault};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<DataFault> mass_fault(const Examined& e) {
+  const DataFaultOptions& o = e.options();
+  const Groups groups(e, &RunFactors::load);
+  const Odd odd = odd_one(groups, o.least_mass_factor, o.mass_gain, o);
+  if (odd.group < 0) return {};
+  const double inertia = groups.all()[static_cast<std::size_t>(odd.group)].value, factor = odd.tried.factor;
+  DataFault fault{.kind = Kind::kMass, .where = {}, .correction = {}};
+  fault.where = fmt::format("bench.yaml, loads: the one with inertia_kg_m2 {:.6g}", inertia);
+  for (std::size_t l = 0; l < e.bench().loads.size(); ++l) {
+    const bench::BenchLoad& load = e.bench().loads[l];
+    if (load.load.inertia_kg_m2 != inertia) continue;
+    fault.where =
+        fmt::format("bench.yaml, loads[{}] (mass_kg {:.6g}, length_m {:.6g})", l, load.mass_kg, load.length_m);
+    fault.correction = fmt::format("mass_kg {:.4g} instead of {:.4g}: ", load.mass_kg * factor, load.mass_kg);
+  }
+  fault.correction += fmt::format("inertia and gravity times {:.3g}", factor);
+  fault.evidence = {deviation_text(odd.tried)};
+  fault.files = files_with(e, [&](const bench::BenchRun& run) { return run.load.inertia_kg_m2 == inertia; });
+  fault.fixes = {{.files = fault.files, .columns = {}, .load_factor = factor}};
+  return {fault};
+}
+
+std::vector<DataFault> gain_fault(const Examined& e) {
+  std::vector<DataFault> found = gain_fault_of(e, &RunFactors::kp);
+  if (!found.empty() || e.bench().law == bench::DriveLaw::kServoVoltage) return found;
+  found = gain_fault_of(e, &RunFactors::kd);
+  if (!found.empty()) return found;
+  // All gains: beyond what a drive's gain is off by.
+  const double factor = e.fitted().model.actuator.drive.kp_scale / e.bench().known.drive.kp_scale;
+  if (e.bench().law != bench::DriveLaw::kPositionPd ||
+      !beyond(factor, 1.0 + 0.5 * (e.options().least_common_gain - 1.0)))
+    return {};
+  const Groups groups(e, &RunFactors::kp);
+  const Tried common = groups.common();
+  const double whole = common.factor * common.fit.model.actuator.drive.kp_scale;
+  if (!beyond(whole, e.options().least_common_gain)) return {};
+  DataFault fault = gain_text(e, "kp_Nm_per_rad", 0.0, whole, common);
+  fault.evidence = {fmt::format("load and inertia of bench.yaml need {:.3g} times the gain", whole)};
+  fault.fixes = {{.files = {}, .columns = {}, .kp_factor = whole}};
+  return {fault};
+}
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,19 @@
+// Numbers that several runs share: loads of bench.yaml, gains of runs.csv, the unit of the feed-forward.
+#pragma once
+
+#include <vector>
+
+#include "data_faults/examined.hpp"
+
+namespace pmg::data_faults {
+
+/// A load that doesn't weigh what bench.yaml says, beside others that do. The examined runs must have a fit.
+std::vector<DataFault> mass_fault(const Examined& examined);
+
+/// A gain that acts by a factor of its number: one value of it beside others, or all.
+std::vector<DataFault> gain_fault(const Examined& examined);
+
+/// Sign and unit of the feed-forward torque in all runs that have one.
+std::vector<DataFault> feed_forward_fault(const Examined& examined);
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,98 @@
+// What the diagnosis goes on with, and how it is told.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "data_faults/data_faults_report.hpp"
+#include "data_faults/examine.hpp"
+
+namespace pmg::data_faults {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<bench::BenchRun> ten_runs() {
+  std::vector<bench::BenchRun> runs(10);
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].file = "run" + std::to_string(i) + ".csv";
+  return runs;
+}
+
+DataFault turned(const std::vector<std::string>& files) {
+  return {.kind = Kind::kSign,
+          .where = "column q_rad",
+          .correction = "turn it",
+          .evidence = {"it goes the other way"},
+          .fixes = {{.files = files, .columns = {bench::Column::kPosition}, .factor = -1.0}},
+          .files = files};
+}
+
+TEST(Examination, LeavesOutAFaultyRunAndSaysSo) {
+  const Examination found = examination({turned({"run3.csv"})}, ten_runs(), Handling::kLeaveOut);
+  EXPECT_EQ(found.left_out, std::vector<std::string>{"run3.csv"});
+  EXPECT_FALSE(found.corrected);
+  EXPECT_FALSE(found.uncorrected());
+  EXPECT_THAT(faults_text(found), HasSubstr("leaves out 1 run: run3.csv"));
+  EXPECT_EQ(examined_bench({}, found).left_out, found.left_out);
+  EXPECT_TRUE(examined_bench({}, found).corrections.empty());
+}
+
+TEST(Examination, GoesOnWithTheCorrectionOnlyIfTold) {
+  for (const Handling handling : {Handling::kLeaveOut, Handling::kKeep}) {
+    const Examination found = examination({turned({})}, ten_runs(), handling);
+    EXPECT_TRUE(examined_bench({}, found).corrections.empty());
+    EXPECT_TRUE(found.left_out.empty()) << "all runs can't be left out";
+    EXPECT_TRUE(found.uncorrected());
+    EXPECT_THAT(faults_text(found), HasSubstr("don't trust it"));
+  }
+  const Examination corrected = examination({turned({})}, ten_runs(), Handling::kCorrect);
+  EXPECT_EQ(examined_bench({}, corrected).corrections.size(), 1U);
+  EXPECT_FALSE(corrected.uncorrected());
+  EXPECT_THAT(faults_text(corrected), HasSubstr("of the corrected data"));
+}
+
+TEST(Examination, KeepsHalfOfTheRuns) {
+  const DataFault many = turned({"run0.csv", "run1.csv", "run2.csv", "run3.csv", "run4.csv", "run5.csv"});
+  const Examination found = examination({many, turned({"run9.csv"})}, ten_runs(), Handling::kLeaveOut);
+  EXPECT_EQ(found.left_out, std::vector<std::string>{"run9.csv"});
+  EXPECT_TRUE(found.uncorrected());
+}
+
+TEST(Examination, SaysNothingOfSoundData) {
+  const Examination sound = examination({}, ten_runs(), Handling::kCorrect);
+  EXPECT_EQ(faults_text(sound), "");
+  EXPECT_FALSE(sound.corrected);
+  nlohmann::ordered_json json;
+  add_to(json, sound);
+  EXPECT_TRUE(json.at("data_faults").empty());
+}
+
+TEST(Examination, SaysInJsonWhatTheFormatAsksFor) {
+  nlohmann::ordered_json json;
+  add_to(json, examination({turned({"run3.csv"})}, ten_runs(), Handling::kLeaveOut));
+  const auto& fault = json.at("data_faults").at(0);
+  EXPECT_EQ(fault.at("kind"), "sign");
+  EXPECT_EQ(fault.at("where"), "column q_rad");
+  EXPECT_EQ(fault.at("correction"), "turn it");
+  EXPECT_EQ(fault.at("evidence").size(), 1U);
+  EXPECT_EQ(fault.at("factor"), -1.0);
+  EXPECT_EQ(fault.at("runs").at(0), "run3.csv");
+  EXPECT_EQ(json.at("data_faults_handled").at("by"), "leave-out");
+  EXPECT_EQ(json.at("data_faults_handled").at("verdict_of_faulty_data"), false);
+}
+
+TEST(Examination, EveryThresholdIsListedWithItsReason) {
+  const std::vector<evidence::Option> all = listed(DataFaultOptions{});
+  EXPECT_EQ(all.size(), sizeof(DataFaultOptions) / sizeof(double));
+  std::set<std::string> names;
+  for (const evidence::Option& option : all) {
+    EXPECT_TRUE(names.insert(option.name).second) << option.name;
+    EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
+  }
+}
+
+TEST(Examination, RefusesAnUnknownHandling) { EXPECT_THROW(handling_of("ignore"), std::invalid_argument); }
+
+}  // namespace
+}  // namespace pmg::data_faults
