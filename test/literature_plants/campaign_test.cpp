@@ -49,7 +49,8 @@ json said(const std::string& verdict, const std::vector<std::string>& causes, co
 }
 
 json said_fault(const std::string& kind, const std::vector<std::string>& runs) {
-  return json::array({{{"kind", kind}, {"where", {{"run", runs}}}, {"correction", ""}, {"evidence", ""}}});
+  return json::array(
+      {{{"kind", kind}, {"where", "column q_rad"}, {"runs", runs}, {"correction", ""}, {"evidence", ""}}});
 }
 
 TEST(LiteratureSeeds, OddOnesAreOnlyForTheFinalReport) {
@@ -83,7 +84,7 @@ TEST(LiteratureJudgement, ADoubleNeedsBothAndNothingElse) {
   EXPECT_TRUE(right(said("found", {"gain", "delay"})));
   EXPECT_FALSE(right(said("found", {"gain"})));
   EXPECT_FALSE(right(said("found", {"gain", "delay", "cogging"})));
-  EXPECT_FALSE(right(said("found", {"gain", "delay"}, said_fault("degrees", {"run00.csv"}))));
+  EXPECT_FALSE(right(said("found", {"gain", "delay"}, said_fault("unit", {"run00.csv"}))));
   const json weak = json::array({effect("delay", 5.0), effect("gain", 0.5)});
   EXPECT_FALSE(judge(result("double", weak, json::array(), said("found", {"delay"}))).counts);
 }
@@ -91,12 +92,12 @@ TEST(LiteratureJudgement, ADoubleNeedsBothAndNothingElse) {
 TEST(LiteratureJudgement, AFaultIsNamedByItsKindAndPlacedByItsRuns) {
   const json planted = json::array({fault("degrees", {"run03.csv"})});
   const auto judged = [&](const json& diagnosis) { return judge(result("fault", json::array(), planted, diagnosis)); };
-  const Judgement good = judged(said("none", {}, said_fault("degrees", {"run03.csv"})));
+  const Judgement good = judged(said("none", {}, said_fault("unit", {"run03.csv"})));
   EXPECT_TRUE(good.counts && good.fault_named && good.fault_placed && good.right);
-  const Judgement elsewhere = judged(said("none", {}, said_fault("degrees", {"run04.csv"})));
+  const Judgement elsewhere = judged(said("none", {}, said_fault("unit", {"run04.csv"})));
   EXPECT_TRUE(elsewhere.fault_named);
   EXPECT_FALSE(elsewhere.fault_placed);
-  const Judgement other = judged(said("none", {}, said_fault("flipped_sign", {"run03.csv"})));
+  const Judgement other = judged(said("none", {}, said_fault("sign", {"run03.csv"})));
   EXPECT_FALSE(other.fault_named);
   EXPECT_TRUE(other.false_cause);
   EXPECT_TRUE(judged(said("found", {"gain"})).false_cause);
@@ -128,7 +129,7 @@ TEST(LiteratureJudgement, WhatDescribesAPartOfTheFormMayBeNamedBesideItAndIsntEn
 TEST(LiteratureJudgement, CleanAndStrangePlantsAreAccusedByAnyCause) {
   EXPECT_TRUE(judge(result("clean", json::array(), json::array(), said("none", {}))).right);
   EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("found", {"delay"}))).right);
-  EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("none", {}, said_fault("degrees", {})))).right);
+  EXPECT_FALSE(judge(result("clean", json::array(), json::array(), said("none", {}, said_fault("unit", {})))).right);
   const json strange = json::array({effect("lugre", 8.0)});
   EXPECT_TRUE(judge(result("strange", strange, json::array(), said("unexplained", {}))).right);
   const Judgement wrong = judge(result("strange", strange, json::array(), said("found", {"stribeck"})));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 namespace pmg::literature {
@@ -40,17 +41,28 @@ json truth_of_effects(const json& truth) {
   return of_effects;
 }
 
+/// data_faults[].kind of a planted fault's kind.
+std::string kind_in_diagnosis(const std::string& planted) {
+  if (planted == "units_of_feed_forward" || planted == "degrees") return "unit";
+  if (planted == "flipped_sign") return "sign";
+  if (planted == "wrong_mass") return "mass";
+  return planted;
+}
+
+/// True if the diagnosis names the runs that have the fault, or all where several have it.
 bool placed(const json& planted, const json& said) {
-  const json where = said.contains("where") ? said.at("where") : json::object();
-  if (!where.contains("run")) return true;
-  return strings(where.at("run")) == strings(planted.at("runs"));
+  const json& runs = list(said, "runs");
+  if (runs == "all") return planted.at("runs").size() > 1;
+  std::set<std::string> files;
+  for (const json& file : runs) files.insert(std::filesystem::path(file.get<std::string>()).filename().string());
+  return files == strings(planted.at("runs"));
 }
 
 void judge_faults(const json& truth, const json& diagnosis, Judgement& judgement) {
   for (const json& said : list(diagnosis, "data_faults")) {
     bool meant = false;
     for (const json& planted : list(truth, "faults")) {
-      if (planted.at("kind") != said.at("kind")) continue;
+      if (kind_in_diagnosis(planted.at("kind")) != said.at("kind")) continue;
       meant = judgement.fault_named = true;
       judgement.fault_placed = judgement.fault_placed || placed(planted, said);
     }
