@@ -33,9 +33,8 @@ std::vector<Option> listed(const bench::OddRunOptions& o) {
 
 std::vector<Option> listed(const calib::StepOptions& o) {
   return {{"share_of_noise", o.share_of_noise, "",
-           "an integration error of this share adds a quarter to the noise's mean square, 0.5^2, while a residual "
-           "counts as "
-           "unexplained from several times that square on",
+           "an integration error of this share of residual or noise adds a quarter to its mean square; a residual "
+           "counts as unexplained from several times the noise's on",
            "arithmetic"},
           {"finest_share", o.finest_share, "", "of the first step: three halvings, eight times the time of a rollout",
            "time of a diagnosis"},
