@@ -170,7 +170,6 @@ DataFault gain_text(const Examined& e, const std::string& column, double value, 
 std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
   const DataFaultOptions& o = e.options();
   const bool kp = of == &RunFactors::kp;
-  const std::string unit = e.linear() ? "m" : "rad";
   const std::string column = !kp                                               ? "kd_Nm_s_per_rad"
                              : e.bench().law == bench::DriveLaw::kServoVoltage ? "kp_firmware"
                                                                                : "kp_Nm_per_rad";
