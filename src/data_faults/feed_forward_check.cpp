@@ -46,7 +46,7 @@ std::vector<DataFault> feed_forward_fault(const Examined& e) {
     if (e.bench().law == bench::DriveLaw::kServoVoltage) candidates.push_back({"duty", constant * e.bench().supply_V});
   }
   struct Outcome {
-    double factor, loss;
+    double factor = 1.0, loss = 0.0;
     std::string what;
     QuickFit fit;
   };

@@ -54,6 +54,7 @@ std::vector<evidence::Option> listed(const DataFaultOptions& o) {
       {"mass_gain", o.mass_gain, "", "and if its correction divides the error on the load's runs by so much", plants},
       {"least_gain_factor", o.least_gain_factor, "", "a gain acts by another factor from this one on", plants},
       {"gain_gain", o.gain_gain, "", "and if its correction divides the error on the gain's runs by so much", plants},
+      {"damping_gain", o.damping_gain, "", "the same of kd: friction, lags and speed limits look like damping", plants},
       {"least_common_gain", o.least_common_gain, "",
        "all gains act by another factor from this one on: less is the effect `gain`", assumed},
       {"better_than_common", o.better_than_common, "",

@@ -21,7 +21,7 @@ struct DataFaultOptions {
   double shift_gain = 1.6, lone_shift_gain = 2.5, longest_delay_s = 0.1;
   double row_gain = 1.5, pair_gain = 1.25;
   // Loads, gains and feed-forward.
-  double least_mass_factor = 1.17, mass_gain = 1.25, least_gain_factor = 1.35, gain_gain = 1.3;
+  double least_mass_factor = 1.17, mass_gain = 1.25, least_gain_factor = 1.35, gain_gain = 1.3, damping_gain = 5.0;
   double least_common_gain = 2.2, better_than_common = 1.1, factor_deviations = 3.0;
   double feed_forward_gain = 1.2;
   // Cost.

@@ -99,13 +99,19 @@ class Groups {
 
 bool beyond(double factor, double least) { return std::abs(std::log(factor)) > std::log(least); }
 
+bool firmware_factor(double factor, double tolerance) {
+  constexpr double kFactors[] = {2.0, 4.0, 8.0, 10.0, 16.0, 32.0, 57.29577951308232, 64.0, 100.0};
+  return std::any_of(std::begin(kFactors), std::end(kFactors),
+                     [&](double known) { return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance; });
+}
+
 /// The group whose factor alone explains the runs, clearly better than a common factor of all groups does; -1 if none.
 struct Odd {
   int group = -1;
   Tried tried;
 };
 
-Odd odd_one(const Groups& groups, double least_factor, double least_gain, const DataFaultOptions& o) {
+Odd odd_one(const Groups& groups, double least_factor, double least_gain, const DataFaultOptions& o, bool kp = false) {
   Odd found;
   if (groups.all().size() < 2) return found;
   const std::vector<double> together = groups.together();
@@ -127,6 +133,8 @@ Odd odd_one(const Groups& groups, double least_factor, double least_gain, const 
   const double share = static_cast<double>(groups.all()[static_cast<std::size_t>(found.group)].runs.size()) /
                        static_cast<double>(groups.runs());
   if (groups.common().loss - found.tried.loss < share * std::log(o.better_than_common)) return {};
+  if (kp && firmware_factor(found.tried.factor, o.unit_tolerance) && found.tried.gain > std::log(o.clear_gain))
+    return found;
   // What one effect of the catalogue explains, too, is physics.
   const Tried beside = groups.beside_physics().with({static_cast<std::size_t>(found.group)});
   if (!beyond(beside.factor, least_factor) || beside.gain < std::log(least_gain)) return {};
@@ -159,22 +167,15 @@ DataFault gain_text(const Examined& e, const std::string& column, double value, 
   return fault;
 }
 
-bool firmware_factor(double factor, double tolerance) {
-  constexpr double kFactors[] = {2.0, 4.0, 8.0, 10.0, 16.0, 32.0, 57.29577951308232, 64.0, 100.0};
-  return std::any_of(std::begin(kFactors), std::end(kFactors),
-                     [&](double known) { return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance; });
-}
-
 std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
   const DataFaultOptions& o = e.options();
   const bool kp = of == &RunFactors::kp;
-  const std::string unit = e.linear() ? "m" : "rad";
   const std::string column = !kp                                               ? "kd_Nm_s_per_rad"
                              : e.bench().law == bench::DriveLaw::kServoVoltage ? "kp_firmware"
                                                                                : "kp_Nm_per_rad";
   const Groups groups(e, of);
   if (groups.all().empty()) return {};
-  const Odd odd = odd_one(groups, o.least_gain_factor, o.gain_gain, o);
+  const Odd odd = odd_one(groups, o.least_gain_factor, kp ? o.gain_gain : o.damping_gain, o, kp);
   // Friction and speed limits change what a damping does by any factor: of kd only a firmware's factor is believed.
   if (odd.group >= 0 && (kp || firmware_factor(odd.tried.factor, o.unit_tolerance))) {
     const double value = groups.all()[static_cast<std::size_t>(odd.group)].value;

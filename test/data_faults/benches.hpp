@@ -38,15 +38,15 @@ inline RandomBench cascade_bench(unsigned seed) {
   RandomBench made = random_bench(seed);
   std::mt19937 random(seed + 1000);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  const double Nm_per_V = 4.0 + 30.0 * unit(random);
+  const double torque_per_volt_Nm = 4.0 + 30.0 * unit(random);
   made.bench.law = bench::DriveLaw::kCascadePd;
   for (auto* drive : {&made.bench.known.drive, &made.truth.actuator.drive}) {
-    drive->torque_per_unit_Nm = Nm_per_V;
-    drive->limit = drive->limit / Nm_per_V;
+    drive->torque_per_unit_Nm = torque_per_volt_Nm;
+    drive->limit = drive->limit / torque_per_volt_Nm;
   }
   for (bench::BenchRun& run : made.runs) {
-    run.kp /= Nm_per_V;
-    run.kd /= Nm_per_V;
+    run.kp /= torque_per_volt_Nm;
+    run.kd /= torque_per_volt_Nm;
     const double pace_rad_s = 4.0 + 6.0 * unit(random);
     for (const double t_s : run.recording.t_s)
       run.recording.tau_ff_Nm.push_back(0.33 * run.load.gravity_Nm * std::sin(pace_rad_s * t_s));
