@@ -260,7 +260,7 @@ TEST(ActuatorModel, NeverAllocatesInAStep) {
 
 TEST(ActuatorModel, RefusesWhatMakesNoSense) {
   const std::vector<std::function<void(model::ActuatorParameters&)>> senseless = {
-      [](auto& p) { p.command.delay_s = 1.0; },
+      [](auto& p) { p.command.delay_s = 2.0; },
       [](auto& p) { p.command.rate_limit_rad_s = 0.0; },
       [](auto& p) { p.friction.presliding_rad = 0.0; },
       [](auto& p) { p.transmission.backlash_rad = 0.01; },
