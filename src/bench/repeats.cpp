@@ -84,7 +84,7 @@ RunPair compared(const std::vector<const BenchRun*>& runs, std::size_t first, st
   pair.mean_absolute_rad = absolutes_rad / static_cast<double>(pair.samples);
   pair.mean_square_rad2 = difference.squares() / static_cast<double>(pair.samples);
   pair.slow_share = difference.slow_share();
-  const auto [less, more] = std::minmax(here.fast_squares(), there.fast_squares());
+  const auto [less, more] = std::minmax({here.fast_squares(), there.fast_squares()});  // values, not references
   pair.fast_ratio = more > 0.0 ? std::sqrt(less / more) : 1.0;
   return pair;
 }
