@@ -21,7 +21,7 @@ GaitTask forward_task(const Making& making) {
   task.duty_factor = 0.62;
   task.velocity = {0.8, 0.0, 0.0};
   task.sway_m = 0.015;
-  task.clearance_m = 0.029;
+  task.clearance_m = 0.031;
   task.foot_gap_m = 0.045;
   task.flat_from = 0.15;
   task.flat_to = 0.62;
@@ -30,27 +30,27 @@ GaitTask forward_task(const Making& making) {
   // Instead the pelvis lifts the swinging side.
   task.hike_rad = 0.14;
   // Walking people are lower than standing people: their legs spread.
-  task.height_m = -0.010;
+  task.height_m = -0.012;
   task.reference = published_reference(making.legs);
-  task.shape = {{kHipPitch, 0.965, 4.6 * kRadPerDegree},
-                {kKnee, 0.972, 4.6 * kRadPerDegree},
-                {kAnklePitch, 0.97, 5.2 * kRadPerDegree, 0.8}};
+  task.shape = {{kHipPitch, 0.965, 4.8 * kRadPerDegree},
+                {kKnee, 0.970, 4.8 * kRadPerDegree},
+                {kAnklePitch, 0.966, 5.3 * kRadPerDegree, 0.8}};
   task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
   task.weights.bias << 1.0, 6.0, 6.0, 1.0, 1.0, 6.0;
-  task.weights.slip = 21.0;
+  task.weights.slip = 38.0;
   task.weights.step_height = 2000.0;
   task.weights.step_height_free_m = 0.006;
   task.weights.velocity = 12.0;
   task.weights.foot_flat = 14.0;
   task.weights.clearance = 200.0;
-  task.weights.above_ground = 2200.0;
+  task.weights.above_ground = 3600.0;
   task.weights.correlation = 300.0;
   task.weights.rms = 200.0;
   task.weights.amplitude = 60.0;
-  task.weights.height = 60.0;
+  task.weights.height = 200.0;
   task.weights.velocity_yaw = 4.0;
   task.weights.limit = 300.0;
-  task.weights.smooth = 1.2e-3;
+  task.weights.smooth = 2.2e-3;
   task.scenarios = scenarios(making, 0.36);
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
   return task;
