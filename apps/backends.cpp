@@ -2,6 +2,9 @@
 
 #include "can/can_backend.hpp"
 
+#ifdef PMG_ETHERCAT
+#include "ethercat/ethercat_backend.hpp"
+#endif
 #ifdef PMG_SIL
 #include "sil/simulated_backend.hpp"
 #endif
@@ -16,7 +19,11 @@ hal::BackendFactory backends() {
   factory.lacks("sil", "simulated robot");
 #endif
   can::register_backend(factory);
-  factory.lacks("ethercat", "EtherCAT backend");
+#ifdef PMG_ETHERCAT
+  ethercat::register_backend(factory);
+#else
+  factory.lacks("ethercat", "EtherCAT backend (SOEM: third_party/fetch-soem)");
+#endif
   return factory;
 }
 

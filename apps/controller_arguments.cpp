@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hal/backend_json.hpp"
 #include "option_checks.hpp"
 
 namespace pmg::apps {
@@ -16,15 +17,22 @@ With --bench the robot excites one joint as soon as it stands (pmg_send stand), 
 recorded. It must hang clear of the ground with its base held fast. Stops, faults and limits are in force as ever, and what
 was recorded whole until then is kept; nothing begins again by itself.
 
+With --excite the robot moves all its joints: hanging for 42 s, feet clear of the ground, or standing for 56 s. It begins
+when the robot has hung or stood still in Stand (pmg_send stand) for 4 s, by the torques of its legs, and comes back to rest
+by itself. After hanging the program ends; after standing the robot stands on until you take it up and end the program.
+The log is for pmg_diagnose --robot.
+
 Example:
   pmg_controller --hal sil --robot z1 --log out/first
   pmg_send walk --robot z1 --vx 0.4 --for 5
   pmg_controller --hal sil --viewer
   pmg_controller --hal sil --inject failures.yaml
+  pmg_controller --hal sil --robot z1 --gantry --excite hanging --log out/hanging
   pmg_controller --hal sil --robot z1 --bench left_knee --excitation out/excitation --bench-out out/knee-bench
 
 Exit codes: 0 ended by a signal, --duration or the bench's end, 1 it could not run on (the drives don't answer, or a thread failed; the robot
-was damped) or something is missing in the log, 2 bad input, or a network, name or log folder that can't be used.)";
+was damped), an excitation was given up or something is missing in the log, 2 bad input, a network, name or log folder that can't be used,
+or a computer or bus that the doctor refuses.)";
 
 nlohmann::ordered_json thread_json(const runtime::ThreadSchedule& schedule) {
   return {{"priority", schedule.priority}, {"cpu", schedule.cpu}};
@@ -39,7 +47,7 @@ void ControllerArguments::declare(CLI::App& app) {
   app.add_option("--name", name, "name that messages are addressed to; the robot's own if not given");
   app.add_option("--policy", control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
-                 "given, and none with --bench");
+                 "given, and none with --bench and --excite");
   app.add_option("--clips", control.clips, "clip library; the robot's own clips/ if not given");
   app.add_option("--lcm-url", lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
   CLI::Option* keys_option = app.add_option(
@@ -55,6 +63,11 @@ void ControllerArguments::declare(CLI::App& app) {
   folder->needs(joint);
   out->needs(joint);
   joint->needs(folder)->needs(out);
+  app.add_option(
+         "--excite", excite,
+         "excite the whole robot once, for pmg_diagnose --robot: hanging (in a gantry) or standing (on the ground)")
+      ->check(CLI::IsMember(runtime::robot_excitation_names()))
+      ->excludes(joint);
   app.add_option("--bus-cpu", threads.bus.cpu, "the one CPU of the bus thread; -1: any")
       ->check(in_range(-1, 4095))
       ->capture_default_str();
@@ -68,6 +81,8 @@ void ControllerArguments::declare(CLI::App& app) {
       ->check(in_range(1, 99))
       ->capture_default_str();
   app.add_flag("--no-realtime", no_realtime, "ordinary scheduling: for trying things out, not for a robot");
+  app.add_flag("--despite-doctor", despite_doctor,
+               "drive the motors although the doctor (pmg_doctor) found what a robot must not stand with");
   app.add_option("--duration", duration_s, "end after so many seconds")->check(positive());
   app.add_option(
       "--inject", inject,
@@ -77,7 +92,7 @@ void ControllerArguments::declare(CLI::App& app) {
 }
 
 nlohmann::ordered_json config_json(const ControllerArguments& arguments, const control::LoadedControl& loaded,
-                                   const hal::Backend& backend, const runtime::BenchSession* bench) {
+                                   const hal::Backend& backend, const ControllerExcitation& excitation) {
   nlohmann::ordered_json json = control::control_json(loaded);
   json["name"] = arguments.name;
   json["hal"] = arguments.backend.hal();
@@ -85,7 +100,8 @@ nlohmann::ordered_json config_json(const ControllerArguments& arguments, const c
   json["log"] = arguments.log.string();
   if (!arguments.inject.empty()) json["inject"] = arguments.inject.string();
   add_to(json, backend.configuration());
-  if (bench != nullptr) json["bench"] = bench->json();
+  hal::add_to(json, backend.description());
+  excitation.add_to(json);
   json["realtime"] = {{"asked_for", arguments.threads.realtime},
                       {"bus", thread_json(arguments.threads.bus)},
                       {"control", thread_json(arguments.threads.control)}};

@@ -5,9 +5,9 @@
 namespace pmg::apps {
 namespace {
 
-constexpr const char* kTable1Scenario = "config/scenarios/table1_full.yaml";
-constexpr const char* kTable2Scenario = "config/scenarios/table2.yaml";
-constexpr const char* kRobustScenario = "config/scenarios/tour.yaml";
+constexpr const char* kTable1Scenario = "table1_full";
+constexpr const char* kTable2Scenario = "table2";
+constexpr const char* kRobustScenario = "tour";
 
 constexpr const char* kFooter = R"(
 Each runs the real controller in lockstep with MuJoCo, writes DIR/report.html (self-contained) and DIR/COMMAND.json
@@ -20,22 +20,38 @@ Examples:
   pmg_eval push --trials 200 --out out/push
   pmg_eval robust --seeds 20 --out out/robust
   pmg_eval gait --out out/gait
+  pmg_eval steady --out out/steady
+  pmg_eval jumps --seeds 20 --out out/jumps
 
 Exit codes: 0 done and every limit reached, 1 done and a limit missed, 2 bad input or output (a film that fails leaves the rest
 whole), 130 interrupted (what was done until then is written and marked incomplete).)";
 
-void declare_common(CLI::App& command, EvalArguments& arguments) {
+void declare_robot(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
       ->capture_default_str();
+}
+
+void declare_clips(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
+}
+
+void declare_output(CLI::App& command, EvalArguments& arguments) {
+  command.add_option("--jobs", arguments.jobs, "runs at once")->check(in_range(1, 1024))->default_str("one a core");
+  command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
+  command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
+}
+
+void declare_common(CLI::App& command, EvalArguments& arguments) {
+  declare_robot(command, arguments);
+  declare_clips(command, arguments);
   CLI::Option* variation =
-      command.add_option("--variation", arguments.variation, "ranges that simulated robots are drawn from (YAML)")
+      command
+          .add_option("--variation", arguments.variation,
+                      "ranges that simulated robots are drawn from: a name in config/evaluation, or a file (YAML)")
           ->capture_default_str();
   command.add_flag("--nominal", arguments.nominal, "robots as the model says; seeds differ in sensor noise alone")
       ->excludes(variation);
-  command.add_option("--jobs", arguments.jobs, "runs at once")->check(in_range(1, 1024))->capture_default_str();
-  command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
-  command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
+  declare_output(command, arguments);
 }
 
 constexpr const char* kPolicyHelp =
@@ -45,15 +61,24 @@ void declare_policy(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--policy", arguments.policies, kPolicyHelp)->expected(1)->default_str("pmg");
 }
 
-void declare_seeds(CLI::App& command, EvalArguments& arguments, const char* scenario) {
-  command.add_option("--scenario", arguments.scenario, "commands (YAML)")->default_str(scenario);
+void declare_seeds(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--seeds", arguments.seeds, "simulated robots")->check(in_range(1, 100000))->capture_default_str();
+}
+
+void declare_scenario_file(CLI::App& command, EvalArguments& arguments, const char* scenario) {
+  command.add_option("--scenario", arguments.scenario, "commands: a name in config/scenarios, or a file (YAML)")
+      ->default_str(scenario);
+}
+
+void declare_scenario(CLI::App& command, EvalArguments& arguments, const char* scenario) {
+  declare_scenario_file(command, arguments, scenario);
+  declare_seeds(command, arguments);
 }
 
 void declare_table1(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand("table1", "Errors of policies over the same commands: Table I of the paper");
   declare_common(command, arguments);
-  declare_seeds(command, arguments, kTable1Scenario);
+  declare_scenario(command, arguments, kTable1Scenario);
   command.add_option("--policy", arguments.policies, std::string(kPolicyHelp) + "; may be given several times")
       ->default_str("pmg without_gco single_gait");
   command.add_flag("--video", arguments.video, "film each policy with seed 1 (needs ffmpeg; minutes each)");
@@ -63,15 +88,14 @@ void declare_table1(CLI::App& app, EvalArguments& arguments) {
 void declare_table2(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand(
       "table2", "How far simulations are from robots with hidden actuators, by calibration: Table II of the paper");
-  command.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")
-      ->capture_default_str();
+  declare_robot(command, arguments);
   declare_policy(command, arguments);
-  command.add_option("--scenario", arguments.scenario, "commands (YAML)")->default_str(kTable2Scenario);
-  command.add_option("--plants", arguments.plants, "what the robots' actuators are drawn from (YAML)")
+  declare_scenario_file(command, arguments, kTable2Scenario);
+  command
+      .add_option("--plants", arguments.plants,
+                  "what the robots' actuators are drawn from: a name in config/evaluation, or a file (YAML)")
       ->capture_default_str();
-  command.add_option("--jobs", arguments.jobs, "runs at once")->check(in_range(1, 1024))->capture_default_str();
-  command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
-  command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
+  declare_output(command, arguments);
 }
 
 void declare_push(CLI::App& app, EvalArguments& arguments) {
@@ -92,7 +116,7 @@ void declare_robust(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand("robust", "The tour with payload, little and much friction, and delay");
   declare_common(command, arguments);
   declare_policy(command, arguments);
-  declare_seeds(command, arguments, kRobustScenario);
+  declare_scenario(command, arguments, kRobustScenario);
 }
 
 void declare_gait(CLI::App& app, EvalArguments& arguments) {
@@ -102,6 +126,26 @@ void declare_gait(CLI::App& app, EvalArguments& arguments) {
   command.add_option("--norms", arguments.norms,
                      "CSV of published means (docs/how-to/evaluation.md); a built-in set if not given");
   command.add_option("--speed", arguments.speed_m_s, "forward [m/s]")->check(positive())->capture_default_str();
+}
+
+void declare_steady(CLI::App& app, EvalArguments& arguments) {
+  CLI::App& command = *app.add_subcommand("steady",
+                                          "What share of a held command is realised: single velocities, "
+                                          "pairs at 80 % and all three at 60 % of their ranges");
+  declare_robot(command, arguments);
+  declare_clips(command, arguments);
+  declare_policy(command, arguments);
+  declare_output(command, arguments);
+}
+
+void declare_jumps(CLI::App& app, EvalArguments& arguments) {
+  CLI::App& command = *app.add_subcommand("jumps", "Commands that jump between their ends every half second");
+  declare_common(command, arguments);
+  declare_policy(command, arguments);
+  declare_seeds(command, arguments);
+  command.add_option("--duration", arguments.duration_s, "of jumping [s]")
+      ->check(in_range(1.0, 3600.0))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -114,6 +158,8 @@ void EvalArguments::declare(CLI::App& app) {
   declare_push(app, *this);
   declare_robust(app, *this);
   declare_gait(app, *this);
+  declare_steady(app, *this);
+  declare_jumps(app, *this);
 }
 
 std::string EvalArguments::finish(const CLI::App& app) {

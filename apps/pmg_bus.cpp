@@ -7,19 +7,18 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "buses.hpp"
 #include "can/bus_load.hpp"
-#include "can/can_hal.hpp"
 #include "can/candump.hpp"
 #include "can/first_light.hpp"
-#include "can/roll_call.hpp"
-#include "can/socket_link.hpp"
+#include "can/one_motor.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
@@ -28,9 +27,12 @@
 namespace {
 
 using namespace pmg;
+using apps::Buses;
 using std::chrono::milliseconds;
 
 enum ExitCode { kOk = 0, kProblems = 1 };
+
+constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 
 constexpr const char* kFooter = R"(
 For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan and watch switch every drive off and
@@ -53,63 +55,24 @@ struct Arguments {
 
 bool interrupted() { return apps::interrupt_requested != 0; }
 
-struct Buses {
-  explicit Buses(const Arguments& arguments)
-      : robot(model::load_robot(model::find_robot(arguments.robot))), setup(drives::load_drives(robot)) {
-    can::check_load(setup);
-    for (const drives::BusSetup& bus : setup.buses) {
-      links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
-    }
-  }
-  model::RobotModel robot;
-  drives::DriveSetup setup;
-  std::vector<std::unique_ptr<can::Link>> links;
-};
-
-std::string row(const drives::MotorSetup& motor, const drives::BusSetup& bus, const can::Answer* answer) {
-  const std::string who = fmt::format("{:22} {:6} {:4}  ", motor.joint, bus.name, motor.node);
-  if (answer == nullptr) return who + "-";
-  const drives::MotorReading joint = motor.transmission.to_joint(answer->reading);
-  return who + fmt::format("{:8.2f} deg {:8.2f} Nm {:4.0f} degC  {}", joint.q_rad / kRadPerDegree, joint.torque_Nm,
-                           joint.temperature_degC, drives::to_string(joint.fault));
-}
-
-/// Asks every bus once, and prints a row for each motor and all problems. Returns the number of problems.
-std::size_t show(Buses& buses) {
-  std::vector<std::string> all;
-  for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
-    const drives::BusSetup& bus = buses.setup.buses[b];
-    const std::vector<can::Answer> answers = can::ask_bus(bus, *buses.links[b], interrupted);
-    for (const drives::MotorSetup& motor : bus.motors) {
-      const auto answer = std::ranges::find(answers, motor.node, &can::Answer::node);
-      std::cout << row(motor, bus, answer == answers.end() ? nullptr : &*answer) << '\n';
-    }
-    const std::vector<std::string> found = can::problems(bus, answers);
-    all.insert(all.end(), found.begin(), found.end());
-  }
-  for (const std::string& problem : all) std::cout << problem << '\n';
-  std::cout << std::flush;
-  return all.size();
-}
-
 int scan(const Arguments& arguments) {
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   for (const drives::BusSetup& bus : buses.setup.buses) {
     const can::BusLoad load = can::planned_load(bus);
     std::cout << fmt::format("{}: {} motors{}, {} frames a cycle, at most {:.0f} % of the bus\n", bus.name,
                              bus.motors.size(), bus.imu ? " and the IMU" : "", load.frames, 100.0 * load.share);
   }
-  return show(buses) == 0 ? kOk : kProblems;
+  return apps::show(buses) == 0 ? kOk : kProblems;
 }
 
 int watch(const Arguments& arguments) {
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
   std::size_t problems = 0;
   while (!interrupted() && std::chrono::steady_clock::now() < end) {
     std::cout << "\x1b[H\x1b[2J";
-    problems = show(buses);
+    problems = apps::show(buses);
     std::this_thread::sleep_for(milliseconds(200));
   }
   return problems == 0 ? kOk : kProblems;
@@ -131,33 +94,32 @@ OneMotor find(Buses& buses, const std::string& joint) {
       fmt::format("'{}' isn't a joint; {}", joint, files::expected_name(joint, buses.robot.joint_index.names())));
 }
 
-/// Sends one frame to one motor and returns its answer within 0.1 s.
-drives::MotorReading ask(const OneMotor& one, const drives::MitFrame& bytes) {
-  const drives::MitProtocol protocol(one.motor.ranges);
-  const can::Frame frame = can::Frame::of(static_cast<std::uint32_t>(one.motor.node), bytes, one.bus.data_bitrate != 0);
-  one.link.send(std::span(&frame, 1));
-  for (int wait = 0; wait < 50; ++wait) {
-    std::this_thread::sleep_for(milliseconds(2));
-    std::array<can::Frame, 64> frames;
-    const std::size_t count = one.link.receive(frames);
-    for (const can::Frame& got : std::span(frames).first(count)) {
-      if (got.extended || got.id != can::kReplyId || got.length != 8 || got.data[0] != one.motor.node) continue;
-      return one.motor.transmission.to_joint(protocol.reply(got.bytes())->reading);
-    }
-  }
-  throw std::runtime_error(
-      fmt::format("{} ({}, node {}) does not answer; expected a powered drive with this node number", one.motor.joint,
-                  one.bus.name, one.motor.node));
+/// Waits for the next bus cycle. Cycles that a busy computer missed are not made up for: in a burst no drive could
+/// answer.
+std::function<void()> bus_tick() {
+  using Clock = std::chrono::steady_clock;
+  return [next = Clock::now()]() mutable {
+    next = std::max(next + milliseconds(2), Clock::now() + milliseconds(1));
+    std::this_thread::sleep_until(next);
+  };
 }
 
 int enable(const Arguments& arguments) {
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
-  const drives::MotorReading on = ask(one, drives::kMitEnable);
-  const drives::MotorReading off = ask(one, drives::kMitDisable);
+  const std::function<void()> tick = bus_tick();
+  can::OneMotor motor(one.bus, one.motor, one.link, tick);
+  const bool on = motor.switch_on();
+  const drives::MotorReading at = motor.joint();
+  for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
+  const drives::DriveFault fault = motor.joint().fault;
+  if (!on) {
+    std::cout << fmt::format("{} can't be enabled: {}\n", arguments.joint, drives::to_string(fault));
+    return kProblems;
+  }
   std::cout << fmt::format("{} was enabled without a command and disabled again: {:.2f} deg, {}\n", arguments.joint,
-                           on.q_rad / kRadPerDegree, drives::to_string(off.fault));
-  return off.fault == drives::DriveFault::kNone ? kOk : kProblems;
+                           at.q_rad / kRadPerDegree, drives::to_string(fault));
+  return fault == drives::DriveFault::kNone ? kOk : kProblems;
 }
 
 int zero(const Arguments& arguments) {
@@ -165,29 +127,56 @@ int zero(const Arguments& arguments) {
     throw std::invalid_argument(
         "zero overwrites the drive's zero for good; expected --yes when the joint stands at its zero position");
   }
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
-  const drives::MotorReading before = ask(one, drives::kMitDisable);
-  ask(one, drives::kMitZero);
-  const drives::MotorReading after = ask(one, drives::kMitDisable);
-  std::cout << fmt::format("{}: was {:.2f} deg, is {:.2f} deg now\n", arguments.joint, before.q_rad / kRadPerDegree,
-                           after.q_rad / kRadPerDegree);
-  return std::abs(after.q_rad + buses.robot.joints[static_cast<std::size_t>(one.motor.index)].bus.zero_offset_rad) <
-                 kRadPerDegree
-             ? kOk
-             : kProblems;
+  const std::function<void()> tick = bus_tick();
+  can::OneMotor motor(one.bus, one.motor, one.link, tick);
+  const double before_rad = motor.joint().q_rad;
+  const double offset_rad = buses.robot.joints[static_cast<std::size_t>(one.motor.index)].bus.zero_offset_rad;
+  if (std::holds_alternative<drives::Cia402Settings>(one.motor.drive)) {
+    std::cout << fmt::format(
+        "{} is at {:.2f} deg. A CiA 402 drive keeps no zero that every maker's has: write `zero_offset_rad: {:.4f}` "
+        "into "
+        "its `bus` in robot.yaml\n",
+        arguments.joint, before_rad / kRadPerDegree, before_rad + offset_rad);
+    return kOk;
+  }
+  motor.set_zero();
+  for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
+  const double after_rad = motor.joint().q_rad;
+  std::cout << fmt::format("{}: was {:.2f} deg, is {:.2f} deg now\n", arguments.joint, before_rad / kRadPerDegree,
+                           after_rad / kRadPerDegree);
+  return std::abs(after_rad + offset_rad) < kRadPerDegree ? kOk : kProblems;
+}
+
+/// How the robot hangs [rad]; joints whose motors don't answer as if they stood, their names in `silent`.
+JointVector posture(Buses& buses, std::vector<std::string>& silent) {
+  JointVector q = buses.robot.q_stand();
+  apps::ask(buses, [&](const drives::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
+    if (answer == nullptr)
+      silent.push_back(motor.joint);
+    else
+      q[motor.index] = motor.transmission.to_joint(answer->reading).q_rad;
+  });
+  return q;
 }
 
 int wiggle(const Arguments& arguments) {
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
+  std::vector<std::string> silent;
+  const JointVector q = posture(buses, silent);
+  std::erase(silent, arguments.joint);
+  if (!silent.empty()) {
+    std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
+                             silent.size(), silent.front());
+  }
   const double by_rad = arguments.by_deg * kRadPerDegree;
   std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
-                           arguments.by_deg, can::way_of(buses.robot, arguments.joint, by_rad))
+                           arguments.by_deg, can::way_of(buses.robot, q, arguments.joint, by_rad))
             << std::flush;
-  auto next = std::chrono::steady_clock::now();
-  const auto tick = [&next] { std::this_thread::sleep_until(next += milliseconds(2)); };
-  const can::Wiggle result = can::wiggle(buses.robot, one.bus, one.motor, one.link,
+  const std::function<void()> tick = bus_tick();
+  const can::Wiggle result = can::wiggle(buses.robot, q, one.bus, one.motor, one.link,
                                          {.by_rad = by_rad, .gain_share = arguments.gain_share}, tick, interrupted);
   const std::string verdict = can::verdict(result);
   std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
@@ -197,7 +186,7 @@ int wiggle(const Arguments& arguments) {
 }
 
 int dump(const Arguments& arguments) {
-  Buses buses(arguments);
+  Buses buses(arguments.robot);
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
   while (!interrupted() && std::chrono::steady_clock::now() < end) {
@@ -211,8 +200,10 @@ int dump(const Arguments& arguments) {
       }
       any = any || count > 0;
     }
-    if (!any) std::this_thread::sleep_for(milliseconds(1));
     if (!std::cout) throw std::runtime_error("the recording can't be written");
+    if (any) continue;
+    std::cout << std::flush;  // whoever reads along sees each frame at once
+    std::this_thread::sleep_for(milliseconds(1));
   }
   std::cout << std::flush;
   return kOk;
@@ -243,7 +234,8 @@ int main(int argc, char** argv) {
   command("scan", "switch all drives off and ask each once", scan);
   duration(command("watch", "the same again and again: move the joints by hand and look", watch));
   joint(command("enable", "enable one drive without a command, and disable it", enable));
-  CLI::App* zeroing = command("zero", "the joint's present position becomes its drive's zero", zero);
+  CLI::App* zeroing =
+      command("zero", "the joint's present position becomes its drive's zero, or robot.yaml's offset", zero);
   joint(zeroing);
   zeroing->add_flag("--yes", arguments.yes, "the joint stands at its zero position");
   CLI::App* wiggling = command("wiggle", "move one joint by a few degrees and compare with the model", wiggle);

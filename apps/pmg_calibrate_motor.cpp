@@ -145,7 +145,8 @@ void print_summary(const calib::FitResults& results, const fs::path& out) {
     const double value = calib::value(results.fit.model, p.name);
     const std::string reservation = calib::reservation(p, value, results.confidence[i]);
     std::cout << fmt::format("{:34} {:>11.5g} +- {:<8.2g} {}{}\n", p.name, value, results.confidence[i].deviation,
-                             p.unit, reservation.empty() ? "" : "   (" + reservation + ")");
+                             calib::unit_on_rig(p.unit, *results.bench),
+                             reservation.empty() ? "" : "   (" + reservation + ")");
   }
   const auto line = [&](const char* what, const calib::Assessment& a) {
     std::cout << fmt::format("{} {} runs: mean absolute error {:.4g} {} (before {:.4g})\n", what, a.runs->size(),

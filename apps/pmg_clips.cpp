@@ -1,4 +1,4 @@
-// pmg_clips: makes and shows clip libraries.
+// pmg_clips: makes and shows clip libraries, and recordings of people that libraries are made from.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 
+#include "clips_inspect.hpp"
 #include "files/config_error.hpp"
 #include "gco/make_command_inverse.hpp"
 #include "gco/steady_walk.hpp"
@@ -232,7 +233,8 @@ int main(int argc, char** argv) {
   CLI::App app("Makes and shows clip libraries.", "pmg_clips");
   app.require_subcommand(1);
   app.footer(
-      "Example: pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show --robot z1\n"
+      "Examples: pmg_clips inspect walk.bvh; pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show "
+      "--robot z1\n"
       "Exit codes: 0 ok, 1 a check failed, 2 bad input, 130 interrupted (nothing is written: the old clips stay "
       "whole).");
   std::string robot = "z1";
@@ -275,7 +277,10 @@ int main(int argc, char** argv) {
       ->check(apps::in_range(0.0, 1.0))
       ->capture_default_str();
   walk_command->add_flag("--list", walking.list, "print every command's figures");
+  apps::InspectOptions inspecting;
+  CLI::App* inspect_command = apps::add_inspect(app, inspecting);
   return apps::run_program(app, argc, argv, [&]() -> int {
+    if (inspect_command->parsed()) return apps::inspect(inspecting);
     apps::notice({SIGINT, SIGTERM}, "leaving the old clips as they were");
     try {
       if (walk_command->parsed()) return walk(walking);

@@ -10,19 +10,23 @@
 #include <thread>
 
 #include "calib/fit_results.hpp"
+#include "calib/simulated.hpp"
 #include "data_faults/data_faults_report.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/next_excitation_files.hpp"
-#include "diagnosis/report.hpp"
+#include "diagnosis_page/diagnosis_page.hpp"
+#include "effects/catalogue.hpp"
 #include "files/nearest_name.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
+#include "residual_torque/extension_report.hpp"
 #include "robot_diagnosis.hpp"
 #include "shown_progress.hpp"
 #include "sim/motor_file.hpp"
+#include "work/resources.hpp"
 
 namespace {
 
@@ -99,8 +103,16 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
   std::vector<std::string> lines = {
       fmt::format("Written by pmg_diagnose from {}: {}", bench.folder.filename().string(), name(found.verdict))};
   for (const diagnosis::Cause& cause : found.causes) {
-    lines.push_back(fmt::format("{}: held-out error {:.4g} {} without it, {:.4g} with it", cause.effect,
+    lines.push_back(fmt::format("{}: held-out error {:.4g} {} without it, {:.4g} with it",
+                                effects::described(cause.effect, cause.form, cause.form_or_instead),
                                 1e3 * cause.held_out_error_before, unit, 1e3 * cause.held_out_error_after));
+  }
+  if (found.residual_extension) lines.push_back(residual_torque::line(*found.residual_extension, unit));
+  for (const assembly::Variation& one : found.assemblies.varies) {
+    lines.push_back(
+        fmt::format("{} is a mean over assemblies ({}), by column {} of runs.csv: a new assembly's value is "
+                    "not known",
+                    one.parameter, assembly::spread_text(one), assembly::columns_text(one.columns)));
   }
   if (found.after.inertia_scale != 1.0 || found.after.gravity_scale != 1.0) {
     lines.push_back(fmt::format("The bench's loads were off: inertia times {:.4g}, gravity torque times {:.4g}",
@@ -109,7 +121,15 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
   return lines;
 }
 
-void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out, double wall_s) {
+/// What the diagnosis took, in every unit that says something: rollouts don't depend on the machine.
+struct Cost {
+  double wall_s = 0.0;
+  work::Resources used = work::used_resources();
+  calib::Simulated simulated = calib::simulated();
+};
+
+void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out,
+                   const Cost& cost) {
   const std::string unit = calib::position_unit(bench, true);
   std::cout << data_faults::faults_text(found.data) << "verdict: " << name(found.verdict) << '\n';
   if (const std::string odd = calib::odd_runs_text(found.noise_floor.odd_runs); !odd.empty()) std::cout << odd << '\n';
@@ -117,6 +137,8 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
     std::cout << fmt::format("  {}{}: error {:.4g} {} without it, {:.4g} {} with it\n", cause.effect,
                              cause.or_instead.empty() ? "" : fmt::format(" (or {})", fmt::join(cause.or_instead, ", ")),
                              1e3 * cause.held_out_error_before, unit, 1e3 * cause.held_out_error_after, unit);
+    if (effects::effect(cause.effect).forms.size() > 1)
+      std::cout << "    " << effects::described(cause.effect, cause.form, cause.form_or_instead) << '\n';
     if (!cause.same_here.empty())
       std::cout << fmt::format("    which on this rig is the same as {}\n", fmt::join(cause.same_here, ", "));
     for (const evidence::ParameterEstimate& p : cause.parameters) {
@@ -124,8 +146,10 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
                                p.estimate.high, p.unit);
     }
   }
+  for (const assembly::Variation& one : found.assemblies.varies) std::cout << "  " << assembly::sentence(one) << '\n';
   if (!found.depends_on.empty())
     std::cout << fmt::format("what remains depends on {}\n", fmt::join(found.depends_on, ", "));
+  if (found.residual_extension) std::cout << residual_torque::line(*found.residual_extension, unit) << '\n';
   if (found.next_excitation) std::cout << "record next: " << found.next_excitation->text << '\n';
   const double floor_rad = found.noise_floor.mean_absolute_rad;
   std::cout << fmt::format(
@@ -136,8 +160,10 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
   std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error {:.3g} {} rms\n",
                            1e3 * found.step.error.step_s, name(found.step.limit), 1e3 * found.step.error.rms_rad, unit);
-  std::cout << fmt::format("{:.1f} s; results in {}\n", wall_s, out.string());
-  if (!found.causes.empty())
+  std::cout << fmt::format("{:.1f} s, {:.1f} s of CPU time, at most {:.0f} MiB of memory, {} rollouts; results in {}\n",
+                           cost.wall_s, cost.used.cpu_s, cost.used.peak_memory_MiB, cost.simulated.rollouts,
+                           out.string());
+  if (!found.causes.empty() || found.after.actuator.residual_torque.count > 0)
     std::cout << fmt::format("simulate with what was found: pmg_sil --motor {}\n", (out / "motor.yaml").string());
 }
 
@@ -178,23 +204,27 @@ int diagnose(Arguments arguments) {
   diagnosis::DiagnosedRuns runs;
   const diagnosis::Diagnosis found = diagnosis::diagnose(bench, options, &runs, apps::shown(progress));
   progress.clear();
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const Cost cost{.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
   fs::create_directories(arguments.out);
   nlohmann::ordered_json json = diagnosis::diagnosis_json(found);
   json["interrupted"] = apps::interrupt_requested != 0;
-  json["wall_s"] = wall_s;
+  json["wall_s"] = cost.wall_s;
+  json["cost"] = {{"cpu_s", cost.used.cpu_s},
+                  {"peak_memory_MiB", cost.used.peak_memory_MiB},
+                  {"rollouts", cost.simulated.rollouts},
+                  {"steps", cost.simulated.steps}};
   io::write_whole_file(arguments.out / "motor.yaml",
                        sim::motor_yaml({{arguments.joint, found.after.actuator}}, remarks(found, bench)));
   if (found.next_excitation) {
     diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
   }
   io::write_whole_file(arguments.out / "report.html",
-                       diagnosis::diagnosis_report(bench, found, runs, arguments.threads).html());
+                       diagnosis_page::page_of(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   if (arguments.json)
     apps::print_json(json);
   else
-    print_summary(found, bench, arguments.out, wall_s);
+    print_summary(found, bench, arguments.out, cost);
   return apps::interrupt_requested != 0 ? kInterrupted : kOk;
 }
 

@@ -10,12 +10,15 @@
 #include <optional>
 #include <thread>
 
+#include "command_response/jumps.hpp"
+#include "command_response/steady.hpp"
 #include "eval_arguments.hpp"
 #include "evaluation/gait.hpp"
 #include "evaluation/push.hpp"
 #include "evaluation/robustness.hpp"
 #include "evaluation/table1.hpp"
 #include "evaluation/table2.hpp"
+#include "files/config_folders.hpp"
 #include "json_output.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
@@ -56,9 +59,15 @@ std::vector<evaluation::Candidate> candidates(const apps::EvalArguments& argumen
   return all;
 }
 
+sil::Scenario scenario(const apps::EvalArguments& arguments) {
+  return sil::load_scenario(files::config_file("scenarios", "scenario", arguments.scenario.string()));
+}
+
 evaluation::Plants plants(const apps::EvalArguments& arguments) {
   evaluation::Plants plants;
-  if (!arguments.nominal) plants.ranges = sim::load_variation_ranges(arguments.variation);
+  if (!arguments.nominal)
+    plants.ranges =
+        sim::load_variation_ranges(files::config_file("evaluation", "variation", arguments.variation.string()));
   return plants;
 }
 
@@ -128,7 +137,7 @@ int table1(const apps::EvalArguments& arguments) {
   table.robot = arguments.robot;
   table.scenario_file = arguments.scenario.string();
   table.ranges_file = arguments.ranges_file();
-  table.scenario = sil::load_scenario(arguments.scenario);
+  table.scenario = scenario(arguments);
   table.seeds = arguments.seeds;
   for (const evaluation::Candidate& c : candidates(arguments))
     table.cases.push_back({.name = c.name, .candidate = c, .plants = plants(arguments)});
@@ -155,8 +164,8 @@ int table2(const apps::EvalArguments& arguments) {
   table.policy = candidate(arguments.policies.front(), arguments).control.policy;
   table.plants_file = arguments.plants.string();
   table.scenario_file = arguments.scenario.string();
-  table.ranges = evaluation::load_plant_ranges(arguments.plants);
-  table.scenario = sil::load_scenario(arguments.scenario);
+  table.ranges = evaluation::load_plant_ranges(files::config_file("evaluation", "plants", arguments.plants.string()));
+  table.scenario = scenario(arguments);
   fs::create_directories(arguments.out);
   run_table2(table, arguments.out, Watch(arguments).supervision());
   return hand_over(arguments, table, table.complete, table.complete && table.all_reached());
@@ -179,7 +188,7 @@ int robust(const apps::EvalArguments& arguments) {
   test.robot = arguments.robot;
   test.scenario_file = arguments.scenario.string();
   test.ranges_file = arguments.ranges_file();
-  test.scenario = sil::load_scenario(arguments.scenario);
+  test.scenario = scenario(arguments);
   test.seeds = arguments.seeds;
   test.cases = evaluation::robustness_cases(candidate(arguments.policies.front(), arguments), plants(arguments));
   fs::create_directories(arguments.out);
@@ -201,6 +210,28 @@ int gait(const apps::EvalArguments& arguments) {
   return hand_over(arguments, test, test.trial.complete, test.reached());
 }
 
+int steady(const apps::EvalArguments& arguments) {
+  command_response::SteadyTest test;
+  test.robot = arguments.robot;
+  test.candidate = candidate(arguments.policies.front(), arguments);
+  fs::create_directories(arguments.out);
+  run_steady(test, Watch(arguments).supervision());
+  return hand_over(arguments, test, test.complete(), test.all_reached());
+}
+
+int jumps(const apps::EvalArguments& arguments) {
+  command_response::JumpTest test;
+  test.robot = arguments.robot;
+  test.ranges_file = arguments.ranges_file();
+  test.seeds = arguments.seeds;
+  test.duration_s = arguments.duration_s;
+  const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
+  test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
+  fs::create_directories(arguments.out);
+  run_jumps(test, Watch(arguments).supervision());
+  return hand_over(arguments, test, test.complete(), test.all_survived());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -214,6 +245,8 @@ int main(int argc, char** argv) {
     if (command == "table2") return table2(arguments);
     if (command == "push") return push(arguments);
     if (command == "robust") return robust(arguments);
+    if (command == "steady") return steady(arguments);
+    if (command == "jumps") return jumps(arguments);
     return gait(arguments);
   });
 }

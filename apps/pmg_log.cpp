@@ -42,6 +42,7 @@ struct Arguments {
   std::vector<fs::path> logs;
   bool json = false;
   fs::path csv, mcap;
+  std::string robot;
   logs::ReplayOptions replay;
   fs::path excitation;
   bool tolerant = false;
@@ -95,13 +96,14 @@ void print_replay(const logs::ReplayReport& report) {
 
 void print_export(const Arguments& arguments, const fs::path& into, const logs::ExportReport& report) {
   if (arguments.json) {
-    apps::print_json(
-        nlohmann::ordered_json{{"file", into.string()}, {"messages", report.messages}, {"left_out", report.unknown}});
+    apps::print_json(nlohmann::ordered_json{
+        {"file", into.string()}, {"messages", report.messages}, {"left_out", report.unknown}, {"notes", report.notes}});
     return;
   }
   std::int64_t all = 0;
   for (const auto& [channel, count] : report.messages) all += count;
   std::cout << fmt::format("{} messages of {} channels in {}\n", all, report.messages.size(), into.string());
+  for (const std::string& note : report.notes) std::cout << "note: " << io::plain_text(note) << '\n';
   if (report.unknown > 0) std::cout << fmt::format("{} messages that aren't known were left out\n", report.unknown);
 }
 
@@ -118,7 +120,7 @@ int export_log(const Arguments& arguments) {
   };
   if (!arguments.csv.empty()) tell(arguments.csv, logs::export_csv(files, arguments.csv, progress));
   if (!arguments.mcap.empty() && apps::interrupt_requested == 0) {
-    tell(arguments.mcap, logs::export_mcap(files, arguments.mcap, progress));
+    tell(arguments.mcap, logs::export_mcap(files, arguments.mcap, arguments.robot, progress));
   }
   return apps::interrupt_requested == 0 ? kOk : kInterrupted;
 }
@@ -172,7 +174,10 @@ int main(int argc, char** argv) {
   info_command->add_flag("--json", arguments.json, "as JSON");
   CLI::App* export_command = command(app, arguments, "export", "write a log for other programs");
   export_command->add_option("--csv", arguments.csv, "folder for one CSV a channel");
-  export_command->add_option("--mcap", arguments.mcap, "MCAP file, for Foxglove");
+  export_command->add_option("--mcap", arguments.mcap, "MCAP file, for Foxglove (layout: config/foxglove/walk.json)");
+  export_command->add_option(
+      "--robot", arguments.robot,
+      "robot's name or folder, for its frames and URDF in the MCAP; as the log says if not given");
   export_command->add_flag("--json", arguments.json, "say as JSON what was written");
   CLI::App* replay_command =
       command(app, arguments, "replay", "compute every tick again and compare all outputs, bit for bit");

@@ -5,8 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "arms_operator/arms_board.hpp"
+#include "arms_operator/arms_lead.hpp"
 #include "io/lcm_link.hpp"
 #include "io/plain_text.hpp"
 #include "json_output.hpp"
@@ -46,6 +49,7 @@ class Session {
         seal_(load_seal(arguments, link_.url())),
         source_(link_, seal_.source_name("pmg_send"), ops::session_number(), clock_, seal_),
         board_(link_, clock_, seal_),
+        arms_(link_, clock_, seal_),
         taken_(arguments.command) {}
 
   int run() {
@@ -116,11 +120,21 @@ class Session {
     if (robot.empty()) return apps::interrupt_requested != 0 ? kInterrupted : kNotReached;
     ops::Drive drive(source_, robot, arguments_.command,
                      {.duration_s = arguments_.duration_s,
-                      .climb = arguments_.request == "walk",
+                      .climb = arguments_.request == "walk" || arguments_.request == apps::kArms,
                       .timeout_s = timeout_s(apps::kDriveTimeout_s)});
+    std::optional<ops::ArmsLead> lead;
+    if (arguments_.request == apps::kArms) lead.emplace(source_, arms_, robot, apps::palm_goals(arguments_));
+    bool led = false;
+    std::string arms_text;
     ops::Progress progress = ops::Progress::kPending;
     while (progress == ops::Progress::kPending) {
       link_.receive(5);
+      if (lead && drive.driving()) {
+        lead->step();
+        led = lead->reached();
+        arms_text = lead->trouble().empty() ? lead->text() : lead->trouble();
+        if (!lead->trouble().empty()) drive.end_early();
+      }
       if (apps::interrupt_requested != 0) drive.end_early();
       const bool driving = drive.driving();
       progress = drive.step();
@@ -128,9 +142,11 @@ class Session {
       if (driving) say_what_is_taken(robot, !drive.driving());
       show_progress(robot, drive);
     }
-    const bool reached = progress == ops::Progress::kReached;
-    return conclude(robot, progress, reached ? fmt::format("drove for {:.1f} s", drive.driven_s()) : drive.text(),
-                    drive.driven_s());
+    const bool drove = progress == ops::Progress::kReached;
+    const std::string drove_text = drove ? fmt::format("drove for {:.1f} s", drive.driven_s()) : drive.text();
+    if (!lead) return conclude(robot, progress, drove_text, drive.driven_s());
+    if (drove && !led) progress = ops::Progress::kFailed;
+    return conclude(robot, progress, arms_text.empty() ? drove_text : drove_text + "; " + arms_text, drive.driven_s());
   }
 
   int conclude(const std::string& robot, ops::Progress progress, const std::string& text, double elapsed_s) {
@@ -221,6 +237,7 @@ class Session {
   seal::OperatorSeal seal_;
   ops::OperatorSource source_;
   ops::RobotBoard board_;
+  ops::ArmsBoard arms_;
   ops::TakenCommand taken_;
   std::string limited_;  ///< the controller's replacement of a command that it cannot follow; or empty
   bool waiting_said_ = false;
@@ -235,6 +252,7 @@ int main(int argc, char** argv) {
   apps::declare(app, arguments);
   return apps::run_program(app, argc, argv, [&]() -> int {
     arguments.request = app.get_subcommands().front()->get_name();
+    if (arguments.request == apps::kArms) apps::palm_goals(arguments);  // wrong ones are told before anything moves
     apps::notice({SIGINT, SIGTERM}, "bringing the robot to rest");
     return Session(arguments).run();
   });

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "control/control_setup.hpp"
+#include "files/config_folders.hpp"
 #include "json_output.hpp"
 #include "program.hpp"
 #include "runtime/bench_session.hpp"
@@ -56,9 +57,11 @@ int simulate(Arguments arguments) {
     recorder.emplace(bench->recorder());
     loaded.options.excitation = bench->plan();
   }
-  const sil::Scenario scenario = benching ? sil::bench_scenario(bench->joint().name, bench->duration_s())
-                                 : arguments.by_operators() ? sil::endless_scenario()
-                                                            : sil::load_scenario(arguments.scenario);
+  const sil::Scenario scenario =
+      benching ? sil::bench_scenario(bench->joint().name, bench->duration_s())
+      : arguments.by_operators()
+          ? sil::endless_scenario()
+          : sil::load_scenario(files::config_file("scenarios", "scenario", arguments.scenario.string()));
   sil::FailureClock failure_clock;
   std::vector<sil::Failure> failures;
   std::optional<sil::FailingTick> failing_tick;
@@ -76,7 +79,9 @@ int simulate(Arguments arguments) {
   sim::WorldOptions world_options = sil::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
   world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
-    sim::vary(world_options, sim::load_variation_ranges(arguments.vary), loaded.robot, arguments.seed);
+    sim::vary(world_options,
+              sim::load_variation_ranges(files::config_file("evaluation", "variation", arguments.vary.string())),
+              loaded.robot, arguments.seed);
   }
   world_options.motors = sim::motors_in_force(loaded.robot, arguments.motor);
   sim::World world(loaded.robot, world_options);

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "arms_operator/arms_board.hpp"
+#include "arms_operator/arms_text.hpp"
 #include "io/lcm_link.hpp"
 #include "json_output.hpp"
 #include "operator/robot_board.hpp"
@@ -56,7 +58,9 @@ class Watch {
   explicit Watch(const Arguments& arguments)
       : arguments_(arguments),
         link_(io::choose_lcm_url(arguments.lcm_url)),
-        board_(link_, clock_, seal::load_operator_seal(arguments.keys, link_.url())) {}
+        seal_(seal::load_operator_seal(arguments.keys, link_.url())),
+        board_(link_, clock_, seal_),
+        arms_(link_, clock_, seal_) {}
 
   /// Waits for one STATUS, and for a short time for the messages that come once a second.
   int once() {
@@ -107,11 +111,19 @@ class Watch {
                        arguments_.robot.empty() ? "" : fmt::format(" named \"{}\"", arguments_.robot), link_.url());
   }
 
+  std::vector<std::string> screen(const ops::RobotNews& news) const {
+    std::vector<std::string> lines = ops::screen(news, board_.silence_s(news));
+    if (const ops::HeardArms* arms = arms_.of(news.status.robot)) {
+      for (const std::string& line : ops::arms_lines(arms->state)) lines.push_back(line);
+    }
+    return lines;
+  }
+
   void redraw() {
     std::vector<std::string> lines;
     const std::vector<const ops::RobotNews*> shown = selected();
     if (shown.size() == 1) {
-      lines = ops::screen(*shown.front(), board_.silence_s(*shown.front()));
+      lines = screen(*shown.front());
     } else {
       for (const ops::RobotNews* news : shown) lines.push_back(ops::one_line(*news, board_.silence_s(*news)));
     }
@@ -131,9 +143,11 @@ class Watch {
     for (const ops::RobotNews* news : shown) {
       const double silence_s = board_.silence_s(*news);
       if (arguments_.json) {
-        apps::print_json(ops::news_json(*news, silence_s), at_length ? 2 : -1);
+        nlohmann::ordered_json json = ops::news_json(*news, silence_s);
+        if (const ops::HeardArms* arms = arms_.of(news->status.robot)) json["arms"] = ops::arms_json(arms->state);
+        apps::print_json(json, at_length ? 2 : -1);
       } else if (at_length && shown.size() == 1) {
-        for (const std::string& line : ops::screen(*news, silence_s)) std::cout << line << '\n';
+        for (const std::string& line : screen(*news)) std::cout << line << '\n';
       } else {
         std::cout << ops::one_line(*news, silence_s) << '\n';
       }
@@ -144,7 +158,9 @@ class Watch {
   const Arguments& arguments_;
   io::WallClock clock_;
   io::LcmLink link_;
+  seal::OperatorSeal seal_;
   ops::RobotBoard board_;
+  ops::ArmsBoard arms_;
   std::int64_t begin_ns_ = clock_.now_ns();
   std::size_t drawn_lines_ = 0;
 };

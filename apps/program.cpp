@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "description.hpp"
 #include "io/plain_text.hpp"
 #include "software_version.hpp"
 #include "usage.hpp"
@@ -82,6 +83,12 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
       "--version", [&] { return version(app, bundle); },
       bundle ? "print version and revision, with --robot the bundle too, and exit"
              : "print version and revision, and exit");  // added last: it needs the value of --robot
+  app.add_flag_callback("--describe-as-json",
+                        [&] {
+                          std::cout << description(app) << '\n';
+                          throw CLI::Success();
+                        })
+      ->group("");  // hidden: for cmake/manuals.py
   try {
     return parse_and_run(app, argc, argv, body);
   } catch (const std::filesystem::filesystem_error& error) {

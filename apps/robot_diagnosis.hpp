@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "excitation/robot_excitation.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
 #include "model/clip_library_file.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
-#include "robot_diagnosis/robot_excitation.hpp"
 #include "robot_diagnosis/robot_report.hpp"
 #include "sil/simulated_robot.hpp"
 
@@ -36,12 +36,12 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
   try {
     sim::World gantry(robot, sil::world_with_noise(seed, true));
     robot_diagnosis::write_robot_log(
-        robot_diagnosis::play(gantry, robot_diagnosis::hanging_excitation(robot), "hanging", progress), robot,
+        robot_diagnosis::play(gantry, excitation::hanging_excitation(robot), "hanging", progress), robot,
         out / "hanging.lcm");
     kept = "hanging.lcm is written, standing.lcm isn't";
     sim::World ground(robot, sil::world_with_noise(seed, false));
     robot_diagnosis::write_robot_log(
-        robot_diagnosis::play(ground, robot_diagnosis::standing_excitation(robot, clips), "standing", progress), robot,
+        robot_diagnosis::play(ground, excitation::standing_excitation(robot, clips), "standing", progress), robot,
         out / "standing.lcm");
   } catch (const work::Interrupted&) {
     std::cerr << "interrupted: " << kept << '\n';

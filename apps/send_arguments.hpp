@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
+#include "arms_operator/arms_lead.hpp"
 #include "operator/mode_wish.hpp"
 #include "pmg/command.hpp"
 
@@ -15,6 +17,8 @@ struct SendArguments {
   double timeout_s = 0.0;  // 0: the default of each request
   double duration_s = 0.0;
   Command command;
+  PerFoot<std::vector<double>> palm;  // x, y, z [m], and roll, pitch, yaw [rad] or nothing; empty: that arm isn't led
+  bool hand_back = false;
   bool json = false;
 };
 
@@ -34,8 +38,11 @@ inline constexpr SendRequest kSendRequests[] = {
 };
 inline constexpr double kDriveTimeout_s = 10.0;
 inline constexpr double kHoistTimeout_s = 15.0;  // time to catch and lift a robot that lies on the ground
-inline constexpr const char *kLift = "lift", *kLower = "lower";
+inline constexpr const char *kLift = "lift", *kLower = "lower", *kArms = "arms";
 
 void declare(CLI::App& app, SendArguments& arguments);
+
+/// Of --left, --right and --hand-back. Throws std::invalid_argument when they ask for nothing, or for both.
+PerFoot<ops::PalmGoal> palm_goals(const SendArguments& arguments);
 
 }  // namespace pmg::apps

@@ -19,7 +19,7 @@ With --bench one joint of the hanging robot is excited while the others hold, an
 pmg_calibrate_motor and pmg_diagnose: bench.yaml, runs.csv, runs/. The other files are as ever.
 
 Example:
-  pmg_sil --robot z1 --scenario config/scenarios/tour.yaml --out out/tour --video
+  pmg_sil --robot z1 --scenario tour --out out/tour --video
   pmg_sil --robot z1 --realtime --viewer --out out/drive
   pmg_sil --robot z1 --bench left_knee --excitation out/excitation --motor out/knee/motor.yaml --out out/knee-bench
 
@@ -31,7 +31,8 @@ output (a film that fails leaves the other results whole), 130 interrupted or th
 void SilArguments::declare(CLI::App& app) {
   app.footer(kFooter);
   app.add_option("--robot", control.robot, "robot's name below config/robots, or its folder")->capture_default_str();
-  app.add_option("--scenario", scenario, "scenario to play (YAML); with --realtime it may be left out");
+  app.add_option("--scenario", scenario,
+                 "scenario to play: a name in config/scenarios, or a file (YAML); with --realtime it may be left out");
   app.add_option("--out", out, "folder for the results; made if absent");
   app.add_option("--policy", control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
@@ -50,7 +51,8 @@ void SilArguments::declare(CLI::App& app) {
                  "inject the failures of this file (YAML); the report tells what each led to, in bus cycles");
   app.add_flag("--gantry", gantry, "hang the robot in a gantry for the whole run");
   app.add_option("--vary", vary,
-                 "draw the simulated robot, its ground and its noise from these ranges (YAML) by the seed");
+                 "draw the simulated robot, its ground and its noise from these ranges by the seed: a name in "
+                 "config/evaluation, or a file (YAML)");
   app.add_option("--seed", seed, "of the sensor noise")->capture_default_str();
   CLI::Option* threads = app.add_flag("--realtime", realtime,
                                       "the robot's threads and the wall clock instead of lockstep; not reproducible");

@@ -23,9 +23,11 @@ namespace pmg::apps {
 namespace {
 
 recording::RunInfo run_info(const Stage& stage) {
+  nlohmann::ordered_json options = config_json(stage.arguments, stage.loaded, stage.bench);
+  options["set_on_simulator"] = stage.world.set_values();
   return {.robot = stage.loaded.robot.name,
           .policy = stage.arguments.control.policy,
-          .options = config_json(stage.arguments, stage.loaded, stage.bench).dump(),
+          .options = options.dump(),
           .bundle = stage.loaded.bundle,
           .files = stage.loaded.files};
 }

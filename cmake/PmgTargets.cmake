@@ -1,7 +1,7 @@
 # The project's target functions. Flags: baseline x86-64 everywhere, because -march=native or AVX changes Eigen's alignment, and with it the
 # ABI of the distribution's KDL.
 
-if(NOT CMAKE_BUILD_TYPE)
+if(NOT CMAKE_BUILD_TYPE AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
@@ -10,12 +10,7 @@ if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
 
-if(PMG_SANITIZE)
-  add_compile_options(-fsanitize=${PMG_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  add_link_options(-fsanitize=${PMG_SANITIZE})
-  # Under AddressSanitizer Eigen aligns memory itself; libraries that free our Eigen memory (pagmo, KDL) don't know that.
-  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
-endif()
+include(PmgSanitize)
 
 # A target's sources are compiled together, up to six at a time: most of the time of one goes to headers that all of them share. -DPMG_UNITY=OFF
 # compiles each on its own, as clang-tidy needs it and as suits who works on one file.
@@ -43,7 +38,7 @@ endif()
 function(pmg_add_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(pmg_room_${name} STATIC ${ROOM_SOURCES})
-  target_include_directories(pmg_room_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+  target_include_directories(pmg_room_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${PMG_ROOM_HEADERS}>)
   target_link_libraries(pmg_room_${name} PUBLIC ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK} pmg_warnings)
   pmg_use_common_headers(pmg_room_${name} rooms)
 endfunction()
@@ -54,10 +49,13 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)
 endif()
 
 # pmg_add_app(NAME SOURCES... LINK targets...): the executable bin/NAME from apps/NAME.cpp and these. The target `programs` builds all of these.
-add_custom_target(programs)
+if(PMG_PROGRAMS)
+  add_custom_target(programs)
+endif()
 function(pmg_add_app name)
   cmake_parse_arguments(APP "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${name}.cpp ${APP_SOURCES})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
   target_link_libraries(${name} PRIVATE pmg_program ${APP_LINK} pmg_warnings)
   target_compile_options(${name} PRIVATE ${PMG_QUICK_OPTIONS})
   pmg_use_common_headers(${name} programs)
@@ -66,18 +64,35 @@ endfunction()
 
 # LeakSanitizer's options for every test. intercept_tls_get_addr=0: the runtime of GCC 12 and 13 reads a header before a thread's
 # memory that glibc has not written there since 2.25, and then crashes (google/sanitizers 1322); GCC 14 no longer needs it.
-set(PMG_LSAN_OPTIONS "suppressions=${CMAKE_SOURCE_DIR}/test/lsan.supp:print_suppressions=0:intercept_tls_get_addr=0")
+set(PMG_LSAN_OPTIONS "suppressions=${PROJECT_SOURCE_DIR}/test/lsan.supp:print_suppressions=0:intercept_tls_get_addr=0")
 
 # pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry per TEST, run from the source root.
 function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
-  target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/test)
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
   target_compile_options(test_${name} PRIVATE ${PMG_QUICK_OPTIONS})
   pmg_use_common_headers(test_${name} tests)
-  target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMG_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+  target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PMG_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300
                        ENVIRONMENT "LSAN_OPTIONS=${PMG_LSAN_OPTIONS}")
+endfunction()
+
+# fuzz_<room> decodes whatever a bus says, from decoding_fuzzer.cpp; the test <room>.fuzz gives it so many seeded random inputs. Clang: libFuzzer,
+# fuzz_<room> CORPUS; other compilers: decoding_fuzzer_run.cpp.
+function(pmg_add_fuzzer room runs)
+  add_executable(fuzz_${room} decoding_fuzzer.cpp)
+  target_include_directories(fuzz_${room} PRIVATE ${CMAKE_SOURCE_DIR}/test)
+  target_compile_definitions(fuzz_${room} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_libraries(fuzz_${room} PRIVATE pmg_room_${room} pmg_warnings)
+  if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    target_compile_options(fuzz_${room} PRIVATE -fsanitize=fuzzer)
+    target_link_options(fuzz_${room} PRIVATE -fsanitize=fuzzer)
+    add_test(NAME ${room}.fuzz COMMAND fuzz_${room} -runs=${runs} -seed=1)
+  else()
+    target_sources(fuzz_${room} PRIVATE decoding_fuzzer_run.cpp)
+    add_test(NAME ${room}.fuzz COMMAND fuzz_${room} ${runs})
+  endif()
 endfunction()

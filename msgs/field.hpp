@@ -3,10 +3,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 
 namespace pmg_msgs {
+
+/// One meaning of a number.
+struct Constant {
+  std::int64_t value;
+  std::string_view name;
+};
 
 /// One member of a message.
 template <typename Message, typename Value>
@@ -16,6 +23,7 @@ struct Field {
   std::string_view length;                     ///< of an array: a number, or the member that holds it; empty: no array
   bool is_length;                              ///< the length of other members
   std::span<const std::string_view> elements;  ///< names of an array's elements, where the .lcm file gives them
+  std::span<const Constant> constants;         ///< what the number may be, where the .lcm file says so
   std::string_view comment;                    ///< the comment behind the member in the .lcm file
   Value Message::*access;
 };

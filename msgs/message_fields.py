@@ -5,20 +5,23 @@ Usage: message_fields.py HEADER FILE.lcm...
 HEADER gets, for each struct, its channel and its members: name, type, length, names of elements, comment, access. The tuple `Messages`
 of the files' package holds every message that has a channel, in the order of the files.
 
-Two conventions in the files' comments, which change no message's type hash:
+Three conventions in the files' comments, which change no message's type hash:
 - the comment before a struct that is sent begins with its channel: "// Channel STATE: ...";
-- the comment behind an array of fixed length names its elements in brackets: "double gyro_rad_s[3];  // [x, y, z] of the IMU".
+- the comment behind an array of fixed length names its elements in brackets: "double gyro_rad_s[3];  // [x, y, z] of the IMU";
+- the comment behind a number that means one of several constants names the first and the last of them: "int8_t bus;  // OK to LOST", or those
+  of another struct: "int8_t mode;  // PASSIVE to FAULT of mode_t".
 
 Exit codes: 0 done, 2 a file that can't be used.
 """
 
 import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 TOKEN = re.compile(r"(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<word>[\w.+-]+)|(?P<mark>[{}\[\];,=])|(?P<space>\s+)|(?P<other>.)", re.S)
-PLAIN = {"int8_t", "int16_t", "int32_t", "int64_t", "byte", "float", "double", "string", "boolean"}
+INTEGERS = {"int8_t", "int16_t", "int32_t", "int64_t"}
+PLAIN = INTEGERS | {"byte", "float", "double", "string", "boolean"}
 
 
 @dataclass
@@ -29,6 +32,7 @@ class Member:
     length: str = ""
     comment: str = ""
     is_length: bool = False
+    constants: list[tuple[str, int]] = field(default_factory=list)
 
     def elements(self) -> list[str]:
         """Names in the first bracket of the comment that has as many as the array has elements."""
@@ -45,6 +49,7 @@ class Struct:
     name: str
     channel: str
     members: list[Member]
+    constants: dict[str, int]
 
 
 def tokens(text: str) -> list[tuple[str, str, int]]:
@@ -67,9 +72,10 @@ def comment_behind(stream: list, at: int, line: int) -> str:
     return without_marks(text) if kind == "comment" and where == line else ""
 
 
-def read_members(stream: list, at: int, file: str) -> tuple[list[Member], int]:
-    """From behind a struct's opening brace; also the place behind its closing one. lcm-gen has checked the grammar."""
+def read_members(stream: list, at: int, file: str) -> tuple[list[Member], dict[str, int], int]:
+    """From behind a struct's opening brace: members, constants, the place behind its closing brace. lcm-gen has checked the grammar."""
     members: list[Member] = []
+    constants: dict[str, int] = {}
     while stream[at][1] != "}":
         kind, word, line = stream[at]
         if kind == "comment":
@@ -77,7 +83,10 @@ def read_members(stream: list, at: int, file: str) -> tuple[list[Member], int]:
             continue
         end = next(i for i in range(at, len(stream)) if stream[i][1] == ";")
         declared = [text for kind, text, _ in stream[at:end] if kind != "comment"]
-        if word != "const":
+        if word == "const":
+            for name, value in re.findall(r"(\w+) = ([-+\w]+)", " ".join(declared)):
+                constants[name] = int(value, 0)
+        else:
             comment = comment_behind(stream, end + 1, stream[end][2])
             for one in " ".join(declared[1:]).split(","):
                 name, *lengths = re.findall(r"[\w.]+", one)
@@ -90,7 +99,7 @@ def read_members(stream: list, at: int, file: str) -> tuple[list[Member], int]:
         member.is_length = member.name in lengths
         if member.length and member.type not in PLAIN:
             raise ValueError(f"{file}:{member.line}: {member.name} is an array of messages; expected elements of a plain type")
-    return members, at + 1
+    return members, constants, at + 1
 
 
 def read(file: str) -> list[Struct]:
@@ -102,25 +111,42 @@ def read(file: str) -> list[Struct]:
             package = stream[at + 1][1]
         elif text == "struct":
             channel = re.match(r"Channel (\w+)", before)
-            members, end = read_members(stream, at + 3, file)
-            structs.append(Struct(package, stream[at + 1][1], channel.group(1) if channel else "", members))
+            members, constants, end = read_members(stream, at + 3, file)
+            structs.append(Struct(package, stream[at + 1][1], channel.group(1) if channel else "", members, constants))
             at = end - 1
         before = f"{before} {without_marks(text)}".strip() if kind == "comment" else ""
         at += 1
     return structs
 
 
+def name_constants(structs: list[Struct], file_of: dict[str, str]) -> None:
+    """Gives each member the constants that its comment names."""
+    of_struct = {struct.name: struct.constants for struct in structs}
+    for struct in structs:
+        for member in struct.members:
+            named = re.search(r"\b([A-Z][A-Z_]*) to ([A-Z][A-Z_]*)\b(?: of (\w+))?", member.comment)
+            if named is None or member.type not in INTEGERS:
+                continue
+            first, last, other = named.groups()
+            constants = of_struct.get(other or struct.name, {})
+            if first not in constants or last not in constants:
+                raise ValueError(f"{file_of[struct.name]}:{member.line}: {member.name}: no constants {first} to {last} in {other or struct.name}")
+            names = list(constants)
+            member.constants = [(name, constants[name]) for name in names[names.index(first) : names.index(last) + 1]]
+
+
 def quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def field(struct: Struct, member: Member) -> str:
+def field_text(struct: Struct, member: Member) -> str:
     names = member.elements()
     elements = f"{struct.package}::element_names::{struct.name}_{member.name}" if names else "{}"
+    constants = f"{struct.package}::constants_of::{struct.name}_{member.name}" if member.constants else "{}"
     flag = "true" if member.is_length else "false"
     return (
         f"    Field<{struct.package}::{struct.name}, decltype({struct.package}::{struct.name}::{member.name})>{{"
-        f"{quoted(member.name)}, {quoted(member.type)}, {quoted(member.length)}, {flag}, {elements}, {quoted(member.comment)}, "
+        f"{quoted(member.name)}, {quoted(member.type)}, {quoted(member.length)}, {flag}, {elements}, {constants}, {quoted(member.comment)}, "
         f"&{struct.package}::{struct.name}::{member.name}}}"
     )
 
@@ -144,12 +170,18 @@ def header(structs: list[Struct]) -> str:
                     f"namespace {struct.package}::element_names {{ inline constexpr std::array<std::string_view, {len(names)}> "
                     f"{struct.name}_{member.name} = {{{', '.join(map(quoted, names))}}}; }}"
                 )
+            if member.constants:
+                values = ", ".join(f"pmg_msgs::Constant{{{value}, {quoted(name)}}}" for name, value in member.constants)
+                lines.append(
+                    f"namespace {struct.package}::constants_of {{ inline constexpr std::array<pmg_msgs::Constant, {len(member.constants)}> "
+                    f"{struct.name}_{member.name} = {{{values}}}; }}"
+                )
     lines += ["", "namespace pmg_msgs {"]
     for struct in structs:
         lines += [
             "template <>",
             f"inline constexpr auto kFields<{struct.package}::{struct.name}> = std::tuple{{",
-            ",\n".join(field(struct, member) for member in struct.members) + "};",
+            ",\n".join(field_text(struct, member) for member in struct.members) + "};",
         ]
         if struct.channel:
             lines += ["template <>", f"inline constexpr std::string_view kChannel<{struct.package}::{struct.name}> = {quoted(struct.channel)};"]
@@ -166,7 +198,10 @@ def main(arguments: list[str]) -> int:
         return 2
     out, *files = arguments
     try:
-        Path(out).write_text(header([struct for file in files for struct in read(file)]))
+        read_from = {file: read(file) for file in files}
+        structs = [struct for file in files for struct in read_from[file]]
+        name_constants(structs, {struct.name: file for file in files for struct in read_from[file]})
+        Path(out).write_text(header(structs))
     except (OSError, ValueError) as error:
         print(f"message_fields.py: {error}", file=sys.stderr)
         return 2

@@ -22,7 +22,7 @@ for library in "$tmp"/host/lib/*.so*; do strip "$library"; patchelf --set-rpath 
 "$build/bin/pmg_sil" --robot "$robot" --export-mjcf "$tmp/host/robot.xml" > /dev/null
 robot_dir=$robot; [[ -d $robot_dir ]] || robot_dir=$here/../config/robots/$robot
 cp -r "$robot_dir"/. "$tmp/host/robot/"; rm -rf "$tmp/host/robot/policies"
-cp -r "$here/pmg_train" "$here/config.yaml" "$here/randomization.yaml" "$tmp/host/"
+cp -r "$here/pmg_train" "$here/config.yaml" "$here/randomization.yaml" "$here/train_policies.sh" "$tmp/host/"
 rm -rf "$tmp/host/pmg_train/__pycache__"
 printf 'export PYTHONPATH=$PWD:$PWD/site MUJOCO_GL=disable PYTHONUNBUFFERED=1\n' > "$tmp/host/env.sh"
 tar cJf "$out/host.tar.xz" -C "$tmp/host" .

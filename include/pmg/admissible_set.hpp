@@ -36,33 +36,39 @@ class AdmissibleSet {
   }
 
   bool contains_posture(const JointVector& q_s) const noexcept {
-    return (q_s - room_up_).maxCoeff() <= 0.0 && (q_s + room_down_).minCoeff() >= 0.0;
+    return (q_s - room_up_).cwiseMax(-q_s - room_down_).maxCoeff() <= 0.0;
   }
 
   /// (gains, q_s) => (s): the largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s. Gains
   /// from index `size` on are 0.
   double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s,
                         std::size_t size = kCorners) const noexcept {
-    JointVector rise = JointVector::Zero(q_s.size());
-    JointVector fall = JointVector::Zero(q_s.size());
+    JointVector above = q_s - room_up_;  // how far each joint is beyond its room [rad]
+    JointVector below = -q_s - room_down_;
     for (std::size_t d = 0; d < size; ++d) {
       if (gain[d] == 0.0) continue;
-      rise.noalias() += gain[d] * up_[d];
-      fall.noalias() += gain[d] * down_[d];
+      // Both sums in one pass over the joints: two of Eigen's take 1.5 times as long.
+      const double g = gain[d];
+      const double* const up = up_[d].data();
+      const double* const down = down_[d].data();
+      for (Eigen::Index i = 0; i < q_s.size(); ++i) {
+        above[i] += g * up[i];
+        below[i] += g * down[i];
+      }
     }
-    if ((rise + q_s - room_up_).maxCoeff() <= 0.0 && (fall - q_s - room_down_).maxCoeff() <= 0.0) return 1.0;
+    if (above.cwiseMax(below).maxCoeff() <= 0.0) return 1.0;
     double scale = 1.0;
     for (Eigen::Index i = 0; i < q_s.size(); ++i) {
-      scale = std::min(scale, allowed(rise[i], room_up_[i] - q_s[i]));
-      scale = std::min(scale, allowed(fall[i], room_down_[i] + q_s[i]));
+      scale = std::min(scale, allowed(above[i], room_up_[i] - q_s[i]));
+      scale = std::min(scale, allowed(below[i], room_down_[i] + q_s[i]));
     }
     return scale;
   }
 
  private:
-  /// The largest s in [0, 1] with s * excursion <= room.
-  static double allowed(double excursion, double room) noexcept {
-    return excursion > room ? std::max(room, 0.0) / excursion : 1.0;
+  /// The largest s in [0, 1] with s * excursion <= room, where the excursion exceeds the room by `beyond`.
+  static double allowed(double beyond, double room) noexcept {
+    return beyond > 0.0 ? std::max(room, 0.0) / (room + beyond) : 1.0;
   }
 
   JointVector room_up_;          ///< q_upper - margin - q_stand [rad]

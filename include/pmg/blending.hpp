@@ -68,11 +68,18 @@ template <typename T>
 using PerCorner = std::array<T, kCorners>;
 
 struct Mixture {
-  PerCorner<double> gain{};        ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
-  PerCorner<double> weight{};      ///< for T, mu and r; sums to 1, or all 0 for a zero command
-  double gain_sum = 0.0;           ///< at most 1
-  std::size_t size = kDirections;  ///< corners that the rule uses; gains and weights behind them are 0
-  bool normalised = false;         ///< the command asks for more than the clips give together
+  /// All gains and weights of the rule's corners are 0.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): those behind them are never read, and zeroing costs time
+  explicit Mixture(std::size_t corners) noexcept : size(corners) {
+    std::fill_n(gain.begin(), size, 0.0);
+    std::fill_n(weight.begin(), size, 0.0);
+  }
+
+  std::size_t size;          ///< corners that the rule uses; gains and weights behind them have no value
+  PerCorner<double> gain;    ///< g: q_d = sum g q(phi) + (1 - sum g) q_stand
+  PerCorner<double> weight;  ///< for T, mu and r; sums to 1, or all 0 for a zero command
+  double gain_sum = 0.0;     ///< at most 1
+  bool normalised = false;   ///< the command asks for more than the clips give together
 };
 
 /// kCorners: largest sum of the amplitudes n_i = |u_i| / u_max_i. 1.8 is two channels at 90 % of their ranges or three
@@ -87,8 +94,7 @@ inline constexpr double kCornerReach = 1.8;
 /// are scaled by one factor until each is at most 1 and their sum at most kCornerReach, so the command keeps its
 /// direction.
 inline Mixture mix_corners(const Command& command, const PerDirection<double>& scale) noexcept {
-  Mixture mixture;
-  mixture.size = kCorners;
+  Mixture mixture(kCorners);
   std::array<double, kVelocityChannels> amplitude{};
   Corner sign;
   double sum = 0.0, largest = 0.0;
@@ -122,17 +128,15 @@ inline Mixture mix_corners(const Command& command, const PerDirection<double>& s
   return mixture;
 }
 
-/// (rule, command, u_max) => (gains, weights). Every rule gives q_d = sum g_i q_i + (1 - sum g_i) q_stand:
+/// (rule, command, u_max) => (gains, weights) over the single directions:
 ///   kGain   n_i = |u_i| / u_max_i, g_i = n_i / max(1, sum n), weights g_i / sum g. Mixtures keep their amplitude.
 ///   kPaper  alpha_i = clip(|u_i| / u_max_i, 0, 1) (eq. 4), w_i = |u_i| / (sum |u| + 1e-6) (eq. 6), and with eq. 5 in
 ///           eq. 7: q_d = sum w_i (alpha_i q_i + (1 - alpha_i) q_stand), so g_i = w_i alpha_i. The paper's weights sum
 ///           to a little less than 1, and to 0 at rest, where its q_d is the zero posture. Here the missing share goes
 ///           to q_stand. T, mu and r use w_i / sum w for the same reason.
-///   kCorners  mix_corners().
-inline Mixture mix(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
-  if (blend == Blend::kCorners) return mix_corners(command, scale);
+inline Mixture mix_directions(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
   constexpr double kEpsilon = 1e-6;  // the paper's epsilon (eq. 6), for which it gives no value
-  Mixture mixture;
+  Mixture mixture(kDirections);
   double amplitude_sum = 0.0, speed_sum = 0.0;
   PerDirection<double> amplitude{}, speed{};
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -158,6 +162,11 @@ inline Mixture mix(Blend blend, const Command& command, const PerDirection<doubl
     mixture.gain_sum += mixture.gain[d];
   }
   return mixture;
+}
+
+/// (rule, command, u_max) => (gains, weights). Every rule gives q_d = sum g_i q_i + (1 - sum g_i) q_stand.
+inline Mixture mix(Blend blend, const Command& command, const PerDirection<double>& scale) noexcept {
+  return blend == Blend::kCorners ? mix_corners(command, scale) : mix_directions(blend, command, scale);
 }
 
 /// T, mu and r of one clip or of a mixture.

@@ -35,12 +35,26 @@ class ClipCurve {
     dq_dphi.noalias() = x * s.slope;
   }
 
+  /// The neighbouring knots of a phase and their weights for q and for dq/dphi; the same for all curves with as many
+  /// samples.
+  struct Segment {
+    Eigen::Index column = 0;
+    Eigen::Vector4d value = Eigen::Vector4d::Zero();
+    Eigen::Vector4d slope = Eigen::Vector4d::Zero();
+  };
+
+  /// phase in [0, 1).
+  Segment segment(double phase) const noexcept {
+    const double x = phase * samples_;
+    const double k = std::min(std::floor(x), samples_ - 1.0);  // phase just below 1 may round up to the end
+    return {2 * static_cast<Eigen::Index>(k), value_weights(x - k), slope_weights(x - k)};
+  }
+
   /// Gains and Hermite weights are multiplied first, so each sum costs four multiply-adds of a joint vector. q and dq
   /// must be different vectors.
   ///   q += g q(phi),  dq += g dq/dphi dphi/dt + dg/dt q(phi).
-  void add_blended(double phase, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
+  void add_blended(const Segment& s, double phase_rate_per_s, double gain, double gain_rate_per_s, JointVector& q,
                    JointVector& dq) const noexcept {
-    const Segment s = segment(phase);
     const Eigen::Vector4d a = gain * s.value;
     const Eigen::Vector4d b = gain * phase_rate_per_s * s.slope + gain_rate_per_s * s.value;
     // One pass reads each knot once for both sums. Eigen's expressions need two passes and 1.5 times the time.
@@ -67,21 +81,9 @@ class ClipCurve {
   }
 
   Eigen::Index joints() const noexcept { return knots_.rows(); }
+  double samples() const noexcept { return samples_; }  ///< N
 
  private:
-  /// Four neighbouring columns of knots_ and their weights for q and for dq/dphi.
-  struct Segment {
-    Eigen::Index column;
-    Eigen::Vector4d value;
-    Eigen::Vector4d slope;
-  };
-
-  Segment segment(double phase) const noexcept {
-    const double x = phase * samples_;
-    const double k = std::min(std::floor(x), samples_ - 1.0);  // phase just below 1 may round up to the end
-    return {2 * static_cast<Eigen::Index>(k), value_weights(x - k), slope_weights(x - k)};
-  }
-
   // Cubic Hermite basis on a segment of length 1/N, t in [0, 1), for (q_k, q'_k, q_k+1, q'_k+1).
   Eigen::Vector4d value_weights(double t) const noexcept {
     const double h01 = t * t * (3.0 - 2.0 * t);

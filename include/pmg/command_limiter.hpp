@@ -58,11 +58,12 @@ class CommandLimiter {
     const double rate_factor = 1.0 - (1.0 - double_support_rate_) * double_support;
     const bool stopping = target_[kVx] == 0.0 && target_[kVy] == 0.0 && target_[kOmega] == 0.0;
     if (!stopping) stop_left_s_ = stop_within_s_;
+    const double regained = dt_s < turn_s_ ? dt_s / turn_s_ : 1.0;
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       const bool velocity = channel < kVelocityChannels;
       double step = rate_per_s_[channel] * dt_s * (velocity ? rate_factor : 1.0);
       if (velocity && stopping) step = std::max(step, stopping_step(channel, dt_s));
-      move(channel, step, dt_s);
+      move(channel, step, regained);
     }
     if (stopping) stop_left_s_ = std::max(0.0, stop_left_s_ - dt_s);
     return command_;
@@ -81,9 +82,9 @@ class CommandLimiter {
     limited_ = limited_ || target_.u[channel] != user;
   }
 
-  void move(std::size_t channel, double step, double dt_s) noexcept {
+  /// step: largest change; regained: share of the rate that a direction gets back.
+  void move(std::size_t channel, double step, double regained) noexcept {
     double &rising = rising_share_[channel], &falling = falling_share_[channel];
-    const double regained = dt_s < turn_s_ ? dt_s / turn_s_ : 1.0;
     rising = std::min(1.0, rising + regained);
     falling = std::min(1.0, falling + regained);
     const double change = std::clamp(target_.u[channel] - command_.u[channel], -falling * step, rising * step);

@@ -247,7 +247,10 @@ class Generator {
   /// asked - wanted.
   void report_command(const Command& wanted, const Command& asked, const Mixture& mixture, double posture_share,
                       double dt_s) noexcept {
-    const Command previous = reference_.command;
+    const auto report = [&](std::size_t channel, double value) {
+      reference_.command_rate.u[channel] = (value - reference_.command.u[channel]) / dt_s;
+      reference_.command.u[channel] = value;
+    };
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
       const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
       double given = mixture.gain[forward] * scale_[forward] - mixture.gain[back] * scale_[back];
@@ -255,13 +258,10 @@ class Generator {
         const int sign = kCornerTable[c].sign[channel];
         if (sign != 0) given += sign * mixture.gain[c] * scale_[sign < 0 ? back : forward];
       }
-      reference_.command.u[channel] = given - (asked.u[channel] - wanted.u[channel]);
+      report(channel, given - (asked.u[channel] - wanted.u[channel]));
     }
     for (std::size_t channel = kVelocityChannels; channel < kChannels; ++channel) {
-      reference_.command.u[channel] = posture_share * asked.u[channel] - (asked.u[channel] - wanted.u[channel]);
-    }
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      reference_.command_rate.u[channel] = (reference_.command.u[channel] - previous.u[channel]) / dt_s;
+      report(channel, posture_share * asked.u[channel] - (asked.u[channel] - wanted.u[channel]));
     }
   }
 
@@ -301,12 +301,18 @@ class Generator {
     }
     reference_.q.noalias() = (1.0 - mixture.gain_sum) * q_stand_ + q_s_;
     reference_.dq.noalias() = (q_s_ - previous_q_s_) * (1.0 / dt_s) - gain_sum_rate_per_s * q_stand_;
+    ClipCurve::Segment segment;
+    double samples = 0.0;  // for which the segment holds: most libraries' clips have equally many
     for (std::size_t d = 0; d < mixture.size; ++d) {
       if (mixture.gain[d] == 0.0 && gain_rate_per_s[d] == 0.0) continue;
-      curve_[d].add_blended(phase_.phase(), phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
+      if (curve_[d].samples() != samples) {
+        segment = curve_[d].segment(phase_.phase());
+        samples = curve_[d].samples();
+      }
+      curve_[d].add_blended(segment, phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
                             reference_.dq);
     }
-    gain_ = mixture.gain;
+    std::copy_n(mixture.gain.begin(), mixture.size, gain_.begin());
     previous_q_s_ = q_s_;
   }
 

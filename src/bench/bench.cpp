@@ -196,7 +196,7 @@ Bench read_bench(const std::filesystem::path& folder) {
 std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const work::Progress& progress) const {
   const std::vector<bool> kept = filter.keeps(runs);
   std::vector<BenchRun> found;
-  const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque};
+  const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque, other_units};
   for (std::size_t row = 0; row < kept.size(); ++row) {
     if (!kept[row]) continue;
     BenchRun run = describe(*this, row);

@@ -25,6 +25,13 @@ struct BenchLoad {
   bool inertia_known = false, gravity_known = false;
 };
 
+/// A parameter that is larger in this run's assembly than in the model of all runs: of this arm, this servo.
+struct AssemblyDifference {
+  std::string parameter;                 ///< of model::actuator_parameters, or load.gravity_scale
+  double amount = 0.0;                   ///< in the parameter's unit
+  double lower = -1e300, upper = 1e300;  ///< range of the parameter: the sum is cut at it
+};
+
 /// One row of runs.csv with its recording.
 struct BenchRun {
   std::string file, trajectory;
@@ -32,6 +39,7 @@ struct BenchRun {
   std::optional<double> temp_C;  ///< from runs.csv
   double kp = 1.0, kd = 0.0;     ///< commanded gains, in the drive's own unit; kp = 1 and kd = 0 without a column
   JointLoad load;
+  std::vector<AssemblyDifference> differs{};  ///< nothing until somebody has found a difference
   Recording recording;
 };
 
@@ -52,6 +60,7 @@ struct Bench {
   CsvTable runs;
   std::vector<Correction> corrections;  ///< of what the files say; none of them until somebody asks for it
   std::vector<std::string> left_out;    ///< files of runs that are not read
+  bool other_units = false;             ///< positions too large for their unit are read, too (RecordingFormat)
 
   /// (filter) => (its rows with their recordings, checked and corrected, without those left out). After an
   /// interruption: the rows read so far. Throws files::ConfigError; std::invalid_argument if the filter keeps no row.

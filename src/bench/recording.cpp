@@ -18,6 +18,9 @@ constexpr double kLongestGap_samples = 5.0;
 constexpr double kLargestAngle_rad =
     100.0;  // sixteen turns, more than any bench needs; in degrees a bit more than a quarter turn
 constexpr double kLargestPosition_m = 20.0;  // longer than any bench's axis; in millimetres only 20 mm
+constexpr double kSmallestUnit = 1000.0;     // thousandths: the smallest unit that somebody takes for radians or metres
+
+double largest_position(bool linear) { return linear ? kLargestPosition_m : kLargestAngle_rad; }
 
 void check_times(const CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
   const double step_s = 1.0 / sample_rate_hz;
@@ -42,8 +45,10 @@ void check_times(const CsvTable& table, const std::vector<double>& t_s, double s
   }
 }
 
-void check_positions(const CsvTable& table, const std::string& column, const std::vector<double>& values, bool linear) {
-  const double most = linear ? kLargestPosition_m : kLargestAngle_rad;
+void check_positions(const CsvTable& table, const std::string& column, const std::vector<double>& values,
+                     const RecordingFormat& format) {
+  const bool linear = format.linear;
+  const double most = largest_position(linear) * (format.other_units ? kSmallestUnit : 1.0);
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (std::abs(values[k]) <= most) continue;
     files::raise(table.place(k), column, fmt::format("is {}", values[k]),
@@ -87,6 +92,13 @@ std::size_t Recording::dropouts() const {
   return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), false));
 }
 
+bool plausible_positions(const Recording& recording, bool linear) {
+  const auto plausible = [&](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [&](double v) { return std::abs(v) <= largest_position(linear); });
+  };
+  return plausible(recording.q_cmd_rad) && plausible(recording.q_rad);
+}
+
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format) {
   const CsvTable table = read_csv(file);
   const std::string unit = format.linear ? "_m" : "_rad", rate = unit + "_s";
@@ -123,8 +135,8 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
                  fmt::format("at least {}", kFewestSamples));
   }
   check_times(table, recording.t_s, format.sample_rate_hz);
-  check_positions(table, "q_cmd" + unit, recording.q_cmd_rad, format.linear);
-  check_positions(table, "q" + unit, recording.q_rad, format.linear);
+  check_positions(table, "q_cmd" + unit, recording.q_cmd_rad, format);
+  check_positions(table, "q" + unit, recording.q_rad, format);
   const auto constant = [](const std::vector<double>& values) {
     return values.empty() || std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
   };

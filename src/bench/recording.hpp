@@ -21,11 +21,16 @@ struct RecordingFormat {
   bool linear = false;            ///< columns end in _m instead of _rad
   double sample_rate_hz = 100.0;  ///< from bench.yaml
   bool commanded = true;          ///< positions are commanded; false where the recorded torque is the input
+  /// For whoever looks for columns in another unit: positions that are too large for radians or metres are read, too.
+  bool other_units = false;
 };
 
 /// Throws files::ConfigError with file, line and column on: missing columns or columns in another unit, NaN, times that
 /// do not increase, gaps, a sample rate other than bench.yaml's (times in milliseconds?), angles that look like
 /// degrees, too few samples, and a constant command.
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format);
+
+/// True if no position is larger than a bench's joint can go, in radians (metres on a linear rig).
+bool plausible_positions(const Recording& recording, bool linear);
 
 }  // namespace pmg::bench

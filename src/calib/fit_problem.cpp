@@ -92,6 +92,8 @@ FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
                        : p.unit.starts_with("Nm")      ? 100.0
                        : p.unit.starts_with("1/Nm")    ? 0.01
                        : p.unit.starts_with("1/(Nm^2") ? 1e-4
+                       : p.unit == "W"                 ? 100.0
+                       : p.unit == "1/J"               ? 0.01
                                                        : 1.0;
   if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
   return {name, std::string(p.unit), p.lower * scale, p.upper * scale};

@@ -59,10 +59,11 @@ Json noise_json(const bench::NoiseFloor& floor) {
 }
 
 /// JSON has no infinity: null.
-Json parameter_json(const FitParameter& parameter, double value, const Confidence& confidence) {
+Json parameter_json(const bench::Bench& bench, const FitParameter& parameter, double value,
+                    const Confidence& confidence) {
   Json json = {{"value", value},
                {"deviation", std::isfinite(confidence.deviation) ? Json(confidence.deviation) : Json(nullptr)},
-               {"unit", parameter.unit},
+               {"unit", unit_on_rig(parameter.unit, bench)},
                {"lower", parameter.lower},
                {"upper", parameter.upper},
                {"at_bound", at_bound(parameter, value)}};
@@ -74,6 +75,15 @@ Json parameter_json(const FitParameter& parameter, double value, const Confidenc
 
 std::string position_unit(const bench::Bench& bench, bool thousandths) {
   return std::string(thousandths ? "m" : "") + (bench.rig == bench::Rig::kLinear ? "m" : "rad");
+}
+
+std::string unit_on_rig(std::string unit, const bench::Bench& bench) {
+  if (bench.rig != bench::Rig::kLinear) return unit;
+  for (const auto& [turning, linear] : {std::pair{"kg m^2", "kg"}, {"Nm", "N"}, {"rad", "m"}}) {
+    for (std::size_t at = 0; (at = unit.find(turning, at)) != std::string::npos;)
+      unit.replace(at, std::string_view(turning).size(), linear);
+  }
+  return unit;
 }
 
 bool at_bound(const FitParameter& parameter, double value) {
@@ -122,7 +132,7 @@ Json fit_json(const FitResults& results) {
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
     const FitParameter& parameter = results.problem->parameters()[i];
     json["parameters"][parameter.name] =
-        parameter_json(parameter, value(results.fit.model, parameter.name), results.confidence[i]);
+        parameter_json(*results.bench, parameter, value(results.fit.model, parameter.name), results.confidence[i]);
   }
   if (results.bench->law == bench::DriveLaw::kPositionPd) {  // with the same gains in all runs
     const bench::BenchRun& run = results.problem->runs().front().run();

@@ -55,6 +55,8 @@ std::vector<std::string> motor_remarks(const FitResults& results);
 
 /// "rad" or "mrad" for a rotary joint, "m" or "mm" for a linear axis.
 std::string position_unit(const bench::Bench& bench, bool thousandths);
+/// (unit of a parameter of a turning joint) => (its unit on this bench's rig): newtons and metres on a linear axis.
+std::string unit_on_rig(std::string unit, const bench::Bench& bench);
 
 /// A warning about a fitted parameter, or "".
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);

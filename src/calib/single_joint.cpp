@@ -1,9 +1,13 @@
 #include "calib/single_joint.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
+#include "calib/fit_problem.hpp"
+#include "calib/simulated.hpp"
 #include "model/constants.hpp"
 
 namespace pmg::calib {
@@ -11,6 +15,8 @@ namespace pmg::calib {
 namespace {
 
 constexpr double kLost_rad = 1e3;  // a larger angle means divergence
+
+std::atomic<std::uint64_t> rollouts{0}, steps_of_rollouts{0};
 
 sim::ActuatorInput input_at(const bench::Bench& bench, const bench::BenchRun& run, std::size_t sample) {
   const bench::Recording& r = run.recording;
@@ -53,6 +59,8 @@ double resting_reading_rad(const bench::Recording& r) {
 
 }  // namespace
 
+Simulated simulated() noexcept { return {rollouts, steps_of_rollouts}; }
+
 double simulation_step_s(const bench::Bench& bench) {
   return std::min(model::kBusPeriod_s, 0.25 / bench.sample_rate_hz);
 }
@@ -88,29 +96,93 @@ sim::ActuatorInput SingleJoint::input(std::size_t step) const {
   return input;
 }
 
+/// Of a sensor before an elastic transmission the reading is that of a motor which is ahead of its joint by what the
+/// load winds there, and the load depends on the joint's angle. Near the angle at which the load hangs, the motor is
+/// within the play, and the load hangs there. Elsewhere the joint is on the motor's side of that angle: halving finds
+/// it.
+SingleJoint::Start SingleJoint::start(const JointModel& model) const {
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  constexpr int kHalvings = 40;  // of at most half a turn: far below any sensor's quantum
+  const double motor_rad = sim::ActuatorModel::joint_rad(model.actuator, start_reading_rad_, 0.0);
+  const double on_motor = model.actuator.sensor.on_motor, weight_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  const auto load_Nm = [&](double q_rad) { return weight_Nm * std::sin(q_rad - run_.load.hangs_at_rad); };
+  if (on_motor == 0.0 || weight_Nm == 0.0) return {motor_rad, load_Nm(motor_rad)};
+  const double lowest_rad = run_.load.hangs_at_rad + (weight_Nm > 0.0 ? 0.0 : 0.5 * kTurn_rad);
+  const double hangs_rad = lowest_rad + kTurn_rad * std::round((motor_rad - lowest_rad) / kTurn_rad);
+  const double slack_rad = (motor_rad - hangs_rad) / on_motor;
+  if (std::abs(slack_rad) <= 0.5 * model.actuator.transmission.backlash_rad) return {hangs_rad, 0.0, slack_rad};
+  double low_rad = hangs_rad, high_rad = motor_rad;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double q_rad = 0.5 * (low_rad + high_rad);
+    const double foreseen_rad = sim::ActuatorModel::joint_rad(model.actuator, start_reading_rad_, load_Nm(q_rad));
+    ((q_rad < foreseen_rad) == (high_rad > low_rad) ? low_rad : high_rad) = q_rad;
+  }
+  return {high_rad, load_Nm(high_rad)};
+}
+
+SingleJoint SingleJoint::beginning(double seconds) const {
+  SingleJoint found = *this;
+  bench::Recording& r = found.run_.recording;
+  const auto end = std::upper_bound(r.t_s.begin(), r.t_s.end(), r.t_s.front() + seconds);
+  const auto samples = static_cast<std::size_t>(std::max<std::ptrdiff_t>(2, end - r.t_s.begin()));
+  if (samples >= r.t_s.size()) return found;
+  for (std::vector<double>* column : {&r.t_s, &r.q_cmd_rad, &r.q_rad, &r.dq_cmd_rad_s, &r.dq_rad_s, &r.tau_ff_Nm,
+                                      &r.torque_Nm, &r.bus_V, &r.drive_V, &r.temp_C})
+    column->resize(std::min(column->size(), samples));
+  r.enabled.resize(std::min(r.enabled.size(), samples));
+  r.valid.resize(samples);
+  found.inputs_.resize(samples);
+  found.place_of_sample_.erase(found.place_of_sample_.begin() + static_cast<std::ptrdiff_t>(samples),
+                               found.place_of_sample_.end());
+  const std::size_t steps = found.place_of_sample_.back().step + 1;
+  found.sample_of_step_.resize(steps);
+  found.q_cmd_of_step_rad_.resize(steps);
+  return found;
+}
+
+JointModel SingleJoint::of_assembly(JointModel model) const {
+  for (const bench::AssemblyDifference& differs : run_.differs) {
+    const double sum = value(model, differs.parameter) + differs.amount;
+    set(model, differs.parameter, std::clamp(sum, differs.lower, differs.upper));
+  }
+  return model;
+}
+
 template <typename Seen>
-void SingleJoint::simulate(const JointModel& model, Seen&& seen) const {
+void SingleJoint::simulate(const JointModel& of_all, Seen&& seen) const {
+  const JointModel model = of_assembly(of_all);
   sim::ActuatorModel actuator(model.actuator, step_s_);
-  double q_rad = start_rad(model), dq_rad_s = 0.0;
+  const Start begin = start(model);
+  double q_rad = begin.q_rad, dq_rad_s = 0.0;
   const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
   const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
-  const auto told = [&](std::size_t step) {
-    sim::ActuatorInput now = input(step);
-    now.feed_forward_Nm *= model.feed_forward_scale;
-    return now;
+  sim::ActuatorInput now;
+  std::size_t told_sample = inputs_.size();
+  const auto tell = [&](std::size_t step) {
+    if (sample_of_step_[step] != told_sample) {  // several steps share a sample's input
+      told_sample = sample_of_step_[step];
+      now = inputs_[told_sample];
+      now.feed_forward_Nm *= model.feed_forward_scale;
+    }
+    now.q_rad = q_cmd_of_step_rad_[step];
   };
-  actuator.reset_at_rest(told(0), q_rad, gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad));
+  tell(0);
+  actuator.reset_at_rest(now, q_rad, begin.load_Nm, begin.slack_rad);
+  rollouts.fetch_add(1, std::memory_order_relaxed);
+  steps_of_rollouts.fetch_add(sample_of_step_.size(), std::memory_order_relaxed);
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
-    const sim::ActuatorTorque drive = actuator.step(told(k), q_rad, dq_rad_s);
-    const double torque_Nm =
-        drive.torque_Nm - (gravity_Nm != 0.0 ? gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad) : 0.0);
+    tell(k);
+    now.external_Nm = gravity_Nm != 0.0 ? -gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad) : 0.0;
+    const sim::ActuatorTorque drive = actuator.step(now, q_rad, dq_rad_s);
+    const double torque_Nm = drive.torque_Nm + now.external_Nm;
     dq_rad_s += step_s_ * torque_Nm / (inertia_kg_m2 - step_s_ * drive.slope_Nm_s_per_rad);
     const double before_rad = q_rad;
     q_rad += step_s_ * dq_rad_s;
     if (!(std::abs(q_rad) < kLost_rad)) q_rad = std::copysign(kLost_rad, q_rad), dq_rad_s = 0.0;
     while (sample < place_of_sample_.size() && place_of_sample_[sample].step == k) {
-      seen(sample, actuator.reading_rad(before_rad + place_of_sample_[sample].share * (q_rad - before_rad)));
+      const double share = place_of_sample_[sample].share;
+      seen(sample, actuator.reading_rad(before_rad + share * (q_rad - before_rad), share));
       ++sample;
     }
   }

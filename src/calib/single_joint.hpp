@@ -31,23 +31,34 @@ class SingleJoint {
  public:
   SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s);
 
-  /// (model) => (simulated reading at each sample of the recording [rad]). Open loop, from rest at the recording's
-  /// first position. There dry friction balances gravity minus drive torque, up to its limit.
+  /// (model) => (simulated reading at each sample of the recording [rad]), with what differs in this run's assembly.
+  /// Open loop, from rest at the recording's first position. There dry friction balances gravity minus drive torque, up
+  /// to its limit.
   std::vector<double> rollout(const JointModel& model) const;
 
   RolloutError error(const JointModel& model) const;
 
   const bench::BenchRun& run() const { return run_; }
+  /// Sets what differs from the model in this run's assembly; later rollouts have it.
+  void set_differences(std::vector<bench::AssemblyDifference> differs) { run_.differs = std::move(differs); }
+  /// (model of all runs) => (the model of this run's assembly).
+  JointModel of_assembly(JointModel model) const;
+  /// The same run as if it had ended after so many seconds, from the same rest. At least two samples stay.
+  SingleJoint beginning(double seconds) const;
   double step_s() const { return step_s_; }
   std::size_t steps() const { return sample_of_step_.size(); }
   sim::ActuatorInput input(std::size_t step) const;
-  double start_rad(const JointModel& model) const {
-    return sim::ActuatorModel::joint_rad(model.actuator.sensor, start_reading_rad_);
-  }
+
+  /// Where a rollout begins: the joint's angle, the load on it (positive pulls q down), and how far the motor is ahead
+  /// within the play of a shaft that carries nothing.
+  struct Start {
+    double q_rad = 0.0, load_Nm = 0.0, slack_rad = 0.0;
+  };
+  Start start(const JointModel& model) const;
 
  private:
   template <typename Seen>
-  void simulate(const JointModel& model, Seen&& seen) const;
+  void simulate(const JointModel& of_all, Seen&& seen) const;
 
   struct Place {  // of a sample between two steps
     std::size_t step;

@@ -10,7 +10,7 @@ namespace pmg::can {
 
 namespace {
 constexpr double kPeriod_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
-constexpr int kFrameBytes = 8, kImuFrames = 3;
+constexpr int kFrameBytes = 8, kImuFrames = 3, kHeartbeatBytes = 1;
 }  // namespace
 
 double frame_time_s(int bytes, int bitrate, int data_bitrate) {
@@ -25,25 +25,34 @@ double frame_time_s(int bytes, int bitrate, int data_bitrate) {
 
 BusLoad planned_load(const drives::BusSetup& bus) {
   BusLoad load;
-  load.frames = 2 * static_cast<int>(bus.motors.size());
-  load.time_s = load.frames * frame_time_s(kFrameBytes, bus.bitrate, bus.data_bitrate);
-  if (bus.imu) {  // the IMU sends classic frames
-    load.frames += kImuFrames;
-    load.time_s += kImuFrames * frame_time_s(kFrameBytes, bus.bitrate, 0);
+  const auto add = [&](int frames, int bytes, int data_bitrate) {
+    load.frames += frames;
+    load.time_s += frames * frame_time_s(bytes, bus.bitrate, data_bitrate);
+  };
+  for (const drives::MotorSetup& motor : bus.motors) {
+    const bool canopen = std::holds_alternative<drives::Cia402Settings>(motor.drive);
+    add(canopen ? 3 : 2, kFrameBytes, bus.data_bitrate);
   }
+  if (bus.has_canopen()) {
+    add(1, 0, 0);                // SYNC
+    add(1, kHeartbeatBytes, 0);  // in one cycle of kHeartbeatCycles
+  }
+  if (bus.imu) add(kImuFrames, kFrameBytes, 0);  // the IMU sends classic frames
   load.share = load.time_s / kPeriod_s;
   return load;
 }
 
 void check_load(const drives::DriveSetup& setup) {
   for (const drives::BusSetup& bus : setup.buses) {
+    if (bus.first_slave != 0) continue;
     const BusLoad load = planned_load(bus);
     if (load.share <= 1.0) continue;
     throw std::invalid_argument(
         fmt::format("{}: {} frames a cycle take {:.2f} ms at {} bit/s with the worst bit stuffing; expected {:.0f} ms "
                     "at most: fewer "
-                    "motors on this bus, or CAN FD (data_bitrate)",
-                    bus.name, load.frames, 1e3 * load.time_s, bus.bitrate, 1e3 * kPeriod_s));
+                    "motors on this bus{}",
+                    bus.name, load.frames, 1e3 * load.time_s, bus.bitrate, 1e3 * kPeriod_s,
+                    bus.has_canopen() ? "" : ", or CAN FD (data_bitrate)"));
   }
 }
 

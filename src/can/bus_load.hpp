@@ -18,10 +18,11 @@ struct BusLoad {
   double share = 0.0;   ///< of the bus cycle
 };
 
-/// A command and a reply of each motor and three frames of the IMU in each cycle of 2 ms.
+/// In each cycle of 2 ms: a command and a reply of each MIT drive, RPDO1, TPDO1 and TPDO2 of each CANopen drive, SYNC
+/// and a heartbeat on a bus with such drives, and three frames of the IMU.
 BusLoad planned_load(const drives::BusSetup& bus);
 
-/// Throws std::invalid_argument when a bus can't carry its frames in every cycle.
+/// Throws std::invalid_argument when a CAN bus can't carry its frames in every cycle.
 void check_load(const drives::DriveSetup& setup);
 
 }  // namespace pmg::can

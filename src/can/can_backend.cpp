@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <stdexcept>
-#include <thread>
+#include <algorithm>
 #include <vector>
 
 #include "can/bus_load.hpp"
 #include "can/can_hal.hpp"
+#include "can/canopen_setup.hpp"
 #include "can/roll_call.hpp"
 #include "can/socket_link.hpp"
+#include "model/constants.hpp"
 
 namespace pmg::can {
 
@@ -19,17 +19,15 @@ namespace {
 /// Nine cycles without a command, then damping: the drives damp in the tenth. A control tick may be 8 ms late.
 constexpr int kHoldCycles = 9;
 
-/// The identifiers that the robot sends on a bus.
-std::vector<std::uint32_t> awaited(const drives::BusSetup& bus) {
-  std::vector<std::uint32_t> ids = {kReplyId};
-  if (bus.imu) ids.insert(ids.end(), {kImuQuaternion, kImuRateOfTurn, kImuAcceleration});
-  return ids;
-}
-
 class CanBackend final : public hal::Backend {
  public:
   explicit CanBackend(const hal::BackendSetup& setup)
       : robot_(setup.robot), clock_(setup.clock), options_(setup.options), setup_(drives::load_drives(setup.robot)) {
+    for (const drives::BusSetup& bus : setup_.buses) {
+      if (bus.first_slave != 0)
+        throw std::invalid_argument(bus.name + ": its drives are EtherCAT slaves; expected --hal ethercat");
+    }
+    if (setup_.imu_slave) throw std::invalid_argument("the IMU is an EtherCAT slave; expected --hal ethercat");
     check_load(setup_);
   }
 
@@ -44,15 +42,16 @@ class CanBackend final : public hal::Backend {
     }
     return values;
   }
-  hal::BackendLimits limits() const override {
-    return {.guard = {.hold_cycles = kHoldCycles}, .stale_state_s = std::nullopt, .overrun_ticks = std::nullopt};
-  }
+  hal::BackendLimits limits() const override { return can::limits(); }
+
+  hal::BackendDescription description() const override { return can::description(setup_); }
 
   hal::Hal& connect(const std::function<bool()>& interrupted) override {
     std::vector<std::unique_ptr<Link>> links;
     for (const drives::BusSetup& bus : setup_.buses)
-      links.push_back(std::make_unique<SocketLink>(bus.name, awaited(bus), bus.data_bitrate != 0));
-    call_roll(setup_, links, interrupted);
+      links.push_back(std::make_unique<SocketLink>(bus.name, awaited_ids(bus), bus.data_bitrate != 0));
+    call_roll(setup_, links, sleeping(), interrupted);
+    set_up_nodes(setup_, links, sleeping(), interrupted);
     hal_ = std::make_unique<CanHal>(setup_, robot_, clock_, std::move(links));
     return *hal_;
   }
@@ -71,6 +70,27 @@ class CanBackend final : public hal::Backend {
 };
 
 }  // namespace
+
+hal::BackendLimits limits() {
+  return {.guard = {.hold_cycles = kHoldCycles}, .stale_state_s = std::nullopt, .overrun_ticks = std::nullopt};
+}
+
+hal::BackendDescription description(const drives::DriveSetup& setup) {
+  hal::BackendDescription description{.drive_sampling_s = 0.0, .command_delay_s = model::kBusPeriod_s};
+  // A torque acts for a cycle: what it was computed from grows older by half of it on average.
+  constexpr double kBusLoopAge_s = 0.5 * model::kBusPeriod_s;
+  for (const drives::BusSetup& bus : setup.buses) {
+    for (const drives::MotorSetup& motor : bus.motors) {
+      const auto* cia402 = std::get_if<drives::Cia402Settings>(&motor.drive);
+      if (cia402 == nullptr) continue;
+      (cia402->mode == drives::Cia402Mode::kTorque ? description.closed_by_bus : description.own_gains)
+          .push_back(motor.joint);
+    }
+  }
+  if (!description.closed_by_bus.empty()) description.bus_loop_age_s = kBusLoopAge_s;
+  if (!description.own_gains.empty()) description.drive_sampling_s.reset();
+  return description;
+}
 
 void register_backend(hal::BackendFactory& factory) {
   factory.add({.name = "can",

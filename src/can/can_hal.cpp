@@ -53,9 +53,10 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, 
     bus.motor_of_node.fill(-1);
     for (const drives::MotorSetup& motor : setup.buses[b].motors) {
       bus.motor_of_node[static_cast<std::size_t>(motor.node)] = static_cast<int>(bus.motors.size());
-      bus.motors.emplace_back(motor);
+      bus.motors.emplace_back(motor, setup.buses[b].data_bitrate != 0);
     }
-    bus.outgoing.resize(bus.motors.size());
+    bus.canopen = setup.buses[b].has_canopen();
+    bus.outgoing.resize(bus.motors.size() + 2);
     bus.wanted.resize(bus.motors.size());
     bus.readings.resize(bus.motors.size());
     for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back({.setup = &linked});
@@ -78,22 +79,21 @@ void CanHal::send(const model::JointCommand& command) noexcept {
   stiff_ = stiff(command);
   imu_.begin_cycle();
   for (Bus& bus : buses_) {
-    for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-      bus.wanted[m] = joint_command(command, bus.motors[m].setup->index);
-    }
+    for (std::size_t m = 0; m < bus.motors.size(); ++m)
+      bus.wanted[m] = joint_command(command, bus.motors[m].setup().index);
     for (const auto& linked : bus.four_bars) command_cranks(bus, linked);
     for (const auto& linked : bus.parallel) command_cranks(bus, linked);
+    // SYNC goes first: what it asks for is worth most when it is new.
+    std::array<Frame, 2> network;
+    const std::size_t network_count = bus.canopen ? network_frames(static_cast<int>(cycles_ % 1000), network) : 0;
+    std::size_t count = 0;
+    if (network_count > 0) bus.outgoing[count++] = network[0];
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-      Motor& motor = bus.motors[m];
-      if (paused) motor.monitor.interrupt();
-      const bool enabling = !motor.monitor.enabled() && !stiff_;
-      const drives::MotorCommand wanted = motor.setup->transmission.to_motor(bus.wanted[m]);
-      bus.outgoing[m] = Frame::of(static_cast<std::uint32_t>(motor.setup->node),
-                                  enabling ? drives::kMitEnable : motor.protocol.command(wanted, motor.setup->limits),
-                                  bus.setup->data_bitrate != 0);
-      motor.monitor.ask(enabling);
+      if (paused) bus.motors[m].interrupt();
+      if (const auto frame = bus.motors[m].begin(bus.wanted[m], stiff_)) bus.outgoing[count++] = *frame;
     }
-    bus.link->send(bus.outgoing);
+    if (network_count > 1) bus.outgoing[count++] = network[1];
+    bus.link->send(std::span(bus.outgoing).first(count));
   }
 }
 
@@ -102,7 +102,10 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   const io::WallClock clock;
   const std::int64_t deadline_ns = clock.now_ns() + kWait_ns;
   while (waits_ && !all_answered() && wait(deadline_ns)) drain();
-  for (Bus& bus : buses_) read_joints(bus);
+  for (Bus& bus : buses_) {
+    send_targets(bus);
+    read_joints(bus);
+  }
   trouble_ = judge();
   tell();
   ++cycles_;
@@ -112,7 +115,7 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   for (const Bus& bus : buses_) {
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
       const drives::MotorReading& joint = bus.readings[m];
-      const int index = bus.motors[m].setup->index;
+      const int index = bus.motors[m].setup().index;
       state.q[index] = joint.q_rad;
       state.dq[index] = joint.dq_rad_s;
       state.tau[index] = joint.torque_Nm;
@@ -122,6 +125,14 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   imu_.read(state);
   state.bus_sample = cycles_;
   return trouble_.status;
+}
+
+void CanHal::send_targets(Bus& bus) noexcept {
+  std::size_t count = 0;
+  for (BusMotor& motor : bus.motors) {
+    if (const auto frame = motor.targets()) bus.outgoing[count++] = *frame;
+  }
+  if (count > 0) bus.link->send(std::span(bus.outgoing).first(count));
 }
 
 // Cranks of motors that are limp get no torque: the joints' gains are zero.
@@ -162,7 +173,7 @@ void CanHal::read_joints(Bus& bus, Linked<N>& linked) noexcept {
 
 void CanHal::read_joints(Bus& bus) noexcept {
   for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-    bus.readings[m] = bus.motors[m].setup->transmission.to_joint(bus.motors[m].monitor.reading());
+    bus.readings[m] = bus.motors[m].setup().transmission.to_joint(bus.motors[m].monitor().reading());
   }
   for (auto& linked : bus.four_bars) read_joints(bus, linked);
   for (auto& linked : bus.parallel) read_joints(bus, linked);
@@ -200,22 +211,22 @@ void CanHal::drain(Bus& bus) noexcept {
 
 void CanHal::hear(Bus& bus, const Frame& frame) noexcept {
   if (bus.setup->imu && imu_.hear(frame)) return;
-  if (frame.extended || frame.id != kReplyId || frame.length != 8) {
+  const auto node = sender(frame);
+  if (!node) {
     ++unreadable_;
     return;
   }
-  const int index = bus.motor_of_node[frame.data[0]];
+  const int index = bus.motor_of_node[static_cast<std::size_t>(*node)];
   if (index < 0) {
     ++strangers_;
-    return;
+  } else if (!bus.motors[static_cast<std::size_t>(index)].hear(frame)) {
+    ++unreadable_;
   }
-  Motor& motor = bus.motors[static_cast<std::size_t>(index)];
-  if (const auto reply = motor.protocol.reply(frame.bytes())) motor.monitor.hear(reply->reading);
 }
 
 bool CanHal::all_answered() const noexcept {
   return std::ranges::all_of(buses_, [](const Bus& bus) {
-    return std::ranges::all_of(bus.motors, [](const Motor& motor) { return motor.monitor.age_cycles() == 0; });
+    return std::ranges::all_of(bus.motors, [](const BusMotor& motor) { return motor.monitor().age_cycles() == 0; });
   });
 }
 
@@ -239,7 +250,7 @@ BusTrouble CanHal::judge() const noexcept {
     if (bus.link->health() == BusHealth::kOff)
       return {.status = hal::BusStatus::kLost, .bus = at, .health = BusHealth::kOff};
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-      const drives::MotorMonitor& monitor = bus.motors[m].monitor;
+      const drives::MotorMonitor& monitor = bus.motors[m].monitor();
       const drives::Condition condition = monitor.condition(stiff_);
       if (condition == drives::Condition::kGood) continue;
       const BusTrouble trouble = {

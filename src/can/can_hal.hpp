@@ -6,18 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "can/bus_motor.hpp"
 #include "can/link.hpp"
 #include "can/xsens_imu.hpp"
 #include "drives/drive_setup.hpp"
-#include "drives/motor_monitor.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "io/mailbox.hpp"
 
 namespace pmg::can {
-
-/// Identifier of the drives' replies: the host's, which the drives' firmware has as 0 unless it is set otherwise.
-inline constexpr std::uint32_t kReplyId = 0;
 
 /// The first thing that is wrong with the drives; names what people look at.
 struct BusTrouble {
@@ -45,7 +42,8 @@ class CanHal final : public hal::Hal {
   CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
          std::vector<std::unique_ptr<Link>> links);
 
-  /// Sends every motor its command, or the request to enable it, and receives for kWait_ns at most.
+  /// Sends every motor its command, or the request to enable it, and receives for kWait_ns at most. CANopen drives are
+  /// asked first and get their commands from what they answer. Their nodes are set up before (can/canopen_setup.hpp).
   /// - kOk: every motor answered this cycle's command or the one before, and the IMU spoke within 10 ms.
   /// - kStale: somebody is later than that; the state keeps its last value.
   /// - kLost: somebody is silent for 10 ms (the IMU for 20 ms), reports a fault, doesn't follow, can't be believed; or
@@ -62,7 +60,7 @@ class CanHal final : public hal::Hal {
   /// A loss that began, another one, or its end, since the last call. For one other thread, wait-free.
   bool take_change(BusTrouble& change) noexcept { return changes_.take(change); }
   const drives::MotorMonitor& motor(std::size_t bus, std::size_t motor) const noexcept {
-    return buses_[bus].motors[motor].monitor;
+    return buses_[bus].motors[motor].monitor();
   }
   const Link& link(std::size_t bus) const noexcept { return *buses_[bus].link; }
   const XsensImu& imu() const noexcept { return imu_; }
@@ -70,13 +68,6 @@ class CanHal final : public hal::Hal {
   std::uint64_t unreadable() const noexcept { return unreadable_; }  ///< frames that are nobody's message
 
  private:
-  struct Motor {
-    explicit Motor(const drives::MotorSetup& motor) : setup(&motor), protocol(motor.ranges), monitor(motor.limits) {}
-
-    const drives::MotorSetup* setup;
-    drives::MitProtocol protocol;
-    drives::MotorMonitor monitor;
-  };
   template <int N>
   struct Linked {
     using Angles = typename drives::RodLinkage<N>::Angles;
@@ -87,8 +78,9 @@ class CanHal final : public hal::Hal {
   struct Bus {
     const drives::BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
-    std::vector<Motor> motors;
-    std::vector<Frame> outgoing;                 // one a motor
+    std::vector<BusMotor> motors;
+    bool canopen = false;                        // some motor's drive is a CANopen one
+    std::vector<Frame> outgoing;                 // room for one a motor and the network's two
     std::vector<drives::MotorCommand> wanted;    // one a motor, before its transmission: at the joint, or at the crank
     std::vector<drives::MotorReading> readings;  // one a motor, of its joint
     std::vector<Linked<1>> four_bars;
@@ -100,6 +92,7 @@ class CanHal final : public hal::Hal {
   template <int N>
   static void read_joints(Bus& bus, Linked<N>& linked) noexcept;
   static void read_joints(Bus& bus) noexcept;
+  static void send_targets(Bus& bus) noexcept;
   static int unsolved(const Bus& bus) noexcept;
   void drain() noexcept;
   void drain(Bus& bus) noexcept;

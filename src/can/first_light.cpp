@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "can/can_hal.hpp"
-#include "drives/motor_monitor.hpp"
+#include "can/one_motor.hpp"
 #include "hal/bus_cycle.hpp"
 #include "model/hanging_load.hpp"
 #include "pmg/types.hpp"
@@ -21,67 +20,25 @@ namespace {
 
 constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
 constexpr int kSettleCycles = 100;   // 0.2 s at each end
-constexpr int kAnswerCycles = 50;    // 0.1 s for the first answer
 constexpr double kLeastShare = 0.5;  // of the way asked for, with soft gains and dry friction
-
-/// One motor and the frames that it exchanges.
-class OneMotor {
- public:
-  OneMotor(const drives::MotorSetup& setup, Link& link, bool fd, const std::function<void()>& tick)
-      : setup_(setup), protocol_(setup.ranges), monitor_(setup.limits), link_(link), fd_(fd), tick_(tick) {}
-  ~OneMotor() { send(drives::kMitDisable); }
-  OneMotor(const OneMotor&) = delete;
-  OneMotor& operator=(const OneMotor&) = delete;
-
-  void exchange(const drives::MitFrame& frame, bool enabling = false) {
-    send(frame);
-    monitor_.ask(enabling);
-    tick_();
-    std::array<Frame, 32> frames;
-    while (const std::size_t count = link_.receive(frames)) {
-      for (const Frame& got : std::span(frames).first(count)) {
-        if (got.extended || got.id != kReplyId || got.length != 8 || got.data[0] != setup_.node) continue;
-        if (const auto reply = protocol_.reply(got.bytes())) monitor_.hear(reply->reading);
-      }
-    }
-  }
-  void exchange(const drives::MotorCommand& joint) {
-    exchange(protocol_.command(setup_.transmission.to_motor(joint), setup_.limits));
-  }
-  drives::MotorReading joint() const { return setup_.transmission.to_joint(monitor_.reading()); }
-  const drives::MotorMonitor& monitor() const { return monitor_; }
-
- private:
-  void send(const drives::MitFrame& bytes) {
-    const Frame frame = Frame::of(static_cast<std::uint32_t>(setup_.node), bytes, fd_);
-    link_.send(std::span(&frame, 1));
-  }
-  const drives::MotorSetup& setup_;
-  drives::MitProtocol protocol_;
-  drives::MotorMonitor monitor_;
-  Link& link_;
-  bool fd_;
-  const std::function<void()>& tick_;
-};
 
 }  // namespace
 
-Wiggle wiggle(const model::RobotModel& robot, const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
-              const WiggleOptions& options, const std::function<void()>& tick,
-              const std::function<bool()>& interrupted) {
+Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives::BusSetup& bus,
+              const drives::MotorSetup& motor, Link& link, const WiggleOptions& options,
+              const std::function<void()>& tick, const std::function<bool()>& interrupted) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
-  const std::string who = fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
-  OneMotor one(motor, link, bus.data_bitrate != 0, tick);
-  for (int k = 0; k < kAnswerCycles && !one.monitor().answered(); ++k) one.exchange(drives::kMitDisable);
-  if (!one.monitor().answered())
-    throw std::runtime_error(who + " does not answer; expected a powered drive with this node number");
+  OneMotor one(bus, motor, link, tick);
   const double start_rad = one.joint().q_rad;
   if (start_rad < joint.lower_rad || start_rad > joint.upper_rad) {
     throw std::runtime_error(
-        fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: set its zero first", who,
-                    start_rad, joint.lower_rad, joint.upper_rad));
+        fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: set its zero first",
+                    name_of(bus, motor), start_rad, joint.lower_rad, joint.upper_rad));
   }
-  for (int k = 0; k < kAnswerCycles && !one.monitor().enabled(); ++k) one.exchange(drives::kMitEnable, true);
+  one.switch_on();
+  const auto* cia402 = std::get_if<drives::Cia402Settings>(&motor.drive);
+  const bool own_gains = cia402 != nullptr && cia402->mode == drives::Cia402Mode::kPosition;
+  const double share = own_gains ? 1.0 : options.gain_share;
 
   double target_rad = start_rad;
   const auto go_to = [&](double end_rad, double& q_rad, double& torque_Nm) {
@@ -90,17 +47,9 @@ Wiggle wiggle(const model::RobotModel& robot, const drives::BusSetup& bus, const
     for (int settled = 0; settled < kSettleCycles;) {
       if (interrupted && interrupted()) throw std::runtime_error("interrupted; the motor is switched off");
       target_rad += std::clamp(end - target_rad, -options.speed_rad_s * kCycle_s, options.speed_rad_s * kCycle_s);
-      one.exchange(drives::MotorCommand{.q_rad = target_rad,
-                                        .kp_Nm_per_rad = options.gain_share * joint.kp_Nm_per_rad,
-                                        .kd_Nm_s_per_rad = options.gain_share * joint.kd_Nm_s_per_rad});
-      if (one.monitor().condition(true) == drives::Condition::kLost) {
-        const drives::Trouble trouble = one.monitor().trouble(true);
-        throw std::runtime_error(who + " " +
-                                 (trouble == drives::Trouble::kFault
-                                      ? std::string("reports ") + drives::to_string(one.monitor().reading().fault)
-                                      : std::string(drives::to_string(trouble))) +
-                                 "; it is switched off");
-      }
+      one.exchange({.q_rad = target_rad,
+                    .kp_Nm_per_rad = share * joint.kp_Nm_per_rad,
+                    .kd_Nm_s_per_rad = share * joint.kd_Nm_s_per_rad});
       if (target_rad != end) continue;
       ++settled;
       if (2 * settled <= kSettleCycles) continue;  // the second half is at rest
@@ -117,18 +66,18 @@ Wiggle wiggle(const model::RobotModel& robot, const drives::BusSetup& bus, const
   go_to(start_rad - options.by_rad, q_down, torque_down);
   go_to(start_rad, q_back, torque_back);
 
-  const model::HangingLoad load = model::hanging_load(robot, motor.joint);
+  const model::HangingLoad load = model::hanging_load(robot, motor.joint, q);
   Wiggle result;
   result.asked_rad = up - start_rad;
   result.moved_rad = q_up - start_rad;
   result.held_Nm = 0.5 * (torque_up + torque_down);  // dry friction takes opposite signs on the two ways
   result.model_Nm = load.gravity_Nm * std::sin(0.5 * (q_up + q_down) - load.hangs_at_rad);
-  result.friction_Nm = joint.friction_Nm + drives::MitProtocol(motor.ranges).torque().step();
+  result.friction_Nm = joint.friction_Nm + one.motor().torque_step_Nm();
   return result;
 }
 
-std::string way_of(const model::RobotModel& robot, const std::string& joint, double by_rad) {
-  const auto centre = [&](const JointVector& q) {
+std::string way_of(const model::RobotModel& robot, const JointVector& q, const std::string& joint, double by_rad) {
+  const auto centre = [&](const JointVector& at) {
     // Centre of mass of the links beyond the joint, base upright: each link's frame from the base, by its own chain.
     KDL::Vector sum = KDL::Vector::Zero();
     double mass = 0.0;
@@ -140,7 +89,7 @@ std::string way_of(const model::RobotModel& robot, const std::string& joint, dou
       for (const KDL::Segment& segment : chain.segments) {
         const bool moves = segment.getJoint().getType() != KDL::Joint::Fixed;
         beyond = beyond || segment.getJoint().getName() == joint;
-        frame = frame * segment.pose(moves ? q[robot.joint_index.at(segment.getJoint().getName())] : 0.0);
+        frame = frame * segment.pose(moves ? at[robot.joint_index.at(segment.getJoint().getName())] : 0.0);
       }
       if (!beyond) continue;
       const KDL::RigidBodyInertia inertia = GetTreeElementSegment(element).getInertia();
@@ -149,10 +98,9 @@ std::string way_of(const model::RobotModel& robot, const std::string& joint, dou
     }
     return sum / mass;
   };
-  JointVector q = robot.q_stand();
-  const KDL::Vector before = centre(q);
-  q[robot.joint_index.at(joint)] += by_rad;
-  const KDL::Vector way_mm = 1e3 * (centre(q) - before);
+  JointVector moved = q;
+  moved[robot.joint_index.at(joint)] += by_rad;
+  const KDL::Vector way_mm = 1e3 * (centre(moved) - centre(q));
   constexpr std::array<std::array<const char*, 2>, 3> kWays = {
       {{"forward", "backward"}, {"to the left", "to the right"}, {"up", "down"}}};
   std::vector<std::pair<double, std::string>> parts;

@@ -4,55 +4,196 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <stdexcept>
-#include <thread>
 
-#include "can/can_hal.hpp"
+#include "can/one_motor.hpp"
 
 namespace pmg::can {
 
 namespace {
 
-constexpr int kRounds = 10;  // of 20 ms: a drive that misses one frame is asked again
-constexpr std::chrono::milliseconds kRound{20};
+constexpr int kRounds = 10;         // a drive that misses one frame is asked again
+constexpr int kRoundWaits = 20;     // of some 1 ms
+constexpr int kCounted = 3;         // requests whose answers are counted
+constexpr std::size_t kBatch = 16;  // requests that an interface's queue takes
 constexpr double kBeyondRange_rad =
     0.2;  // twice what the control thread takes for a fault: a limp joint may lie on its stop
 
-void take(const drives::BusSetup& bus, Link& link, std::map<int, Answer>& answers) {
+using Answers = std::map<int, Answer>;
+
+/// What has arrived from MIT drives.
+void take_mit(const drives::BusSetup& bus, Link& link, Answers& answers) {
   std::array<Frame, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
-      if (frame.extended || frame.id != kReplyId || frame.length != 8) continue;
-      const int node = frame.data[0];
-      Answer& answer = answers[node];
-      answer.node = node;
+      const auto node = sender(frame);
+      if (!node || frame.id > canopen::kNodeBits) continue;
+      const auto motor = std::ranges::find(bus.motors, *node, &drives::MotorSetup::node);
+      const auto* mit = motor == bus.motors.end() ? nullptr : std::get_if<drives::MitRanges>(&motor->drive);
+      // A stranger's reply has an identifier that this bus's drives answer with; the IMU's messages have others.
+      const bool reply = std::ranges::any_of(bus.motors, [&](const drives::MotorSetup& other) {
+        const auto* ranges = std::get_if<drives::MitRanges>(&other.drive);
+        return ranges != nullptr && ranges->reply_id == frame.id;
+      });
+      if (mit != nullptr ? mit->reply_id != frame.id : !reply) continue;
+      Answer& answer = answers[*node];
+      answer.node = *node;
       ++answer.count;
-      const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
-      if (motor != bus.motors.end()) answer.reading = drives::MitProtocol(motor->ranges).reply(frame.bytes())->reading;
+      if (mit != nullptr) answer.reading = drives::MitProtocol(*mit).reply(frame.bytes())->reading;
     }
   }
 }
 
+/// What has arrived from SDO servers.
+void take_canopen(Link& link, Answers& answers) {
+  std::array<Frame, 64> frames;
+  while (const std::size_t count = link.receive(frames)) {
+    for (const Frame& frame : std::span(frames).first(count)) {
+      const std::uint32_t node = frame.id & canopen::kNodeBits;
+      if (frame.extended || frame.id - node != canopen::kSdoAnswer || !canopen::sdo_answer(frame)) continue;
+      Answer& answer = answers[static_cast<int>(node)];
+      answer.node = static_cast<int>(node);
+      ++answer.count;
+    }
+  }
+}
+
+/// A way to ask nodes that are switched off, and to hear them.
+struct Roll {
+  Link& link;
+  const Wait& wait;
+  std::function<Frame(int node)> request;
+  std::function<void(Answers&)> take;
+
+  void ask(const std::vector<int>& nodes, Answers& answers) const {
+    for (std::size_t at = 0; at < nodes.size(); at += kBatch) {
+      std::vector<Frame> frames;
+      for (const int node : std::span(nodes).subspan(at, std::min(kBatch, nodes.size() - at)))
+        frames.push_back(request(node));
+      const int all = heard(answers) + static_cast<int>(frames.size());
+      link.send(frames);
+      listen(answers, all);
+    }
+  }
+  /// For a round, or until so many answers were heard.
+  void listen(Answers& answers, int all) const {
+    for (int k = 0; k < kRoundWaits && heard(answers) < all; ++k) {
+      wait();
+      take(answers);
+    }
+  }
+  /// Until each of these nodes has answered as often as it was asked and a round brings nothing more; for all rounds
+  /// where a node has not. What a delay holds back arrives late, and bunched.
+  void listen_to_the_end(const std::vector<int>& nodes, const std::map<int, int>& asked, Answers& answers) const {
+    const auto even = [&](int node) { return answers.at(node).count == asked.at(node); };
+    for (int round = 0; round < kRounds; ++round) {
+      const int before = heard(answers);
+      listen(answers, std::numeric_limits<int>::max());
+      if (heard(answers) == before && std::ranges::all_of(nodes, even)) return;
+    }
+  }
+  static int heard(const Answers& answers) {
+    int sum = 0;
+    for (const auto& [node, answer] : answers) sum += answer.count;
+    return sum;
+  }
+};
+
+/// Finds who answers, then counts the drives of each node. Of answers that a delay bunches, a single round has several
+/// of one drive, so the sum over some requests decides: one drive answers as often as it is asked, two answer twice as
+/// often. A lost or duplicated frame changes neither.
+void find_and_count(const Roll& roll, const std::vector<int>& nodes, const std::function<void()>& check,
+                    Answers& answers) {
+  Answers old;
+  roll.take(old);
+  std::map<int, int> asked;
+  const auto ask = [&](const std::vector<int>& some) {
+    check();
+    for (const int node : some) ++asked[node];
+    roll.ask(some, answers);
+  };
+  std::vector<int> found, silent = nodes;
+  for (int round = 0; round < kRounds && !silent.empty(); ++round) {
+    ask(silent);
+    std::erase_if(silent, [&](int node) { return answers.contains(node); });
+  }
+  std::ranges::copy_if(nodes, std::back_inserter(found), [&](int node) { return answers.contains(node); });
+  roll.listen_to_the_end(found, asked, answers);
+  asked.clear();
+  for (auto& [node, answer] : answers) answer.count = 0;
+  for (int k = 0; k < kCounted; ++k) ask(found);
+  roll.listen_to_the_end(found, asked, answers);
+  for (auto& [node, answer] : answers)
+    answer.count = std::max(1, static_cast<int>(std::lround(static_cast<double>(answer.count) / kCounted)));
+}
+
+/// Switches the drive off and reads it.
+void read_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait,
+               Answer& answer) {
+  const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+  try {
+    const Frame quiet = canopen::node_command(canopen::NodeCommand::kPreOperational, motor.node);
+    link.send(std::span(&quiet, 1));
+    SdoClient node(motor.node, link, wait);
+    node.write(drives::object::kControlWord, 0);
+    answer.reading = drives::read_drive(node, settings);
+    drives::check_drive(node, settings);
+  } catch (const std::runtime_error& error) {
+    answer.problem = name_of(bus, motor) + ": " + error.what();
+  }
+}
+
+void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, const std::function<void()>& check,
+                 Answers& answers) {
+  const Roll roll{.link = link,
+                  .wait = wait,
+                  .request = [](int node) { return canopen::sdo_read(node, drives::object::kDeviceType); },
+                  .take = [&link](Answers& into) { take_canopen(link, into); }};
+  std::vector<int> own, strangers;
+  for (int node = 1; node < static_cast<int>(canopen::kHostNode); ++node) {
+    const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
+    if (motor == bus.motors.end()) {
+      strangers.push_back(node);
+    } else if (std::holds_alternative<drives::Cia402Settings>(motor->drive)) {
+      own.push_back(node);
+    }
+  }
+  Answers nodes;
+  roll.ask(strangers, nodes);
+  find_and_count(roll, own, check, nodes);
+  for (const drives::MotorSetup& motor : bus.motors) {
+    if (!std::holds_alternative<drives::Cia402Settings>(motor.drive) || !nodes.contains(motor.node)) continue;
+    check();
+    read_node(bus, motor, link, wait, nodes[motor.node]);
+  }
+  answers.merge(nodes);
+}
+
 }  // namespace
 
-std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const std::function<bool()>& interrupted) {
-  std::map<int, Answer> answers;
-  std::map<int, Answer> ignored;
-  take(bus, link, ignored);  // what is old
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<Frame> frames;
-    for (const drives::MotorSetup& motor : bus.motors) {
-      if (!answers.contains(motor.node))
-        frames.push_back(Frame::of(static_cast<std::uint32_t>(motor.node), drives::kMitDisable, bus.data_bitrate != 0));
-    }
-    if (frames.empty()) break;
+std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
+                            const std::function<bool()>& interrupted) {
+  const auto check = [&] {
     if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were asked");
-    link.send(frames);
-    std::this_thread::sleep_for(kRound);
-    take(bus, link, answers);
+  };
+  std::vector<int> mit;
+  for (const drives::MotorSetup& motor : bus.motors) {
+    if (std::holds_alternative<drives::MitRanges>(motor.drive)) mit.push_back(motor.node);
   }
+  const Roll roll{.link = link,
+                  .wait = wait,
+                  .request =
+                      [&bus](int node) {
+                        return Frame::of(static_cast<std::uint32_t>(node), drives::kMitDisable, bus.data_bitrate != 0);
+                      },
+                  .take = [&](Answers& into) { take_mit(bus, link, into); }};
+  Answers answers;
+  find_and_count(roll, mit, check, answers);
+  if (bus.has_canopen()) ask_canopen(bus, link, wait, check, answers);
   std::vector<Answer> list;
   for (const auto& [node, answer] : answers) list.push_back(answer);
   return list;
@@ -61,7 +202,7 @@ std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const std::
 std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector<Answer>& answers) {
   std::vector<std::string> found;
   for (const drives::MotorSetup& motor : bus.motors) {
-    const std::string who = fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
+    const std::string who = name_of(bus, motor);
     const auto answer = std::ranges::find(answers, motor.node, &Answer::node);
     if (answer == answers.end()) {
       found.push_back(who + " does not answer; expected a powered drive with this node number");
@@ -71,6 +212,10 @@ std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector
       found.push_back(who + fmt::format(" answers {} times; expected one drive of each node number", answer->count));
     if (answer->reading.fault != drives::DriveFault::kNone) {
       found.push_back(who + " reports " + drives::to_string(answer->reading.fault) + "; expected no fault");
+    }
+    if (!answer->problem.empty()) {
+      found.push_back(answer->problem);
+      continue;
     }
     const drives::MotorReading& at = answer->reading;
     const double beyond = std::max(motor.limits.q_lower_rad - at.q_rad, at.q_rad - motor.limits.q_upper_rad);
@@ -88,11 +233,13 @@ std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector
   return found;
 }
 
-void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links,
+void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                const std::function<bool()>& interrupted) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-    const std::vector<std::string> found = problems(setup.buses[b], ask_bus(setup.buses[b], *links[b], interrupted));
+    if (setup.buses[b].first_slave != 0) continue;
+    const std::vector<std::string> found =
+        problems(setup.buses[b], ask_bus(setup.buses[b], *links[b], wait, interrupted));
     all.insert(all.end(), found.begin(), found.end());
   }
   if (all.empty()) return;

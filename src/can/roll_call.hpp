@@ -6,29 +6,35 @@
 #include <string>
 #include <vector>
 
+#include "can/canopen_setup.hpp"
 #include "can/link.hpp"
 #include "drives/drive_setup.hpp"
 
 namespace pmg::can {
 
-/// One answer to the request to disable, which every drive gives without a torque.
+/// One answer to the request to disable, which every drive gives without a torque; of a CANopen drive, what its objects
+/// say.
 struct Answer {
   int node = 0;
-  int count = 0;                 ///< answers to one request; 2: two drives have this node
+  int count = 0;                 ///< answers a request, over several; 2: two drives have this node
   drives::MotorReading reading;  ///< at the drive's output shaft; zero for a node without a known kind of drive
+  std::string problem{};         ///< of a CANopen drive: why it isn't the one of robot.yaml; empty: it is
 };
 
-/// Asks every motor of the bus a few times, waiting for 0.2 s at most. Answers by node, those of strangers included.
-std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const std::function<bool()>& interrupted);
+/// Asks every motor of the bus a few times, for some 0.1 s, 0.3 s if one is silent, and reads the CANopen drives that
+/// answer. Answers that a delay holds back or bunches count as those of one drive. Answers by node,
+/// those of strangers included.
+std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
+                            const std::function<bool()>& interrupted);
 
 /// What is wrong with these answers, one text a problem: a motor that doesn't answer, two drives of one node, a node
 /// that robot.yaml doesn't have, a fault that a drive reports, a joint more than 0.2 rad beyond its range (a wrong
 /// zero, direction or gear, or a lost turn).
 std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector<Answer>& answers);
 
-/// Disables and asks every motor of every bus. Throws std::runtime_error with the first problem and the number of
-/// others.
-void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links,
+/// Disables and asks every motor of every CAN bus; drives that are EtherCAT slaves are left out. Throws
+/// std::runtime_error with the first problem and the number of others.
+void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                const std::function<bool()>& interrupted);
 
 }  // namespace pmg::can

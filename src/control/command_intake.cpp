@@ -27,6 +27,13 @@ bool asks_for_motion(const Command& command, const Command& before) noexcept {
   return moves || command.u != before.u;
 }
 
+/// A NaN fails every comparison.
+bool reachable(const ArmTarget& target) noexcept {
+  if (target.wish != ArmWish::kAim) return true;
+  const bool near = (target.palm.p_m.array().abs() <= CommandIntake::kFarthestPalm_m).all();
+  return near && std::abs(target.palm.R.norm() - 1.0) <= CommandIntake::kUnitQuaternion;
+}
+
 }  // namespace
 
 const SourceRecord* CommandIntake::record_of(const Source& source, std::int64_t received_ns) const noexcept {
@@ -61,13 +68,51 @@ CommandIntake::DriveVerdict CommandIntake::check(const DriveMessage& message, st
     return DriveVerdict::kNotFinite;
   }
   if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
+  const DriveVerdict order = check_order(message, &SourceRecord::last_command, received_ns);
+  if (order != DriveVerdict::kAccepted) return order;
+  return leased(now_ns) && message.source != last_.source ? DriveVerdict::kOtherSourceDrives : DriveVerdict::kAccepted;
+}
+
+template <typename Message>
+CommandIntake::DriveVerdict CommandIntake::check_order(const Message& message, std::int64_t SourceRecord::*last,
+                                                       std::int64_t received_ns) const noexcept {
   const SourceRecord* record = record_of(message.source, received_ns);
   if (record != nullptr && message.source.session < record->source.session) return DriveVerdict::kOutOfOrder;
   if (record != nullptr && message.source == record->source) {
-    if (message.sequence <= record->last_command) return DriveVerdict::kOutOfOrder;
+    if (message.sequence <= record->*last) return DriveVerdict::kOutOfOrder;
     if (SourceMemory::late(*record, message.stamp_ns, received_ns)) return DriveVerdict::kLate;
   }
-  return leased(now_ns) && message.source != last_.source ? DriveVerdict::kOtherSourceDrives : DriveVerdict::kAccepted;
+  return DriveVerdict::kAccepted;
+}
+
+CommandIntake::DriveVerdict CommandIntake::accept(const ArmsMessage& message, std::int64_t now_ns) noexcept {
+  const std::int64_t received_ns = receipt_ns(message.received_ns, now_ns);
+  const DriveVerdict verdict = check(message, received_ns, now_ns);
+  ++(ignored_.*kDriveCounters[static_cast<std::size_t>(verdict)]);
+  if (verdict != DriveVerdict::kAccepted) {
+    ++arms_refused_;
+    arms_refusal_ = verdict;
+    return verdict;
+  }
+  sources_.adopt(message.source, driving(now_ns), message.stamp_ns, received_ns).last_arms = message.sequence;
+  if (message.arm != arms_.arm) moved_ns_ = received_ns;
+  arms_ = message;
+  arms_end_ns_ = received_ns + io::nanoseconds(std::min(message.lease_s, kLongestArmsLease_s));
+  return verdict;
+}
+
+CommandIntake::DriveVerdict CommandIntake::check(const ArmsMessage& message, std::int64_t received_ns,
+                                                 std::int64_t now_ns) noexcept {
+  if (!std::ranges::all_of(message.arm, reachable)) return DriveVerdict::kNotFinite;
+  if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
+  const DriveVerdict order = check_order(message, &SourceRecord::last_arms, received_ns);
+  if (order != DriveVerdict::kAccepted) return order;
+  return leased(now_ns) && message.source == last_.source ? DriveVerdict::kAccepted : DriveVerdict::kOtherSourceDrives;
+}
+
+ArmsOrder CommandIntake::arms_order(std::int64_t now_ns) const noexcept {
+  if (!leased(now_ns) || arms_.source != last_.source) return ArmsOrder::kNoneCame;
+  return now_ns < arms_end_ns_ ? ArmsOrder::kInForce : ArmsOrder::kLeaseOver;
 }
 
 CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::int64_t now_ns) noexcept {

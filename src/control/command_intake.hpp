@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "control/arms_message.hpp"
 #include "control/mode.hpp"
 #include "control/source_memory.hpp"
 
 namespace pmg::control {
 
-/// Counts of operators' messages since the start, commands and requests alike, by verdict. All but the accepted ones
-/// were ignored.
+/// Counts of operators' messages since the start, commands, arms and requests alike, by verdict. All but the accepted
+/// ones were ignored.
 struct IgnoredCommands {
   std::int64_t accepted = 0;
   std::int64_t other_source = 0;
@@ -18,6 +19,7 @@ struct IgnoredCommands {
   std::int64_t late = 0;
   std::int64_t not_finite = 0;
   std::int64_t no_lease = 0;
+  std::int64_t no_arms = 0;  ///< arms' messages to a robot without any
 };
 
 class CommandIntake {
@@ -27,8 +29,8 @@ class CommandIntake {
     kOtherSourceDrives,
     kOutOfOrder,  ///< sequence not above the last one of this session, or an earlier session: repeated or overtaken
     kLate,        ///< spent too long on the way
-    kNotFinite,
-    kNoLease,  ///< lease not positive
+    kNotFinite,   ///< arms: or no pose that a palm can have
+    kNoLease,     ///< lease not positive
   };
 
   /// The answer to a request.
@@ -47,9 +49,18 @@ class CommandIntake {
 
   /// Longest lease that is granted. A crashed operator station blocks the others for no longer.
   static constexpr double kLongestLease_s = 2.0;
+  /// And of arms' messages: without a newer one arms go on towards their targets for no longer.
+  static constexpr double kLongestArmsLease_s = 0.5;
+  /// A palm's target is no farther from the torso, along each axis: beyond, it is a mistake.
+  static constexpr double kFarthestPalm_m = 10.0;
+  /// A target's quaternion differs no more from length 1: single precision and rounded text do by less.
+  static constexpr double kUnitQuaternion = 1e-3;
 
   /// (command message, time) => (verdict). An accepted one becomes command().
   DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
+  /// The same for arms: only the source that drives leads them.
+  DriveVerdict accept(const ArmsMessage& message, std::int64_t now_ns) noexcept;
+  void ignore_arms() noexcept { ++ignored_.no_arms; }  ///< a message to a robot without arms
 
   /// (mode request, time) => (verdict). Anyone may stop at any time. Only the driving source may climb or reset; anyone
   /// may when none drives, or when the driver only renews its lease: then the request takes over.
@@ -69,6 +80,12 @@ class CommandIntake {
   /// Nobody drives: empty name.
   Source driving(std::int64_t now_ns) const noexcept;
 
+  const ArmsMessage& arms() const noexcept { return arms_; }  ///< last accepted
+  /// Whether it is in force as far as messages go: the driving source's, within its lease.
+  ArmsOrder arms_order(std::int64_t now_ns) const noexcept;
+  std::int64_t arms_refused() const noexcept { return arms_refused_; }  ///< since the start
+  DriveVerdict arms_refusal() const noexcept { return arms_refusal_; }  ///< of the last refused; kAccepted: none was
+
  private:
   bool leased(std::int64_t now_ns) const noexcept { return any_ && now_ns < lease_end_ns_; }
   /// The record that this source's messages are compared with; null: none, or of a session that no longer counts.
@@ -76,6 +93,11 @@ class CommandIntake {
   /// The driver's own name with another session: of a successor that must wait, or of a stranger.
   bool uses_drivers_name(const Source& source, std::int64_t now_ns) const noexcept;
   DriveVerdict check(const DriveMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  DriveVerdict check(const ArmsMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  /// kOutOfOrder, kLate or kAccepted. last: of this kind of messages.
+  template <typename Message>
+  DriveVerdict check_order(const Message& message, std::int64_t SourceRecord::*last,
+                           std::int64_t received_ns) const noexcept;
   Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
 
   SourceMemory sources_;
@@ -85,6 +107,9 @@ class CommandIntake {
   DriveMessage last_;
   std::int64_t received_ns_ = 0;
   std::int64_t lease_end_ns_ = 0;
+  ArmsMessage arms_;
+  std::int64_t arms_end_ns_ = 0, arms_refused_ = 0;
+  DriveVerdict arms_refusal_ = DriveVerdict::kAccepted;
   std::int64_t moved_ns_ = 0;  // when the driver began, or last asked for motion
 };
 

@@ -32,11 +32,12 @@ void ControlCycle::take_sample() noexcept {
 }
 
 void ControlCycle::take_messages() noexcept {
-  record_.drive_count = record_.request_count = 0;
+  record_.drive_count = record_.request_count = record_.arms_count = 0;
   while (record_.drive_count < kMaxDrives && inbox_.take(record_.drives[record_.drive_count])) ++record_.drive_count;
   while (record_.request_count < kMaxRequests && inbox_.take(record_.requests[record_.request_count])) {
     ++record_.request_count;
   }
+  while (record_.arms_count < kMaxArms && inbox_.take(record_.arms[record_.arms_count])) ++record_.arms_count;
 }
 
 }  // namespace pmg::control

@@ -111,6 +111,7 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/supervisor/stop_within_s", tick.supervisor.stop_within_s);
   visit("/supervisor/gco_held_ticks", tick.supervisor.gco_held_ticks);
   visit("/late_policy_ticks", tick.late_policy_ticks);
+  if (tick.arms) visit("/arms/speed_rad_s", tick.arms->speed_rad_s);
   visit("/action_monitor/bound_rad", tick.action_monitor.bound_rad);
   visit("/action_monitor/persist_ticks", tick.action_monitor.persist_ticks);
   visit("/action_monitor/reversals", tick.action_monitor.reversals);
@@ -197,6 +198,10 @@ nlohmann::ordered_json control_json(const LoadedControl& loaded) {
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
   if (loaded.policy_name != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));
+  // Operators say by it why a command is cut. The paper's blend has no such bound: it halves two that ask for half
+  // each.
+  const Blend blend = *loaded.options.generator.blend;
+  if (blend != Blend::kPaper) json["command"]["velocities_together"] = blend == Blend::kCorners ? kCornerReach : 1.0;
   return json;
 }
 

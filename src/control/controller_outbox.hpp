@@ -21,7 +21,7 @@ struct DroppedItems {
 
 class ControllerOutbox {
  public:
-  static constexpr std::size_t kRecords = 1024;    ///< ten seconds of ticks, some 8 MB
+  static constexpr std::size_t kRecords = 1024;    ///< ten seconds of ticks, some 11 MB
   static constexpr std::size_t kBusCycles = 8192;  ///< sixteen seconds
 
   boost::lockfree::spsc_queue<TickRecord> records{kRecords};                 ///< control -> recorder: every tick

@@ -32,13 +32,13 @@ Limiter::Limiter(const model::RobotModel& robot, const JointVector& kp, const Jo
 
 void Limiter::start_from(const JointVector& q) noexcept { previous_ = q; }
 
-LimitReport Limiter::apply(const model::RobotState& state, JointVector& q_des) noexcept {
+LimitReport Limiter::apply(const model::RobotState& state, const JointVector& dq_des, JointVector& q_des) noexcept {
   LimitReport report;
   for (Eigen::Index i = 0; i < q_des.size(); ++i) {
     std::uint8_t& by = report.by[static_cast<std::size_t>(i)];
     clamp_into(previous_[i] - step_[i], previous_[i] + step_[i], q_des[i], LimitReport::kSpeed, by, report.rate);
     if (kp_[i] > 0.0) {
-      const double braking_rad = kd_[i] * state.dq[i] / kp_[i], reach_rad = effort_[i] / kp_[i];
+      const double braking_rad = kd_[i] * (state.dq[i] - dq_des[i]) / kp_[i], reach_rad = effort_[i] / kp_[i];
       clamp_into(state.q[i] + braking_rad - reach_rad, state.q[i] + braking_rad + reach_rad, q_des[i],
                  LimitReport::kTorque, by, report.torque);
     }

@@ -20,7 +20,7 @@ struct LimiterOptions {
 struct LimitReport {
   int position = 0;  ///< target outside the joint's range
   int rate = 0;      ///< target moved too fast
-  int torque = 0;    ///< |kp (q_des - q) - kd dq| above the effort limit
+  int torque = 0;    ///< |kp (q_des - q) + kd (dq_des - dq)| above the effort limit
 
   static constexpr std::uint8_t kRange = 1, kSpeed = 2, kTorque = 4;
   std::array<std::uint8_t, kMaxJoints> by{};  ///< bits of each joint
@@ -39,13 +39,13 @@ class Limiter {
   void start_from(const JointVector& q) noexcept;  ///< the last tick's targets [rad]
   const JointVector& last() const noexcept { return previous_; }
 
-  /// (state, q_des) => (limited q_des, report), in place and in this order:
+  /// (state, dq_des, q_des) => (limited q_des, report), in place and in this order:
   /// rate:   |q_des - q_des of the last tick| <= target_rate_factor velocity_limit dt,
-  /// torque: |kp (q_des - q) - kd dq| <= effort_limit,
+  /// torque: |kp (q_des - q) + kd (dq_des - dq)| <= effort_limit,
   /// range:  lower <= q_des <= upper.
   /// The range always holds. When torque and range contradict each other (the joint is beyond its range and the drive
   /// can't brake that hard), the range wins and the drive's own effort limit remains.
-  LimitReport apply(const model::RobotState& state, JointVector& q_des) noexcept;
+  LimitReport apply(const model::RobotState& state, const JointVector& dq_des, JointVector& q_des) noexcept;
 
  private:
   JointVector lower_, upper_, step_, effort_, kp_, kd_;

@@ -3,6 +3,7 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "control/arms_message.hpp"
 #include "control/mode.hpp"
 #include "hal/stop_line.hpp"
 
@@ -14,6 +15,7 @@ class OperatorInbox {
   explicit OperatorInbox(hal::StopLine& stop) : stop_(stop) {}
 
   bool put(const DriveMessage& drive) { return drives_.push(drive); }
+  bool put(const ArmsMessage& arms) { return arms_.push(arms); }
   /// A stop reaches the bus in its next cycle, even when the queue is full or the control thread doesn't answer.
   bool put(const ModeRequest& request) {
     const bool queued = requests_.push(request);
@@ -26,11 +28,13 @@ class OperatorInbox {
 
   bool take(DriveMessage& drive) noexcept { return drives_.pop(drive); }
   bool take(ModeRequest& request) noexcept { return requests_.pop(request); }
+  bool take(ArmsMessage& arms) noexcept { return arms_.pop(arms); }
 
  private:
   hal::StopLine& stop_;
   boost::lockfree::spsc_queue<DriveMessage, boost::lockfree::capacity<64>> drives_;
   boost::lockfree::spsc_queue<ModeRequest, boost::lockfree::capacity<32>> requests_;
+  boost::lockfree::spsc_queue<ArmsMessage, boost::lockfree::capacity<48>> arms_;
 };
 
 }  // namespace pmg::control

@@ -17,6 +17,7 @@ struct SourceRecord {
   Source source;                       ///< empty name: free
   std::int64_t last_command = kNever;  ///< sequence of the last one accepted
   std::int64_t last_request = kNever;  ///< likewise
+  std::int64_t last_arms = kNever;     ///< likewise
   std::int64_t heard_ns = kNever;      ///< when its last message was received
   /// Smallest (received - stamp) so far. The two clocks have different zeros; the difference between two messages still
   /// shows how much longer one of them travelled.

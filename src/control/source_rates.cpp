@@ -14,7 +14,8 @@ struct Allowance {
 
 /// By MessageKind. Commands: five times what a 50 Hz source sends. Requests are repeated every 50 ms; eight sources at
 /// 40 Hz, with stops beside, stay below the 800 a second that the control cycle takes from its inbox.
-constexpr std::array<Allowance, 3> kAllowances = {{{4'000'000, 8}, {25'000'000, 4}, {25'000'000, 4}}};
+/// Arms: a headset's 120 Hz; eight such sources stay below the 1,200 a second that it takes of them.
+constexpr std::array<Allowance, 4> kAllowances = {{{4'000'000, 8}, {25'000'000, 4}, {25'000'000, 4}, {8'000'000, 4}}};
 
 }  // namespace
 

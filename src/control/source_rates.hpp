@@ -9,7 +9,7 @@
 namespace pmg::control {
 
 /// Which messages share one allowance.
-enum class MessageKind : std::uint8_t { kCommand, kRequest, kStop };
+enum class MessageKind : std::uint8_t { kCommand, kRequest, kStop, kArms };
 
 /// Counts by name, not by session: a flood that invents sessions stays one source. For one thread; no heap.
 class SourceRates {
@@ -28,7 +28,7 @@ class SourceRates {
   struct Place {
     Source source;  // empty name: free
     std::int64_t heard_ns = 0;
-    std::array<std::int64_t, 3> next_ns{};  // by kind: when a steady sender's next message is due
+    std::array<std::int64_t, 4> next_ns{};  // by kind: when a steady sender's next message is due
   };
 
   static bool admit(Place& place, MessageKind kind, std::int64_t now_ns) noexcept;

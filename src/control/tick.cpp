@@ -32,6 +32,7 @@ bool finite(const Reference& reference) noexcept {
 TickOptions tick_options(const model::RobotModel& robot) {
   TickOptions options;
   options.generator = gco::generator_options(robot);
+  options.arms = arms::read_arm_setup(robot);
   return options;
 }
 
@@ -61,8 +62,20 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
   }
   result_.reference = motion_.reference();
   if (policy_->needs_ground()) feet_.emplace(robot, options.foot_load, options.dt_s);
-  if (!options.excitation) return;
-  if (policy_->action_bound_rad()) throw std::invalid_argument("a joint is excited without a policy; expected none");
+  if (options.arms) arms_.emplace(robot, *options.arms, options.dt_s);
+  result_.arms.there = arms_.has_value();
+  take_excitation(robot, options);
+}
+
+void Tick::take_excitation(const model::RobotModel& robot, const TickOptions& options) {
+  if (!options.excitation && !options.robot_excitation) return;
+  if (options.excitation && options.robot_excitation)
+    throw std::invalid_argument("excitation: of one joint and of all; expected one of them");
+  if (policy_->action_bound_rad()) throw std::invalid_argument("joints are excited without a policy; expected none");
+  if (options.robot_excitation) {
+    robot_excitation_.emplace(*options.robot_excitation, robot, options.dt_s, options.foot_load, guard_);
+    return;
+  }
   const Eigen::Index joint = options.excitation->joint;
   if (joint < 0 || joint >= target_.size()) throw std::invalid_argument("excitation: no such joint");
   excitation_.emplace(
@@ -92,20 +105,29 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
     }
   }
   result_.mode = supervisor_.mode();
+  if (result_.mode != Mode::kWalk) result_.arms.order = ArmsOrder::kNotWalking;
   result_.fault = supervisor_.fault();
   sit_down(input, before);
   if (!upright(result_.mode) && !result_.sitting) release(input.state, input.now_ns);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
-  if (excitation_) {
-    if (result_.mode != Mode::kStand) excitation_->give_up();
-    result_.excitation = excitation_->progress();
-  }
+  see_excitation();
 
   for (std::size_t i = 0; i < result_.ack_count; ++i) result_.acks[i].mode = result_.mode;
   result_.command.bus_sample = input.state.bus_sample;
   if (spoiler_ != nullptr) spoiler_->spoil(result_);
   result_.times.tick_ns = tick.elapsed_ns();
   return result_;
+}
+
+void Tick::see_excitation() noexcept {
+  const bool ends = result_.mode != Mode::kStand;
+  if (excitation_) {
+    if (ends) excitation_->give_up();
+    result_.excitation = excitation_->progress();
+  } else if (robot_excitation_) {
+    if (ends) robot_excitation_->give_up();
+    result_.excitation = robot_excitation_->progress();
+  }
 }
 
 void Tick::take_messages(const TickInput& input) noexcept {
@@ -115,10 +137,22 @@ void Tick::take_messages(const TickInput& input) noexcept {
     intake_.stop(input.now_ns);
   }
   for (const DriveMessage& drive : input.drives) intake_.accept(drive, input.now_ns);
+  for (const ArmsMessage& message : input.arms) {
+    if (arms_) {
+      intake_.accept(message, input.now_ns);
+    } else {
+      intake_.ignore_arms();
+    }
+  }
+  result_.arms.order = intake_.arms_order(input.now_ns);
+  result_.arms.source = intake_.arms().source;
+  result_.arms.sequence = intake_.arms().sequence;
+  result_.arms.refused = intake_.arms_refused();
+  result_.arms.refusal = intake_.arms_refusal();
   result_.ack_count = 0;
   for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
     const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns);
-    const bool refused = excitation_ && request.mode == Mode::kWalk && !request.reset_fault;
+    const bool refused = excites() && request.mode == Mode::kWalk && !request.reset_fault;
     if (judgement.fresh && !refused) supervisor_.request(request);
     // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.
     if (request.stops() && judgement.verdict == Verdict::kTaken) {
@@ -159,6 +193,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
 }
 
 void Tick::watch_feet(const model::RobotState& state) noexcept {
+  if (robot_excitation_ && upright(result_.mode)) robot_excitation_->watch(state, result_.command);
   if (!feet_ || !upright(result_.mode)) return;
   result_.foot_load.reset();
   // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
@@ -202,11 +237,13 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   without_policy_ = false;
   target_ = motion_.reference().q;
   fallback_.stop();
+  if (arms_) arms_->reset(target_);
   gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
   change_over_.finish();
   limiter_.start_from(state.q);
   set_limiter_gains(gains_);
+  if (robot_excitation_) robot_excitation_->start();
   if (feet_) {
     feet_->start();
     take_footing();
@@ -217,6 +254,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
 
 faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   faults::Fault fault = make_reference();
+  if (fault.code == faults::FaultCode::kNone) lead_arms();
   if (fault.code == faults::FaultCode::kNone) {
     if (policy_waits() || without_policy_) {
       target_ = result_.reference.q;
@@ -232,14 +270,20 @@ faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   change_over_.apply(dt_s_, command.q);
   command.kp = gains_in_use().kp_Nm_per_rad;
   command.kd = gains_in_use().kd_Nm_s_per_rad;
-  if (excitation_ && entry_.done()) excite(command);
-  result_.limited = limiter_.apply(state, command.q);
   command.dq.setZero();
   command.tau_ff.setZero();
+  if (excites() && entry_.done()) excite(command);
+  result_.limited = limiter_.apply(state, command.dq, command.q);
   return {};
 }
 
 void Tick::excite(model::JointCommand& command) noexcept {
+  if (excitation_) return excite_joint(command);
+  robot_excitation_->step(command);
+  for (Eigen::Index i = 0; i < command.q.size(); ++i) limiter_.set_gains(i, command.kp[i], command.kd[i]);
+}
+
+void Tick::excite_joint(model::JointCommand& command) noexcept {
   const ExcitationPlayer::Told& told = excitation_->step();
   const Eigen::Index joint = excitation_->joint();
   command.q[joint] = told.q_rad;
@@ -263,6 +307,13 @@ faults::Fault Tick::make_reference() noexcept {
   good_observed_ = result_.optimised.command;
   gco_held_ticks_ = result_.optimised.status == gco::Status::kNotConverged ? gco_held_ticks_ + 1 : 0;
   return {};
+}
+
+void Tick::lead_arms() noexcept {
+  if (!arms_) return;
+  if (supervisor_.mode() != Mode::kWalk || policy_waits()) result_.arms.order = ArmsOrder::kNotWalking;
+  const bool in_force = result_.arms.order == ArmsOrder::kInForce;
+  result_.arms.arm = arms_->step(in_force ? &intake_.arms() : nullptr, result_.reference);
 }
 
 faults::Fault Tick::without_generator() noexcept {
@@ -317,7 +368,8 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
     set_limiter_gains(sit_down_.gains());
   }
   sit_down_.step(input.now_ns, result_.command);
-  result_.limited = limiter_.apply(input.state, result_.command.q);
+  if (arms_) result_.arms.arm = arms_->keep(result_.command.q);
+  result_.limited = limiter_.apply(input.state, result_.command.dq, result_.command.q);
 }
 
 void Tick::begin_sit_down(const TickInput& input) noexcept {
@@ -362,6 +414,7 @@ void Tick::release(const model::RobotState& state, std::int64_t now_ns) noexcept
   const bool sat = sit_down_.stage(now_ns) == SitDown::Stage::kDamped;
   const JointVector& brake_kd = sat ? sit_down_.brake_kd() : brake_kd_;
   release_command(state, result_.mode == Mode::kPassive ? nullptr : &brake_kd, result_.command);
+  if (arms_) result_.arms.arm = arms_->reset(result_.command.q);
 }
 
 }  // namespace pmg::control

@@ -12,8 +12,10 @@
 #include "control/entry_ramp.hpp"
 #include "control/excitation_player.hpp"
 #include "control/fallback_reference.hpp"
+#include "control/led_arms.hpp"
 #include "control/limiter.hpp"
 #include "control/mode.hpp"
+#include "control/robot_excitation_player.hpp"
 #include "control/sit_down.hpp"
 #include "control/supervisor.hpp"
 #include "faults/action_monitor.hpp"
@@ -46,6 +48,7 @@ struct TickOptions {
   LimiterOptions limiter;
   hal::GuardOptions guard;  ///< of the bus that this tick's commands go to
   EntryRampOptions entry;
+  std::optional<arms::ArmSetup> arms{};  ///< nothing: the reference alone moves the arms
   faults::FootLoadOptions foot_load;
   /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
   /// because a robot that is set down must be balanced.
@@ -54,6 +57,7 @@ struct TickOptions {
   SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
   std::optional<ExcitationPlan> excitation{};
+  std::optional<RobotExcitationPlan> robot_excitation{};  ///< the same of all joints at once; not both
   TickSpoiler* spoiler = nullptr;
   int late_policy_ticks = 3;  ///< after so many ticks in a row without a result of the policy: a fault; before, its
                               ///< last target is held
@@ -68,6 +72,7 @@ struct TickInput {
   std::int64_t now_ns = 0;                ///< by the clock that stamps the state
   std::span<const DriveMessage> drives;   ///< what arrived since the last tick, in its order; at most kMaxDrives
   std::span<const ModeRequest> requests;  ///< likewise, at most kMaxRequests
+  std::span<const ArmsMessage> arms{};    ///< likewise, at most kMaxArms
   bool stop = false;                      ///< the stop line was pulled since the last tick
   hal::TripCause guard_trip = hal::TripCause::kNone;  ///< the bus guard took over since the last tick
   std::int64_t late_ns = 0;  ///< how far behind its deadline the last tick ended; not positive: in time
@@ -75,17 +80,35 @@ struct TickInput {
 };
 
 /// Messages that one tick takes; the operator's inbox keeps the rest for the next.
-inline constexpr std::size_t kMaxDrives = 32, kMaxRequests = 8;
+inline constexpr std::size_t kMaxDrives = 32, kMaxRequests = 8, kMaxArms = 12;
 
 /// Wall time that each stage took, by the stopwatch.
 struct StageTimes {
   std::int64_t tick_ns = 0, generator_ns = 0, gco_ns = 0, policy_ns = 0;
 };
 
+/// What is known of led arms after a tick.
+struct ArmsState {
+  bool there = false;  ///< the robot has arms that can be led
+  ArmsOrder order = ArmsOrder::kNoneCame;
+  Source source;  ///< of the last accepted message; empty before the first
+  std::int64_t sequence = 0;
+  std::int64_t refused = 0;                                                      ///< messages since the start
+  CommandIntake::DriveVerdict refusal = CommandIntake::DriveVerdict::kAccepted;  ///< of the last of them
+  arms::PerArm<arms::ArmReport> arm{};
+};
+
+/// Something else than the reference has an arm.
+inline bool led(const ArmsState& state) noexcept {
+  constexpr arms::ArmActivity kFree = arms::ArmActivity::kReference;
+  return state.arm[kLeft].activity != kFree || state.arm[kRight].activity != kFree;
+}
+
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
   faults::Fault fault;            ///< kNone unless mode is kFault
+  ArmsState arms;                 ///< what an operator's targets do
   Command user;                   ///< the driving source's command as far as the mode admits it
   Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
   gco::Result optimised;          ///< likewise; its command is what the policy observes
@@ -138,9 +161,15 @@ class Tick {
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   faults::Fault drive(const model::RobotState& state) noexcept;
   faults::Fault make_reference() noexcept;
+  /// (the generator's reference) => (with arms where the operator has them).
+  void lead_arms() noexcept;
   /// The generator gave no finite reference: a fault; a sit-down goes on with the fallback reference.
   faults::Fault without_generator() noexcept;
   void excite(model::JointCommand& command) noexcept;
+  void excite_joint(model::JointCommand& command) noexcept;
+  bool excites() const noexcept { return excitation_ || robot_excitation_; }
+  void take_excitation(const model::RobotModel& robot, const TickOptions& options);
+  void see_excitation() noexcept;
   faults::Fault ask_policy(const model::RobotState& state) noexcept;
   /// In Fault: begins, goes on with or ends the sit-down.
   void sit_down(const TickInput& input, Mode before) noexcept;
@@ -167,7 +196,9 @@ class Tick {
   Supervisor supervisor_;
   std::optional<faults::FootLoadWatch> feet_;  // nothing for a policy that needs no ground
   EntryRamp entry_, change_over_;
+  std::optional<LedArms> arms_;  // nothing: of a robot without
   std::optional<ExcitationPlayer> excitation_;
+  std::optional<RobotExcitationPlayer> robot_excitation_;
   Limiter limiter_;
   faults::ActionMonitor action_monitor_;
   SitDown sit_down_;

@@ -23,6 +23,8 @@ struct TickRecord {
   std::size_t drive_count = 0;
   std::array<ModeRequest, kMaxRequests> requests;
   std::size_t request_count = 0;
+  std::array<ArmsMessage, kMaxArms> arms;
+  std::size_t arms_count = 0;
   bool stop = false;
   hal::TripCause guard_trip = hal::TripCause::kNone;
   std::int64_t late_ns = 0;
@@ -37,6 +39,7 @@ struct TickRecord {
             .now_ns = now_ns,
             .drives = {drives.data(), drive_count},
             .requests = {requests.data(), request_count},
+            .arms = {arms.data(), arms_count},
             .stop = stop,
             .guard_trip = guard_trip,
             .late_ns = late_ns,

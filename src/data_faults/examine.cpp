@@ -2,16 +2,29 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "data_faults/column_checks.hpp"
 #include "data_faults/position_checks.hpp"
 #include "data_faults/run_checks.hpp"
 #include "data_faults/shared_checks.hpp"
+#include "data_faults/shift_checks.hpp"
+#include "data_faults/told_torque_check.hpp"
 #include "data_faults/trajectory_checks.hpp"
 
 namespace pmg::data_faults {
 
 namespace {
+
+/// True if a position of these runs is too large for radians or metres after the corrections of the faults, too.
+bool stays_implausible(std::vector<bench::BenchRun> runs, const std::vector<DataFault>& faults, bool linear) {
+  for (const DataFault& fault : faults) {
+    for (bench::BenchRun& run : runs) {
+      for (const bench::Correction& fix : fault.fixes) bench::correct(run, fix);
+    }
+  }
+  return !std::ranges::all_of(runs, [&](const auto& run) { return plausible_positions(run.recording, linear); });
+}
 
 /// Adds what was found and corrects the runs. True if something was found.
 bool take(const std::vector<DataFault>& faults, Examined& runs, std::vector<DataFault>& into) {
@@ -26,7 +39,7 @@ void take_what_the_model_tells(Examined& runs, std::vector<DataFault>& into) {
   if (take(common_shift(runs), runs, into)) runs.fit();
   while (static_cast<double>(into.size()) < runs.options().most_faults) {
     // What many runs share before what one run shows: a gain that acts by another factor makes all its rows look wrong.
-    if (!take(clearest_position_fault(runs), runs, into) && !take(feed_forward_fault(runs), runs, into) &&
+    if (!take(clearest_position_fault(runs), runs, into) && !take(told_torque_fault(runs), runs, into) &&
         !take(gain_fault(runs), runs, into) && !take(mass_fault(runs), runs, into) &&
         !take(clearest_run_fault(runs), runs, into)) {
       return;
@@ -63,12 +76,10 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
                                         const DataFaultOptions& options, unsigned threads) {
   std::vector<DataFault> found;
   Examined examined(bench, runs, model, options, threads);
-  if (bench.law != bench::DriveLaw::kTorque) {
-    take(position_faults(examined), examined, found);
-    take(derived_column_faults(bench, examined.runs(), options, true), examined, found);
-    take(trajectory_faults(examined.runs(), options), examined, found);
-    take_what_the_model_tells(examined, found);
-  }
+  take(position_faults(examined), examined, found);
+  take(derived_column_faults(bench, examined.runs(), options, true), examined, found);
+  take(trajectory_faults(examined.runs(), options), examined, found);
+  take_what_the_model_tells(examined, found);
   take(derived_column_faults(bench, examined.runs(), options, false), examined, found);
   return found;
 }
@@ -77,22 +88,33 @@ Examination examine(const bench::Bench& bench, const std::vector<std::string>& f
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress) {
   if (progress.report) progress.report(0.0, "looking for faults of the data");
+  bench::Bench whatever_unit = bench;
+  whatever_unit.other_units = true;
   std::vector<bench::BenchRun> runs;
+  std::vector<std::vector<std::string>> groups;
   for (std::size_t f = 0; f < filters.size(); ++f) {
     if (f > 0 && filters[f].empty()) continue;  // no runs are held out
-    for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filters[f]))) {
+    groups.emplace_back();
+    for (bench::BenchRun& run : whatever_unit.read_runs(bench::RowFilter(filters[f]))) {
+      groups.back().push_back(run.file);
       const bool there =
           std::any_of(runs.begin(), runs.end(), [&](const bench::BenchRun& other) { return other.file == run.file; });
       if (!there) runs.push_back(std::move(run));
     }
   }
-  Examination found =
-      examination(find_data_faults(bench, runs, model, options.decide_by, threads), runs, options.handling);
+  const bool linear = bench.rig == bench::Rig::kLinear, implausible = stays_implausible(runs, {}, linear);
+  std::vector<DataFault> faults = find_data_faults(bench, runs, model, options.decide_by, threads);
+  if (implausible && stays_implausible(runs, faults, linear)) {  // no unit: let the reader refuse it
+    for (const std::string& filter : filters) (void)bench.read_runs(bench::RowFilter(filter));
+  }
+  Examination found = examination(std::move(faults), runs, options.handling, groups);
+  found.other_units = implausible;
   found.options = options.decide_by;
   return found;
 }
 
-Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling) {
+Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling,
+                        const std::vector<std::vector<std::string>>& groups) {
   Examination found{.faults = std::move(faults), .handling = handling};
   found.corrected = handling == Handling::kCorrect && !found.faults.empty();
   if (handling != Handling::kLeaveOut) return found;
@@ -101,7 +123,13 @@ Examination examination(std::vector<DataFault> faults, const std::vector<bench::
     for (const std::string& file : fault.files) {
       if (std::find(left_out.begin(), left_out.end(), file) == left_out.end()) left_out.push_back(file);
     }
-    if (2 * left_out.size() <= runs.size()) found.left_out = left_out;
+    const auto without = [&left_out](const std::string& file) {
+      return std::find(left_out.begin(), left_out.end(), file) != left_out.end();
+    };
+    const bool empties_a_group = std::any_of(groups.begin(), groups.end(), [&](const std::vector<std::string>& files) {
+      return std::all_of(files.begin(), files.end(), without);
+    });
+    if (2 * left_out.size() <= runs.size() && !empties_a_group) found.left_out = left_out;
   }
   return found;
 }
@@ -113,7 +141,9 @@ bench::Bench examined_bench(const bench::Bench& bench, const Examination& examin
       corrections.insert(corrections.end(), fault.fixes.begin(), fault.fixes.end());
     }
   }
-  return bench::corrected(bench, corrections, examination.left_out);
+  bench::Bench found = bench::corrected(bench, corrections, examination.left_out);
+  found.other_units = examination.other_units;
+  return found;
 }
 
 }  // namespace pmg::data_faults

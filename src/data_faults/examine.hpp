@@ -35,8 +35,9 @@ struct Examination {
   Handling handling = Handling::kLeaveOut;
   std::vector<std::string> left_out{};  ///< files of runs
   bool corrected = false;               ///< the diagnosis goes on with the corrections
-  DataFaultOptions options{};           ///< thresholds in force
-  bool uncorrected() const;             ///< faults are left in the data that the diagnosis goes on with
+  bool other_units = false;    ///< positions of these runs are too large for radians or metres; a fault says why
+  DataFaultOptions options{};  ///< thresholds in force
+  bool uncorrected() const;    ///< faults are left in the data that the diagnosis goes on with
 };
 
 /// (bench, its runs, the simulation's model or none) => (faults, in the order in which they were found). The same input
@@ -46,13 +47,15 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
                                         const DataFaultOptions& options, unsigned threads);
 
 /// (bench, filters of runs.csv, the simulation's model or none) => (examination of all runs that a filter keeps).
-/// Throws as Bench::read_runs.
+/// Throws as Bench::read_runs, on positions that are too large only where no fault of the data explains them.
 Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress = {});
 
-/// (faults, runs, handling) => (what the diagnosis goes on with).
-Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling);
+/// (faults, runs, handling, groups of files) => (what the diagnosis goes on with). A fault's runs are left out as long
+/// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored.
+Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling,
+                        const std::vector<std::vector<std::string>>& groups = {});
 
 /// The bench as the diagnosis goes on with it.
 bench::Bench examined_bench(const bench::Bench& bench, const Examination& examination);

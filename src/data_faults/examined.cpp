@@ -3,11 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/noise_floor.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::data_faults {
 
 namespace {
+
+/// The error that a perfect model would have by QuickFit::log_error; 0 without repeats.
+double floor_of(const std::vector<bench::BenchRun>& runs) {
+  std::vector<const bench::BenchRun*> all;
+  std::vector<double> noise_rad;
+  for (const bench::BenchRun& run : runs) {
+    all.push_back(&run);
+    noise_rad.push_back(bench::sensor_noise_rad(run.recording));
+  }
+  const double repeats_rad = bench::noise_floor(all).rms_rad;
+  return repeats_rad > 0.0 ? std::hypot(repeats_rad, fitting::median(noise_rad)) : 0.0;
+}
 
 /// Indices spread over the list by steps of the golden ratio, to avoid its periods; in their order.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
@@ -35,7 +48,8 @@ Examined::Examined(const bench::Bench& bench, std::vector<bench::BenchRun> runs,
       runs_(std::move(runs)),
       options_(options),
       model_(bench, given, threads),
-      few_(spread(runs_.size(), static_cast<std::size_t>(options.fitted_runs))) {}
+      few_(spread(runs_.size(), static_cast<std::size_t>(options.fitted_runs))),
+      floor_rad_(floor_of(runs_)) {}
 
 std::vector<bench::BenchRun> Examined::with(const std::vector<bench::Correction>& corrections) const {
   std::vector<bench::BenchRun> found = runs_;
@@ -62,6 +76,8 @@ void Examined::fit() {
   fit_ = fit_ ? model_.refit(few, *fit_, {}, 4) : model_.fit(few);
   log_error_ = model_.log_errors(model_.joints(runs_), fit_->model);
 }
+
+double Examined::floors(const QuickFit& fit) const { return std::exp(fitting::median(fit.log_error)) / floor_rad_; }
 
 double Examined::usual_log_error() const {
   const double middle = fitting::median(log_error_);

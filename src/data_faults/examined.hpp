@@ -36,6 +36,9 @@ class Examined {
   const std::vector<double>& log_error() const { return log_error_; }  ///< of every run
   /// ln of an error that is still usual among the runs.
   double usual_log_error() const;
+  /// A usual run's error over that of a perfect model, which misses what differs between repeats; infinite without
+  /// repeats.
+  double floors(const QuickFit& fit) const;
 
   /// Few runs, spread over all, for fits: indices.
   const std::vector<std::size_t>& few() const { return few_; }
@@ -49,6 +52,7 @@ class Examined {
   std::vector<std::size_t> few_;
   std::optional<QuickFit> fit_;
   std::vector<double> log_error_;
+  double floor_rad_;
 };
 
 }  // namespace pmg::data_faults

@@ -4,6 +4,7 @@ namespace pmg::data_faults {
 
 std::vector<evidence::Option> listed(const DataFaultOptions& o) {
   const char* plants = "hidden plants, seeds 100 to 179";
+  const char* literature = "hidden plants of the literature, even seeds 0 to 638";
   const char* assumed = "assumed";
   return {
       {"sure_correlation", o.sure_correlation, "",
@@ -41,6 +42,8 @@ std::vector<evidence::Option> listed(const DataFaultOptions& o) {
       {"usual_deviations", o.usual_deviations, "", "or within so many deviations of it", plants},
       {"largest_usual_error", o.largest_usual_error, "", "which count up to so many times the median", plants},
       {"column_gain", o.column_gain, "", "clear_gain of a column of all runs", plants},
+      {"model_shift_samples", o.model_shift_samples, "",
+       "samples by which readings must be early or late of the model: one may be lost between two clocks", literature},
       {"shift_gain", o.shift_gain, "", "clear_gain of a run's shift", plants},
       {"lone_shift_gain", o.lone_shift_gain, "", "the same of a run that has no repeat: fast motion lags, too",
        "random benches"},
@@ -64,6 +67,14 @@ std::vector<evidence::Option> listed(const DataFaultOptions& o) {
        plants},
       {"factor_deviations", o.factor_deviations, "",
        "and if the gain of its runs is so many standard deviations of its mean", plants},
+      {"least_exact_factor", o.least_exact_factor, "",
+       "a smaller factor of a gain or a load is believed from here on, if its correction leaves nothing to explain",
+       "loads and gains are read off with less error"},
+      {"exact_floors", o.exact_floors, "",
+       "which is so if the usual error then is at most so many times what repeats differ by", literature},
+      {"exact_evidence", o.exact_evidence, "",
+       "and twice the logarithm of the likelihood grows by so much, over no factor and over one effect",
+       "five and a half deviations"},
       {"feed_forward_gain", o.feed_forward_gain, "",
        "the feed-forward has another unit or sign if its correction divides the error on its runs by so much", plants},
       {"fitted_runs", o.fitted_runs, "", "runs that the quick model is fitted to", "time of a diagnosis"},

@@ -47,6 +47,7 @@ calib::JointModel with_factors(calib::JointModel model, const RunFactors& factor
   model.actuator.drive.kd_scale *= factors.kd;
   model.inertia_scale *= factors.load;
   model.gravity_scale *= factors.load;
+  model.feed_forward_scale *= factors.told_torque;
   return model;
 }
 
@@ -87,6 +88,10 @@ QuickModel::QuickModel(const bench::Bench& bench, const std::optional<model::Act
       threads_(threads),
       step_s_(std::min(kCoarsestStep_s, 0.5 / bench.sample_rate_hz)) {
   start_.actuator = given.value_or(bench.known);
+}
+
+double evidence(const QuickFit& fit, const QuickFit& other) {
+  return 2.0 * kBlocksOfRun * static_cast<double>(fit.log_error.size()) * (other.loss_with_prior - fit.loss_with_prior);
 }
 
 std::vector<calib::SingleJoint> QuickModel::joints(const std::vector<bench::BenchRun>& runs) const {
@@ -248,6 +253,12 @@ QuickFit QuickModel::minimised(const std::vector<calib::SingleJoint>& runs,
   fit.log_error = logs;
   fit.loss = 0.0;
   for (const double log : logs) fit.loss += log / static_cast<double>(logs.size());
+  double prior = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const fitting::Coordinate& c = problem.coordinates[static_cast<std::size_t>(i)];
+    if (c.deviation > 0.0 && std::isfinite(c.expected)) prior += std::pow((x[i] - c.expected) / c.deviation, 2);
+  }
+  fit.loss_with_prior = fit.loss + prior / (2.0 * kBlocksOfRun * static_cast<double>(runs.size()));
   return fit;
 }
 

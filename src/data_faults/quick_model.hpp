@@ -12,10 +12,11 @@ namespace pmg::data_faults {
 
 /// Factors on numbers of bench.yaml and runs.csv, one for each run.
 struct RunFactors {
-  double kp = 1.0, kd = 1.0, load = 1.0;
+  double kp = 1.0, kd = 1.0, load = 1.0, told_torque = 1.0;
 };
 
-/// One unknown factor that some runs share: of a gain, or of a load (inertia and gravity).
+/// One unknown factor that some runs share: of a gain, of a load (inertia and gravity), or of the torque that the drive
+/// is told.
 struct SharedFactor {
   double RunFactors::*of = &RunFactors::kp;
   std::vector<std::size_t> runs;
@@ -28,7 +29,13 @@ struct QuickFit {
   std::vector<double> factors{};     ///< in the order of the shared factors
   std::vector<double> log_error{};   ///< of each run: ln of the rollout's root mean square error [rad], noise included
   double loss = 0.0;                 ///< mean of log_error
+  /// loss, and what the parameters' distance from what is known of them costs, in the same unit.
+  double loss_with_prior = 0.0;
 };
+
+/// Twice the logarithm by which a fit is likelier than another one of the same runs, what is known of the joint
+/// counted.
+double evidence(const QuickFit& fit, const QuickFit& other);
 
 /// Gravity load, inertia, dry and viscous friction, drive law, dead time, rate limit, constant torque: the parameters
 /// that every bench shows. Weights of runs are 1 / error, so that the loss is the mean logarithm of the runs' errors
@@ -37,6 +44,9 @@ class QuickModel {
  public:
   /// given: the simulation's model, or none. The bench must outlive the object.
   QuickModel(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given, unsigned threads);
+
+  /// What the joint is taken for before any fit: the given model, or what bench.yaml knows.
+  const model::ActuatorParameters& start() const { return start_.actuator; }
 
   calib::SingleJoint joint(const bench::BenchRun& run) const { return {*bench_, run, step_s_}; }
   std::vector<calib::SingleJoint> joints(const std::vector<bench::BenchRun>& runs) const;

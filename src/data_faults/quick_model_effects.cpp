@@ -6,6 +6,7 @@
 #include "calib/joint_runs.hpp"
 #include "data_faults/quick_model.hpp"
 #include "effects/catalogue.hpp"
+#include "effects/starts.hpp"
 
 namespace pmg::data_faults {
 
@@ -39,15 +40,16 @@ QuickFit QuickModel::with_best_effect(const std::vector<calib::SingleJoint>& run
   const effects::BenchScale scale = effects::scale_of(*bench_, runs, fit.model);
   std::vector<QuickFit> tried;
   for (const effects::Effect& effect : effects::catalogue()) {
+    const effects::Form& form = effect.forms.front();
     QuickFit best = fit;
     best.loss = std::numeric_limits<double>::infinity();
-    const std::vector<std::vector<double>> starts = effects::starts(effect, fit.model, scale);
+    const std::vector<std::vector<double>> starts = effects::starts(effect, form, fit.model, scale);
     const std::size_t stride = std::max<std::size_t>(1, starts.size() / kStarts);
     for (std::size_t s = 0; s < starts.size(); s += stride) {
       const std::vector<double>& values = starts[s];
       QuickFit one = fit;
       for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::string& name = effect.parameters[i];
+        const std::string& name = form.parameters[i];
         calib::set(one.model, name, values[i]);
         if (!effects::is_jagged(name)) one.extra.push_back(name);
       }

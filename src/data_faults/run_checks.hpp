@@ -15,7 +15,4 @@ std::vector<DataFault> clearest_position_fault(const Examined& examined);
 /// between its columns, the sign of its feed-forward.
 std::vector<DataFault> clearest_run_fault(const Examined& examined);
 
-/// A time between commands and readings that no drive's delay explains, in all runs; empty if there is none.
-std::vector<DataFault> common_shift(const Examined& examined);
-
 }  // namespace pmg::data_faults

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "data_faults/column_checks.hpp"
 #include "fitting/statistics.hpp"
@@ -24,7 +25,7 @@ struct Group {
 /// A fit with one factor free, and how well the runs like it.
 struct Tried {
   QuickFit fit;
-  double factor = 1.0, loss = 0.0;
+  double factor = 1.0;
   double gain = 0.0, gain_deviation = 0.0;  ///< mean over the group's runs of the fall of ln error, and its deviation
 };
 
@@ -57,14 +58,14 @@ class Groups {
 
   /// One factor for these groups together.
   Tried with(const std::vector<std::size_t>& which) const {
-    SharedFactor shared{.of = of_, .runs = {}};
-    for (const std::size_t g : which)
-      shared.runs.insert(shared.runs.end(), groups_[g].runs.begin(), groups_[g].runs.end());
-    Tried tried{.fit = e_->model().refit(joints_, without_, {shared}, kIterations)};
-    tried.factor = tried.fit.factors.front();
-    tried.loss = tried.fit.loss;
+    return judged(refit({{.of = of_, .runs = of(which)}}), which);
+  }
+
+  /// A fit with one factor for these groups, against the fit without.
+  Tried judged(const QuickFit& fit, const std::vector<std::size_t>& which) const {
+    Tried tried{.fit = fit, .factor = fit.factors.front()};
     std::vector<double> gains;
-    for (const std::size_t run : shared.runs) gains.push_back(without_.log_error[run] - tried.fit.log_error[run]);
+    for (const std::size_t run : of(which)) gains.push_back(without_.log_error[run] - fit.log_error[run]);
     double squares = 0.0;
     for (const double gain : gains) tried.gain += gain / static_cast<double>(gains.size());
     for (const double gain : gains) squares += std::pow(gain - tried.gain, 2);
@@ -83,13 +84,27 @@ class Groups {
   std::vector<double> together() const {
     std::vector<SharedFactor> shared;
     for (const Group& group : groups_) shared.push_back({.of = of_, .runs = group.runs, .deviation = 0.3});
-    return e_->model().refit(joints_, without_, shared, kIterations).factors;
+    return refit(shared).factors;
   }
 
-  double loss() const { return without_.loss; }
-  std::size_t runs() const { return joints_.size(); }
+  /// Share of the runs that a group has.
+  double share(std::size_t group) const {
+    return static_cast<double>(groups_[group].runs.size()) / static_cast<double>(joints_.size());
+  }
+
+  const QuickFit& without() const { return without_; }
 
  private:
+  std::vector<std::size_t> of(const std::vector<std::size_t>& which) const {
+    std::vector<std::size_t> runs;
+    for (const std::size_t g : which) runs.insert(runs.end(), groups_[g].runs.begin(), groups_[g].runs.end());
+    return runs;
+  }
+
+  QuickFit refit(const std::vector<SharedFactor>& shared) const {
+    return e_->model().refit(joints_, without_, shared, kIterations);
+  }
+
   const Examined* e_;
   double RunFactors::*of_;
   std::vector<Group> groups_;
@@ -105,18 +120,48 @@ bool firmware_factor(double factor, double tolerance) {
                      [&](double known) { return std::abs(std::abs(std::log(factor)) - std::log(known)) < tolerance; });
 }
 
-/// The group whose factor alone explains the runs, clearly better than a common factor of all groups does; -1 if none.
+/// What a factor must be and do to be believed.
+struct Demand {
+  double least_factor, least_gain;
+  bool small_if_exact;       ///< a smaller factor is believed, too, if it leaves nothing to explain
+  bool known_factors_count;  ///< a firmware's factor needs no comparison with physics
+};
+
 struct Odd {
   int group = -1;
   Tried tried;
+  std::vector<std::string> instead{};  ///< other groups whose factor explains the runs as well, as sentences
 };
 
-Odd odd_one(const Groups& groups, double least_factor, double least_gain, const DataFaultOptions& o, bool kp = false) {
+/// Clear by its size, whatever else the joint does.
+bool clear(const Tried& tried, const Demand& demand, const DataFaultOptions& o) {
+  return beyond(tried.factor, demand.least_factor) && tried.gain > std::log(demand.least_gain) &&
+         tried.gain > o.factor_deviations * tried.gain_deviation;
+}
+
+/// A small factor after which the model misses the readings by no more than repeats differ.
+bool exact(const Examined& e, const Groups& groups, const Tried& tried, const Demand& demand) {
+  const DataFaultOptions& o = e.options();
+  return demand.small_if_exact && beyond(tried.factor, o.least_exact_factor) && e.floors(tried.fit) < o.exact_floors &&
+         evidence(tried.fit, groups.without()) > o.exact_evidence;
+}
+
+/// How far a model's gain is from the one that was known before [logarithm].
+double gain_off(const Examined& e, const calib::JointModel& model) {
+  return std::abs(std::log(model.actuator.drive.kp_scale / e.model().start().drive.kp_scale));
+}
+
+/// The group whose factor alone explains the runs, clearly better than a common factor of all groups does, and than one
+/// effect of the catalogue; -1 if none.
+Odd odd_one(const Examined& e, const Groups& groups, const Demand& demand) {
+  const DataFaultOptions& o = e.options();
   Odd found;
   if (groups.all().size() < 2) return found;
+  const double least_factor = demand.small_if_exact ? o.least_exact_factor : demand.least_factor;
   const std::vector<double> together = groups.together();
   const auto [low, high] = std::minmax_element(together.begin(), together.end());
   if (!beyond(*high / *low, least_factor)) return found;
+  std::vector<Odd> believed;
   for (std::size_t g = 0; g < groups.all().size(); ++g) {
     std::vector<double> others;
     for (std::size_t i = 0; i < together.size(); ++i) {
@@ -124,23 +169,39 @@ Odd odd_one(const Groups& groups, double least_factor, double least_gain, const 
     }
     if (std::abs(std::log(together[g]) - fitting::median(others)) < 0.5 * std::log(least_factor)) continue;
     const Tried tried = groups.with({g});
-    if (!beyond(tried.factor, least_factor) || tried.gain < std::log(least_gain)) continue;
-    if (tried.gain < o.factor_deviations * tried.gain_deviation) continue;
-    if (found.group < 0 || tried.loss < found.tried.loss) found = {static_cast<int>(g), tried};
+    if (!clear(tried, demand, o) && !exact(e, groups, tried, demand)) continue;
+    believed.push_back({static_cast<int>(g), tried});
   }
-  if (found.group < 0) return found;
+  if (believed.empty()) return found;
+  const QuickFit best =
+      std::ranges::min_element(believed, {}, [](const Odd& one) { return one.tried.fit.loss_with_prior; })->tried.fit;
+  std::erase_if(believed,
+                [&](const Odd& one) { return evidence(best, one.tried.fit) > std::pow(o.factor_deviations, 2); });
+  // Either of two halves may be odd where the drive's gain is free: the other is as that is known. Then the best fit.
+  found = *std::ranges::min_element(believed, {}, [&](const Odd& one) {
+    return std::pair(gain_off(e, one.tried.fit.model), one.tried.fit.loss_with_prior);
+  });
+  for (const Odd& other : believed) {
+    if (other.group == found.group) continue;
+    found.instead.push_back(fmt::format("{:.3g} instead, times {:.3g}, explains the runs as well: check both",
+                                        groups.all()[static_cast<std::size_t>(other.group)].value, other.tried.factor));
+  }
+  const auto group = static_cast<std::size_t>(found.group);
   // What all groups share is physics, or another fault.
-  const double share = static_cast<double>(groups.all()[static_cast<std::size_t>(found.group)].runs.size()) /
-                       static_cast<double>(groups.runs());
-  if (groups.common().loss - found.tried.loss < share * std::log(o.better_than_common)) return {};
-  if (kp && firmware_factor(found.tried.factor, o.unit_tolerance) && found.tried.gain > std::log(o.clear_gain))
+  const bool leaves_nothing = exact(e, groups, found.tried, demand);
+  if (groups.common().fit.loss - found.tried.fit.loss < groups.share(group) * std::log(o.better_than_common)) return {};
+  if (demand.known_factors_count && firmware_factor(found.tried.factor, o.unit_tolerance) &&
+      found.tried.gain > std::log(o.clear_gain))
     return found;
   // What one effect of the catalogue explains, too, is physics.
-  const Tried beside = groups.beside_physics().with({static_cast<std::size_t>(found.group)});
-  if (!beyond(beside.factor, least_factor) || beside.gain < std::log(least_gain)) return {};
-  if (beside.gain < o.factor_deviations * beside.gain_deviation) return {};
-  found.tried = beside;  // the better model knows the factor better
-  return found;
+  const Groups physics = groups.beside_physics();
+  Tried beside = physics.with({group});
+  // The factor alone is one of the fits that have the effect as well.
+  if (beside.fit.loss > found.tried.fit.loss) beside = physics.judged(found.tried.fit, {group});
+  if (clear(beside, demand, o))
+    return {found.group, beside, found.instead};  // the better model knows the factor better
+  if (leaves_nothing && evidence(found.tried.fit, physics.without()) > o.exact_evidence) return found;
+  return {};
 }
 
 std::string deviation_text(const Tried& tried) {
@@ -175,7 +236,7 @@ std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) 
                                                                                : "kp_Nm_per_rad";
   const Groups groups(e, of);
   if (groups.all().empty()) return {};
-  const Odd odd = odd_one(groups, o.least_gain_factor, kp ? o.gain_gain : o.damping_gain, o, kp);
+  const Odd odd = odd_one(e, groups, {o.least_gain_factor, kp ? o.gain_gain : o.damping_gain, kp, kp});
   // Friction and speed limits change what a damping does by any factor: of kd only a firmware's factor is believed.
   if (odd.group >= 0 && (kp || firmware_factor(odd.tried.factor, o.unit_tolerance))) {
     const double value = groups.all()[static_cast<std::size_t>(odd.group)].value;
@@ -184,6 +245,7 @@ std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) 
     bench::Correction fix{.files = fault.files, .columns = {}};
     (kp ? fix.kp_factor : fix.kd_factor) = odd.tried.factor;
     fault.fixes = {fix};
+    fault.evidence.insert(fault.evidence.end(), odd.instead.begin(), odd.instead.end());
     return {fault};
   }
   return {};
@@ -194,7 +256,7 @@ std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) 
 std::vector<DataFault> mass_fault(const Examined& e) {
   const DataFaultOptions& o = e.options();
   const Groups groups(e, &RunFactors::load);
-  const Odd odd = odd_one(groups, o.least_mass_factor, o.mass_gain, o);
+  const Odd odd = odd_one(e, groups, {o.least_mass_factor, o.mass_gain, true, false});
   if (odd.group < 0) return {};
   const double inertia = groups.all()[static_cast<std::size_t>(odd.group)].value, factor = odd.tried.factor;
   DataFault fault{.kind = Kind::kMass, .where = {}, .correction = {}};
@@ -208,12 +270,14 @@ std::vector<DataFault> mass_fault(const Examined& e) {
   }
   fault.correction += fmt::format("inertia and gravity times {:.3g}", factor);
   fault.evidence = {deviation_text(odd.tried)};
+  fault.evidence.insert(fault.evidence.end(), odd.instead.begin(), odd.instead.end());
   fault.files = files_with(e, [&](const bench::BenchRun& run) { return run.load.inertia_kg_m2 == inertia; });
   fault.fixes = {{.files = fault.files, .columns = {}, .load_factor = factor}};
   return {fault};
 }
 
 std::vector<DataFault> gain_fault(const Examined& e) {
+  if (e.bench().law == bench::DriveLaw::kTorque) return {};  // it has no gains
   std::vector<DataFault> found = gain_fault_of(e, &RunFactors::kp);
   if (!found.empty() || e.bench().law == bench::DriveLaw::kServoVoltage) return found;
   found = gain_fault_of(e, &RunFactors::kd);

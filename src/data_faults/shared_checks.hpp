@@ -1,4 +1,4 @@
-// Numbers that several runs share: loads of bench.yaml, gains of runs.csv, the unit of the feed-forward.
+// Numbers that several runs share: loads of bench.yaml, gains of runs.csv.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,5 @@ std::vector<DataFault> mass_fault(const Examined& examined);
 
 /// A gain that acts by a factor of its number: one value of it beside others, or all.
 std::vector<DataFault> gain_fault(const Examined& examined);
-
-/// Sign and unit of the feed-forward torque in all runs that have one.
-std::vector<DataFault> feed_forward_fault(const Examined& examined);
 
 }  // namespace pmg::data_faults

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit_results.hpp"
 #include "calib/joint_floor.hpp"
 #include "calib/joint_runs.hpp"
+#include "diagnosis/assemblies.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/explanation.hpp"
-#include "diagnosis/intervals.hpp"
 #include "diagnosis/next_excitation.hpp"
 #include "diagnosis/residual.hpp"
+#include "effects/integration_part.hpp"
+#include "effects/intervals.hpp"
 #include "evidence/signature.hpp"
 
 namespace pmg::diagnosis {
@@ -38,38 +41,45 @@ class JointDiagnosisRun {
     checks_ = checks(fitted);
     report(0.02, "fitting what the simulation has");
     const BaseModel base = base_at_chosen_step(fitted, scored);
+    const bool differ =
+        tell_assemblies(fitted, scored, searched(fitted).fit(base.model, base.unknowns, 0), base, false);
     const effects::NestedFit all(fitted, options_.threads), fit = searched(fitted);
-    if (runs != nullptr) *runs = {fitted, scored, checks_};
     EffectSearch search(
-        bench_, fit, base, limits(),
+        bench_, fit, base, search_limits(by_, std::pow(diagnosis_.noise_floor.rms_rad, 2), !options_.model),
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
     for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
-    Extension chosen = search.choose();
-    const Extension settled = search.refit_with_priors(chosen);
-    if (settled.fitted.squares < by_.settled_squares * chosen.fitted.squares) chosen = settled;
-    diagnosis_.before = search.base().fitted.model;
-    diagnosis_.after = settled.fitted.model;
-    effects::NestedModel final_fit = settled.fitted;
-    if (all.runs().size() > fit.runs().size()) {
-      report(share_, "fitting all runs");
-      final_fit = all.fit(settled.fitted.model, settled.fitted.unknowns, 8, nullptr, settled.fitted.prior_weight);
-      all.linearise(final_fit);
-      diagnosis_.before = all.fit(diagnosis_.before, search.base().fitted.unknowns, 8).model;
-      diagnosis_.after = final_fit.model;
+    auto [chosen, final_fit] = final_model(search, all);
+    const bool differ_at_end = tell_assemblies(fitted, scored, final_fit, base, true);
+    const effects::NestedFit told(fitted, options_.threads);
+    if (differ_at_end)
+      final_fit = diagnosis_.assemblies.fitted;
+    else if (differ)
+      final_fit = told.fit(final_fit.model, final_fit.unknowns, 8, nullptr, final_fit.prior_weight);
+    if (differ || differ_at_end) {
+      told.linearise(final_fit);
+      count_step(told, final_fit);
     }
+    rest_squares_ = differ || differ_at_end ? usual_rest(told, final_fit, std::pow(diagnosis_.noise_floor.rms_rad, 2))
+                                            : search.usual_rest(chosen);
+    if (runs != nullptr) *runs = {fitted, scored, checks_, {}};
+    diagnosis_.before = search.base().fitted.model;
+    if (all.runs().size() > fit.runs().size())
+      diagnosis_.before = all.fit(diagnosis_.before, search.base().fitted.unknowns, 8).model;
+    diagnosis_.after = final_fit.model;
     diagnosis_.step_error_after = calib::integration_error(bench_, fit.runs(), diagnosis_.after, options_.threads);
-    count_integration_error(search.usual_rest(chosen));
-    score(all, scored);
+    count_integration_error(rest_squares_, fit, base);
+    score(told, scored);
     std::vector<evidence::Signature> expected;
-    if (!chosen.effects.empty()) {
+    if (!chosen.effects.empty() || runs != nullptr) {
       expected =
           evidence::CheckPower(bench_, fitted, base.scale.quantum_rad, by_.signatures).expected(diagnosis_.after);
     }
+    if (runs != nullptr) runs->expected = expected;
     explanation_ = explain(search, chosen,
                            {.searched = fit,
-                            .all = all,
+                            .all = told,
                             .judged = *judged_,
                             .fitted = final_fit,
                             .checks = checks_,
@@ -79,8 +89,14 @@ class JointDiagnosisRun {
                             .error_after = diagnosis_.held_out_after.value,
                             .unit = diagnosis_.unit});
     diagnosis_.causes = explanation_.causes;
+    for (Cause& cause : diagnosis_.causes) {
+      for (evidence::ParameterEstimate& p : cause.parameters) p.unit = calib::unit_on_rig(p.unit, bench_);
+    }
     diagnosis_.rejected = explanation_.rejected;
-    conclude(search, chosen, fit);
+    leave_out_what_only_differs(diagnosis_, chosen.forms);
+    conclude(search, told, fit);
+    if (diagnosis_.verdict == evidence::Verdict::kUnexplained)
+      extend_unexplained(search, chosen, searched(fitted), told);
     return diagnosis_;
   }
 
@@ -113,7 +129,8 @@ class JointDiagnosisRun {
       fitted = calib::with_step(bench_, fitted, step.error.step_s);
       scored = calib::with_step(bench_, scored, step.error.step_s);
     }
-    if (!small_error()) diagnosis_.noise_floor = calib::with_integration_error(noise_, step.error.rms_rad);
+    if (!small_error())
+      diagnosis_.noise_floor = calib::with_integration_error(noise_, error_in(searched(fitted), base.model, base));
     return base;
   }
 
@@ -122,31 +139,66 @@ class JointDiagnosisRun {
     return diagnosis_.step.limit == calib::StepLimit::kError || diagnosis_.step.limit == calib::StepLimit::kResidual;
   }
 
+  /// The integrator's error as far as the residual may be made of it: at most the residual, and at most the error. A
+  /// given step may have an error beyond the residual, most of which the base model's numbers have taken up.
+  double error_in(const effects::NestedFit& fit, const calib::JointModel& model, const BaseModel& base) const {
+    return std::min(diagnosis_.step.error.rms_rad, effects::integration_part_rms(bench_, fit, model, base.unknowns));
+  }
+
   /// (mean square that remains beyond the noise): what is left of the integrator's error counts as noise. An error that
   /// was small beside the base model's residual counts as far as there is a rest that it may have made. None counts
   /// where the recordings are no finer than the step.
-  void count_integration_error(double rest_squares) {
-    double error_rad = std::max(diagnosis_.step.error.rms_rad, diagnosis_.step_error_after.rms_rad);
-    if (small_error()) error_rad = std::min(diagnosis_.step_error_after.rms_rad, std::sqrt(rest_squares));
+  void count_integration_error(double rest_squares, const effects::NestedFit& fit, const BaseModel& base) {
+    double error_rad = std::min(diagnosis_.step_error_after.rms_rad, std::sqrt(rest_squares));
+    if (!small_error()) error_rad = error_in(fit, diagnosis_.after, base);
     if (diagnosis_.step.limit == calib::StepLimit::kResidual) error_rad = 0.0;
     diagnosis_.noise_floor = calib::with_integration_error(noise_, error_rad);
   }
 
-  SearchLimits limits() const {
-    const double noise = std::pow(diagnosis_.noise_floor.rms_rad, 2);
-    if (options_.model) {
-      return {.noise_squares = noise,
-              .healthy_squares = 0.0,
-              .of_noise = by_.amplitude_of_noise,
-              .of_beginning = by_.amplitude_of_beginning,
-              .of_rest = by_.gain_of_rest};
+  /// The search's result, and its fit with priors to all runs. Effects whose numbers are unsure on all runs leave.
+  std::pair<Extension, effects::NestedModel> final_model(EffectSearch& search, const effects::NestedFit& all) {
+    const std::vector<fitting::Fold> all_folds = folds(all);
+    for (Extension chosen = search.choose();;) {
+      const Settled settled = search.settled(std::move(chosen));
+      chosen = settled.chosen;
+      effects::NestedModel fitted = settled.with_priors.fitted;
+      if (all.runs().size() > search.runs()) {
+        report(share_, "fitting all runs");
+        fitted = all.fit(fitted.model, fitted.unknowns, 8, nullptr, fitted.prior_weight);
+        if (fitted.blocks.empty()) all.linearise(fitted);
+      }
+      fitted = with_wide_differences(all, std::move(fitted), all_folds, std::pow(diagnosis_.noise_floor.rms_rad, 2),
+                                     by_.intervals);
+      std::string none, why;
+      for (const std::string& name : chosen.effects) {
+        if (search.measured(name) != nullptr) continue;
+        if (why = search.unsure(name, chosen.forms, fitted, &all_folds); !why.empty()) {
+          none = name;
+          break;
+        }
+      }
+      if (none.empty()) {
+        count_step(all, fitted);
+        return {std::move(chosen), std::move(fitted)};
+      }
+      chosen = search.leave_out(chosen, none, why);
     }
-    // From scratch: several effects are missing, so weaker ones must be found beside stronger ones.
-    return {.noise_squares = noise,
-            .healthy_squares = noise,
-            .of_noise = by_.scratch_amplitude_of_noise,
-            .of_beginning = by_.scratch_amplitude_of_beginning,
-            .of_rest = by_.scratch_gain_of_rest};
+  }
+
+  /// Intervals reach to where an exact integrator would put the numbers, unless the recordings are no finer than the
+  /// step.
+  void count_step(const effects::NestedFit& fit, effects::NestedModel& model) const {
+    if (diagnosis_.step.limit != calib::StepLimit::kResidual) model.step_shift = step_shift(bench_, fit, model);
+  }
+
+  /// True if parameters differ from assembly to assembly: the runs have them from then on.
+  bool tell_assemblies(std::vector<calib::SingleJoint>& fitted, std::vector<calib::SingleJoint>& scored,
+                       const effects::NestedModel& model, const BaseModel& base, bool loads_too) {
+    report(share_, "comparing assemblies");
+    const double noise_squares = std::pow(diagnosis_.noise_floor.rms_rad, 2);
+    diagnosis_.assemblies =
+        told_apart(bench_, fitted, scored, model, base.model, noise_squares, loads_too, options_.threads, by_.assembly);
+    return !diagnosis_.assemblies.varies.empty();
   }
 
   std::vector<evidence::Signature> checks(const std::vector<calib::SingleJoint>& fitted) const {
@@ -163,58 +215,69 @@ class JointDiagnosisRun {
   void score(const effects::NestedFit& fit, const std::vector<calib::SingleJoint>& scored) {
     diagnosis_.held_out = !scored.empty();
     judged_.emplace(scored.empty() ? fit.runs() : scored, options_.threads);
-    const HeldOutErrors errors = held_out_errors(*judged_, diagnosis_.before, diagnosis_.after, options_.seed);
+    const effects::NestedFit before(assembly::without_differences(judged_->runs()), options_.threads);
+    const effects::HeldOutErrors errors =
+        held_out_errors(before, diagnosis_.before, *judged_, diagnosis_.after, options_.seed);
     diagnosis_.held_out_before = errors.before;
-    diagnosis_.held_out_after = errors.after;
-    const double way = errors.before.value - diagnosis_.noise_floor.mean_absolute_rad;
-    diagnosis_.share_of_way_to_floor = way > 0.0 ? (errors.before.value - errors.after.value) / way : 0.0;
+    count_after(errors.after);
   }
 
-  /// Plans the next excitation. Effects that no run on this rig can separate become one cause with several names.
+  void count_after(const evidence::Interval& after) {
+    diagnosis_.held_out_after = after;
+    const double before = diagnosis_.held_out_before.value, way = before - diagnosis_.noise_floor.mean_absolute_rad;
+    diagnosis_.share_of_way_to_floor = way > 0.0 ? (before - after.value) / way : 0.0;
+  }
+
   void ask_for_more(const effects::NestedFit& fit) {
     if (explanation_.rivals.empty()) return;
     report(share_, "looking for what to record next");
-    const SeparationWanted wanted{.deviations = by_.apart_deviations,
-                                  .noise_squares = std::pow(diagnosis_.noise_floor.rms_rad, 2),
-                                  .enough = by_.enough_deviations,
-                                  .most_runs = static_cast<std::size_t>(by_.most_asked_runs),
-                                  .most_recordings = static_cast<int>(by_.most_asked_recordings)};
-    AskedFor asked = next_excitation(bench_, fit.runs(), explanation_.rivals, wanted, options_.threads);
+    AskedFor asked =
+        next_excitation(bench_, fit.runs(), explanation_.rivals,
+                        separation_wanted(by_, std::pow(diagnosis_.noise_floor.rms_rad, 2)), options_.threads);
     diagnosis_.next_excitation = std::move(asked.next);
-    for (Cause& cause : diagnosis_.causes) {
-      for (const auto& [first, second] : asked.same_here) {
-        if (first != cause.effect || std::erase(cause.or_instead, second) == 0) continue;
-        cause.same_here.push_back(second);
-      }
-    }
+    unite(asked.same_here, diagnosis_.causes);
   }
 
-  void conclude(const EffectSearch& search, const Extension& chosen, const effects::NestedFit& fit) {
+  void conclude(const EffectSearch& search, const effects::NestedFit& told, const effects::NestedFit& fit) {
     const double noise = std::max(1e-300, std::pow(diagnosis_.noise_floor.rms_rad, 2));
-    const double rest = search.usual_rest(chosen), beginning = search.usual_rest(search.base());
+    const double rest = rest_squares_, beginning = search.usual_rest(search.base());
     diagnosis_.before_over_noise = std::sqrt(1.0 + beginning / noise);
     diagnosis_.after_over_noise = std::sqrt(1.0 + rest / noise);
     const bool remains = rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning;
     if (remains) {
-      for (const Dependence& d : dependences(
-               residual_samples(bench_, fit.runs(), chosen.fitted.model, options_.threads, by_.signatures.step))) {
-        if (d.significant()) diagnosis_.depends_on.push_back(d.name);
-      }
+      diagnosis_.depends_on = significant_dependences(
+          residual_samples(bench_, told.runs(), diagnosis_.after, options_.threads, by_.signatures.step));
     }
     ask_for_more(fit);
     const bool alike = std::any_of(diagnosis_.causes.begin(), diagnosis_.causes.end(),
                                    [](const Cause& cause) { return !cause.or_instead.empty(); });
-    diagnosis_.verdict = remains                     ? evidence::Verdict::kUnexplained
-                         : alike                     ? evidence::Verdict::kAmbiguous
-                         : diagnosis_.causes.empty() ? evidence::Verdict::kNone
-                                                     : evidence::Verdict::kFound;
+    diagnosis_.verdict = remains ? evidence::Verdict::kUnexplained
+                         : alike ? evidence::Verdict::kAmbiguous
+                         : diagnosis_.causes.empty() && diagnosis_.assemblies.varies.empty()
+                             ? evidence::Verdict::kNone
+                             : evidence::Verdict::kFound;
+  }
+
+  /// No effect explains the rest: a residual torque may at least describe it.
+  void extend_unexplained(const EffectSearch& search, const Extension& from, const effects::NestedFit& fit,
+                          const effects::NestedFit& all) {
+    diagnosis_.residual_extension = residual_torque::extend(
+        {bench_, fit, all, from.fitted, from.held_out, search.base_model().scale}, by_.extension, progress_);
+    residual_torque::Extension& found = *diagnosis_.residual_extension;
+    const calib::JointModel& with = found.kept ? found.model : diagnosis_.after;
+    const effects::HeldOutErrors errors = held_out_errors(*judged_, diagnosis_.after, *judged_, with, options_.seed);
+    found.held_out_before = errors.before;
+    found.held_out_after = errors.after;
+    if (!found.kept) return;
+    diagnosis_.after = found.model;
+    count_after(errors.after);
   }
 
   const bench::Bench bench_;
   const DiagnoseOptions& options_;
   const JointDiagnosisOptions& by_;
   const work::Progress& progress_;
-  double share_ = 0.0;
+  double share_ = 0.0, rest_squares_ = 0.0;
   Diagnosis diagnosis_;
   calib::JointFloor noise_;  // without the integrator's error
   std::optional<effects::NestedFit> judged_;

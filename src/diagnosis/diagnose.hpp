@@ -22,10 +22,11 @@ struct DiagnoseOptions {
   data_faults::ExamineOptions data{};  ///< search for data faults, and what happens to faulty data
 };
 
-/// The runs and the checks behind a diagnosis, for the report's pictures.
+/// The runs and the checks behind a diagnosis, for its page.
 struct DiagnosedRuns {
   std::vector<calib::SingleJoint> fitted{}, scored{};
-  std::vector<evidence::Signature> checks{};  ///< model-free checks of the fitted runs
+  std::vector<evidence::Signature> checks{};    ///< model-free checks of the fitted runs
+  std::vector<evidence::Signature> expected{};  ///< the same of the simulated joint with all causes
 };
 
 /// (bench, options) => (diagnosis; runs, unless null). After an interruption the result holds the findings so far. The

@@ -6,18 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "assembly/variation.hpp"
 #include "calib/joint_floor.hpp"
 #include "calib/step_choice.hpp"
 #include "data_faults/examine.hpp"
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
+#include "residual_torque/extension.hpp"
 
 namespace pmg::diagnosis {
 
 /// An effect that the model lacked. Errors are mean absolute errors of open-loop rollouts over the held-out runs [rad;
 /// m on a linear axis]: of the model without this effect, refitted, and of the whole model.
 struct Cause {
-  std::string effect;  ///< of the catalogue
+  std::string effect;                        ///< of the catalogue
+  std::string form;                          ///< of effects::Effect::forms: the one in the model
+  std::vector<std::string> form_or_instead;  ///< forms of the same effect that explain the runs as well
   std::vector<evidence::ParameterEstimate> parameters;
   double held_out_error_before = 0.0, held_out_error_after = 0.0;
   std::vector<std::string> evidence;    ///< sentences: folds won, and model-free checks that agree or disagree
@@ -25,9 +29,21 @@ struct Cause {
   std::vector<std::string> same_here;   ///< effects that no run on this rig can separate from this one
 };
 
+/// How an effect was looked at that is no cause.
+enum class LookedAt {
+  kFit,         ///< fitted beside the causes
+  kRecordings,  ///< read off the recordings, which tell it without a fit
+  kLinearised,  ///< only by a linearised fit: not ruled out
+  kNot,         ///< not at all: not ruled out
+};
+
+/// fit, recordings, linearised, no.
+const char* name(LookedAt looked_at);
+
 struct Rejected {
   std::string effect;
   std::string why;
+  LookedAt looked_at = LookedAt::kNot;
 };
 
 /// A run to record next.
@@ -60,9 +76,10 @@ struct Diagnosis {
   evidence::Verdict verdict = evidence::Verdict::kNone;
   std::vector<Cause> causes;  ///< the strongest first
   std::vector<Rejected> rejected;
-  calib::JointFloor noise_floor;             ///< with the integrator's error
-  calib::ChosenStep step;                    ///< of the simulation, chosen on the base model
-  calib::IntegrationError step_error_after;  ///< of this step, with all causes
+  std::optional<residual_torque::Extension> residual_extension;  ///< tried where the verdict is unexplained
+  calib::JointFloor noise_floor;                                 ///< with the integrator's error
+  calib::ChosenStep step;                                        ///< of the simulation, chosen on the base model
+  calib::IntegrationError step_error_after;                      ///< of this step, with all causes
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
   evidence::Interval held_out_before, held_out_after;
   bool held_out = false;               ///< true if runs were held out; else the two errors above are from folds
@@ -70,6 +87,7 @@ struct Diagnosis {
   /// rms residual of the fitted runs (geometric mean over half-second blocks) over the rms noise: 1 if only noise is
   /// left.
   double before_over_noise = 1.0, after_over_noise = 1.0;
+  assembly::AssemblyDifferences assemblies;  ///< parameters that differ from assembly to assembly
   std::vector<std::string> depends_on;  ///< quantities that the remaining residual depends on: velocity, position, ...
   std::optional<NextExcitation> next_excitation;
   std::string unit = "rad";

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "data_faults/data_faults_report.hpp"
+#include "residual_torque/extension_report.hpp"
 
 namespace pmg::diagnosis {
 
@@ -25,6 +26,8 @@ Json cause_json(const Cause& cause) {
     parameters[parameter.name]["unit"] = parameter.unit;
   }
   return {{"effect", cause.effect},
+          {"form", cause.form},
+          {"form_or_instead", cause.form_or_instead},
           {"parameters", parameters},
           {"held_out_error_before", number(cause.held_out_error_before)},
           {"held_out_error_after", number(cause.held_out_error_after)},
@@ -83,7 +86,8 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   Json json = {{"verdict", name(diagnosis.verdict)}, {"causes", Json::array()}, {"rejected", Json::array()}};
   for (const Cause& cause : diagnosis.causes) json["causes"].push_back(cause_json(cause));
   for (const Rejected& rejected : diagnosis.rejected) {
-    json["rejected"].push_back({{"effect", rejected.effect}, {"why", rejected.why}});
+    json["rejected"].push_back(
+        {{"effect", rejected.effect}, {"why", rejected.why}, {"looked_at", name(rejected.looked_at)}});
   }
   data_faults::add_to(json, diagnosis.data);
   json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
@@ -99,9 +103,12 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   json["share_of_way_to_floor"] = number(diagnosis.share_of_way_to_floor);
   json["scored_on_held_out_runs"] = diagnosis.held_out;
   json["unit"] = diagnosis.unit;
+  assembly::add_to(json, diagnosis.assemblies);
   json["before_over_noise"] = number(diagnosis.before_over_noise);
   json["after_over_noise"] = number(diagnosis.after_over_noise);
   json["depends_on"] = diagnosis.depends_on;
+  if (diagnosis.residual_extension)
+    json["residual_extension"] = residual_torque::extension_json(*diagnosis.residual_extension);
   json["base_parameters"] = diagnosis.base_parameters;
   json["next_excitation"] = diagnosis.next_excitation ? excitation_json(*diagnosis.next_excitation) : Json(nullptr);
   json["options"] = evidence::options_json(diagnosis.options);

@@ -8,6 +8,17 @@
 
 namespace pmg::diagnosis {
 
+bool in_base(const std::string& name, const model::ActuatorParameters& base) {
+  const std::vector<effects::Form>& forms = effects::effect(name).forms;
+  return std::any_of(forms.begin(), forms.end(), [&](const effects::Form& form) {
+    return std::any_of(form.parameters.begin(), form.parameters.end(), [&](const std::string& parameter) {
+      if (parameter.starts_with("load.")) return false;
+      const model::ActuatorParameter& p = model::actuator_parameter(parameter);
+      return p.value(base) != p.value({});
+    });
+  });
+}
+
 namespace {
 
 std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks,
@@ -24,17 +35,6 @@ std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature
     found.push_back({check.effect, "sensor.quantum_rad", check.value});
   }
   return found;
-}
-
-/// True if the base model already contains the effect. A check detects an effect of the joint, not what the model
-/// lacks.
-bool in_base(const std::string& name, const model::ActuatorParameters& base) {
-  const std::vector<std::string>& parameters = effects::effect(name).parameters;
-  return std::any_of(parameters.begin(), parameters.end(), [&](const std::string& parameter) {
-    if (parameter.starts_with("load.")) return false;
-    const model::ActuatorParameter& p = model::actuator_parameter(parameter);
-    return p.value(base) != p.value({});
-  });
 }
 
 bool some_check(const std::vector<evidence::Signature>& checks, const std::string& effect,
@@ -69,7 +69,8 @@ std::map<std::string, std::vector<double>> evident_effects(const std::vector<evi
   std::map<std::string, std::vector<double>> found;
   for (const evidence::Signature& check : checks) {
     const bool read_off = check.effect == "quantisation";  // measured_causes() decides
-    if (check.agreement == evidence::Agreement::kAgrees && !read_off && !in_base(check.effect, base))
+    if (check.agreement != evidence::Agreement::kAgrees || read_off || !evidence::has_its_sign(check)) continue;
+    if (!in_base(check.effect, base))
       found[check.effect] = evidence::measured_strength(check, base, fastest_rad_s, options.signatures);
   }
   return found;

@@ -33,6 +33,10 @@ struct DirectEvidence {
   std::map<std::string, std::vector<double>> evident;
 };
 
+/// True if the base model already contains the effect. A check detects an effect of the joint, not what the model
+/// lacks.
+bool in_base(const std::string& name, const model::ActuatorParameters& base);
+
 /// noise_rms_rad: deviation of repeats. fastest_rad_s: of the recordings.
 DirectEvidence direct_evidence(const std::vector<evidence::Signature>& checks, const model::ActuatorParameters& base,
                                double noise_rms_rad, double fastest_rad_s, const JointDiagnosisOptions& options);

@@ -1,16 +1,36 @@
 // EffectSearch's stepwise choice: adds effects, removes superfluous ones, exchanges proxies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
 #include "diagnosis/effect_search.hpp"
 #include "effects/catalogue.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::diagnosis {
 
+std::string EffectSearch::aliased(const Trial& trial, const std::vector<Trial>& round) const {
+  if (!effects::has_other_sign(trial.effect, trial.extension.fitted.model)) return "";
+  for (const Trial& other : round) {
+    if (other.effect == trial.effect || other.comparison.log_gain <= 0.0) continue;
+    if (compared(other.extension, trial.extension).deviations < options_.clearly_deviations)
+      return fmt::format("its strength has the other sign than its physics, and {} is not clearly worse",
+                         effects::title(other.effect));
+  }
+  return "";
+}
+
 /// (trials, best first) => (the convincing trial with the fewest parameters among the nearly equal ones; null if none
-/// is convincing). A special case wins over the effect that contains it unless it is clearly worse.
-const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
+/// is convincing). A special case wins over the effect that contains it unless it is clearly worse. Says of each trial
+/// what is against it.
+const Trial* EffectSearch::chosen(std::vector<Trial>& trials) const {
   const Trial* chosen = nullptr;
   double best = 0.0;
-  for (const Trial& trial : trials) {
-    if (!objection(trial).empty()) continue;
+  for (Trial& trial : trials) {
+    trial.against = objection(trial);
+    if (trial.against.empty()) trial.against = aliased(trial, trials);
+    if (!trial.against.empty()) continue;
     if (chosen == nullptr) {  // the best comes first
       chosen = &trial;
       best = trial.comparison.log_gain;
@@ -19,7 +39,7 @@ const Trial* EffectSearch::chosen(const std::vector<Trial>& trials) const {
     const bool special = effects::contains(effects::effect(chosen->effect).contains, trial.effect) &&
                          compared(trial.extension, chosen->extension).deviations < options_.clearly_deviations;
     if (trial.comparison.log_gain < (1.0 - options_.equal_gain) * best && !special) continue;
-    if (trial.extension.fitted.unknowns.size() < chosen->extension.fitted.unknowns.size()) chosen = &trial;
+    if (trial.extension.numbers() < chosen->extension.numbers()) chosen = &trial;
   }
   return chosen;
 }
@@ -44,6 +64,17 @@ Extension EffectSearch::pruned(Extension current, const Extension& before) {
   return current;
 }
 
+/// The other is better by so much on all blocks, or where the runs tell the two apart.
+bool EffectSearch::clearly_better(const Extension& other, const Extension& current) const {
+  const double deviations = compared(current, other).deviations;
+  if (deviations >= options_.clearly_deviations) return true;
+  if (!(deviations > 0.0)) return false;
+  const effects::SeenSeparation seen =
+      effects::seen_separation(fit_, other.fitted.model, current.fitted.model, other.held_out.mean(),
+                               current.held_out.mean(), limits_.noise_squares, options_.visible_share);
+  return seen.deviations >= options_.clearly_deviations && effects::told_apart(seen, apart_limits());
+}
+
 /// (extension) => (extension in which each effect is the best of those that could take its place). The effect taken
 /// first was the best before the others were there. Costs a fit without each effect, and those of alternatives().
 Extension EffectSearch::exchanged(Extension current) {
@@ -51,7 +82,9 @@ Extension EffectSearch::exchanged(Extension current) {
     const std::string name = current.effects[e++];
     if (measured(name) != nullptr) continue;
     for (const Trial& other : alternatives(refit_without(current, name), name)) {
-      if (compared(current, other.extension).deviations < options_.clearly_deviations || !objection(other).empty())
+      if (!clearly_better(other.extension, current) ||
+          effects::has_other_sign(other.effect, other.extension.fitted.model) || was_left_out(other.effect) ||
+          !objection(other).empty())
         continue;
       current = other.extension;
       e = 0;
@@ -61,15 +94,118 @@ Extension EffectSearch::exchanged(Extension current) {
   return current;
 }
 
-Extension EffectSearch::choose() {
-  Extension current = with_measured();
+effects::ApartLimits EffectSearch::apart_limits() const {
+  return {.noise_squares = limits_.noise_squares,
+          .deviations = options_.apart_deviations,
+          .share_of_expected = options_.apart_share,
+          .blocks = options_.fewest_apart_blocks,
+          .visible_share = options_.visible_share};
+}
+
+/// (extension) => (extension with each effect in the best of its forms, and those that do as well). A form that isn't
+/// right leaves a rest that another effect could mend, so this is done after each addition.
+Extension EffectSearch::in_best_forms(Extension current) {
+  const effects::FormLimits limits{.apart = apart_limits(),
+                                   .better_deviations = options_.better_form_deviations,
+                                   .hopeless_deviations = options_.hopeless_form_deviations,
+                                   .first_iterations = static_cast<int>(options_.few_iterations),
+                                   .most_iterations = static_cast<int>(options_.many_iterations)};
+  for (const std::string& name : std::vector<std::string>(current.effects)) {
+    const effects::Effect& family = effects::effect(name);
+    const auto before = forms_compared_at_.find(name);
+    const bool known = before != forms_compared_at_.end() && before->second == current.effects;
+    if (family.forms.size() < 2 || measured(name) != nullptr || known) continue;
+    if (!going("comparing forms of " + family.title)) return current;
+    current = effects::in_best_form(fits_, current, look_at(refit_without(current, name)).screen, name, limits);
+    forms_compared_at_[name] = current.effects;
+  }
+  return current;
+}
+
+/// (extension) => (the same, or one with a simpler form of an effect and another effect beside it, where that is
+/// better). What a form's further number explains may be another effect: a profile's acceleration limit smooths
+/// commands as a delay does. As many numbers need only be better, more of them by as much as a form that isn't the
+/// simplest. Costs a fit and a round of additions for each effect in a form with further numbers.
+Extension EffectSearch::with_simpler_forms(Extension current) {
+  for (const std::string& name : std::vector<std::string>(current.effects)) {
+    const effects::Effect& family = effects::effect(name);
+    const std::size_t numbers = family.forms.front().parameters.size();
+    const bool richer = effects::form_of(name, current.forms).parameters.size() > numbers;
+    if (!richer || measured(name) != nullptr ||
+        current.effects.size() >= static_cast<std::size_t>(options_.most_effects))
+      continue;
+    if (!going("looking beside a simpler form of " + family.title)) return current;
+    const effects::StartScreen& without = look_at(refit_without(current, name)).screen;
+    std::vector<effects::ScreenedStart> starts;
+    for (std::size_t form = 0; form < family.forms.size(); ++form) {
+      if (family.forms[form].parameters.size() > numbers) continue;
+      const std::vector<effects::ScreenedStart> best = without.best(family, form, base_.scale);
+      starts.insert(starts.end(), best.begin(), best.end());
+    }
+    const auto least = std::min_element(starts.begin(), starts.end(),
+                                        [](const auto& a, const auto& b) { return a.squares < b.squares; });
+    if (least == starts.end()) continue;
+    effects::Forms forms = current.forms;
+    forms[name] = least->form;
+    std::vector<Trial> beside = additions(extend(current.effects, forms, least->model));
+    const Trial* other = chosen(beside);
+    if (other == nullptr) continue;
+    const double better = compared(current, other->extension).deviations;
+    const bool as_few = other->extension.numbers() <= current.numbers();
+    if (better > (as_few ? 0.0 : options_.better_form_deviations)) current = other->extension;
+  }
+  return current;
+}
+
+Extension EffectSearch::choose() { return completed(with_measured()); }
+
+/// (extension) => (extension with the effects that the runs need besides).
+Extension EffectSearch::completed(Extension current) {
   for (std::size_t round = 0; round < static_cast<std::size_t>(options_.most_effects) && !stopped_; ++round) {
     last_additions_ = additions(current);
     const Trial* next = chosen(last_additions_);
-    if (next == nullptr) break;
-    current = pruned(next->extension, current);
+    if (next != nullptr) {
+      current = in_best_forms(pruned(next->extension, current));
+      continue;
+    }
+    if (!leaves_rest(current)) break;
+    std::optional<Extension> pair = with_pair(current);
+    if (!pair) break;
+    current = in_best_forms(*std::move(pair));
   }
-  return exchanged(std::move(current));
+  return in_best_forms(with_simpler_forms(in_best_forms(exchanged(std::move(current)))));
+}
+
+Extension EffectSearch::leave_out(const Extension& from, const std::string& effect, const std::string& why) {
+  left_out_.emplace_back(effect, why);
+  const Extension& rest = refit_without(from, effect);
+  return leaves_rest(rest) ? completed(rest) : rest;
+}
+
+bool EffectSearch::was_left_out(const std::string& effect) const {
+  return std::any_of(left_out_.begin(), left_out_.end(), [&](const auto& one) { return one.first == effect; });
+}
+
+Settled EffectSearch::settled(Extension chosen) {
+  for (;;) {
+    Extension with_priors = refit_with_priors(chosen);
+    if (with_priors.fitted.squares < options_.settled_squares * chosen.fitted.squares) chosen = with_priors;
+    std::string weakest, why;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::string& name : chosen.effects) {
+      if (measured(name) != nullptr || stopped_) continue;
+      const Trial last = trial(refit_without(chosen, name), chosen, name);
+      std::string against =
+          last.comparison.log_gain > 0.0 ? doubt(last) : "runs left out are predicted no better with it";
+      if (against.empty()) against = unsure(name, with_priors.forms, with_priors.fitted);
+      if (against.empty() || last.comparison.log_gain >= least) continue;
+      least = last.comparison.log_gain;
+      weakest = name;
+      why = against;
+    }
+    if (weakest.empty()) return {std::move(chosen), std::move(with_priors)};
+    chosen = leave_out(chosen, weakest, why);
+  }
 }
 
 }  // namespace pmg::diagnosis

@@ -25,6 +25,21 @@ std::vector<std::string> less(std::vector<std::string> effects, const std::strin
 
 }  // namespace
 
+SearchLimits search_limits(const JointDiagnosisOptions& options, double noise_squares, bool from_scratch) {
+  if (from_scratch) {
+    return {.noise_squares = noise_squares,
+            .healthy_squares = noise_squares,
+            .of_noise = options.scratch_amplitude_of_noise,
+            .of_beginning = options.scratch_amplitude_of_beginning,
+            .of_rest = options.scratch_gain_of_rest};
+  }
+  return {.noise_squares = noise_squares,
+          .healthy_squares = 0.0,
+          .of_noise = options.amplitude_of_noise,
+          .of_beginning = options.amplitude_of_beginning,
+          .of_rest = options.gain_of_rest};
+}
+
 EffectSearch::EffectSearch(const bench::Bench& bench, const effects::NestedFit& fit, BaseModel base,
                            SearchLimits limits, DirectEvidence evidence, const JointDiagnosisOptions& options,
                            work::Progress progress)
@@ -37,48 +52,27 @@ EffectSearch::EffectSearch(const bench::Bench& bench, const effects::NestedFit& 
       power_(bench, fit.runs(), base_.scale.quantum_rad, options_.signatures),
       progress_(std::move(progress)),
       compare_(fit.blocks(), folds(fit), limits.noise_squares),
-      base_extension_(extend({}, base_.model)) {}
+      fits_(bench_, fit_, base_, compare_),
+      base_extension_(extend({}, {}, base_.model)) {}
+
+/// The screen of the extension asked for last is kept: one at a time, because its Jacobian takes a row for each sample.
+const EffectSearch::Look& EffectSearch::look_at(const Extension& extension) {
+  if (!latest_look_ || latest_look_->squares != extension.fitted.squares ||
+      latest_look_->effects != extension.effects) {
+    latest_look_.reset();
+    latest_look_.emplace(Look{{fit_, extension.fitted}, extension.fitted.squares, extension.effects});
+  }
+  return *latest_look_;
+}
 
 bool EffectSearch::going(const std::string& text) {
   if (!progress_(work::kUnknownShare, text)) stopped_ = true;
   return !stopped_;
 }
 
-/// The unknowns of the base model, then those of the effects over their whole range.
-std::vector<effects::Unknown> EffectSearch::unknowns(const std::vector<std::string>& effects) const {
-  std::vector<effects::Unknown> found = base_.unknowns;
-  for (const std::string& name : effects) {
-    for (const std::string& parameter : effects::effect(name).parameters) {
-      if (effects::is_jagged(parameter)) continue;
-      const effects::Unknown full = effects::unknown(parameter, bench_, base_.scale);
-      const auto there =
-          std::find_if(found.begin(), found.end(), [&](const effects::Unknown& u) { return u.name == parameter; });
-      if (there == found.end())
-        found.push_back(full);
-      else
-        *there = full;
-    }
-  }
-  return found;
-}
-
-/// The model with the effect's parameters neutral, except those that a kept effect shares.
-calib::JointModel EffectSearch::reset(calib::JointModel model, const std::string& effect,
-                                      const std::vector<std::string>& kept) const {
-  for (const std::string& parameter : effects::effect(effect).parameters) {
-    const bool shared = std::any_of(kept.begin(), kept.end(), [&](const std::string& name) {
-      return effects::contains(effects::effect(name).parameters, parameter);
-    });
-    if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
-  }
-  return model;
-}
-
-Extension EffectSearch::extend(const std::vector<std::string>& effects, const calib::JointModel& start) const {
-  Extension extension{effects, fit_.fit(start, unknowns(effects), static_cast<int>(options_.many_iterations)), {}};
-  fit_.linearise(extension.fitted);
-  extension.held_out = fit_.held_out_squares(extension.fitted, compare_.folds());
-  return extension;
+Extension EffectSearch::extend(const std::vector<std::string>& effects, const effects::Forms& forms,
+                               const calib::JointModel& start) const {
+  return fits_.fitted(effects, forms, start, static_cast<int>(options_.many_iterations));
 }
 
 const MeasuredCause* EffectSearch::measured(const std::string& effect) const {
@@ -86,17 +80,6 @@ const MeasuredCause* EffectSearch::measured(const std::string& effect) const {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const MeasuredCause& cause) { return cause.effect == effect; });
   return found == all.end() ? nullptr : &*found;
-}
-
-bool EffectSearch::refuted(const Trial& trial) const {
-  if (!effects::contains(evidence_.doubted, trial.effect)) return false;
-  const effects::NestedModel& fitted = trial.extension.fitted;
-  const auto [known, fresh] = refuted_.try_emplace({trial.effect, fitted.squares}, false);
-  if (fresh) {
-    known->second = power_.refutes(trial.effect, fitted.model,
-                                   reset(fitted.model, trial.effect, less(trial.extension.effects, trial.effect)));
-  }
-  return known->second;
 }
 
 bool EffectSearch::shown(const std::string& effect) const { return effects::contains(evidence_.shown, effect); }
@@ -109,14 +92,15 @@ Extension EffectSearch::with_measured() const {
     calib::set(model, cause.parameter, cause.value.value);
     effects.push_back(cause.effect);
   }
-  return extend(effects, model);
+  return extend(effects, {}, model);
 }
 
 const Extension& EffectSearch::refit_without(const Extension& extension, const std::string& effect) {
   const auto [known, fresh] = without_.try_emplace({effect, extension.fitted.squares});
   if (fresh) {
     const std::vector<std::string> kept = less(extension.effects, effect);
-    known->second = extend(kept, reset(extension.fitted.model, effect, kept));
+    known->second = extend(kept, extension.forms, fits_.without(extension.fitted.model, effect, kept, extension.forms));
+    known->second.forms.erase(effect);
   }
   return known->second;
 }
@@ -126,8 +110,7 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   const bool known = std::any_of(loose.unknowns.begin(), loose.unknowns.end(),
                                  [](const effects::Unknown& u) { return u.deviation > 0.0; });
   if (!known) return extension;
-  // A block's residuals are correlated: each block counts as one observation, and so does each prior.
-  const double weight = loose.squares / static_cast<double>(std::max<std::size_t>(1, loose.blocks.size()));
+  const double weight = prior_weight(loose);
   calib::JointModel given = loose.model;
   std::vector<effects::Unknown> effects_only;
   for (const effects::Unknown& u : loose.unknowns) {
@@ -147,7 +130,7 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
     least = squares;
     best.fitted = std::move(fitted);
   }
-  fit_.linearise(best.fitted);
+  if (best.fitted.blocks.empty()) fit_.linearise(best.fitted);
   best.held_out = fit_.held_out_squares(best.fitted, compare_.folds());
   return best;
 }
@@ -160,47 +143,22 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
     const double usual = usual_rest(without);
     if (usual > 0.0) found.share_of_rest = std::max(found.share_of_rest, found.comparison.usual_gain / usual);
   }
+  found.missed_alone = usual_rest(without) > (options_.remains_of_noise - 1.0) * limits_.noise_squares;
   return found;
 }
 
-std::string EffectSearch::objection(const Trial& trial) const {
-  const fitting::Comparison& c = trial.comparison;
-  if (shown(trial.effect)) {  // half-second blocks hardly detect an effect that is constant over a run
-    return c.log_gain > 0.0 && c.folds_won >= options_.least_folds_won
-               ? ""
-               : "runs left out are predicted no better with it";
-  }
-  // An uncalibrated model may leave outlier blocks: then the gain of the geometric mean counts, too.
-  const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
-  const double gain = from_scratch ? std::max(c.gain, c.usual_gain) : c.gain;
-  if (gain <= 0.0) return "runs left out are predicted no better with it";
-  if (trial.share_of_rest <= 0.0) return "what is left is no more than models that are in order leave";
-  const double amplitude = std::sqrt(gain);
-  const double beginning =
-      std::max(0.0, base_extension_.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares);
-  if (c.deviations < options_.least_deviations) {
-    return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
-  }
-  if (c.folds_won < options_.least_folds_won)
-    return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
-  if (amplitude < limits_.of_noise * std::sqrt(limits_.noise_squares))
-    return "what it explains is small beside the noise";
-  if (amplitude < limits_.of_beginning * std::sqrt(beginning)) return "what it explains is small beside what was wrong";
-  if (trial.share_of_rest < limits_.of_rest) {
-    return fmt::format("it explains {:.0f} % of what is left, as others' forms not being quite right would",
-                       100.0 * trial.share_of_rest);
-  }
-  return refuted(trial) ? "the recordings would show it without a model at the strength that fits, and don't" : "";
-}
-
-/// The best two starts of an effect; if wanted, also the strength that a model-free check measures.
-std::vector<effects::ScreenedStart> EffectSearch::screened_starts(const effects::StartScreen& screen,
-                                                                  const effects::Effect& effect, bool measured) const {
-  std::vector<effects::ScreenedStart> starts = screen.best(effect, base_.scale);
-  starts.resize(std::min<std::size_t>(2, starts.size()));
+/// The best starts of an effect's forms; if wanted, also the strength that a model-free check measures, in the first
+/// form.
+std::vector<effects::ScreenedStart> EffectSearch::screened_starts(const Extension& extension,
+                                                                  const effects::Effect& effect, bool measured) {
+  look_at(extension);
+  const effects::StartScreen& screen = latest_look_->screen;
+  const auto [known, fresh] = latest_look_->starts.try_emplace(effect.name);
+  if (fresh) known->second = screen.best_of_forms(effect, base_.scale, options_.worth_fitting_form);
+  std::vector<effects::ScreenedStart> starts = known->second;
   const auto evident = evidence_.evident.find(effect.name);
   if (!measured || evident == evidence_.evident.end() || evident->second.empty()) return starts;
-  const std::vector<effects::ScreenedStart> further = screen.at(effect, evident->second);
+  const std::vector<effects::ScreenedStart> further = screen.at(effect, 0, evident->second);
   starts.insert(starts.end(), further.begin(), further.end());
   return starts;
 }
@@ -212,12 +170,11 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
     const effects::Effect* effect = nullptr;
     std::vector<effects::ScreenedStart> starts;
   };
-  const effects::StartScreen screen(fit_, current.fitted);
   std::vector<Promising> promising;
   for (const effects::Effect& one : effects::catalogue()) {
-    if (effects::contains(current.effects, one.name)) continue;
+    if (effects::contains(current.effects, one.name) || (all_evident && was_left_out(one.name))) continue;
     if (!going(fmt::format("looking at {}", one.title))) return {};
-    std::vector<effects::ScreenedStart> starts = screened_starts(screen, one, all_evident);
+    std::vector<effects::ScreenedStart> starts = screened_starts(current, one, all_evident);
     if (!starts.empty()) promising.push_back({&one, std::move(starts)});
   }
   std::stable_sort(promising.begin(), promising.end(), [this](const Promising& a, const Promising& b) {
@@ -228,6 +185,7 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
   const auto last = promising.begin() + std::min<std::ptrdiff_t>(std::ssize(promising), std::lround(most));
   promising.erase(std::remove_if(last, promising.end(), [&](const Promising& p) { return !evident(p.effect->name); }),
                   promising.end());
+  const effects::RolloutJacobian& known = look_at(current).screen.jacobian();
   std::vector<Trial> trials;
   for (const Promising& p : promising) {
     if (!going(fmt::format("fitting {}", p.effect->title))) return {};
@@ -235,12 +193,14 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
     Extension best;
     best.fitted.squares = std::numeric_limits<double>::infinity();
     for (const effects::ScreenedStart& start : p.starts) {
+      effects::Forms forms = current.forms;
+      forms[p.effect->name] = start.form;
       const effects::NestedModel fitted =
-          fit_.fit(start.model, unknowns(effects), static_cast<int>(options_.few_iterations), &screen.jacobian());
-      if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}};
+          fit_.fit(start.model, fits_.unknowns(effects, forms), static_cast<int>(options_.few_iterations), &known);
+      if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}, forms, {}};
     }
-    fit_.linearise(best.fitted, &screen.jacobian());
-    best.held_out = fit_.held_out_squares(best.fitted, compare_.folds());
+    if (best.fitted.blocks.empty()) fit_.linearise(best.fitted, &known);
+    best.held_out = fitting::foretold_held_out_squares(best.fitted, compare_.folds());
     trials.push_back(trial(current, best, p.effect->name));
   }
   const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
@@ -250,13 +210,20 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
   const auto closest = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
     return a.extension.fitted.squares < b.extension.fitted.squares;
   });
+  // What isn't finished has foretold folds; where these say that it may be chosen, they are rolled out.
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const bool among_best = t < static_cast<std::size_t>(options_.finished_effects) || evident(trials[t].effect);
-    const bool worth =
-        among_best && trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
-    if (!worth && !shown(trials[t].effect) && trials.begin() + static_cast<std::ptrdiff_t>(t) != closest) continue;
+    const bool worth = trials[t].comparison.log_gain >= options_.worth_finishing * trials.front().comparison.log_gain;
+    const bool finish =
+        (among_best && worth) || shown(trials[t].effect) || trials.begin() + static_cast<std::ptrdiff_t>(t) == closest;
+    if (!finish && !worth) continue;
     if (!going(fmt::format("finishing {}", effects::effect(trials[t].effect).title))) return {};
-    trials[t] = trial(current, extend(trials[t].extension.effects, trials[t].extension.fitted.model), trials[t].effect);
+    Extension begun = trials[t].extension;
+    if (finish)
+      begun = extend(begun.effects, begun.forms, begun.fitted.model);
+    else
+      begun.held_out = fit_.held_out_squares(begun.fitted, compare_.folds());
+    trials[t] = trial(current, begun, trials[t].effect);
   }
   std::stable_sort(trials.begin(), trials.end(), better);
   return trials;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,20 +11,14 @@
 #include "diagnosis/direct_evidence.hpp"
 #include "diagnosis/options.hpp"
 #include "effects/folds.hpp"
+#include "effects/form_choice.hpp"
 #include "effects/start_screen.hpp"
 #include "evidence/power.hpp"
 #include "work/progress.hpp"
 
 namespace pmg::diagnosis {
 
-/// The base model extended by some effects.
-struct Extension {
-  std::vector<std::string> effects;
-  effects::NestedModel fitted;
-  Eigen::VectorXd held_out;  ///< squares of each block by fits without its fold [rad^2]
-
-  double held_out_squares() const { return held_out.sum(); }
-};
+using effects::Extension;
 
 /// One effect tried, and its gain.
 struct Trial {
@@ -31,6 +26,13 @@ struct Trial {
   fitting::Comparison comparison;  ///< extension without the effect against extension with it
   double share_of_rest = 0.0;      ///< gain as a share of the squares above a healthy model's without the effect
   Extension extension;
+  std::string against{};     ///< why it was not taken where it was tried; "" if it was, or might have been
+  bool missed_alone = true;  ///< without it more would remain than a verdict forgives (remains_of_noise)
+};
+
+/// A chosen extension, and its fit with priors. `chosen` is that fit where it is better.
+struct Settled {
+  Extension chosen, with_priors;
 };
 
 struct SearchLimits {
@@ -42,6 +44,13 @@ struct SearchLimits {
   double of_noise, of_beginning, of_rest;
 };
 
+/// from_scratch: without a model several effects are missing, so weaker ones must be found beside stronger ones.
+SearchLimits search_limits(const JointDiagnosisOptions& options, double noise_squares, bool from_scratch);
+
+/// Weight of the priors on the base model's numbers [rad^2]. A block's residuals are correlated: each block counts as
+/// one observation, and so does each prior.
+double prior_weight(const effects::NestedModel& fitted);
+
 class EffectSearch {
  public:
   EffectSearch(const bench::Bench& bench, const effects::NestedFit& fit, BaseModel base, SearchLimits limits,
@@ -51,7 +60,8 @@ class EffectSearch {
   const Extension& base() const { return base_extension_; }
   /// (runs) => (extension): effects read off the recordings first; then effects are added one by one while the folds
   /// prefer the extension, left out again where they are superfluous, and exchanged where another is clearly better.
-  /// Costs some hundred rollouts of all runs for each effect that is added.
+  /// At the end each effect takes the best of its forms. Costs some hundred rollouts of all runs for each effect that
+  /// is added.
   Extension choose();
   /// (extension without an effect, that effect) => (fits of other effects in its place, the best first). Costs up to
   /// five fits; nothing when asked again, as choose() and the explanation of its result do.
@@ -67,6 +77,18 @@ class EffectSearch {
   /// and the base model as given. Costs three fits.
   Extension refit_with_priors(const Extension& extension) const;
 
+  /// (chosen extension) => (the same without the effects that don't stand up to a last look, chosen and with priors).
+  /// In turn the weakest effect leaves that does not predict runs left out better, or some kind of them worse, or whose
+  /// numbers are unsure in the fit with priors. left_out() says why. Costs a fit with priors for each effect that
+  /// leaves.
+  Settled settled(Extension chosen);
+  /// The extension without an effect that turned out to be none. Where that leaves more than a verdict forgives,
+  /// another effect may have its place: the search goes on from there, and does not come back to an effect that was
+  /// left out.
+  Extension leave_out(const Extension& from, const std::string& effect, const std::string& why);
+  /// Effects that were chosen and left again, with the reason.
+  const std::vector<std::pair<std::string, std::string>>& left_out() const { return left_out_; }
+
   /// The effect's parameter as read off the recordings; null where it is not.
   const MeasuredCause* measured(const std::string& effect) const;
   /// A model-free check detects the effect, not its size.
@@ -77,27 +99,54 @@ class EffectSearch {
 
   /// Why the trial is not convincing, or "".
   std::string objection(const Trial& trial) const;
+  /// Why the effect's numbers in this linearised fit are none, or "": the 95 % intervals of its strengths contain the
+  /// neutral values, or the strengths ended at the edge of their ranges. folds: of the fit's runs; null: of the
+  /// search's.
+  std::string unsure(const std::string& effect, const effects::Forms& forms, const effects::NestedModel& fitted,
+                     const std::vector<fitting::Fold>* folds = nullptr) const;
+  /// Why an effect of the other sign than its physics is not taken, or "": another effect of the round is not clearly
+  /// worse.
+  std::string aliased(const Trial& trial, const std::vector<Trial>& round) const;
   fitting::Comparison compared(const Extension& first, const Extension& second) const;
+  /// When the runs tell two models apart: two effects as well as two forms of one.
+  effects::ApartLimits apart_limits() const;
   /// Geometric mean of the blocks' mean squares beyond the noise [rad^2]. Outlier blocks have little influence (a joint
   /// that stuck in the simulation but not in the recording).
   double usual_rest(const Extension& extension) const;
   /// The effects that the last round of choose() did not take, with their gains.
   const std::vector<Trial>& last_additions() const { return last_additions_; }
   const BaseModel& base_model() const { return base_; }
+  bool stopped() const { return stopped_; }  ///< by an interruption
+  std::size_t runs() const { return fit_.runs().size(); }
 
  private:
-  std::vector<effects::Unknown> unknowns(const std::vector<std::string>& effects) const;
-  calib::JointModel reset(calib::JointModel model, const std::string& effect,
-                          const std::vector<std::string>& kept) const;
   Extension with_measured() const;
-  Extension extend(const std::vector<std::string>& effects, const calib::JointModel& start) const;
+  Extension completed(Extension current);
+  bool was_left_out(const std::string& effect) const;
+  Extension extend(const std::vector<std::string>& effects, const effects::Forms& forms,
+                   const calib::JointModel& start) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
+  std::string doubt(const Trial& trial) const;
   std::vector<Trial> tried(const Extension& without, double most, bool all_evident);
-  const Trial* chosen(const std::vector<Trial>& trials) const;
+  const Trial* chosen(std::vector<Trial>& trials) const;
+  bool leaves_rest(const Extension& extension) const;
+  std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);
+  std::optional<Extension> with_pair(const Extension& current);
   Extension pruned(Extension current, const Extension& before);
+  bool clearly_better(const Extension& other, const Extension& current) const;
   Extension exchanged(Extension current);
-  std::vector<effects::ScreenedStart> screened_starts(const effects::StartScreen& screen, const effects::Effect& effect,
-                                                      bool measured) const;
+  Extension in_best_forms(Extension current);
+  Extension with_simpler_forms(Extension current);
+  /// A screen of an extension, and the starts of effects that it was asked for.
+  struct Look {
+    effects::StartScreen screen;
+    double squares = 0.0;  // of the extension's fit
+    std::vector<std::string> effects{};
+    std::map<std::string, std::vector<effects::ScreenedStart>> starts{};
+  };
+  const Look& look_at(const Extension& extension);
+  std::vector<effects::ScreenedStart> screened_starts(const Extension& extension, const effects::Effect& effect,
+                                                      bool measured);
   bool going(const std::string& text);
 
   const bench::Bench& bench_;
@@ -110,11 +159,15 @@ class EffectSearch {
   mutable std::map<std::pair<std::string, double>, bool> refuted_;  // by effect and squares of the fit
   work::Progress progress_;
   fitting::BlockComparison compare_;
+  effects::ExtensionFits fits_;
   Extension base_extension_;
   std::vector<Trial> last_additions_;
+  std::vector<std::pair<std::string, std::string>> left_out_;
   // What was fitted before, by an effect and the squares of the extension that it was asked of.
   std::map<std::pair<std::string, double>, Extension> without_;
   std::map<std::pair<std::string, double>, std::vector<Trial>> alternatives_;
+  std::map<std::string, std::vector<std::string>> forms_compared_at_;  // beside which effects
+  std::optional<Look> latest_look_;
   bool stopped_ = false;
 };
 

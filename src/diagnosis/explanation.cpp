@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "calib/fit_problem.hpp"
-#include "diagnosis/intervals.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
+#include "effects/intervals.hpp"
+#include "effects/period.hpp"
 #include "effects/separation.hpp"
 
 namespace pmg::diagnosis {
@@ -19,6 +21,11 @@ namespace {
 
 std::string in_its_place(const std::string& cause, const std::string& other, const effects::SeenSeparation& apart) {
   if (apart.blocks == 0) return fmt::format("{} gives indistinguishable rollouts on all runs", other);
+  if (apart.deviations < 0.0) {
+    return fmt::format(
+        "{} in its place is {:.1f} deviations better on the {} blocks of half a second in which they differ", other,
+        -apart.deviations, apart.blocks);
+  }
   return fmt::format(
       "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
       "what is expected were {} the truth",
@@ -32,7 +39,7 @@ class Explaining {
         chosen_(chosen),
         from_(from),
         noise_squares_(std::pow(from.noise.rms_rad, 2)),
-        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options)) {}
+        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options.intervals)) {}
 
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;
@@ -52,10 +59,15 @@ class Explaining {
     const MeasuredCause* measured = search_.measured(name);
     Cause cause;
     cause.effect = name;
-    for (const std::string& parameter : effects::effect(name).parameters) {
+    const effects::Form& form = effects::form_of(name, chosen_.forms);
+    cause.form = form.name;
+    for (const std::string& parameter : form.parameters) {
       cause.parameters.push_back(measured != nullptr && measured->parameter == parameter
                                      ? evidence::ParameterEstimate{parameter, measured->value, from_.unit}
                                      : estimate(parameter));
+    }
+    if (const auto open = chosen_.open_forms.find(name); open != chosen_.open_forms.end()) {
+      for (const effects::OpenForm& other : open->second) add_form(cause, other);
     }
     cause.held_out_error_before = judged_error(rest.fitted.model);
     cause.held_out_error_after = from_.error_after;
@@ -68,6 +80,19 @@ class Explaining {
     add_checks(cause);
     if (measured == nullptr) add_rivals(cause, rest);
     return cause;
+  }
+
+  /// An open form: its value of a parameter of the same name may be the right one, within the same interval.
+  static void add_form(Cause& cause, const effects::OpenForm& other) {
+    cause.form_or_instead.push_back(other.name);
+    for (evidence::ParameterEstimate& p : cause.parameters) {
+      const auto there = other.values.find(p.name);
+      if (there == other.values.end()) continue;
+      evidence::Interval& interval = p.estimate;
+      const double below = interval.value - interval.low, above = interval.high - interval.value;
+      interval.low = std::min(interval.low, there->second - below);
+      interval.high = std::max(interval.high, there->second + above);
+    }
   }
 
   void add_checks(Cause& cause) const {
@@ -96,8 +121,8 @@ class Explaining {
   }
 
   effects::SeenSeparation seen(const Extension& other) const {
-    return effects::seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out,
-                                    other.held_out, noise_squares_, from_.options.visible_share);
+    return effects::seen_separation(from_.searched, chosen_.fitted.model, other.fitted.model, chosen_.held_out.mean(),
+                                    other.held_out.mean(), noise_squares_, from_.options.visible_share);
   }
 
   bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
@@ -106,9 +131,7 @@ class Explaining {
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
       if (stiffest) return false;  // at the upper bound of stiffness the shaft is rigid: no rival
     }
-    const JointDiagnosisOptions& o = from_.options;
-    return apart.blocks < o.fewest_apart_blocks || apart.deviations < o.apart_deviations ||
-           apart.share_of_expected < o.apart_share;
+    return !effects::told_apart(apart, search_.apart_limits());
   }
 
   double judged_error(const calib::JointModel& model) const {
@@ -121,19 +144,47 @@ class Explaining {
       if (u.name == parameter) return {parameter, intervals_[i], u.unit};
     }
     const double value = calib::value(from_.fitted.model, parameter);
+    if (effects::is_period(parameter)) {
+      const auto [low_s, high_s] = effects::period_range(from_.searched, from_.fitted.model, parameter, noise_squares_,
+                                                         from_.options.apart_deviations);
+      return {parameter, {value, low_s, high_s}, "s"};
+    }
     return {parameter, {value, value, value}, ""};
   }
 
   void reject() {
     std::set<std::string> told(chosen_.effects.begin(), chosen_.effects.end());
     for (const Cause& cause : found_.causes) told.insert(cause.or_instead.begin(), cause.or_instead.end());
-    const std::vector<Trial>& last = search_.last_additions();
-    for (const effects::Effect& one : effects::catalogue()) {
-      if (told.contains(one.name)) continue;
-      const auto trial = std::find_if(last.begin(), last.end(), [&](const Trial& t) { return t.effect == one.name; });
-      found_.rejected.push_back({one.name, trial == last.end() ? "a linearised look sees less in it than in others"
-                                                               : search_.objection(*trial)});
+    for (const auto& [effect, why] : search_.left_out()) {
+      if (told.insert(effect).second) found_.rejected.push_back({effect, why, LookedAt::kFit});
     }
+    for (const effects::Effect& one : effects::catalogue()) {
+      if (!told.contains(one.name)) found_.rejected.push_back(rejected(one.name));
+    }
+  }
+
+  Rejected rejected(const std::string& effect) const {
+    for (const Trial& trial : search_.last_additions()) {
+      if (trial.effect != effect) continue;
+      // It helped, and the search took other effects, or ended before them.
+      if (trial.against.empty())
+        return {effect, "it helps too, but was not tried beside all of the causes", LookedAt::kLinearised};
+      return {effect, trial.against, LookedAt::kFit};
+    }
+    if (const auto read_off = measured(effect)) return {effect, *read_off, LookedAt::kRecordings};
+    if (search_.stopped()) return {effect, "the search was interrupted before it", LookedAt::kNot};
+    return {effect, "a linearised look sees less in it than in others", LookedAt::kLinearised};
+  }
+
+  /// Why an effect that is read off the recordings is no cause; nothing for other effects, and where they don't tell.
+  std::optional<std::string> measured(const std::string& effect) const {
+    for (const evidence::Signature& check : from_.checks) {
+      if (effect != "quantisation" || check.effect != effect) continue;
+      if (check.agreement == evidence::Agreement::kDisagrees) return "the readings have no common step";
+      if (check.agreement == evidence::Agreement::kAgrees)
+        return "the step of the readings is small beside the noise, or the simulation has it already";
+    }
+    return std::nullopt;
   }
 
   EffectSearch& search_;
@@ -145,6 +196,20 @@ class Explaining {
 };
 
 }  // namespace
+
+const char* name(LookedAt looked_at) {
+  switch (looked_at) {
+    case LookedAt::kFit:
+      return "fit";
+    case LookedAt::kRecordings:
+      return "recordings";
+    case LookedAt::kLinearised:
+      return "linearised";
+    case LookedAt::kNot:
+      break;
+  }
+  return "no";
+}
 
 Explanation explain(EffectSearch& search, const Extension& chosen, const ExplainedFrom& from) {
   return Explaining(search, chosen, from).run();

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "diagnosis/excitation_candidates.hpp"
+#include "effects/excitation_candidates.hpp"
 #include "effects/separation.hpp"
 #include "work/parallel.hpp"
 
@@ -45,7 +45,10 @@ class Campaign {
  public:
   Campaign(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const std::vector<Rivals>& rivals,
            const SeparationWanted& wanted, unsigned threads)
-      : rivals_(rivals), wanted_(wanted), candidates_(excitation_candidates(bench, runs)), seen_(candidates_.size()) {
+      : rivals_(rivals),
+        wanted_(wanted),
+        candidates_(effects::excitation_candidates(bench, runs)),
+        seen_(candidates_.size()) {
     for (std::size_t g = 0; g < rivals.size(); ++g) {
       const std::vector<effects::NestedModel>& models = rivals[g].models;
       for (std::size_t t = 0; t < models.size(); ++t) {
@@ -88,7 +91,7 @@ class Campaign {
 
   /// Pairs of effects that are the same on this rig.
   const std::vector<std::pair<std::string, std::string>>& same_here() const { return same_here_; }
-  const ExcitationCandidate& candidate(std::size_t c) const { return candidates_[c]; }
+  const effects::ExcitationCandidate& candidate(std::size_t c) const { return candidates_[c]; }
 
   /// Expected deviations of each pair of rivals, the smaller of both directions.
   std::vector<ExpectedPair> expected() const {
@@ -157,7 +160,7 @@ class Campaign {
 
   const std::vector<Rivals>& rivals_;
   SeparationWanted wanted_;
-  std::vector<ExcitationCandidate> candidates_;
+  std::vector<effects::ExcitationCandidate> candidates_;
   std::vector<Seen> seen_;
   std::vector<Pair> pairs_;
   std::vector<std::pair<std::string, std::string>> same_here_;
@@ -174,7 +177,8 @@ std::size_t first_number(const bench::Bench& bench) {
   }
 }
 
-NextRun next_run(const bench::Bench& bench, const ExcitationCandidate& candidate, int times, std::size_t number) {
+NextRun next_run(const bench::Bench& bench, const effects::ExcitationCandidate& candidate, int times,
+                 std::size_t number) {
   const bench::BenchRun& run = candidate.run;
   NextRun next;
   next.name = fmt::format("asked{}", number);
@@ -212,6 +216,14 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+SeparationWanted separation_wanted(const JointDiagnosisOptions& options, double noise_squares) {
+  return {.deviations = options.apart_deviations,
+          .noise_squares = noise_squares,
+          .enough = options.enough_deviations,
+          .most_runs = static_cast<std::size_t>(options.most_asked_runs),
+          .most_recordings = static_cast<int>(options.most_asked_recordings)};
+}
+
 AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                          const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads) {
   if (bench.law == bench::DriveLaw::kTorque || runs.empty() || rivals.empty()) return {};
@@ -230,6 +242,14 @@ AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::Sin
   next.text = text_of(next, wanted.deviations);
   asked.next = std::move(next);
   return asked;
+}
+
+void unite(const std::vector<std::pair<std::string, std::string>>& same_here, std::vector<Cause>& causes) {
+  for (Cause& cause : causes) {
+    for (const auto& [first, second] : same_here) {
+      if (first == cause.effect && std::erase(cause.or_instead, second) > 0) cause.same_here.push_back(second);
+    }
+  }
 }
 
 }  // namespace pmg::diagnosis

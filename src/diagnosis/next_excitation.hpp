@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/options.hpp"
 #include "effects/nested_fit.hpp"
 
 namespace pmg::diagnosis {
@@ -25,18 +26,23 @@ struct SeparationWanted {
   int most_recordings = 24;
 };
 
+SeparationWanted separation_wanted(const JointDiagnosisOptions& options, double noise_squares);
+
 struct AskedFor {
   std::optional<NextExcitation> next;
   std::vector<std::pair<std::string, std::string>> same_here;  ///< pairs of effects with the same torque on this rig
 };
 
 /// (bench, runs, rivals, wanted separation) => (campaign). A greedy choice: each recording is the candidate
-/// (excitation_candidates.hpp) that raises the expected separation most, summed over all pairs, with either of a pair
-/// as the truth and each capped at its target. It ends when all pairs reach the target, when no candidate helps, or at
-/// six runs or 24 recordings. The target is twice the wanted deviations, because the measured value scatters by one
-/// deviation. Direction-dependent friction and a constant torque are the same if the friction is constant: such a pair
-/// is reported in same_here and gets no runs.
+/// (effects/excitation_candidates.hpp) that raises the expected separation most, summed over all pairs, with either of
+/// a pair as the truth and each capped at its target. It ends when all pairs reach the target, when no candidate helps,
+/// or at six runs or 24 recordings. The target is twice the wanted deviations, because the measured value scatters by
+/// one deviation. Direction-dependent friction and a constant torque are the same if the friction is constant: such a
+/// pair is reported in same_here and gets no runs.
 AskedFor next_excitation(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                          const std::vector<Rivals>& rivals, const SeparationWanted& wanted, unsigned threads = 1);
+
+/// Effects that no run on this rig can separate become one cause with several names: from or_instead to same_here.
+void unite(const std::vector<std::pair<std::string, std::string>>& same_here, std::vector<Cause>& causes);
 
 }  // namespace pmg::diagnosis

@@ -207,4 +207,12 @@ std::vector<Dependence> dependences(const ResidualSamples& samples, std::size_t 
   return found;
 }
 
+std::vector<std::string> significant_dependences(const ResidualSamples& samples) {
+  std::vector<std::string> names;
+  for (const Dependence& d : dependences(samples)) {
+    if (d.significant()) names.push_back(d.name);
+  }
+  return names;
+}
+
 }  // namespace pmg::diagnosis

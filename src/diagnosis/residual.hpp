@@ -50,6 +50,8 @@ struct Dependence {
 
 /// (samples) => (dependences, the strongest first). Leaves out bins with samples from fewer than three blocks.
 std::vector<Dependence> dependences(const ResidualSamples& samples, std::size_t bins = 16);
+/// Names of those that are significant.
+std::vector<std::string> significant_dependences(const ResidualSamples& samples);
 
 /// Power spectral densities of residual and command, and their coherence (0..1, the share of the residual that is
 /// linear in the command), by Welch's method (P. D. Welch, IEEE Trans. Audio Electroacoust. 15:70, 1967) with Hann

@@ -13,50 +13,57 @@ namespace pmg::drives {
 
 namespace {
 
-constexpr int kMostNode = 127;  // CANopen's; MIT-derived drives take it too
-
-MitRanges read_ranges(files::ConfigReader reader) {
-  reader.one_of("protocol", {"mit"});
-  const MitRanges ranges = {.position_rad = reader.required<double>("position_rad", files::positive()),
-                            .velocity_rad_s = reader.required<double>("velocity_rad_s", files::positive()),
-                            .torque_Nm = reader.required<double>("torque_Nm", files::positive()),
-                            .kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", files::positive()),
-                            .kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", files::positive())};
-  reader.finish();
-  return ranges;
-}
+constexpr int kMostNode = 127;         // CANopen's; MIT-derived drives take it too
+constexpr int kMostCanopenNode = 126;  // 127 is this computer's own
 
 BusSetup read_bus(files::ConfigReader reader, const std::string& name) {
   BusSetup bus;
   bus.name = name;
+  if (reader.has("first_slave")) {
+    bus.first_slave = reader.required<int>("first_slave", files::in_range(1, 64));
+    bus.first_alias = reader.optional<int>("first_alias", 0, files::in_range(1, 0xFFFF));
+    reader.finish();
+    return bus;
+  }
   bus.bitrate = reader.required<int>("bitrate", files::in_range(10'000, 1'000'000));
   bus.data_bitrate = reader.optional<int>("data_bitrate", 0, files::in_range(bus.bitrate, 8'000'000));
+  bus.sample_point = reader.optional<double>("sample_point", 0.0, files::in_range(0.5, 0.95));
+  bus.data_sample_point = reader.optional<double>("data_sample_point", 0.0, files::in_range(0.5, 0.95));
   if (reader.has("imu")) bus.imu = reader.one_of("imu", {"xsens_can"}) == "xsens_can";
+  if (reader.has("bridge")) {
+    files::ConfigReader bridge = reader.map("bridge");
+    bus.bridge_slave = bridge.required<int>("slave", files::in_range(1, 64));
+    bus.bridge_channel = bridge.optional<int>("channel", 0, files::in_range(0, 15));
+    bus.bridge_alias = bridge.optional<int>("alias", 0, files::in_range(1, 0xFFFF));
+    bridge.finish();
+  }
   reader.finish();
   return bus;
 }
 
-/// Throws when a field of the drive's frames doesn't cover what the joint needs.
-void check_covers(const MitRanges& ranges, const MotorSetup& motor, const MotorCommand& gains, const std::string& drive,
-                  files::ConfigReader& reader) {
-  const struct {
-    const char *field, *what;
-    double needs, covers;
-  } checks[] = {
-      {"position_rad", "range", std::max(std::abs(motor.limits.q_lower_rad), std::abs(motor.limits.q_upper_rad)),
-       ranges.position_rad},
-      {"velocity_rad_s", "speed limit", motor.limits.dq_rad_s, ranges.velocity_rad_s},
-      {"torque_Nm", "effort", motor.limits.torque_Nm, ranges.torque_Nm},
-      {"kp_Nm_per_rad", "kp", gains.kp_Nm_per_rad, ranges.kp_Nm_per_rad},
-      {"kd_Nm_s_per_rad", "kd", gains.kd_Nm_s_per_rad, ranges.kd_Nm_s_per_rad},
+ImuSlave read_imu_slave(files::ConfigReader reader) {
+  ImuSlave imu;
+  constexpr int kMostSlaves = 64, kMostBytes = 256;
+  imu.slave = reader.required<int>("slave", files::in_range(1, kMostSlaves));
+  imu.alias = reader.optional<int>("alias", 0, files::in_range(1, 0xFFFF));
+  imu.vendor_id = static_cast<std::uint32_t>(reader.optional<double>("vendor_id", 0, files::in_range(0, 0xFFFFFFFFU)));
+  imu.product_code =
+      static_cast<std::uint32_t>(reader.optional<double>("product_code", 0, files::in_range(0, 0xFFFFFFFFU)));
+  imu.input_bytes = reader.required<int>("input_bytes", files::in_range(1, kMostBytes));
+  imu.output_bytes = reader.optional<int>("output_bytes", 0, files::in_range(0, kMostBytes));
+  const auto offset = [&](const char* key, int bytes) {
+    const int at = reader.required<int>(key, files::in_range(0, kMostBytes));
+    if (at + bytes > imu.input_bytes)
+      reader.fail(key, "lies beyond the inputs", fmt::format("at most {}", imu.input_bytes - bytes));
+    return at;
   };
-  for (const auto& check : checks) {
-    if (check.needs <= check.covers) continue;
-    reader.fail("bus",
-                fmt::format("the drive '{}' covers a {} of {:g} and {}'s {} needs {:g} at the motor", drive,
-                            check.field, check.covers, motor.joint, check.what, check.needs),
-                fmt::format("a drive whose {} is {:g} or more", check.field, check.needs));
-  }
+  imu.counter_at = offset("counter_at", 2);
+  imu.quaternion_at = offset("quaternion_at", 16);
+  imu.rate_of_turn_at = offset("rate_of_turn_at", 12);
+  imu.acceleration_at = offset("acceleration_at", 12);
+  if (reader.has("status_at")) imu.status_at = offset("status_at", 2);
+  reader.finish();
+  return imu;
 }
 
 MotorLimits limits_of(const model::Joint& joint) {
@@ -77,10 +84,10 @@ MotorCommand gains_of(const model::Joint& joint) {
 void cover(MotorSetup& motor, const MotorLimits& limits, const MotorCommand& gains, const std::string& drive,
            files::ConfigReader& reader) {
   motor.limits = motor.transmission.to_motor(limits);
-  check_covers(motor.ranges, motor, motor.transmission.to_motor(gains), drive, reader);
+  check_covers(motor.drive, {motor.limits, motor.transmission.to_motor(gains)}, motor.joint, drive, reader);
 }
 
-MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<std::string, MitRanges>& kinds,
+MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<std::string, DriveKind>& kinds,
                       files::ConfigReader& reader) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(index)];
   if (joint.bus.drive.empty()) reader.fail("bus", "has no `drive`", "the name of an entry of `drives`");
@@ -93,7 +100,7 @@ MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<
   return {.joint = joint.name,
           .index = index,
           .node = joint.bus.node,
-          .ranges = kind->second,
+          .drive = kind->second,
           .transmission = Transmission(joint.bus),
           .limits = {}};
 }
@@ -155,6 +162,14 @@ Found find_motor(const DriveSetup& setup, const std::string& joint, files::Confi
   reader.fail("joints", "'" + joint + "' isn't a joint", "names of `joints`");
 }
 
+/// A linkage mixes the gains of its joints, so its drives must take any.
+void check_gains_free(const BusSetup& bus, std::size_t motor, const files::ConfigReader& reader) {
+  const auto* settings = std::get_if<Cia402Settings>(&bus.motors[motor].drive);
+  if (settings == nullptr || settings->mode == Cia402Mode::kTorque) return;
+  reader.fail("joints", fmt::format("{}'s drive is in position mode", bus.motors[motor].joint),
+              "drives that can be told gains: `mode: torque`, or `protocol: mit`");
+}
+
 void read_linkage(const model::RobotModel& robot, DriveSetup& setup, files::ConfigReader reader) {
   const auto joints = reader.required<std::vector<std::string>>("joints");
   std::vector<files::ConfigReader> motors = reader.maps("motors");
@@ -165,6 +180,7 @@ void read_linkage(const model::RobotModel& robot, DriveSetup& setup, files::Conf
   const Found first = find_motor(setup, joints[0], reader), last = find_motor(setup, joints.back(), reader);
   if (first.bus != last.bus) reader.fail("joints", "their drives are on two buses", "one bus");
   BusSetup& bus = setup.buses[first.bus];
+  for (const std::size_t motor : {first.motor, last.motor}) check_gains_free(bus, motor, reader);
   if (joints.size() == 1) {
     bus.four_bars.push_back(link<1>(robot, bus, {first.motor}, std::move(motors), reader));
   } else {
@@ -180,18 +196,50 @@ bool linked(const BusSetup& bus, std::size_t motor) {
   return std::ranges::any_of(bus.four_bars, has) || std::ranges::any_of(bus.parallel, has);
 }
 
+/// Throws when drives on this bus disturb each other.
+void check_together(const BusSetup& bus, files::ConfigReader& buses) {
+  const bool with_mit = std::ranges::any_of(
+      bus.motors, [](const MotorSetup& motor) { return std::holds_alternative<MitRanges>(motor.drive); });
+  if (bus.first_slave != 0 && with_mit)
+    buses.fail(bus.name, "has drives of the MIT protocol as EtherCAT slaves", "drives of `protocol: cia402`");
+  if (!bus.has_canopen()) return;
+  if (bus.data_bitrate != 0)
+    buses.fail(bus.name, "has CANopen drives and CAN FD frames, which their controllers take for errors",
+               "no `data_bitrate` on a bus with drives of `protocol: cia402`");
+  for (const MotorSetup& motor : bus.motors) {
+    if (motor.node > kMostCanopenNode)
+      buses.fail(bus.name, fmt::format("has CANopen drives, and {}'s node is {}", motor.joint, motor.node),
+                 fmt::format("nodes up to {}: {} is this computer's own", kMostCanopenNode, kMostNode));
+    const auto* mit = std::get_if<MitRanges>(&motor.drive);
+    if (mit == nullptr) continue;
+    const auto command = std::ranges::find(bus.motors, static_cast<int>(mit->reply_id), &MotorSetup::node);
+    if (mit->reply_id != 0 && command == bus.motors.end()) continue;
+    buses.fail(bus.name,
+               fmt::format("has CANopen drives, and {}'s replies have the identifier {}, which {}", motor.joint,
+                           mit->reply_id, mit->reply_id == 0 ? "switches CANopen nodes" : "commands a drive"),
+               "a `reply_id` that no node of this bus has");
+  }
+}
+
 }  // namespace
+
+bool BusSetup::has_canopen() const {
+  return std::ranges::any_of(
+      motors, [](const MotorSetup& motor) { return std::holds_alternative<Cia402Settings>(motor.drive); });
+}
 
 DriveSetup load_drives(const model::RobotModel& robot) {
   files::ConfigReader reader = files::ConfigReader::from_file(robot.directory / "robot.yaml");
-  std::map<std::string, MitRanges> kinds;
+  std::map<std::string, DriveKind> kinds;
   files::ConfigReader drives = reader.map("drives");
-  for (const std::string& name : drives.keys()) kinds[name] = read_ranges(drives.map(name));
+  for (const std::string& name : drives.keys()) kinds.emplace(name, read_drive_kind(drives.map(name)));
   files::ConfigReader buses = reader.map("buses");
   std::map<std::string, BusSetup> known;
   for (const std::string& name : buses.keys()) known[name] = read_bus(buses.map(name), name);
 
   DriveSetup setup;
+  files::ConfigReader imu = reader.map("imu");
+  if (imu.has("process_data")) setup.imu_slave = read_imu_slave(imu.map("process_data"));
   files::ConfigReader joints = reader.map("joints");
   for (int index = 0; index < robot.joint_index.size(); ++index) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(index)];
@@ -213,9 +261,12 @@ DriveSetup load_drives(const model::RobotModel& robot) {
       if (!linked(bus, m)) cover(motor, limits_of(joint), gains_of(joint), joint.bus.drive, entry);
     }
   }
+  for (const BusSetup& bus : setup.buses) check_together(bus, buses);
   const auto with_imu = std::ranges::count(setup.buses, true, &BusSetup::imu);
-  if (with_imu != 1) {
-    reader.fail("buses", fmt::format("{} buses with drives have the IMU", with_imu), "one bus with `imu: xsens_can`");
+  const char* own = robot.imu.serial ? "`imu.serial`" : (setup.imu_slave ? "`imu.process_data`" : nullptr);
+  if (with_imu != (own != nullptr ? 0 : 1)) {
+    reader.fail("buses", fmt::format("{} buses with drives have the IMU", with_imu),
+                own != nullptr ? fmt::format("none: robot.yaml has {}", own) : "one bus with `imu: xsens_can`");
   }
   return setup;
 }

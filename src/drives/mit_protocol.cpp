@@ -1,5 +1,6 @@
 #include "drives/mit_protocol.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pmg::drives {
@@ -7,11 +8,6 @@ namespace pmg::drives {
 namespace {
 
 constexpr double kTemperatureOffset_degC = 40.0;  // a byte covers -40 to 215 degC
-
-bool finite(const MotorCommand& command) noexcept {
-  return std::isfinite(command.q_rad) && std::isfinite(command.dq_rad_s) && std::isfinite(command.kp_Nm_per_rad) &&
-         std::isfinite(command.kd_Nm_s_per_rad) && std::isfinite(command.torque_Nm);
-}
 
 constexpr std::uint8_t byte(std::uint32_t bits) noexcept { return static_cast<std::uint8_t>(bits & 0xFFU); }
 
@@ -46,6 +42,20 @@ MitFrame MitProtocol::command(const MotorCommand& asked, const MotorLimits& limi
           byte(kd >> 4U),
           byte(kd << 4U | torque >> 8U),
           byte(torque)};
+}
+
+MitFrame MitProtocol::command(const MotorCommand& asked, const MotorLimits& limits, double& left_Nm) const noexcept {
+  MotorCommand exact = finite(asked) ? asked : MotorCommand{};
+  const MotorCommand coded = this->command(command(exact, limits)).value_or(exact);
+  const auto rounding = [](double code, double value, double step) {
+    return std::abs(code - value) <= step ? code - value : 0.0;  // more: a limit
+  };
+  exact.torque_Nm += left_Nm - coded.kp_Nm_per_rad * rounding(coded.q_rad, exact.q_rad, position_.step()) -
+                     coded.kd_Nm_s_per_rad * rounding(coded.dq_rad_s, exact.dq_rad_s, velocity_.step());
+  const MitFrame frame = command(exact, limits);
+  const double half_Nm = 0.5 * torque_.step();
+  left_Nm = std::clamp(exact.torque_Nm - this->command(frame).value_or(exact).torque_Nm, -half_Nm, half_Nm);
+  return frame;
 }
 
 std::optional<MotorCommand> MitProtocol::command(const MitFrame& frame) const noexcept {

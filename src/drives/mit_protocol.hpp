@@ -17,6 +17,7 @@ namespace pmg::drives {
 struct MitRanges {
   double position_rad = 0.0, velocity_rad_s = 0.0, torque_Nm = 0.0;
   double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;
+  std::uint32_t reply_id = 0;  ///< identifier of its replies: the host's, 0 unless the firmware is set otherwise
 };
 
 using MitFrame = std::array<std::uint8_t, 8>;
@@ -39,6 +40,11 @@ class MitProtocol {
   /// limits and ranges; values that aren't finite give a command without torque. No command is one of the three frames
   /// above: see the definition.
   MitFrame command(const MotorCommand& command, const MotorLimits& limits) const noexcept;
+  /// The same for a command that is sent again and again. Zero lies between two codes of velocity and torque: rounded
+  /// alike each time, a joint at rest would get a torque that nobody asked for. So the torque takes what the steps of
+  /// position and velocity leave, and left_Nm carries what its own step leaves, half of it at most, to the next frame:
+  /// the mean torque is the asked one. What a limit cuts is not made up for.
+  MitFrame command(const MotorCommand& command, const MotorLimits& limits, double& left_Nm) const noexcept;
   /// What the drive reads from a command. Nullopt: one of the three frames above.
   std::optional<MotorCommand> command(const MitFrame& frame) const noexcept;
 

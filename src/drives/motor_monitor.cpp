@@ -8,18 +8,25 @@
 namespace pmg::drives {
 
 const char* to_string(Trouble trouble) noexcept {
-  constexpr std::array<const char*, 7> kTexts = {"answers",
+  constexpr std::array<const char*, 9> kTexts = {"answers",
                                                  "does not answer",
                                                  "reports a fault",
                                                  "is not enabled",
                                                  "its position jumped: a turn was lost",
                                                  "its encoder stands still while the motor turns",
-                                                 "two drives have this node number"};
+                                                 "two drives have this node number",
+                                                 "is told other gains than those of its drive's own loop",
+                                                 "was powered anew and has lost its set-up: start the program anew"};
   return kTexts[static_cast<std::size_t>(trouble)];
 }
 
 void MotorMonitor::ask(bool enabling) noexcept {
-  if (owed_ == 2) ++lost_;
+  if (++cycles_since_overdue_ > kUncalledCycles) overdue_ = 0;
+  if (owed_ == 2) {
+    ++lost_;
+    overdue_ = std::min(overdue_ + 1, kOverdue);
+    cycles_since_overdue_ = 0;
+  }
   owed_ = std::min(owed_ + 1, 2);
   age_ = std::min(age_ + 1, kNever);
   if (++cycles_since_uncalled_ > kUncalledCycles) uncalled_lately_ = 0;
@@ -29,9 +36,7 @@ void MotorMonitor::ask(bool enabling) noexcept {
 
 bool MotorMonitor::hear(const MotorReading& reading) noexcept {
   if (owed_ == 0) {
-    ++uncalled_;
-    cycles_since_uncalled_ = 0;
-    if (++uncalled_lately_ >= kUncalled) latched_ = Trouble::kTwoOfOneNode;
+    hear_stray();
     return false;
   }
   --owed_;
@@ -48,10 +53,23 @@ bool MotorMonitor::hear(const MotorReading& reading) noexcept {
   age_ = 0;
   if (reading.fault != DriveFault::kNone) {
     enabled_ = false;
+  } else if (reading.follows != Follows::kUnknown) {
+    enabled_ = reading.follows == Follows::kYes;
   } else if (enabling_) {
     enabled_ = true;
   }
   return true;
+}
+
+void MotorMonitor::hear_stray() noexcept {
+  if (owed_ != 0) return;
+  if (overdue_ > 0) {
+    --overdue_;
+    return;
+  }
+  ++uncalled_;
+  cycles_since_uncalled_ = 0;
+  if (++uncalled_lately_ >= kUncalled) latched_ = Trouble::kTwoOfOneNode;
 }
 
 bool MotorMonitor::jumped(const MotorReading& reading) const noexcept {
@@ -75,6 +93,7 @@ Trouble MotorMonitor::trouble(bool stiff) const noexcept {
   if (latched_ != Trouble::kNone) return latched_;
   if (age_ > kSilentCycles) return Trouble::kSilent;
   if (reading_.fault != DriveFault::kNone) return Trouble::kFault;
+  if (gains_refused_) return Trouble::kOtherGains;
   return stiff && !enabled_ ? Trouble::kNotEnabled : Trouble::kNone;
 }
 

@@ -15,6 +15,8 @@ enum class Trouble : std::uint8_t {
   kPositionJump,   ///< the position moved faster than the motor can: a wrapped or lost turn
   kFrozenEncoder,  ///< the position stands still although the motor turns
   kTwoOfOneNode,   ///< more answers than commands: two drives have this node number
+  kOtherGains,     ///< the drive's own loop has other gains than the command
+  kRestarted,      ///< the drive was powered anew and has lost its set-up
 };
 
 const char* to_string(Trouble trouble) noexcept;
@@ -36,6 +38,8 @@ class MotorMonitor {
   static constexpr int kJumps = 3;
   /// Answers nobody asked for within this time prove a second drive; a duplicated frame now and then doesn't.
   static constexpr int kUncalled = 3, kUncalledCycles = 50;
+  /// Answers that were given up may still come, bunched by a delay: all of the last kUncalledCycles.
+  static constexpr int kOverdue = kUncalledCycles;
   /// A motor can't travel so far within one step of its encoder.
   static constexpr double kFrozenTravel_rad = 0.1;
   /// Offset of a drive's speed at rest that doesn't count as travel.
@@ -52,6 +56,11 @@ class MotorMonitor {
   void ask(bool enabling) noexcept;
   /// An answer. False: not believed; the last reading stays.
   bool hear(const MotorReading& reading) noexcept;
+  /// A part of an answer that belongs to none: nobody asked for it, or its other part was lost.
+  void hear_stray() noexcept;
+  /// The last command has gains that the drive can't have; or it has none of them any more.
+  void refuse_gains(bool refused) noexcept { gains_refused_ = refused; }
+  void restarted() noexcept { latched_ = Trouble::kRestarted; }
   /// The bus thread paused for so long that the drive's watchdog may have acted: enable anew.
   void interrupt() noexcept { enabled_ = false; }
 
@@ -59,6 +68,7 @@ class MotorMonitor {
   Condition condition(bool stiff) const noexcept;
   Trouble trouble(bool stiff) const noexcept;
 
+  bool believed() const noexcept { return latched_ == Trouble::kNone; }  ///< its readings can be acted on
   bool enabled() const noexcept { return enabled_; }
   bool answered() const noexcept { return any_; }
   int age_cycles() const noexcept { return age_; }  ///< since the last answer that was believed
@@ -74,9 +84,11 @@ class MotorMonitor {
 
   MotorLimits limits_;
   MotorReading reading_;
-  bool any_ = false, enabled_ = false, enabling_ = false;
+  bool any_ = false, enabled_ = false, enabling_ = false, gains_refused_ = false;
   int age_ = kNever;
-  int owed_ = 0;  // answers, 2 at most
+  int owed_ = 0;     // answers, 2 at most
+  int overdue_ = 0;  // answers that were given up
+  int cycles_since_overdue_ = 0;
   int jumps_ = 0, uncalled_lately_ = 0, cycles_since_uncalled_ = 0;
   double frozen_travel_rad_ = 0.0;
   Trouble latched_ = Trouble::kNone;

@@ -11,6 +11,7 @@ namespace {
 /// A fit ends where an iteration lowers the squares by a smaller share. With 500 blocks, each one observation, such a
 /// step moves a number by about a fifth of its deviation: sqrt(500 kEnough).
 constexpr double kEnough = 1e-4;
+constexpr int kMostSecants = 3;  // later ones gain little: rollouts with dry friction are jagged
 
 }  // namespace
 
@@ -60,14 +61,16 @@ NestedModel NestedFit::fit(const calib::JointModel& start, const std::vector<Unk
     found.coordinates[static_cast<Eigen::Index>(i)] = unknowns[i].coordinate(calib::value(start, unknowns[i].name));
   }
   const fitting::Minimum best = fitting::gauss_newton(
-      problem(found, known), found.coordinates, {.most_iterations = most_iterations, .relative_tolerance = kEnough});
+      problem(found, known), found.coordinates,
+      {.most_iterations = most_iterations, .relative_tolerance = kEnough, .most_secants = kMostSecants});
   found.coordinates = best.x;
   found.squares = best.squares;
   found.model = model_at(found, best.x);
+  if (!best.jacobian_at_x.empty()) found.blocks = blocks_.normal_equations(best.residuals, best.jacobian_at_x);
   return found;
 }
 
-Eigen::VectorXd NestedFit::held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const {
+fitting::HeldOut NestedFit::held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const {
   return fitting::held_out_squares(problem(model).residuals, blocks_, model, folds);
 }
 

@@ -13,6 +13,8 @@ namespace pmg::effects {
 struct NestedModel : fitting::LinearisedFit {
   calib::JointModel model;
   std::vector<Unknown> unknowns;
+  /// By how much the coordinates would move with an exact integrator (step_shift()); empty: unknown.
+  Eigen::VectorXd step_shift{};
 };
 
 /// (model, coordinates) => (joint model with the unknowns at these coordinates).
@@ -42,15 +44,15 @@ class NestedFit {
   /// One rollout of every run for each unknown.
   RolloutJacobian jacobian(const NestedModel& model, const fitting::Residuals& at_model) const;
 
-  /// Gauss-Newton from the start's values; the result is never worse than the start. Each iteration costs one rollout
-  /// of every run for each unknown, and one to six more.
+  /// Gauss-Newton from the start's values; the result is never worse than the start. An iteration costs one
+  /// rollout of every run, or, where its Jacobian is made anew, one for each unknown and one to six more.
   NestedModel fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
                   const RolloutJacobian* known = nullptr, double prior_weight = 0.0) const;
-  /// Fills the model's blocks, at the cost of jacobian().
+  /// Fills the model's blocks, at the cost of jacobian(). A fit that ended with a Jacobian at its result has them.
   void linearise(NestedModel& model, const RolloutJacobian* known = nullptr) const;
 
-  /// (fitted model, folds) => (squares of each block by fits without its fold [rad^2]).
-  Eigen::VectorXd held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const;
+  /// (fitted model, folds) => (squares of the blocks left out).
+  fitting::HeldOut held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const;
 
  private:
   fitting::Problem problem(const NestedModel& model, const RolloutJacobian* known = nullptr) const;

@@ -1,64 +1,95 @@
 #include "effects/start_screen.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calib/fit_problem.hpp"
 #include "calib/joint_runs.hpp"
+#include "effects/period.hpp"
+#include "fitting/covariance.hpp"
 
 namespace pmg::effects {
 
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
-constexpr std::size_t kRunsForOrders = 10;  // a hundred orders of a wave are screened on so many runs first
+constexpr std::size_t kRunsForOrders = 5;  // a hundred orders of a wave are screened on so many runs first
 constexpr double kPi = 3.141592653589793;
+
+bool better(const ScreenedStart& a, const ScreenedStart& b) { return a.squares < b.squares; }
+
+/// The parameters of a wave over the joint's angle: its amplitude stands right before its order and phase.
+struct Wave {
+  std::string amplitude, phase;
+};
+
+std::vector<Wave> waves_of(const Form& form) {
+  std::vector<Wave> found;
+  for (std::size_t p = 1; p < form.parameters.size(); ++p) {
+    if (!form.parameters[p].ends_with("phase_rad")) continue;
+    const std::size_t amplitude = p - (is_order(form.parameters[p - 1]) ? 2 : 1);
+    found.push_back({form.parameters[amplitude], form.parameters[p]});
+  }
+  return found;
+}
+
+bool has_order(const Form& form) { return std::any_of(form.parameters.begin(), form.parameters.end(), is_order); }
+
+double dot(const fitting::Residuals& a, const fitting::Residuals& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
 
 }  // namespace
 
-StartScreen::StartScreen(const NestedFit& fit, const NestedModel& current)
+StartScreen::StartScreen(const NestedFit& fit, NestedModel current)
     : fit_(fit),
-      current_(current),
-      residuals_(fit.residuals(current.model)),
-      jacobian_(fit.jacobian(current, residuals_)) {
-  const Eigen::Index count = current.coordinates.size();
-  information_ = Eigen::MatrixXd::Zero(count, count);
-  for (const Eigen::MatrixXd& slope : jacobian_.of_run) information_ += slope.transpose() * slope;
+      current_(std::move(current)),
+      residuals_(fit.residuals(current_.model)),
+      jacobian_(fit.jacobian(current_, residuals_)),
+      information_(fitting::products(jacobian_.of_run, jacobian_.of_run)) {}
+
+/// The current model in this form, with these values of its parameters.
+calib::JointModel StartScreen::with(const Form& form, const std::vector<double>& values) const {
+  calib::JointModel model = current_.model;
+  for (const FixedValue& fixed : form.fixed) calib::set(model, fixed.parameter, fixed.value);
+  for (std::size_t p = 0; p < values.size(); ++p) calib::set(model, form.parameters[p], values[p]);
+  return model;
 }
 
-/// One bounded Gauss-Newton step d of the unknowns that the effect does not set; expected squares
+/// One bounded Gauss-Newton step d of the unknowns that the form does not set; expected squares
 /// r^T r + 2 g^T d + d^T A d, with g = J^T r and A = J^T J of the current model's Jacobian.
-void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Effect& effect,
-                                 ScreenedStart& start) const {
+void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Form& form, ScreenedStart& start) const {
   start.squares = fitting::sum_of_squares(residuals);
   if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(current_.coordinates.size());
-  for (std::size_t i = 0; i < residuals.size(); ++i) gradient += jacobian_.of_run[i].transpose() * residuals[i];
+  const Eigen::VectorXd gradient = fitting::products(jacobian_.of_run, residuals);
   const Eigen::VectorXd step =
       fitting::bounded_step(information_, gradient, current_.ranges, current_.coordinates, 1e-3);
   start.squares = std::max(0.0, start.squares + 2.0 * gradient.dot(step) + step.dot(information_ * step));
   for (Eigen::Index i = 0; i < step.size(); ++i) {
     const Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
-    if (std::find(effect.parameters.begin(), effect.parameters.end(), u.name) != effect.parameters.end()) continue;
+    if (contains(form.parameters, u.name)) continue;
     calib::set(start.model, u.name, u.value(current_.coordinates[i] + step[i]));
   }
 }
 
-void StartScreen::screen(const Effect& effect, const std::vector<double>& values,
+void StartScreen::screen(const Effect& effect, const Form& form, const std::vector<double>& values,
                          std::vector<ScreenedStart>& into) const {
-  ScreenedStart start{current_.model, 0.0};
-  for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
+  ScreenedStart start{with(form, values), 0.0};
   const fitting::Residuals there = fit_.residuals(start.model);
   if (there.empty()) return;
-  refit_linearly(there, effect, start);
+  refit_linearly(there, form, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  if (values.size() == 1 || effect.name == "load") line_search(effect, values, there, into);
+  if (values.size() == 1 || effect.name == "load") line_search(form, values, there, into);
 }
 
 /// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
 /// within 0..3. For the load's effect and effects of one parameter, in which rollouts are nearly linear.
-void StartScreen::line_search(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
+void StartScreen::line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
                               std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
   for (std::size_t i = 0; i < there.size(); ++i) {
@@ -69,97 +100,135 @@ void StartScreen::line_search(const Effect& effect, const std::vector<double>& v
   if (!(across > 0.0)) return;
   const double share = std::clamp(along / across, 0.0, 3.0);
   if (share < 0.02) return;
-  ScreenedStart scaled{current_.model, 0.0};
+  std::vector<double> moved_values;
   for (std::size_t p = 0; p < values.size(); ++p) {
-    const double from = calib::value(current_.model, effect.parameters[p]);
+    const double from = calib::value(current_.model, form.parameters[p]);
     if (!std::isfinite(from)) return;
-    calib::set(scaled.model, effect.parameters[p], from + share * (values[p] - from));
+    moved_values.push_back(from + share * (values[p] - from));
   }
+  ScreenedStart scaled{with(form, moved_values), 0.0};
   fitting::Residuals moved = there;
   for (std::size_t i = 0; i < there.size(); ++i) moved[i] = residuals_[i] + share * (there[i] - residuals_[i]);
-  refit_linearly(moved, effect, scaled);
+  refit_linearly(moved, form, scaled);
   if (std::isfinite(scaled.squares)) into.push_back(scaled);
 }
 
-/// The response to a small wave over the joint's angle is linear in its sine and cosine parts: two rollouts give the
-/// least-squares amplitude and phase (2 x 2 normal equations).
-void StartScreen::screen_wave(const Effect& effect, const std::string& amplitude, const std::string& phase,
-                              double height, const calib::JointModel& flat, std::vector<ScreenedStart>& into) const {
-  ScreenedStart start{flat, 0.0};
-  calib::set(start.model, amplitude, height);
-  calib::set(start.model, phase, 0.0);
-  const fitting::Residuals sine = fit_.residuals(start.model);
-  calib::set(start.model, phase, 0.5 * kPi);
-  const fitting::Residuals cosine = fit_.residuals(start.model);
-  if (sine.empty() || cosine.empty()) return;
-  Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d b = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < sine.size(); ++i) {
-    const Eigen::VectorXd s = sine[i] - residuals_[i], c = cosine[i] - residuals_[i];
-    a(0, 0) += s.squaredNorm();
-    a(0, 1) += s.dot(c);
-    a(1, 1) += c.squaredNorm();
-    b[0] -= s.dot(residuals_[i]);
-    b[1] -= c.dot(residuals_[i]);
+/// The response to small waves over the joint's angle is linear in their sine and cosine parts: two rollouts for each
+/// wave give the least-squares amplitudes and phases.
+void StartScreen::screen_waves(const Form& form, const std::vector<double>& values,
+                               std::vector<ScreenedStart>& into) const {
+  const calib::JointModel flat = with(form, values);
+  const std::vector<Wave> waves = waves_of(form);
+  std::vector<fitting::Residuals> parts;
+  for (const Wave& wave : waves) {
+    for (const double phase : {0.0, 0.5 * kPi}) {
+      calib::JointModel model = flat;
+      for (const Wave& other : waves) {
+        if (other.amplitude != wave.amplitude) calib::set(model, other.amplitude, 0.0);
+      }
+      calib::set(model, wave.phase, phase);
+      parts.push_back(fit_.residuals(model));
+      if (parts.back().empty()) return;
+      for (std::size_t i = 0; i < residuals_.size(); ++i) parts.back()[i] -= residuals_[i];
+    }
   }
-  a(1, 0) = a(0, 1);
-  const double determinant = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-  if (!(determinant > 1e-9 * a(0, 0) * a(1, 1))) return;
-  const Eigen::Vector2d share((a(1, 1) * b[0] - a(0, 1) * b[1]) / determinant,
-                              (-a(0, 1) * b[0] + a(0, 0) * b[1]) / determinant);
+  const auto count = static_cast<Eigen::Index>(parts.size());
+  Eigen::MatrixXd a(count, count);
+  Eigen::VectorXd b(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    b[i] = -dot(parts[static_cast<std::size_t>(i)], residuals_);
+    for (Eigen::Index j = 0; j < count; ++j)
+      a(i, j) = dot(parts[static_cast<std::size_t>(i)], parts[static_cast<std::size_t>(j)]);
+  }
+  if (!(a.diagonal().minCoeff() > 0.0)) return;
+  const Eigen::VectorXd scale = a.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  if (!(scaled.determinant() > 1e-9)) return;  // waves that do the same
+  const Eigen::VectorXd share = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(b)));
   fitting::Residuals moved = residuals_;
-  for (std::size_t i = 0; i < sine.size(); ++i) {
-    moved[i] += share[0] * (sine[i] - residuals_[i]) + share[1] * (cosine[i] - residuals_[i]);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += share[static_cast<Eigen::Index>(p)] * parts[p][i];
   }
-  calib::set(start.model, amplitude, height * std::min(share.norm(), 10.0));
-  calib::set(start.model, phase, std::atan2(share[1], share[0]));
-  refit_linearly(moved, effect, start);
+  ScreenedStart start{flat, 0.0};
+  for (std::size_t w = 0; w < waves.size(); ++w) {
+    const Eigen::Vector2d own = share.segment<2>(2 * static_cast<Eigen::Index>(w));
+    calib::set(start.model, waves[w].amplitude, calib::value(flat, waves[w].amplitude) * std::min(own.norm(), 10.0));
+    calib::set(start.model, waves[w].phase, std::atan2(own[1], own[0]));
+  }
+  refit_linearly(moved, form, start);
   if (std::isfinite(start.squares)) into.push_back(start);
 }
 
-std::vector<ScreenedStart> StartScreen::at(const Effect& effect, const std::vector<double>& values) const {
-  ScreenedStart start{current_.model, 0.0};
-  for (std::size_t p = 0; p < values.size(); ++p) calib::set(start.model, effect.parameters[p], values[p]);
+/// Rollouts with a period that is off by a percent soon are out of step with the recording. So between the first and
+/// the last of the grid's periods those that stay in step are screened too.
+void StartScreen::screen_periods(const Effect& effect, const Form& form, const std::vector<std::vector<double>>& grid,
+                                 std::vector<ScreenedStart>& into) const {
+  if (grid.size() < 2) return;
+  for (const double period_s :
+       promising_periods_s(fit_, current_.model, form.parameters.front(), grid.front().front(), grid.back().front()))
+    screen(effect, form, {period_s}, into);
+}
+
+std::vector<ScreenedStart> StartScreen::at(const Effect& effect, std::size_t form,
+                                           const std::vector<double>& values) const {
+  ScreenedStart start{with(effect.forms.at(form), values), 0.0, form};
   const fitting::Residuals there = fit_.residuals(start.model);
   if (there.empty()) return {};
-  refit_linearly(there, effect, start);
+  refit_linearly(there, effect.forms.at(form), start);
   if (!std::isfinite(start.squares)) return {};
   return {start};
 }
 
-/// Start values of a wave over the joint's angle. With many runs only those that are best on a few of them: there are
-/// about a hundred orders, and each costs two rollouts of every run.
-std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, const BenchScale& scale) const {
-  if (fit_.runs().size() <= 2 * kRunsForOrders) return starts(effect, current_.model, scale);
+/// Start values of a wave of some order. With many runs only those that are best on a few of them: there are about a
+/// hundred orders, and each costs two rollouts of every run.
+std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, std::size_t form_index,
+                                                              const BenchScale& scale) const {
+  const Form& form = effect.forms.at(form_index);
+  if (fit_.runs().size() <= kRunsForOrders) return starts(effect, form, current_.model, scale);
   const NestedFit few(calib::spread(fit_.runs(), kRunsForOrders), fit_.threads());
   std::vector<std::vector<double>> found;
-  for (const ScreenedStart& start : StartScreen(few, current_).best(effect, scale)) {
+  for (const ScreenedStart& start : StartScreen(few, current_).best(effect, form_index, scale)) {
     std::vector<double> values;
-    for (const std::string& parameter : effect.parameters) values.push_back(calib::value(start.model, parameter));
+    for (const std::string& parameter : form.parameters) values.push_back(calib::value(start.model, parameter));
     found.push_back(std::move(values));
   }
   return found;
 }
 
-std::vector<ScreenedStart> StartScreen::best(const Effect& effect, const BenchScale& scale) const {
+std::vector<ScreenedStart> StartScreen::best(const Effect& effect, std::size_t form_index,
+                                             const BenchScale& scale) const {
   std::vector<ScreenedStart> found;
-  const bool waves = effect.name == "cogging";
-  for (const std::vector<double>& values :
-       waves ? promising_waves(effect, scale) : starts(effect, current_.model, scale)) {
-    if (waves) {
-      calib::JointModel flat = current_.model;
-      flat.actuator.ripple.order = values[1];
-      screen_wave(effect, "ripple.amplitude_Nm", "ripple.phase_rad", values[0], flat, found);
-    } else if (effect.name == "eccentricity") {
-      screen_wave(effect, "sensor.eccentricity_rad", "sensor.eccentricity_phase_rad", values[0], current_.model, found);
-    } else {
-      screen(effect, values, found);
-    }
+  const Form& form = effect.forms.at(form_index);
+  const bool waves = !waves_of(form).empty();
+  const std::vector<std::vector<double>> grid =
+      has_order(form) ? promising_waves(effect, form_index, scale) : starts(effect, form, current_.model, scale);
+  for (const std::vector<double>& values : grid) {
+    if (waves)
+      screen_waves(form, values, found);
+    else
+      screen(effect, form, values, found);
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const ScreenedStart& a, const ScreenedStart& b) { return a.squares < b.squares; });
+  if (is_period(form.parameters.front())) screen_periods(effect, form, grid, found);
+  for (ScreenedStart& start : found) start.form = form_index;
+  std::stable_sort(found.begin(), found.end(), better);
   found.resize(std::min(found.size(), kMostStarts));
   return found;
+}
+
+std::vector<ScreenedStart> StartScreen::best_of_forms(const Effect& effect, const BenchScale& scale,
+                                                      double worth) const {
+  std::vector<ScreenedStart> all;
+  for (std::size_t form = 0; form < effect.forms.size(); ++form) {
+    const std::vector<ScreenedStart> of_form = best(effect, form, scale);
+    all.insert(all.end(), of_form.begin(), of_form.end());
+  }
+  std::stable_sort(all.begin(), all.end(), better);
+  if (all.size() < 3) return all;
+  const double now = fitting::sum_of_squares(residuals_);
+  const auto other =
+      std::find_if(all.begin(), all.end(), [&](const ScreenedStart& s) { return s.form != all[0].form; });
+  if (other != all.end() && now - other->squares > worth * (now - all[0].squares)) return {all[0], *other};
+  return {all[0], all[1]};
 }
 
 }  // namespace pmg::effects

@@ -1,9 +1,10 @@
-// A cheap screen of an effect's start values: rollouts with the effect, the other unknowns refitted linearly.
+// A cheap screen of start values of an effect's forms: rollouts with the effect, the other unknowns refitted linearly.
 #pragma once
 
 #include <vector>
 
 #include "effects/nested_fit.hpp"
+#include "effects/starts.hpp"
 
 namespace pmg::effects {
 
@@ -11,33 +12,47 @@ namespace pmg::effects {
 struct ScreenedStart {
   calib::JointModel model;
   double squares = 0.0;  ///< expected after the linear refit of the other unknowns [rad^2]
+  std::size_t form = 0;  ///< of Effect::forms
 };
 
 class StartScreen {
  public:
-  StartScreen(const NestedFit& fit, const NestedModel& current);
+  /// Costs the model's Jacobian. The fit must outlive it.
+  StartScreen(const NestedFit& fit, NestedModel current);
 
-  /// The effect's best starts, at most four, the lowest expected squares first. Costs one rollout of every run for each
-  /// start value, two for each wave.
-  std::vector<ScreenedStart> best(const Effect& effect, const BenchScale& scale) const;
+  /// The best starts of one form of an effect, at most four, the lowest expected squares first. Costs one rollout of
+  /// every run for each start value, two for each wave.
+  std::vector<ScreenedStart> best(const Effect& effect, std::size_t form, const BenchScale& scale) const;
 
-  /// (effect, values of its parameters) => (the start with these values; none if it can't be simulated).
-  std::vector<ScreenedStart> at(const Effect& effect, const std::vector<double>& values) const;
+  /// (effect) => (its two starts to fit): the best of all forms, and the best of another form if that explains at least
+  /// this share of what the first one explains; else the second best.
+  std::vector<ScreenedStart> best_of_forms(const Effect& effect, const BenchScale& scale, double worth) const;
 
-  /// At the current model.
+  /// (effect, form, values of its parameters) => (the start with these values; none if it can't be simulated).
+  std::vector<ScreenedStart> at(const Effect& effect, std::size_t form, const std::vector<double>& values) const;
+
+  // At the current model.
+  const fitting::Residuals& residuals() const { return residuals_; }
   const RolloutJacobian& jacobian() const { return jacobian_; }
+  const Eigen::MatrixXd& information() const { return information_; }  ///< J^T J
+
+  const NestedFit& fit() const { return fit_; }
 
  private:
-  void screen(const Effect& effect, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
-  void line_search(const Effect& effect, const std::vector<double>& values, const fitting::Residuals& there,
+  void screen(const Effect& effect, const Form& form, const std::vector<double>& values,
+              std::vector<ScreenedStart>& into) const;
+  void line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
                    std::vector<ScreenedStart>& into) const;
-  void screen_wave(const Effect& effect, const std::string& amplitude, const std::string& phase, double height,
-                   const calib::JointModel& flat, std::vector<ScreenedStart>& into) const;
-  std::vector<std::vector<double>> promising_waves(const Effect& effect, const BenchScale& scale) const;
-  void refit_linearly(const fitting::Residuals& residuals, const Effect& effect, ScreenedStart& start) const;
+  void screen_waves(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
+  std::vector<std::vector<double>> promising_waves(const Effect& effect, std::size_t form,
+                                                   const BenchScale& scale) const;
+  void refit_linearly(const fitting::Residuals& residuals, const Form& form, ScreenedStart& start) const;
+  void screen_periods(const Effect& effect, const Form& form, const std::vector<std::vector<double>>& grid,
+                      std::vector<ScreenedStart>& into) const;
+  calib::JointModel with(const Form& form, const std::vector<double>& values) const;
 
   const NestedFit& fit_;
-  const NestedModel& current_;
+  NestedModel current_;
   fitting::Residuals residuals_;
   RolloutJacobian jacobian_;
   Eigen::MatrixXd information_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/period.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::effects {
@@ -44,21 +45,23 @@ double quantum_of(const std::vector<calib::SingleJoint>& runs) {
   return off < 0.1 ? smallest : 0.0;
 }
 
-/// Order of a wave with one period over the range of motion [1/turn].
+}  // namespace
+
 double lowest_order(const BenchScale& scale) {
   return 2.0 * 3.141592653589793 / std::max(0.1, scale.position_high_rad - scale.position_low_rad);
 }
 
-}  // namespace
-
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const JointModel& model) {
   BenchScale scale;
+  scale.law = bench.law;
   std::vector<double> torques, speeds, inertias, positions;
   constexpr double kSpan_s = 0.02;
   for (const calib::SingleJoint& joint : runs) {
     const bench::BenchRun& run = joint.run();
     const bench::Recording& r = run.recording;
     scale.bus_recorded = scale.bus_recorded || !r.bus_V.empty();
+    scale.temperature_recorded = scale.temperature_recorded || !r.temp_C.empty() || run.temp_C;
+    scale.duration_s = std::max(scale.duration_s, r.t_s.empty() ? 0.0 : r.t_s.back() - r.t_s.front());
     inertias.push_back(run.load.inertia_kg_m2 + model.actuator.transmission.armature_kg_m2);
     const auto span = static_cast<std::size_t>(std::max(1.0, kSpan_s * bench.sample_rate_hz));
     for (std::size_t k = 0; k < r.t_s.size(); ++k) {
@@ -75,6 +78,8 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
   for (const double torque : torques) squares += torque * torque;
   scale.torque_Nm = std::max(1e-6, std::sqrt(squares / std::max(1.0, static_cast<double>(torques.size()))));
   scale.torque_peak_Nm = std::max(scale.torque_Nm, fitting::quantile(torques, 0.99));
+  scale.output = scale.torque_Nm / model.actuator.drive.torque_per_unit_Nm;
+  if (bench.law == bench::DriveLaw::kServoVoltage) scale.output /= bench.supply_V;
   scale.speed_rad_s = std::max(1e-4, fitting::quantile(speeds, 0.98));
   scale.inertia_kg_m2 = std::max(1e-7, fitting::quantile(inertias, 0.5));
   scale.position_low_rad = fitting::quantile(positions, 0.01);
@@ -96,16 +101,21 @@ double Unknown::value(double coordinate) const {
 // is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
 fitting::Coordinate Unknown::range() const {
   constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
-  const double step = name == "command.delay_s" ? kDelayStep_s
-                      : logarithmic             ? kLogarithmStep
-                                                : kShareOfTypical * typical;
+  const bool delay = name == "command.delay_s" || name == "sensor.delay_s" || name == "drive.torque_delay_s";
+  const double step = difference > 0.0 ? difference
+                      : delay          ? kDelayStep_s
+                      : logarithmic    ? kLogarithmStep
+                                       : kShareOfTypical * typical;
   return {coordinate(lower), coordinate(upper), step, expected, deviation};
 }
 
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
   Unknown u{calib::fit_parameter(name, bench)};
   const double torque = scale.torque_Nm, speed = scale.speed_rad_s;
-  if (u.unit.starts_with("Nm s")) {
+  if (u.unit.starts_with("Nm s^2")) {
+    u.typical = torque / (speed * speed);
+    u.upper = std::max(u.upper, 10.0 * u.typical);
+  } else if (u.unit.starts_with("Nm s")) {
     u.typical = torque / speed;
     u.upper = std::max(u.upper, 10.0 * u.typical);
   } else if (u.unit == "Nm") {
@@ -114,7 +124,23 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
   } else if (u.unit.starts_with("1/(Nm^2")) {
     u.typical = 0.1 / (torque * torque);
     u.lower = std::min(u.lower, -10.0 * u.typical);
-    u.upper = std::max(u.upper, 10.0 * u.typical);
+    if (u.upper > 0.0) u.upper = std::max(u.upper, 10.0 * u.typical);
+  } else if (u.unit == "1/J") {
+    u.typical = 1.0 / (torque * speed * scale.duration_s);
+    u.lower = std::min(u.lower, -100.0 * u.typical);
+    u.upper = std::max(u.upper, 100.0 * u.typical);
+  } else if (u.unit == "unit") {
+    u.typical = scale.output;
+    u.upper = std::max(u.upper, 5.0 * scale.output);
+  } else if (u.unit == "unit/s") {
+    u.lower = std::min(u.lower, scale.output);
+    u.upper = std::max(u.upper, 1e3 * scale.output);
+  } else if (u.unit == "W") {
+    u.lower = std::min(u.lower, 0.02 * torque * speed);
+    u.upper = std::max(u.upper, 10.0 * scale.torque_peak_Nm * speed);
+  } else if (u.unit == "rad/s^2") {
+    u.lower = std::min(u.lower, speed);
+    u.upper = std::max(u.upper, 1e3 * speed);
   } else if (u.unit == "1/K") {
     u.typical = 0.02;
   } else if (u.unit == "1/Nm") {
@@ -122,6 +148,8 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
     u.upper = 3.0 / scale.torque_peak_Nm;  // a source three times as weak as the motor it feeds
   } else if (u.unit == "s") {
     u.typical = 0.01;
+    constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
+    if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
   } else if (u.unit == "rad") {
     u.typical = 0.05 * (scale.position_high_rad - scale.position_low_rad);
   } else if (u.unit == "rad/s") {
@@ -131,96 +159,18 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
   } else {
     u.typical = 0.3;
   }
-  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && name != "ripple.order";
+  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && !is_order(name);
   // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
-  if (name == "ripple.order") u.lower = std::max(u.lower, lowest_order(scale)), u.typical = 1.0;
-  if (name == "ripple.phase_rad" || name == "sensor.eccentricity_phase_rad")
-    u.lower = -10.0, u.upper = 10.0, u.typical = 1.0;
+  if (is_order(name)) u.lower = std::max(u.lower, lowest_order(scale)), u.typical = 1.0;
+  if (name.ends_with("phase_rad")) u.lower = -10.0, u.upper = 10.0, u.typical = 1.0;
   if (name == "transmission.armature_kg_m2") u.lower = std::min(u.lower, 1e-4 * scale.inertia_kg_m2);
   return u;
 }
 
-bool is_jagged(const std::string& parameter) {
-  return parameter == "command.hold_s" || parameter == "sensor.quantum_rad";
+bool is_order(const std::string& parameter) {
+  return parameter == "ripple.order" || parameter == "sensor.eccentricity_order";
 }
 
-std::vector<std::vector<double>> starts(const Effect& effect, const JointModel& current, const BenchScale& scale) {
-  const double torque = scale.torque_Nm, peak = scale.torque_peak_Nm, speed = scale.speed_rad_s;
-  const auto& a = current.actuator;
-  std::vector<std::vector<double>> found;
-  const auto each = [&](std::initializer_list<double> values, double factor, double offset = 0.0) {
-    for (const double v : values) found.push_back({offset + factor * v});
-  };
-  if (effect.name == "coulomb") {
-    each({0.03, 0.1, 0.3, -0.05, -0.2}, torque, a.friction.coulomb_Nm);
-    std::erase_if(found, [](const auto& v) { return v.front() < 0.0; });
-  } else if (effect.name == "viscous") {
-    each({0.03, 0.1, 0.3, -0.05, -0.2}, torque / speed, a.friction.viscous_Nm_s_per_rad);
-    std::erase_if(found, [](const auto& v) { return v.front() < 0.0; });
-  } else if (effect.name == "stribeck") {
-    for (const double f : {-0.15, -0.05, 0.05, 0.15, 0.4}) {
-      for (const double v : {0.02, 0.1, 0.4}) found.push_back({f * torque, v * speed});
-    }
-  } else if (effect.name == "load_friction") {
-    found = {{0.1, 0.1}, {0.3, 0.3}, {0.7, 0.4}, {0.2, 0.0}, {0.0, 0.2}};
-  } else if (effect.name == "direction_friction") {
-    each({-0.2, 0.2}, 1.0);
-  } else if (effect.name == "offset") {
-    each({-0.2, -0.05, 0.05, 0.2}, torque);
-  } else if (effect.name == "backlash" || effect.name == "compliance") {
-    const double rotor = std::max(1e-6, a.transmission.armature_kg_m2);
-    const double reduced = 1.0 / (1.0 / rotor + 1.0 / scale.inertia_kg_m2);
-    for (const double bend_rad : {0.005, 0.02, 0.06}) {
-      const double stiffness = std::max(peak / bend_rad, 5.0 * torque);
-      const double damping = 0.1 * 2.0 * std::sqrt(stiffness * reduced);
-      if (effect.name == "compliance") {
-        found.push_back({stiffness, damping});
-        continue;
-      }
-      for (const double play_rad : {0.005, 0.02, 0.06}) found.push_back({play_rad, stiffness, damping});
-    }
-  } else if (effect.name == "delay") {
-    each({2.0, 5.0, 10.0, 20.0, 40.0}, 1e-3);
-  } else if (effect.name == "rate_limit") {
-    each({0.3, 0.5, 0.7, 0.85, 1.0, 1.3, 2.0}, speed);
-  } else if (effect.name == "hold") {
-    each({2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0, 40.0}, 1e-3);
-  } else if (effect.name == "torque_speed") {
-    for (const double stall : {0.5, 1.0, 1.8}) {
-      for (const double no_load : {1.05, 1.4, 2.5}) found.push_back({stall * peak, no_load * speed});
-    }
-  } else if (effect.name == "supply_sag") {
-    // Only voltage drives, which have back-EMF, feel the bus; the others regulate their current. A recorded bus voltage
-    // is an input that already contains the sag.
-    if (a.drive.back_emf_s_per_rad > 0.0 && !scale.bus_recorded) each({0.05, 0.2, 0.5, 1.0}, 1.0 / peak);
-  } else if (effect.name == "gain") {
-    each({0.6, 0.8, 0.9, 1.1, 1.25, 1.6}, a.drive.kp_scale);
-  } else if (effect.name == "dead_band") {
-    each({0.003, 0.01, 0.03}, 1.0);
-  } else if (effect.name == "sensor_lag") {
-    each({2.0, 5.0, 10.0, 20.0}, 1e-3);
-  } else if (effect.name == "quantisation") {
-    if (scale.quantum_rad > 0.0) found.push_back({scale.quantum_rad});
-  } else if (effect.name == "zero_offset") {
-    each({-0.05, -0.01, 0.01, 0.05}, 1.0);
-  } else if (effect.name == "cogging") {
-    const double lowest = lowest_order(scale);
-    const double step = std::clamp(0.25 * lowest, 0.5, 4.0);  // a quarter of a period over the range
-    for (double order = lowest; order <= 64.0; order += step) {
-      found.push_back({0.1 * torque, order, 0.0});
-    }
-  } else if (effect.name == "hysteresis") {
-    each({0.003, 0.01, 0.03}, 1.0);
-  } else if (effect.name == "eccentricity") {
-    found.push_back({0.02, 0.0});
-  } else if (effect.name == "thermal_drift") {
-    found = {{-0.02, 0.0}, {0.02, 0.0}, {0.0, -0.01}, {0.0, 0.01}};
-  } else if (effect.name == "self_heating") {
-    each({-0.2, 0.2}, 1.0 / (torque * torque));
-  } else if (effect.name == "load") {
-    found = {{0.8, 0.8}, {1.25, 1.25}, {1.2, 1.0}, {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8}};
-  }
-  return found;
-}
+bool is_jagged(const std::string& parameter) { return is_period(parameter) || parameter == "sensor.quantum_rad"; }
 
 }  // namespace pmg::effects

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calib/fit_problem.hpp"
-#include "effects/catalogue.hpp"
 
 namespace pmg::effects {
 
@@ -17,7 +16,10 @@ struct BenchScale {
   double inertia_kg_m2 = 0.01;  ///< median over runs of load and rotor inertia
   double position_low_rad = 0.0, position_high_rad = 0.0;  ///< 1 % and 99 % quantiles
   double quantum_rad = 0.0;                                ///< all readings are multiples of it; 0 for a fine sensor
-  bool bus_recorded = false;
+  double output = 1.0;                                     ///< torque_Nm in the unit of the drive's output
+  double duration_s = 1.0;                                 ///< of the longest run
+  bool bus_recorded = false, temperature_recorded = false;
+  bench::DriveLaw law = bench::DriveLaw::kPositionPd;
 };
 
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
@@ -28,7 +30,8 @@ struct Unknown : calib::FitParameter {
   bool logarithmic = false;
   double typical = 1.0;  ///< a change of the value that matters
   double expected = 0.0,
-         deviation = 0.0;  ///< normal prior of the coordinate, from a calibration; none if deviation is 0
+         deviation = 0.0;   ///< normal prior of the coordinate, from a calibration; none if deviation is 0
+  double difference = 0.0;  ///< of the coordinate, for the Jacobian's column; 0: range() chooses by its kind
 
   double coordinate(double value) const;
   double value(double coordinate) const;
@@ -39,9 +42,11 @@ struct Unknown : calib::FitParameter {
 /// (parameter name, bench, scale) => (unknown with its whole plausible range on this bench).
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);
 
-/// (effect, model to extend, scale) => (start values of the effect's parameters, in the order of Effect::parameters).
-std::vector<std::vector<double>> starts(const Effect& effect, const calib::JointModel& current,
-                                        const BenchScale& scale);
+/// Order of a wave with one period over the range of motion [1/turn].
+double lowest_order(const BenchScale& scale);
+
+/// True for the orders of waves over the joint's angle.
+bool is_order(const std::string& parameter);
 
 /// True for parameters that a fit keeps at their start value, because rollouts are not smooth in them: the period of a
 /// sample-and-hold and a sensor's quantum.

@@ -37,12 +37,6 @@ sil::Scenario gait_scenario(const GaitTest& test) {
   return {.name = "gait", .steps = {stand, walk}};
 }
 
-/// Flexions [deg] of one leg; positive as in gait analysis.
-std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg) {
-  return {-q[leg[generator::kHipPitch]] / kRadPerDegree, q[leg[generator::kKnee]] / kRadPerDegree,
-          -q[leg[generator::kAnklePitch]] / kRadPerDegree};
-}
-
 FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
   const std::vector<std::size_t> contacts = initial_contacts(recording.loaded, control::ControlCycle::kPeriod_s);
   if (contacts.size() < 2) throw std::runtime_error("the robot doesn't walk: a foot makes no two steps");
@@ -66,6 +60,12 @@ ordered_json agreement_json(const CurveAgreement& a) {
 }
 
 }  // namespace
+
+std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg,
+                                             double pelvis_pitch_rad) {
+  return {(-q[leg[generator::kHipPitch]] - pelvis_pitch_rad) / kRadPerDegree, q[leg[generator::kKnee]] / kRadPerDegree,
+          -q[leg[generator::kAnklePitch]] / kRadPerDegree};
+}
 
 std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s) {
   const auto shortest = static_cast<std::size_t>(std::lround(kShortestSwing_s / dt_s));
@@ -117,6 +117,7 @@ bool GaitTest::reached() const {
 void run_gait(GaitTest& test, const Supervision& supervision) {
   const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
   const generator::JointRoles roles = generator::find_joint_roles(robot);
+  model::BaseAttitude pelvis_of_reference(robot);
   PerFoot<FootRecording> recordings;
   model::RobotState state;
   Eigen::Vector3d start_W = Eigen::Vector3d::Zero(), end_W = start_W;
@@ -127,11 +128,15 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
     world.read(state);
     if (recordings[kLeft].loaded.empty()) start_W = truth.p_WB;
     end_W = truth.p_WB;
-    duty_sum += now.result.reference.duty_factor[kLeft];
+    const auto& planned = now.result.reference;
+    const Command& u = now.result.optimised.command;
+    const auto pelvis = pelvis_of_reference.compute(planned.q, planned.dq, u[kPitch], u[kRoll], 0.0, 0.0);
+    const double planned_pitch_rad = sil::roll_pitch(Eigen::Quaterniond(pelvis.R_HB)).pitch_rad;
+    duty_sum += planned.duty_factor[kLeft];
     for (const Foot foot : {kLeft, kRight}) {
       recordings[foot].loaded.push_back(truth.foot_force_N[foot] > kLoadedFoot_N);
-      const auto measured = flexions_deg(state.q, roles.leg[foot]);
-      const auto reference = flexions_deg(now.result.reference.q, roles.leg[foot]);
+      const auto measured = flexions_deg(state.q, roles.leg[foot], sil::roll_pitch(truth.q_WB).pitch_rad);
+      const auto reference = flexions_deg(planned.q, roles.leg[foot], planned_pitch_rad);
       for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
         recordings[foot].measured_deg[joint].push_back(measured[joint]);
         recordings[foot].reference_deg[joint].push_back(reference[joint]);

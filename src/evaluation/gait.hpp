@@ -7,6 +7,7 @@
 
 #include "evaluation/campaign.hpp"
 #include "evaluation/gait_norms.hpp"
+#include "generator/joint_roles.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::evaluation {
@@ -21,6 +22,11 @@ struct FootRecording {
   std::vector<bool> loaded;
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;
 };
+
+/// Flexions [deg] of thigh, knee and ankle; positive as in gait analysis. The thigh's is against the vertical, as the
+/// norms': the hip joint's less the pelvis' forward pitch.
+std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg,
+                                             double pelvis_pitch_rad);
 
 /// Ticks at which the foot comes down after at least 0.1 s in the air.
 std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s);

@@ -1,5 +1,7 @@
 #include "evidence/strength.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pmg::evidence {
@@ -21,6 +23,12 @@ std::vector<double> measured_strength(const Signature& check, const model::Actua
   if (effect == "zero_offset") return {-torque};
   if (effect == "gain" || effect == "dead_band" || effect == "delay" || effect == "rate_limit") return {value};
   return {};
+}
+
+bool has_its_sign(const Signature& check) {
+  constexpr std::array kNeverNegative = {"coulomb", "viscous", "stribeck", "load_friction", "dead_band", "delay"};
+  const bool never = std::find(kNeverNegative.begin(), kNeverNegative.end(), check.effect) != kNeverNegative.end();
+  return !never || !(check.value.value < 0.0);
 }
 
 }  // namespace pmg::evidence

@@ -13,4 +13,8 @@ namespace pmg::evidence {
 std::vector<double> measured_strength(const Signature& check, const model::ActuatorParameters& joint,
                                       double fastest_rad_s, const SignatureOptions& options);
 
+/// False where the check measures the other sign than the effect's physics has. Friction that is smaller at low speed
+/// than at high speed is viscous friction that levels off, and not Stribeck friction.
+bool has_its_sign(const Signature& check);
+
 }  // namespace pmg::evidence

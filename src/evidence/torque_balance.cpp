@@ -90,7 +90,7 @@ void TorqueBalance::read(const bench::BenchRun& run) {
     p.gravity_Nm = run.load.gravity_Nm * std::sin(p.q_rad);
     p.hanging_Nm = run.load.gravity_Nm * std::cos(p.q_rad);
     p.load_Nm = p.gravity_Nm + run.load.inertia_kg_m2 * 0.5 * (m.ddq_rad_s2[k] + m.ddq_rad_s2[k + 1]);
-    p.temp_C = r.temp_C.empty() ? std::nan("") : r.temp_C[k];
+    p.temp_C = r.temp_C.empty() ? run.temp_C.value_or(std::nan("")) : r.temp_C[k];
     const bool on = r.enabled.empty() || (r.enabled[k] && r.enabled[k + 1]);
     const bool off = !r.enabled.empty() && !r.enabled[k] && !r.enabled[k + 1];
     usable[k] = (when_ == While::kOn ? on : off) && r.valid[k] && r.valid[k + 1] && std::isfinite(p.load_Nm) &&

@@ -5,6 +5,8 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include "files/bounded_file.hpp"
 #include "files/nearest_name.hpp"
@@ -30,10 +32,21 @@ std::string what_it_is(const YAML::Node& node) {
   }
 }
 
+/// A whole number in YAML's hexadecimal form, 0x1F.
+std::optional<double> hexadecimal(std::string_view text) {
+  if (!text.starts_with("0x")) return std::nullopt;
+  text.remove_prefix(2);
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 /// Plain scalars only: a quoted "1" is a string.
 std::optional<double> plain_number(const YAML::Node& node) {
   if (!node.IsScalar() || node.Tag() == "!") return std::nullopt;
   const std::string& text = node.Scalar();
+  if (const auto value = hexadecimal(text)) return value;
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;

@@ -30,11 +30,29 @@ struct Fold {
 /// stays determined.
 std::vector<Eigen::VectorXd> steps_without(const LinearisedFit& fit, const std::vector<Fold>& folds);
 
-/// (fit, folds) => (squares of each block by fits without its fold [rad^2], averaged over the kinds of folds): rollouts
-/// at x + s step_without, s = 1, 0.3, 0.09, with the first s that lowers the objective without the fold; x if none
-/// does. Costs one to three rollouts of all runs for each fold.
-Eigen::VectorXd held_out_squares(const ResidualFunction& residuals, const Blocks& blocks, const LinearisedFit& fit,
-                                 const std::vector<Fold>& folds);
+/// Squares of each block by fits without its fold [rad^2]: a column for each kind of folds, in the folds' order.
+struct HeldOut {
+  Eigen::MatrixXd of_kind{};
+
+  Eigen::VectorXd mean() const;  ///< over the kinds
+};
+
+/// (fit, folds) => (squares of the blocks left out): rollouts at x + s step_without, s = 1, 0.3, 0.09, with the first s
+/// that lowers the objective without the fold; x if none does. Costs one to three rollouts of all runs for each fold.
+HeldOut held_out_squares(const ResidualFunction& residuals, const Blocks& blocks, const LinearisedFit& fit,
+                         const std::vector<Fold>& folds);
+
+/// (fit, folds) => (the same without a rollout): the squares of block b change by what its normal equations Q_b
+/// foretell of the step without its fold, beyond the step with all blocks, Q_b(step_without) - Q_b(step). For a fit
+/// that isn't at its end: of its own step both have the same share.
+HeldOut foretold_held_out_squares(const LinearisedFit& fit, const std::vector<Fold>& folds);
+
+/// How two models compare where all folds of one kind are left out in turn.
+struct KindComparison {
+  std::string kind;                ///< as Fold::name
+  double deviations = 0.0;         ///< mean over blocks of the logarithms' difference over its standard error
+  double square_deviations = 0.0;  ///< the same of the mean squares, without logarithms
+};
 
 /// How two models compare on the same blocks.
 struct Comparison {
@@ -43,6 +61,7 @@ struct Comparison {
   double log_gain = 0.0;    ///< mean over blocks of log(mean square + floor) of the first less that of the second
   double deviations = 0.0;  ///< log_gain over its standard error, blocks as observations
   double folds_won = 0.0;   ///< share of the folds in which the second is better, by its logarithms
+  std::vector<KindComparison> of_kind{};  ///< of two HeldOut
 };
 
 /// Compares the logarithms of the blocks' mean squares. Without the logarithms, the few blocks after large steps, which
@@ -52,6 +71,8 @@ class BlockComparison {
   BlockComparison(const Blocks& blocks, std::vector<Fold> folds, double floor_squares);
   /// (squares by block of the first, of the second) => (comparison).
   Comparison operator()(const Eigen::VectorXd& first, const Eigen::VectorXd& second) const;
+  /// The means over the kinds, and each kind on its own.
+  Comparison operator()(const HeldOut& first, const HeldOut& second) const;
   /// Mean over blocks of log(mean square + floor).
   double mean_log_square(const Eigen::VectorXd& squares) const;
   const std::vector<Fold>& folds() const { return folds_; }

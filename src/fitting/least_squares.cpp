@@ -12,6 +12,7 @@ namespace {
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6, kLessDamping = 0.2, kMoreDamping = 6.0;
 constexpr double kUnseen = 1e-14;  // of the largest information: an unobservable coordinate keeps its value
 constexpr double kRidge = 1e-9;    // added to a unit diagonal: keeps collinear coordinates solvable
+constexpr double kTrusted = 0.5;   // of the gain foretold: less, and the Jacobian is too old
 
 /// (coordinates, x, longest step) => (coordinates with bounds at most one longest step from x).
 Coordinates within_reach(const Coordinates& coordinates, const Eigen::VectorXd& x, double longest_step) {
@@ -31,6 +32,22 @@ std::pair<double, double> ends(const Coordinate& c, double x, Differences differ
   if (x + step > c.upper) step = -step;
   if (x + step < c.lower) step = 0.5 * (c.upper - c.lower);
   return {x, x + step};
+}
+
+/// Broyden's correction of the Jacobian by what a step did (gauss_newton's comment).
+void correct(Jacobian& slopes, const Coordinates& coordinates, const NormalEquations& at, const Eigen::VectorXd& step,
+             const Residuals& before, const Residuals& after) {
+  const Eigen::VectorXd weight = at.information.diagonal();
+  double differences = 0.0;
+  for (Eigen::Index i = 0; i < step.size(); ++i)
+    differences += weight[i] * std::pow(coordinates[static_cast<std::size_t>(i)].step, 2);
+  const Eigen::VectorXd weighted = weight.cwiseProduct(step);
+  const double size = step.dot(weighted) + differences / static_cast<double>(step.size());
+  if (!(size > 0.0)) return;
+  for (std::size_t run = 0; run < slopes.size(); ++run) {
+    const Eigen::VectorXd missed = after[run] - before[run] - slopes[run] * step;
+    slopes[run] += missed * (weighted / size).transpose();
+  }
 }
 
 }  // namespace
@@ -159,36 +176,52 @@ Minimum gauss_newton(const Problem& problem, Eigen::VectorXd x, const GaussNewto
     ++best.evaluations;
     return problem.residuals(there);
   };
-  Residuals residuals = counted.residuals(best.x);
-  best.squares = sum_of_squares(residuals);
-  if (residuals.empty() || best.x.size() == 0) return best;
+  best.residuals = counted.residuals(best.x);
+  best.squares = sum_of_squares(best.residuals);
+  if (best.residuals.empty() || best.x.size() == 0) return best;
   double damping = kFirstDamping;
-  for (int iteration = 0; iteration < options.most_iterations && !progress.interrupted_now(); ++iteration) {
-    const Jacobian slopes = jacobian(counted, best.x, residuals);
+  Jacobian slopes;
+  int secants = 0;  // steps since the slopes were made by differences
+  bool trusted = false;
+  for (int iteration = 0; iteration + (trusted ? 0 : 1) <= options.most_iterations && !progress.interrupted_now();) {
+    const bool by_differences = !trusted;
+    secants = by_differences ? 0 : secants + 1;
+    iteration += by_differences ? 1 : 0;
+    if (by_differences) slopes = jacobian(counted, best.x, best.residuals);
     NormalEquations sum = prior(problem.coordinates, best.x, problem.prior_weight);
-    const double before = best.squares + sum.squares;
-    for (std::size_t run = 0; run < residuals.size(); ++run) {
+    sum.squares += best.squares;
+    for (std::size_t run = 0; run < slopes.size(); ++run) {
       sum.information += slopes[run].transpose() * slopes[run];
-      sum.gradient += slopes[run].transpose() * residuals[run];
+      sum.gradient += slopes[run].transpose() * best.residuals[run];
     }
+    const double before = sum.squares, least_gain = options.relative_tolerance * before;
     const Coordinates near = within_reach(problem.coordinates, best.x, options.longest_step);
-    double now = before;
-    for (int attempt = 0; attempt < options.most_tries && !progress.interrupted_now(); ++attempt) {
-      const Eigen::VectorXd there = best.x + bounded_step(sum.information, sum.gradient, near, best.x, damping);
-      Residuals reached = counted.residuals(there);
+    const int most_tries = by_differences ? options.most_tries : 1;
+    double gain = 0.0;
+    trusted = false;
+    for (int attempt = 0; attempt < most_tries && !progress.interrupted_now(); ++attempt) {
+      const Eigen::VectorXd step = bounded_step(sum.information, sum.gradient, near, best.x, damping);
+      const double foretold = before - sum.squares_after(step);
+      if (options.most_secants > 0 && attempt == 0 && foretold <= least_gain) break;
+      Residuals reached = counted.residuals(best.x + step);
       const double squares = sum_of_squares(reached);
-      const double then = squares + prior(problem.coordinates, there, problem.prior_weight).squares;
-      if (then < before) {
-        best.x = there;
-        best.squares = squares;
-        now = then;
-        residuals = std::move(reached);
-        damping = std::max(kLeastDamping, kLessDamping * damping);
-        break;
+      const double then = squares + prior(problem.coordinates, best.x + step, problem.prior_weight).squares;
+      if (!(then < before)) {
+        damping *= kMoreDamping;
+        continue;
       }
-      damping *= kMoreDamping;
+      gain = before - then;
+      trusted = secants < options.most_secants && gain > least_gain && gain > kTrusted * foretold;
+      if (trusted) correct(slopes, problem.coordinates, sum, step, best.residuals, reached);
+      best.x += step;
+      best.squares = squares;
+      best.residuals = std::move(reached);
+      damping = std::max(kLeastDamping, kLessDamping * damping);
+      break;
     }
-    if (before - now <= options.relative_tolerance * before) break;
+    if (!by_differences || gain > least_gain) continue;
+    if (gain == 0.0) best.jacobian_at_x = std::move(slopes);
+    break;
   }
   return best;
 }

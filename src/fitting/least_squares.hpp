@@ -78,16 +78,25 @@ struct GaussNewtonOptions {
                                      ///< below the gains that folds can resolve
   int most_tries = 6;                ///< per iteration, each with six times the damping of the one before
   double longest_step = std::numeric_limits<double>::infinity();  ///< of one iteration, as a share of each range
+  /// After the step of an iteration so many more at most, with its Jacobian corrected by what each step did, as long as
+  /// the linear problem foretells what they do. Each costs one rollout of every run, not one for each coordinate.
+  int most_secants = 0;
 };
 
 struct Minimum {
   Eigen::VectorXd x;
-  double squares = 0.0;  ///< of the residuals alone [rad^2]
-  int evaluations = 0;   ///< rollouts of all runs
+  double squares = 0.0;         ///< of the residuals alone [rad^2]
+  int evaluations = 0;          ///< rollouts of all runs
+  Residuals residuals = {};     ///< at x
+  Jacobian jacobian_at_x = {};  ///< by differences at x itself; empty where the search ended without one
 };
 
 /// Levenberg-Marquardt (D. W. Marquardt, J. SIAM 11:431, 1963) from x. A step is taken only if it lowers the objective,
-/// so the result is never worse than the start. Checks for interruption before each iteration and each try.
+/// so the result is never worse than the start. With most_secants > 0 the Jacobian J of a step d is corrected by
+///   J += (r(x + d) - r(x) - J d) (W d)^T / (d^T W d + s^2)
+/// (C. G. Broyden, Math. Comp. 19:577, 1965), W = diagonal of J^T J, which makes coordinates of all units alike; s^2 =
+/// mean of W_i step_i^2: a step below the finite differences says little of a jagged residual. Only a Jacobian by
+/// differences ends the search. Checks for interruption before each iteration and each try.
 Minimum gauss_newton(const Problem& problem, Eigen::VectorXd x, const GaussNewtonOptions& options = {},
                      const work::Progress& progress = {});
 

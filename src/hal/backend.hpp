@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "hal/command_guard.hpp"
 #include "hal/hal.hpp"
@@ -40,6 +41,29 @@ struct BackendLimits {
   std::optional<int> overrun_ticks;     ///< so many control periods in a row that end late are a fault
 };
 
+/// What a log says of the backend that made it, for those who use the log.
+struct BackendDescription {
+  /// Time between two positions that a drive takes from its sensor for its own loop [s]; 0: much shorter than a control
+  /// tick. nullopt: unknown.
+  std::optional<double> drive_sampling_s{};
+  /// From the moment in which the drives had a state to the one in which they take the command computed from it, while
+  /// no tick is late [s]. nullopt: unknown.
+  std::optional<double> command_delay_s{};
+  /// Joints, and perhaps the IMU, whose state is older than the others' in the same sample [s].
+  std::vector<std::string> older_joints{};
+  bool older_imu = false;
+  double older_by_s = 0.0;
+  /// Joints whose drives obey torques: the bus thread closes their position loop, from positions and speeds that are so
+  /// old on average while their torque acts [s].
+  std::vector<std::string> closed_by_bus{};
+  double bus_loop_age_s = 0.0;
+  /// Joints whose drives move with robot.yaml's gains alone and know no target speed: what excites a robot lets both
+  /// be.
+  std::vector<std::string> own_gains{};
+  /// Of a simulation: what was set on it beside the robot's files, one line each. nullopt: hardware.
+  std::optional<std::vector<std::string>> set_on_simulator{};
+};
+
 /// What only a simulation knows of one bus cycle.
 struct TruthSample {
   std::uint64_t bus_sample = 0;  ///< of the state that the controller got in the same cycle
@@ -66,6 +90,7 @@ class Backend {
   /// The configuration in force, for --print-config and logs.
   virtual OptionValues configuration() const = 0;
   virtual BackendLimits limits() const { return {}; }
+  virtual BackendDescription description() const { return {}; }
 
   /// Opens bus and windows. Called once; the services below exist afterwards. From then on the bus thread alone uses
   /// the drives. A backend that waits for its drives asks interrupted() and gives up when that is true. Throws

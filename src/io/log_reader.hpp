@@ -26,7 +26,7 @@ class LogReader {
   /// The current event's message; nothing if it is of another type or cut short.
   template <typename Message>
   std::optional<Message> decode() const {
-    Message message;
+    Message message{};
     if (!decode_into(message)) return std::nullopt;
     return message;
   }

@@ -36,12 +36,12 @@ class FieldGatherer {
   void add_member(const Member& member, const T& value, const std::string& name) {
     if (member.is_length) return;
     if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
-      fields_.push_back({name, {}, converted(member, value)});
+      fields_.push_back({name, {}, converted(member, value), member.constants});
     } else if constexpr (std::is_array_v<T>) {
       for (std::size_t i = 0; i < std::extent_v<T>; ++i) {
         const bool named = i < member.elements.size();
         fields_.push_back(
-            {name, named ? std::string(member.elements[i]) : std::to_string(i), converted(member, value[i])});
+            {name, named ? std::string(member.elements[i]) : std::to_string(i), converted(member, value[i]), {}});
       }
     } else if constexpr (std::is_class_v<T>) {
       add(value, name + ".");
@@ -56,13 +56,13 @@ class FieldGatherer {
     }
     std::vector<std::string> texts;
     for (const T& value : values) texts.push_back(fmt::format("{}", value));
-    fields_.push_back({name, {}, std::move(texts)});
+    fields_.push_back({name, {}, std::move(texts), {}});
   }
   template <typename T>
   void add_joints(const std::vector<T>& values, const std::string& name) {
     const bool named = values.size() == joint_names_.size();
     for (std::size_t i = 0; i < values.size(); ++i) {
-      fields_.push_back({name, named ? joint_names_[i] : std::to_string(i), static_cast<double>(values[i])});
+      fields_.push_back({name, named ? joint_names_[i] : std::to_string(i), static_cast<double>(values[i]), {}});
     }
   }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,9 +9,12 @@
 #include <stdexcept>
 
 #include "io/log_series.hpp"
-#include "io/mcap_writer.hpp"
 #include "io/plain_text.hpp"
+#include "logs/foxglove_topics.hpp"
+#include "logs/json_text.hpp"
+#include "logs/mcap_writer.hpp"
 #include "logs/message_fields.hpp"
+#include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 
 namespace pmg::logs {
@@ -20,7 +22,6 @@ namespace pmg::logs {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 constexpr std::int64_t kEventsAProgress = 500;
 
@@ -73,7 +74,10 @@ class CsvFile {
  public:
   CsvFile(const fs::path& path, const std::vector<Field>& fields) : path_(path), file_(path) {
     std::string header = "time_s";
-    for (const Field& field : fields) header += "," + io::csv_text(field.path());
+    for (const Field& field : fields) {
+      header += "," + io::csv_text(field.path());
+      if (!field.constants.empty()) header += "," + io::csv_text(field.path() + "_name");
+    }
     columns_ = fields.size();
     file_ << header << '\n';
   }
@@ -82,7 +86,10 @@ class CsvFile {
       throw std::runtime_error(path_.string() +
                                ": the logs are of robots with different joints; name those of one run");
     std::string line = fmt::format("{:.6f}", row.time_s);
-    for (const Field& field : row.fields) line.append(",").append(cell(field.value));
+    for (const Field& field : row.fields) {
+      line.append(",").append(cell(field.value));
+      if (!field.constants.empty()) line.append(",").append(field.constant());
+    }
     file_ << line << '\n';
     if (!file_) throw std::runtime_error(path_.string() + ": can't be written");
   }
@@ -97,51 +104,60 @@ class CsvFile {
   std::size_t columns_ = 0;
 };
 
-struct ToJson {
-  ordered_json operator()(double value) const {
-    return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+/// The robot of a log, if it is here: as the log names it, or named by the caller.
+std::optional<model::RobotModel> robot_of(const std::optional<pmg_msgs::robot_info_t>& info, const std::string& named,
+                                          ExportReport& report) {
+  if (!named.empty()) return model::load_robot(model::find_robot(named));
+  if (!info) {
+    report.notes.push_back(
+        "no ROBOT_INFO before the first message: no transforms and no URDF (--robot names the robot)");
+    return {};
   }
-  template <typename T>
-  ordered_json operator()(const T& value) const {
-    return value;
+  const auto options = nlohmann::ordered_json::parse(info->options, nullptr, false);
+  const control::ControlSetup setup = replay_setup(*info, options, {});
+  try {
+    return model::load_robot(model::find_robot(setup.robot));
+  } catch (const std::exception& error) {
+    report.notes.push_back(fmt::format("no transforms and no URDF: {}", error.what()));
+    return {};
   }
-};
-
-struct SchemaType {
-  const char* operator()(std::int64_t) const { return "integer"; }
-  const char* operator()(double) const { return "number"; }
-  const char* operator()(bool) const { return "boolean"; }
-  const char* operator()(const std::string&) const { return "string"; }
-  const char* operator()(const std::vector<std::string>&) const { return "array"; }
-};
-
-ordered_json message_json(const std::vector<Field>& fields) {
-  ordered_json json = ordered_json::object();
-  for (const Field& field : fields) {
-    ordered_json value = std::visit(ToJson{}, field.value);
-    if (field.element.empty()) {
-      json[field.name] = std::move(value);
-    } else {
-      json[field.name][field.element] = std::move(value);
-    }
-  }
-  return json;
 }
 
-ordered_json schema_json(const std::vector<Field>& fields) {
-  ordered_json properties = ordered_json::object();
-  for (const Field& field : fields) {
-    ordered_json type = {{"type", std::visit(SchemaType{}, field.value)}};
-    if (type["type"] == "array") type["items"] = {{"type", "string"}};
-    if (field.element.empty()) {
-      properties[field.name] = std::move(type);
-    } else {
-      properties[field.name]["type"] = "object";
-      properties[field.name]["properties"][field.element] = std::move(type);
+/// What one MCAP file is made of.
+class McapExport {
+ public:
+  McapExport(const fs::path& file, const std::string& robot) : writer_(file), named_(robot) {}
+
+  void write(const Row& row, ExportReport& report) {
+    // The session is the wall clock at the start, close to the first event's; lockstep has none.
+    const std::int64_t started_ns = row.info && row.info->session > 0 ? row.info->session - row.first_ns : 0;
+    const std::int64_t time_ns = row.event.stamp_ns() + started_ns;
+    if (!foxglove_) {
+      robot_ = robot_of(row.info, named_, report);
+      foxglove_.emplace(writer_, robot_ ? &*robot_ : nullptr);
     }
+    foxglove_->take(row.event, time_ns, row.info ? row.info->joint_names : nameless_);
+    const std::string& channel = row.event.channel();
+    auto known = channels_.find(channel);
+    if (known == channels_.end()) {
+      const auto schema = writer_.add_schema("pmg." + channel, "jsonschema", message_schema(row.fields));
+      known = channels_.emplace(channel, writer_.add_channel(schema, channel, "json")).first;
+    }
+    writer_.write(known->second, time_ns, message_json(row.fields));
   }
-  return {{"type", "object"}, {"properties", properties}};
-}
+  void close() {
+    if (foxglove_) foxglove_->finish();
+    writer_.close();
+  }
+
+ private:
+  McapWriter writer_;
+  std::string named_;
+  std::optional<model::RobotModel> robot_;
+  std::optional<FoxgloveTopics> foxglove_;
+  std::map<std::string, McapWriter::Id> channels_;
+  const std::vector<std::string> nameless_;
+};
 
 }  // namespace
 
@@ -158,23 +174,14 @@ ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& fold
   return report;
 }
 
-ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& file, const work::Progress& progress) {
-  io::McapWriter writer(file);
-  std::map<std::string, io::McapWriter::Id> channels;
-  ExportReport report = for_each_message(files, progress, [&](const Row& row) {
-    const std::string& channel = row.event.channel();
-    auto known = channels.find(channel);
-    if (known == channels.end()) {
-      const auto schema = writer.add_schema("pmg." + channel, "jsonschema", schema_json(row.fields).dump());
-      known = channels.emplace(channel, writer.add_channel(schema, channel, "json")).first;
-    }
-    // The session is the wall clock at the start, close to the first event's; lockstep has none.
-    const std::int64_t started_ns = row.info && row.info->session > 0 ? row.info->session - row.first_ns : 0;
-    const ordered_json json = message_json(row.fields);
-    writer.write(known->second, row.event.stamp_ns() + started_ns,
-                 json.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
-  });
-  writer.close();
+ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& file, const std::string& robot,
+                         const work::Progress& progress) {
+  McapExport mcap(file, robot);
+  ExportReport report;
+  const ExportReport counts = for_each_message(files, progress, [&](const Row& row) { mcap.write(row, report); });
+  report.messages = counts.messages;
+  report.unknown = counts.unknown;
+  mcap.close();
   return report;
 }
 

@@ -55,6 +55,14 @@ struct ToText {
 
 }  // namespace
 
+std::string_view Field::constant() const {
+  const auto* number = std::get_if<std::int64_t>(&value);
+  for (const pmg_msgs::Constant& one : constants) {
+    if (number != nullptr && one.value == *number) return one.name;
+  }
+  return {};
+}
+
 std::string to_text(const Field::Value& value) { return std::visit(ToText{}, value); }
 
 std::span<const std::string_view> known_channels() { return kChannelsInOrder; }

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "pmg_msgs/field.hpp"
+
 namespace pmg::logs {
 
 /// One number, flag or text of a message, or one element of an array with named elements. A list, whose length may
@@ -18,7 +20,10 @@ struct Field {
   std::string name;     ///< as in msgs/
   std::string element;  ///< joint, foot, axis or command channel; empty: no array
   Value value;
+  std::span<const pmg_msgs::Constant> constants{};  ///< what the number may mean; empty: it is a number
 
+  /// The name of the constant that the number is; empty: of none.
+  std::string_view constant() const;
   std::string path() const { return element.empty() ? name : name + "." + element; }
 };
 

@@ -1,3 +1,4 @@
+// Longer than 300 lines: one pass over a log, which needs all that it has heard.
 #include "logs/replay.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "recording/tick_messages.hpp"
+#include "runtime/robot_excitation_session.hpp"
 
 namespace pmg::logs {
 
@@ -62,6 +64,10 @@ class Replay {
       take_message(event, commands_);
     } else if (channel == "MODE") {
       take_message(event, requests_);
+    } else if (channel == "ARMS") {
+      take_message(event, arms_);
+    } else if (channel == "ARMS_INPUT") {
+      arms_input_ = decoded<pmg_msgs::arms_input_t>(event);
     } else if (channel == "TICK") {
       take_tick(event);
     } else if (channel == "REFERENCE") {
@@ -70,6 +76,8 @@ class Replay {
       compare(event, motor_command_);
     } else if (channel == "STATUS") {
       compare_status(event);
+    } else if (channel == "ARMS_STATE") {
+      compare(event, arms_state_);
     }
   }
 
@@ -113,6 +121,11 @@ class Replay {
     note_options(logged, control::control_json(loaded_), report_.notes);
     control::restore_options(logged, loaded_.options);
     if (logged.contains("bench")) take_excitation(logged["bench"]);
+    if (logged.contains("excite")) {
+      loaded_.options.robot_excitation =
+          runtime::robot_excitation_plan(option_text(logged["excite"], "name", ""), loaded_.robot, loaded_.library,
+                                         loaded_.options.guard, logged.value("own_gains", std::vector<std::string>{}));
+    }
     run_.robot = reference_.robot = motor_command_.robot = info.robot;
     run_.session = info.session;
     joint_count_ = loaded_.robot.joint_index.size();
@@ -139,6 +152,8 @@ class Replay {
       throw std::runtime_error("STATE has another number of joints than the robot");
     commands_.clear();
     requests_.clear();
+    arms_.clear();
+    arms_input_ = {};
     has_state_ = true;
   }
 
@@ -166,6 +181,10 @@ class Replay {
     record_.request_count = requests_.size();
     for (std::size_t i = 0; i < requests_.size(); ++i) {
       record_.requests[i] = recording::mode_request(requests_[i], input.request_received_ns[i]);
+    }
+    record_.arms_count = arms_.size();
+    for (std::size_t i = 0; i < arms_.size(); ++i) {
+      record_.arms[i] = recording::arms_message(arms_[i], arms_input_.received_ns[i]);
     }
     record_.result = tick_->step(record_.input());
     has_state_ = false;
@@ -197,7 +216,8 @@ class Replay {
     }
     const bool whole = has_state_ && commands_.size() == input.command_received_ns.size() &&
                        requests_.size() == input.request_received_ns.size() &&
-                       commands_.size() <= control::kMaxDrives && requests_.size() <= control::kMaxRequests;
+                       arms_.size() == arms_input_.received_ns.size() && commands_.size() <= control::kMaxDrives &&
+                       requests_.size() <= control::kMaxRequests && arms_.size() <= control::kMaxArms;
     if (!whole) throw std::runtime_error(fmt::format("the messages before tick {} are not all in the log", input.tick));
   }
 
@@ -209,6 +229,7 @@ class Replay {
 
   void fill_message(pmg_msgs::reference_t& message) { recording::fill(record_, joint_count_, message); }
   void fill_message(pmg_msgs::motor_command_t& message) { recording::fill(record_, joint_count_, message); }
+  void fill_message(pmg_msgs::arms_state_t& message) { recording::fill(record_, run_, message); }
   void fill_message(pmg_msgs::status_t& message) { recording::fill(record_, run_, loaded_.robot, message); }
 
   template <typename Message>
@@ -259,10 +280,13 @@ class Replay {
   bool has_state_ = false;
   std::vector<pmg_msgs::command_t> commands_;
   std::vector<pmg_msgs::mode_t> requests_;
+  std::vector<pmg_msgs::arms_t> arms_;
+  pmg_msgs::arms_input_t arms_input_{};
   control::TickRecord record_;
   pmg_msgs::reference_t reference_;
   pmg_msgs::motor_command_t motor_command_;
   pmg_msgs::status_t status_;
+  pmg_msgs::arms_state_t arms_state_{};
   std::vector<std::uint8_t> bytes_;
   std::vector<Field> logged_fields_, replayed_fields_;
   ReplayReport report_;

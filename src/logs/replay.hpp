@@ -52,7 +52,7 @@ struct ReplayReport {
   double largest_difference() const;
 };
 
-/// Compares REFERENCE, MOTOR_COMMAND and STATUS of every tick, bit for bit. Throws std::runtime_error or
+/// Compares REFERENCE, MOTOR_COMMAND, STATUS and ARMS_STATE of every tick, bit for bit. Throws std::runtime_error or
 /// std::invalid_argument with the reason if these logs can't be replayed: they don't begin with the controller's first
 /// tick, ticks are missing, or robot, clips or policy can't be loaded. From time to time it calls progress with the
 /// replayed time.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "model/command_inverse_file.hpp"
 #include "pmg/blending.hpp"
 #include "pmg/library_check.hpp"
+#include "pmg/periodic_slopes.hpp"
 
 namespace pmg::model {
 namespace {
@@ -191,25 +191,6 @@ Blend read_blend(const fs::path& directory) {
 }
 
 }  // namespace
-
-std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q) {
-  const auto n = static_cast<Eigen::Index>(q.size());
-  const Eigen::Index joints = q.front().size();
-  // System: m_(k-1) + 4 m_k + m_(k+1) = 3 n (q_(k+1) - q_(k-1)).
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n, n), right(n, joints);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::Index before = (k + n - 1) % n, after = (k + 1) % n;
-    system(k, k) += 4.0;
-    system(k, before) += 1.0;
-    system(k, after) += 1.0;
-    right.row(k) = 3.0 * static_cast<double>(n) *
-                   (q[static_cast<std::size_t>(after)] - q[static_cast<std::size_t>(before)]).transpose();
-  }
-  const Eigen::MatrixXd slopes = system.partialPivLu().solve(right);
-  std::vector<JointVector> result;
-  for (Eigen::Index k = 0; k < n; ++k) result.emplace_back(slopes.row(k).transpose());
-  return result;
-}
 
 std::string corner_clip_name(const Corner& corner) {
   std::string name;

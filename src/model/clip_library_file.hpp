@@ -37,8 +37,4 @@ std::string corner_clip_name(const Corner& corner);
 /// The existing files of the library.
 std::vector<std::filesystem::path> clip_library_files(const std::filesystem::path& directory);
 
-/// dq/dphi [rad per cycle] at N equidistant samples of a cycle: the slopes of the periodic cubic spline through them.
-/// With the slopes m_k:  m_(k-1) + 4 m_k + m_(k+1) = 3 N (q_(k+1) - q_(k-1)).
-std::vector<JointVector> periodic_spline_slopes(const std::vector<JointVector>& q);
-
 }  // namespace pmg::model

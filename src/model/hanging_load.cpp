@@ -11,24 +11,25 @@ namespace pmg::model {
 
 namespace {
 
-double standing_angle(const RobotModel& robot, const KDL::Segment& segment) {
+double angle(const RobotModel& robot, const JointVector& q, const KDL::Segment& segment) {
   const auto index = robot.joint_index.find(segment.getJoint().getName());
-  return index ? robot.joints[static_cast<std::size_t>(*index)].stand_rad : 0.0;
+  return index ? q[*index] : 0.0;
 }
 
-/// (link) => its pose in the base, standing.
-KDL::Frame pose(const RobotModel& robot, KDL::SegmentMap::const_iterator link) {
+/// (link) => its pose in the base.
+KDL::Frame pose(const RobotModel& robot, const JointVector& q, KDL::SegmentMap::const_iterator link) {
   if (link == robot.tree.getRootSegment()) return KDL::Frame::Identity();
   const KDL::Segment& segment = GetTreeElementSegment(link->second);
-  return pose(robot, GetTreeElementParent(link->second)) * segment.pose(standing_angle(robot, segment));
+  return pose(robot, q, GetTreeElementParent(link->second)) * segment.pose(angle(robot, q, segment));
 }
 
 /// (link) => inertia of this link and all beyond it as one body, in this link's frame.
-KDL::RigidBodyInertia inertia_from(const RobotModel& robot, KDL::SegmentMap::const_iterator link) {
+KDL::RigidBodyInertia inertia_from(const RobotModel& robot, const JointVector& q,
+                                   KDL::SegmentMap::const_iterator link) {
   KDL::RigidBodyInertia sum = GetTreeElementSegment(link->second).getInertia();
   for (const KDL::SegmentMap::const_iterator& child : GetTreeElementChildren(link->second)) {
     const KDL::Segment& segment = GetTreeElementSegment(child->second);
-    sum = sum + segment.pose(standing_angle(robot, segment)) * inertia_from(robot, child);
+    sum = sum + segment.pose(angle(robot, q, segment)) * inertia_from(robot, q, child);
   }
   return sum;
 }
@@ -45,12 +46,16 @@ KDL::SegmentMap::const_iterator link_moved_by(const RobotModel& robot, const std
 }  // namespace
 
 HangingLoad hanging_load(const RobotModel& robot, const std::string& joint) {
+  return hanging_load(robot, joint, robot.q_stand());
+}
+
+HangingLoad hanging_load(const RobotModel& robot, const std::string& joint, const JointVector& q) {
   const auto link = link_moved_by(robot, joint);
   const KDL::Segment& segment = GetTreeElementSegment(link->second);
-  const KDL::Frame parent = pose(robot, GetTreeElementParent(link->second));
+  const KDL::Frame parent = pose(robot, q, GetTreeElementParent(link->second));
   const KDL::Vector axis = parent.M * segment.getJoint().JointAxis(),
                     origin = parent * segment.getJoint().JointOrigin();
-  const KDL::RigidBodyInertia beyond = inertia_from(robot, link);
+  const KDL::RigidBodyInertia beyond = inertia_from(robot, q, link);
   const auto body_at = [&](double q_rad) { return parent * segment.pose(q_rad) * beyond; };  // in the base's axes
 
   HangingLoad load;
@@ -65,6 +70,9 @@ HangingLoad hanging_load(const RobotModel& robot, const std::string& joint) {
   const double at_zero_Nm = holding_Nm(0.0), at_right_angle_Nm = holding_Nm(0.5 * std::numbers::pi);
   load.gravity_Nm = std::hypot(at_zero_Nm, at_right_angle_Nm);
   load.hangs_at_rad = std::atan2(-at_zero_Nm, at_right_angle_Nm);
+  const KDL::Vector center = body_at(angle(robot, q, segment)).getCOG(), moves = axis * (center - origin);
+  load.center_m = {center.x(), center.y(), center.z()};
+  load.center_m_per_rad = {moves.x(), moves.y(), moves.z()};
   return load;
 }
 

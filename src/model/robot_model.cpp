@@ -37,6 +37,23 @@ FootModel read_foot(files::ConfigReader reader, const UrdfTree& tree) {
   return foot;
 }
 
+SerialImuModel read_serial_imu(files::ConfigReader reader) {
+  reader.one_of("protocol", {"xsens_mti"});
+  SerialImuModel serial;
+  serial.device = reader.required<std::string>("device");
+  if (!serial.device.starts_with("/dev/")) reader.fail("device", "is '" + serial.device + "'", "a file below /dev");
+  // A policy needs a sample a tick, and an IMU that is 10 ms silent is late: 200 Hz leave one sample to be lost.
+  serial.rate_Hz = reader.required<int>("rate_Hz", files::in_range(200, 2000));
+  serial.baud = reader.required<int>("baud", files::in_range(57'600, 4'000'000));
+  constexpr int kBitsPerSample = 66 * 10;  // the message, with start and stop bits
+  if (serial.baud < kBitsPerSample * serial.rate_Hz) {
+    reader.fail("baud", "carries no " + std::to_string(serial.rate_Hz) + " samples a second",
+                "at least " + std::to_string(kBitsPerSample * serial.rate_Hz));
+  }
+  reader.finish();
+  return serial;
+}
+
 ImuModel read_imu(files::ConfigReader reader, const UrdfTree& tree) {
   ImuModel imu;
   imu.link = link_name(reader, "link", tree);
@@ -46,6 +63,11 @@ ImuModel read_imu(files::ConfigReader reader, const UrdfTree& tree) {
       (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
        Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
+  if (reader.has("serial")) imu.serial = read_serial_imu(reader.map("serial"));
+  if (reader.has("process_data")) {
+    if (imu.serial) reader.fail("process_data", "stands beside `serial`", "one way to the IMU");
+    reader.map("process_data");  // read by drives/drive_setup.hpp
+  }
   reader.finish();
   return imu;
 }
@@ -210,10 +232,10 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   robot.directory = directory;
   robot.name = reader.required<std::string>("name");
   const UrdfTree tree = read_urdf(directory / reader.required<std::string>("urdf"));
-  if (reader.has("policy")) reader.required<std::string>("policy");  // read by src/control
-  if (reader.has("motor")) reader.required<std::string>("motor");    // read by sim/motors_in_force.hpp
-  for (const char* section : {"drives", "buses"}) {
-    if (reader.has(section)) reader.map(section);  // read by drives/drive_setup.hpp
+  if (reader.has("policy")) reader.required<std::string>("policy");      // read by src/control
+  if (reader.has("motor")) reader.required<std::string>("motor");        // read by sim/motors_in_force.hpp
+  for (const char* section : {"drives", "buses", "ethercat", "arms"}) {  // read by drives/drive_setup.hpp,
+    if (reader.has(section)) reader.map(section);  // ethercat/ethercat_hal.hpp, arms/arm_setup.hpp
   }
   if (reader.has("linkages")) reader.maps("linkages");  // likewise
   robot.urdf = tree.urdf;

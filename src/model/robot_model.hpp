@@ -54,9 +54,17 @@ struct FootModel {
   std::array<Eigen::Vector3d, 4> sole_corners_F() const;      ///< [m] front-left, front-right, rear-left, rear-right
 };
 
+/// An IMU on a serial line of its own (src/imu).
+struct SerialImuModel {
+  std::string device;  ///< "/dev/serial/by-id/..."
+  int baud = 0;
+  int rate_Hz = 0;  ///< samples a second
+};
+
 struct ImuModel {
   std::string link;
   Eigen::Isometry3d T_LI = Eigen::Isometry3d::Identity();  ///< IMU frame in its link
+  std::optional<SerialImuModel> serial;                    ///< nullopt: it speaks on a bus of the drives
 };
 
 struct RobotModel {

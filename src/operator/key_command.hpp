@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "pmg/command.hpp"
+#include "operator/command_input.hpp"
 
 namespace pmg::ops {
 
@@ -43,8 +43,7 @@ enum class KeyReport {
   kPressOnly,  ///< a terminal: each press changes the velocity by a step; after a second without a press it is zero
 };
 
-/// For one thread. All times come from one monotonic clock.
-class KeyCommand {
+class KeyCommand : public CommandInput {
  public:
   static constexpr double kShare = 0.5;           ///< of the robot's range; with Shift the whole range
   static constexpr double kVelocityStep = 0.125;  ///< share of the range's larger end, for each press in a terminal
@@ -61,7 +60,7 @@ class KeyCommand {
 
   explicit KeyCommand(KeyReport report) : report_(report) {}
 
-  void set_limits(const CommandLimits& limits) noexcept { limits_ = limits; }
+  void set_limits(const CommandLimits& limits) noexcept override { limits_ = limits; }
 
   void press(Key key, bool fast, std::int64_t now_ns) noexcept;
   void repeat(Key key, bool fast, std::int64_t now_ns) noexcept;  ///< of a held key
@@ -69,15 +68,16 @@ class KeyCommand {
   void release(Key key, std::int64_t now_ns) noexcept;
   void release_all() noexcept;                                          ///< the window has lost the keyboard
   void listen(std::int64_t now_ns) noexcept { listened_ns_ = now_ns; }  ///< the window has polled its keys
-  void rest() noexcept;     ///< velocity to zero; held keys must be pressed again
-  void upright() noexcept;  ///< posture to neutral
+  void rest() noexcept override;
+  void upright() noexcept override;
 
   /// Releases keys whose time is over (kSilence_ns and the times below it).
-  const Command& command(std::int64_t now_ns) noexcept;
-  /// A key with a command is down, as far as this knows.
-  bool held() const noexcept;
-  /// Number of presses of keys with a command, without repetitions.
-  std::int64_t presses() const noexcept { return presses_; }
+  const Command& command(std::int64_t now_ns) noexcept override;
+  bool held() const noexcept override;
+  /// After a press in a terminal nobody knows whether the key is still held: the robot stays ready for the next one.
+  bool stays() const noexcept override { return report_ == KeyReport::kPressOnly; }
+  /// Of keys with a command, without repetitions.
+  std::int64_t presses() const noexcept override { return presses_; }
 
  private:
   struct Held {

@@ -54,7 +54,7 @@ std::string time_words(double time_s) {
   return time_s < 1.0 ? fmt::format("{:.0f} ms", time_s * 1e3) : fmt::format("{:.0f} s", time_s);
 }
 
-std::vector<Row> head_rows(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+std::vector<Row> head_rows(const RobotDriver& driver, const RobotNews* news, double silence_s) {
   const char* mode = news == nullptr       ? "not heard"
                      : silence_s > kGone_s ? "no longer heard"
                                            : mode_name(news->status.mode);
@@ -93,7 +93,7 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
   return limits;
 }
 
-std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<std::string> lines;
   for (const Row& row : head_rows(driver, news, silence_s))
     lines.push_back(io::plain_text(row.label + "   " + row.value));
@@ -110,7 +110,7 @@ std::vector<std::string> driving_lines(const KeyboardDriver& driver, const Robot
   return lines;
 }
 
-DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, double silence_s) {
+DrivingTable driving_table(const RobotDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<Row> rows = head_rows(driver, news, silence_s);
   if (news != nullptr) {
     constexpr std::array kLabels = {"forwards", "left", "turn", "bend", "lean", "height"};

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "operator/keyboard_driver.hpp"
 #include "operator/robot_board.hpp"
+#include "operator/robot_driver.hpp"
 
 namespace pmg::ops {
 
@@ -17,11 +17,11 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info);
 struct DrivingTable {
   std::string labels, values;
 };
-DrivingTable driving_table(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
+DrivingTable driving_table(const RobotDriver& driver, const RobotNews* news, double silence_s);
 
 /// For a terminal, one line each: mode, requested and accepted command, limits in force, driving source. news: null
 /// before the robot's first message.
-std::vector<std::string> driving_lines(const KeyboardDriver& driver, const RobotNews* news, double silence_s);
+std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNews* news, double silence_s);
 
 /// The meaning of the keys, for a terminal and for a window.
 std::vector<std::string> key_lines();

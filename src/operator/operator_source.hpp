@@ -71,9 +71,17 @@ class OperatorSource {
   /// Whether the hoist has answered this request or a later one.
   bool hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept;
 
+  /// Message and seal, for the robot of this name.
+  template <typename Message>
+  void send(const char* channel, const Message& message) {
+    const HeardRobot* robot = heard(message.robot);
+    link_.send(channel, seal_.seal(channel, message, robot != nullptr && robot->peer ? &*robot->peer : nullptr));
+  }
+
   const std::map<std::string, HeardRobot>& heard() const noexcept { return heard_; }  ///< by the controllers' names
   const HeardRobot* heard(const std::string& robot) const;                            ///< null: not yet
   const std::string& name() const noexcept { return command_.source; }
+  std::int64_t session() const noexcept { return command_.session; }
   const std::string& url() const noexcept { return link_.url(); }
   const io::Clock& clock() const noexcept { return clock_; }
 
@@ -83,12 +91,6 @@ class OperatorSource {
   void hear_hoist(io::Bytes message);
   HeardRobot* place_of(const std::string& robot);  // null: too many robots
   bool outdated(const HeardRobot& robot, const pmg_msgs::status_t& status, const seal::Peer& peer) const;
-  /// Message and seal, for the robot of this name.
-  template <typename Message>
-  void send(const char* channel, const Message& message) {
-    const HeardRobot* robot = heard(message.robot);
-    link_.send(channel, seal_.seal(channel, message, robot != nullptr && robot->peer ? &*robot->peer : nullptr));
-  }
 
   io::LcmLink& link_;
   const io::Clock& clock_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/plain_text.hpp"
+#include "operator/taken_command.hpp"
 #include "operator/words.hpp"
 #include "pmg/command.hpp"
 #include "pmg/types.hpp"
@@ -69,7 +70,8 @@ std::string network_text(const pmg_msgs::link_t& link) {
         std::pair{link.no_key, "without a key"}, std::pair{link.flooded, "too many"},
         std::pair{link.other_source, "while another drives"}, std::pair{link.out_of_order, "out of order"},
         std::pair{link.late, "late"}, std::pair{link.not_finite, "not finite"},
-        std::pair{link.no_lease, "without lease"}, std::pair{link.no_hoist, "for a hoist that isn't there"}}) {
+        std::pair{link.no_lease, "without lease"}, std::pair{link.no_hoist, "for a hoist that isn't there"},
+        std::pair{link.no_arms, "for arms that aren't there"}}) {
     if (count > 0) text += fmt::format(", {} {}", count, reason);
   }
   return text;
@@ -92,7 +94,10 @@ std::string limits_text(const RobotNews& news) {
   const pmg_msgs::status_t& status = news.status;
   std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
                                  status.limited_torque);
-  if (news.reference && news.reference->command_limited) text += "; command";
+  if (news.reference && news.reference->command_limited) {
+    const std::string why = beyond_reach(news.reference->user, news);
+    text += why.empty() ? "; command" : fmt::format("; command: {}", why);
+  }
   if (status.gco_held) text += "; ground-aware optimisation held";
   if (status.policy_held) text += "; policy held";
   return text;

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
+
+#include "operator/keyboard_text.hpp"
 
 namespace pmg::ops {
 
@@ -16,25 +17,12 @@ constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the 
 constexpr std::array<const char*, kChannels> kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
 constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
 
-/// From ROBOT_INFO's configuration (control::control_json); nothing if it lacks the key.
-std::optional<std::pair<double, double>> range_of(const RobotNews& news, std::size_t channel) {
-  if (!news.info) return std::nullopt;
-  const auto options = nlohmann::json::parse(news.info->options, nullptr, false);
-  const auto end = [&](const char* which) -> std::optional<double> {
-    const nlohmann::json::json_pointer place(fmt::format("/command/{}/{}", which, kChannelNames[channel]));
-    if (!options.is_object() || !options.contains(place) || !options[place].is_number()) return std::nullopt;
-    return options[place].get<double>();
-  };
-  const auto lower = end("lower"), upper = end("upper");
-  if (!lower || !upper) return std::nullopt;
-  return std::pair{*lower, *upper};
-}
-
 /// Rounded for people: to a hundredth, near zero to a thousandth.
 bool alike(double a, double b) { return std::abs(a - b) <= 0.01 * std::max({std::abs(a), std::abs(b), 0.1}); }
 
 /// "limited: vx 50 -> 0.8 m/s (range -0.5 to 0.8)", and whether the ranges alone explain it.
 std::string words(const Command& asked, const RobotNews& news, bool settled) {
+  const std::optional<CommandLimits> limits = news.info ? command_limits(*news.info) : std::nullopt;
   std::string text;
   int channels = 0;
   bool by_ranges = true;
@@ -44,20 +32,36 @@ std::string words(const Command& asked, const RobotNews& news, bool settled) {
     ++channels;
     text += fmt::format("{}{} {:.3g} -> {:.3g} {}{}", text.empty() ? "limited: " : "; ", kShortNames[i], wanted,
                         realised, kUnits[i], settled ? "" : " so far");
-    const auto range = range_of(news, i);
-    const bool outside = range && (wanted < range->first || wanted > range->second);
-    if (outside) text += fmt::format(" (range {:.3g} to {:.3g})", range->first, range->second);
-    const double allowed = outside ? std::clamp(wanted, range->first, range->second) : wanted;
+    const double allowed = limits ? std::clamp(wanted, limits->lower[i], limits->upper[i]) : wanted;
+    if (allowed != wanted) text += fmt::format(" (range {:.3g} to {:.3g})", limits->lower[i], limits->upper[i]);
     by_ranges = by_ranges && (!settled || alike(realised, allowed));
   }
   if (channels > 0 && !by_ranges) {
-    text += fmt::format("; {} more than the clips and the joints' ranges allow",
-                        channels > 1 ? "together they are" : "it is");
+    const std::string reach = beyond_reach(asked.u.data(), news);
+    text += !reach.empty() ? "; " + reach
+                           : fmt::format("; {} more than the clips and the joints' ranges allow",
+                                         channels > 1 ? "together they are" : "it is");
   }
   return text;
 }
 
 }  // namespace
+
+std::string beyond_reach(const double* asked, const RobotNews& news) {
+  const std::optional<CommandLimits> limits = news.info ? command_limits(*news.info) : std::nullopt;
+  if (!limits) return "";
+  const auto options = nlohmann::json::parse(news.info->options, nullptr, false);
+  const auto reach = options["command"].find("velocities_together");
+  if (reach == options["command"].end() || !reach->is_number()) return "";
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kVelocityChannels; ++i) {
+    const double end = asked[i] < 0.0 ? limits->lower[i] : limits->upper[i];
+    if (asked[i] != 0.0 && end != 0.0) sum += std::min(1.0, asked[i] / end);
+  }
+  if (sum <= reach->get<double>() + 1e-6) return "";
+  return fmt::format("the velocities together are {:.0f} % of their ranges, the clips give {:.0f} %", 100.0 * sum,
+                     100.0 * reach->get<double>());
+}
 
 std::string TakenCommand::step(const RobotNews& news, std::int64_t now_ns, bool last) {
   if (told_ || !news.reference || !news.reference->command_limited) return "";

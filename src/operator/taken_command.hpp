@@ -10,6 +10,11 @@
 
 namespace pmg::ops {
 
+/// Why the clips can't give these velocities together, from ROBOT_INFO's ranges and its command.velocities_together
+/// (the sum of shares of the ranges that the clips reach); empty: they can, or ROBOT_INFO doesn't say. asked: kChannels
+/// values.
+std::string beyond_reach(const double* asked, const RobotNews& news);
+
 /// (sent command, the controller's REFERENCE and ROBOT_INFO) => one line about the difference. REFERENCE holds the
 /// requested and the realised command, ROBOT_INFO the ranges; so the text fits every robot.
 class TakenCommand {

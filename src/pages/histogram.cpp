@@ -8,6 +8,12 @@ namespace pmg::pages {
 
 std::int64_t Bins::total() const { return std::accumulate(counts.begin(), counts.end(), below + above + not_finite); }
 
+void Bins::multiply(double each) {
+  const auto grow = [each](std::int64_t& n) { n = std::llround(static_cast<double>(n) * each); };
+  for (std::int64_t* n : {&below, &above, &not_finite}) grow(*n);
+  for (std::int64_t& n : counts) grow(n);
+}
+
 Bins count(std::span<const double> values, double from, double to, int bins) {
   Bins result;
   result.from = from;

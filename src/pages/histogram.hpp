@@ -14,6 +14,7 @@ struct Bins {
   std::int64_t not_finite = 0;
 
   std::int64_t total() const;  ///< number of all values: in the bins, outside, not finite
+  void multiply(double each);  ///< each value counted stands for so many
 };
 
 /// Bins of equal width over [from, to]. The last bin includes `to`.

@@ -53,6 +53,7 @@ std::string summary(const Histogram::Set& set, const Bins& bins, const std::stri
                          : fmt::format("{}: no values", set.name);
   if (bins.below > 0) text += fmt::format(", {} below", bins.below);
   if (bins.above > 0) text += fmt::format(", {} beyond", bins.above);
+  if (set.each > 1.0) text += fmt::format("; from one in {:.0f}, the largest of all {}", set.each, number(set.largest));
   if (bins.not_finite > 0) text += fmt::format(", {} not finite", bins.not_finite);
   return text;
 }
@@ -66,6 +67,7 @@ std::string svg(const Histogram& histogram) {
   Legend legend(kLeft, kPictureWidth);
   for (const Histogram::Set& set : histogram.sets) {
     bins.push_back(count(set.values, range.from, range.to, kBins));
+    bins.back().multiply(set.each);
     for (const std::int64_t n : bins.back().counts) highest = std::max(highest, static_cast<double>(n));
     legend.add(set.colour, summary(set, bins.back(), histogram.unit));
   }

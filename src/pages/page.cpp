@@ -128,6 +128,7 @@ void Page::chart(const Chart& chart) {
   std::string text = dump(spec);
   text.pop_back();  // removes the closing brace; the tracks follow as separate text
   text += ",\"tracks\":" + tracks_json(groups, chart.longest_gap) + "}";
+  needs_script_ = true;
   picture(chart.title, chart_element(text, chart.height_px));
 }
 
@@ -149,6 +150,7 @@ void Page::lanes(const Lanes& lanes) {
                              {"marks", marks_json(lanes.marks)},
                              {"lanes", rows},
                              {"tracks", ordered_json::array()}};
+  needs_script_ = true;
   picture(lanes.title, chart_element(dump(spec), 34 + 26 * static_cast<int>(lanes.lanes.size())));
 }
 
@@ -193,7 +195,10 @@ std::string Page::html() const {
       title + "</title>\n<style>" + kUplotStyle + "\n" + kPageStyle + "</style></head>\n";
   text += fmt::format("<body data-axes=\"{}\">\n<h1>{}</h1>\n", escape_markup(dump(axes)), title);
   if (headings_ > 1) text += "<nav>" + contents_ + "</nav>\n";
-  text += "<noscript><p>The charts need JavaScript; tables, bars and histograms don't.</p></noscript>\n" + body_;
+  if (needs_script_) {
+    text += "<noscript><p>Charts to zoom into need JavaScript; tables and all other pictures don't.</p></noscript>\n";
+  }
+  text += body_;
   text += std::string("<script>") + kUplotScript + "\n" + kPageScript + "</script>\n</body></html>\n";
   return text;
 }

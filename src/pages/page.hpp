@@ -1,5 +1,5 @@
-// One self-contained HTML page, pictures first. It needs no network; its tables, bars and histograms need no script
-// either. Charts over the same axis share range, cursor and zoom.
+// One self-contained HTML page, pictures first. It needs no network; its tables, bars, histograms and plots need no
+// script either. Charts over the same axis share range, cursor and zoom.
 #pragma once
 
 #include <filesystem>
@@ -42,6 +42,7 @@ class Page {
 
   std::string title_, body_, contents_;
   int headings_ = 0;
+  bool needs_script_ = false;          ///< for charts and lanes
   std::map<std::string, Range> axes_;  ///< range of each axis when the page opens
 };
 

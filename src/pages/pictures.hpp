@@ -33,6 +33,7 @@ struct Line {
 struct Band {
   double from, to;
   std::string colour;
+  std::string name = {};  ///< in the legend of a Plot, once for all bands of this name; "" leaves it out
 };
 
 /// A vertical line with a word.
@@ -97,6 +98,8 @@ struct Histogram {
     std::string name;
     std::span<const double> values;
     std::string colour = colour::kBlue;
+    double each = 1.0;                                          ///< values that each of these stands for
+    double largest = std::numeric_limits<double>::quiet_NaN();  ///< of all, told where not all are here
   };
   std::string title;
   std::string unit;
@@ -121,6 +124,7 @@ struct Plot {
   std::string title;   ///< with the unit of y
   std::string x_name;  ///< with its unit
   std::vector<PlotLine> lines;
+  std::vector<Band> bands = {};
   std::vector<Mark> marks = {};
   bool logarithmic_x = false, logarithmic_y = false;
   bool show_zero = false;  ///< y = 0 is in the picture, with a line

@@ -71,6 +71,7 @@ class PlotDrawing {
       for (const Interval& interval : line.intervals) y_.include(interval.lower), y_.include(interval.upper);
     }
     for (const Mark& mark : plot.marks) x_.include(mark.x);
+    for (const Band& band : plot.bands) x_.include(band.from), x_.include(band.to);
     if (plot.show_zero && !plot.logarithmic_y) y_.include(0.0);
     x_.range = shown_range(x_.range, 0.0);
     y_.range = shown_range(y_.range, kRangeMargin);
@@ -85,6 +86,7 @@ class PlotDrawing {
   }
 
   std::string svg() {
+    for (const Band& band : plot_.bands) show(band);
     axes();
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       intervals(plot_.lines[i]);
@@ -174,10 +176,23 @@ class PlotDrawing {
         top_ + 12, escape_markup(mark.text));
   }
 
+  void show(const Band& band) {
+    if (!x_.shows(band.from) || !x_.shows(band.to)) return;
+    const double from = x_(band.from), width = std::max(1.0, x_(band.to) - from);
+    add(R"(<rect class="band" x="{:.1f}" y="{}" width="{:.1f}" height="{}" fill="{}"/>)", from, top_, width,
+        bottom_ - top_, escape_markup(band.colour));
+  }
+
   Legend legend() const {
     Legend legend(left_, kPictureWidth);
     for (const PlotLine& line : plot_.lines) {
-      if (!line.name.empty()) legend.add(line.colour, line.name);
+      if (!line.name.empty()) legend.add(line.colour, line.name, line.dashed);
+    }
+    std::vector<std::string> shaded;
+    for (const Band& band : plot_.bands) {
+      if (band.name.empty() || std::ranges::find(shaded, band.name) != shaded.end()) continue;
+      legend.add(band.colour, band.name);
+      shaded.push_back(band.name);
     }
     return legend;
   }

@@ -37,14 +37,14 @@ std::string fitted(const std::string& text, double width) {
   return shown + "…";
 }
 
-void Legend::add(const std::string& colour, const std::string& text) {
+void Legend::add(const std::string& colour, const std::string& text, bool dashed) {
   const double width = kSquare + text_width(text);
   int row = entries_.empty() ? 0 : entries_.back().row;
   if (at_ > left_ && at_ + width > right_) {
     ++row;
     at_ = left_;
   }
-  entries_.push_back({at_, row, colour, text});
+  entries_.push_back({at_, row, colour, text, dashed});
   at_ += width + kBetween;
 }
 
@@ -54,8 +54,11 @@ std::string Legend::svg(double top) const {
   std::string out;
   for (const Entry& entry : entries_) {
     const double y = top + kRow * entry.row + 14.0;
-    out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="11" height="11" fill="{}"/>)", entry.x,
-                       y - 10.0, escape_markup(entry.colour));
+    const std::vector<double> parts = entry.dashed ? std::vector{0.0, 7.0} : std::vector{0.0};
+    for (const double part : parts) {
+      out += fmt::format(R"(<rect class="key" x="{:.1f}" y="{:.1f}" width="{}" height="11" fill="{}"/>)",
+                         entry.x + part, y - 10.0, entry.dashed ? 4 : 11, escape_markup(entry.colour));
+    }
     out += fmt::format(R"(<text class="entry" x="{:.1f}" y="{:.1f}">{}</text>)", entry.x + kSquare, y,
                        escape_markup(fitted(entry.text, right_ - entry.x - kSquare)));
   }

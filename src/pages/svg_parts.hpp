@@ -22,7 +22,8 @@ class Legend {
  public:
   Legend(double left, double right) : left_(left), right_(right), at_(left) {}
 
-  void add(const std::string& colour, const std::string& text);
+  /// dashed: the square has a gap, as the line it stands for.
+  void add(const std::string& colour, const std::string& text, bool dashed = false);
   int height() const;
   std::string svg(double top) const;
 
@@ -31,6 +32,7 @@ class Legend {
     double x;
     int row;
     std::string colour, text;
+    bool dashed;
   };
   double left_, right_, at_;
   std::vector<Entry> entries_;

@@ -58,7 +58,9 @@ struct FromMessage {
   void operator()(T& to, const T& from) {
     to = from;
   }
-  void operator()(control::Mode& to, std::int8_t from) { to = static_cast<control::Mode>(from); }
+  template <typename Enum>
+  requires std::is_enum_v<Enum>
+  void operator()(Enum& to, std::int8_t from) { to = static_cast<Enum>(from); }
   void operator()(bool& to, std::int8_t from) { to = from != 0; }
   void operator()(std::uint64_t& to, std::int64_t from) { to = static_cast<std::uint64_t>(from); }
   void operator()(control::Source& to, const std::string& name, std::int64_t session) {

@@ -27,6 +27,7 @@ void TickLog::write(const control::TickRecord& record) {
   writer_->write("MOTOR_COMMAND", stamp_ns, motor_command_);
   fill(record, run_, robot_, status_);
   writer_->write("STATUS", stamp_ns, status_);
+  write_arms_state(record);
   fill(record, limited_);
   if (limited_.count > 0) writer_->write("LIMITED", stamp_ns, limited_);
   write_fault_once(record);
@@ -41,8 +42,25 @@ void TickLog::write_input(const control::TickRecord& record) {
     fill(request, run_, mode_);
     writer_->write("MODE", record.now_ns, mode_);
   }
+  for (const control::ArmsMessage& arms : record.input().arms) {
+    fill(arms, run_, arms_);
+    writer_->write("ARMS", record.now_ns, arms_);
+  }
+  if (record.arms_count > 0) {
+    fill(record, arms_input_);
+    writer_->write("ARMS_INPUT", record.now_ns, arms_input_);
+  }
   fill(record, input_);
   writer_->write("TICK", record.now_ns, input_);
+}
+
+void TickLog::write_arms_state(const control::TickRecord& record) {
+  const bool led = control::led(record.result.arms);
+  if (led || arms_led_) {
+    fill(record, run_, arms_state_);
+    writer_->write("ARMS_STATE", record.now_ns, arms_state_);
+  }
+  arms_led_ = led;
 }
 
 void TickLog::announce_fault(std::int64_t stamp_ns, const control::TickRecord& record) {

@@ -13,10 +13,10 @@
 
 namespace pmg::recording {
 
-/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick, LIMITED
-/// in ticks that limit a joint, GROUND_TRUTH in simulation, SCENARIO where a step of it begins, TIMING in the threaded
-/// controller, FAULT when one latches. Keeps its message buffers, so
-/// a tick allocates nothing once they have grown. Not for a real-time thread.
+/// Channels: ROBOT_INFO once a file, then STATE, COMMAND, MODE, ARMS, TICK, REFERENCE, MOTOR_COMMAND, STATUS a tick,
+/// LIMITED in ticks that limit a joint, ARMS_STATE in ticks in which an operator has an arm, GROUND_TRUTH in
+/// simulation, SCENARIO where a step of it begins, TIMING in the threaded controller, FAULT when one latches. Keeps its
+/// message buffers, so a tick allocates nothing once they have grown. Not for a real-time thread.
 class TickLog {
  public:
   /// Keeps references to writer and robot.
@@ -37,6 +37,7 @@ class TickLog {
 
  private:
   void write_input(const control::TickRecord& record);
+  void write_arms_state(const control::TickRecord& record);
   void write_fault_once(const control::TickRecord& record);
 
   io::LogWriter* writer_;
@@ -55,6 +56,10 @@ class TickLog {
   pmg_msgs::timing_t timing_;
   pmg_msgs::ground_truth_t truth_{};
   pmg_msgs::limited_t limited_;
+  pmg_msgs::arms_t arms_;
+  pmg_msgs::arms_input_t arms_input_;
+  pmg_msgs::arms_state_t arms_state_{};
+  bool arms_led_ = false;  // in the last tick
   pmg_msgs::fault_t fault_;
 };
 

@@ -1,3 +1,4 @@
+// Longer than 300 lines: every message of a tick, and the way back beside it.
 #include "recording/tick_messages.hpp"
 
 #include <cmath>
@@ -32,6 +33,18 @@ void pair_request(Way& way, Request& request, Message& message) {
   pair_sender(way, request, message);
   way(request.mode, message.mode);
   way(request.reset_fault, message.reset_fault);
+}
+template <typename Way, typename Arms, typename Message>
+void pair_arms(Way& way, Arms& arms, Message& message) {
+  pair_sender(way, arms, message);
+  way(arms.lease_s, message.lease_s);
+  auto& [left, right] = arms.arm;
+  way(left.wish, message.left);
+  way(left.palm.p_m, message.left_p_m);
+  way(left.palm.R, message.left_orientation);
+  way(right.wish, message.right);
+  way(right.palm.p_m, message.right_p_m);
+  way(right.palm.R, message.right_orientation);
 }
 template <typename Way, typename State, typename Message>
 void pair_state(Way& way, State& state, Message& message) {
@@ -186,6 +199,39 @@ void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
   for (const control::ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
 }
 
+void fill(const control::TickRecord& record, pmg_msgs::arms_input_t& message) {
+  const control::TickInput input = record.input();
+  message.stamp_ns = input.now_ns;
+  message.count = static_cast<std::int32_t>(input.arms.size());
+  message.received_ns.clear();
+  for (const control::ArmsMessage& arms : input.arms) message.received_ns.push_back(arms.received_ns);
+}
+
+void fill(const control::TickRecord& record, const RunInfo& run, pmg_msgs::arms_state_t& message) {
+  const control::ArmsState& arms = record.result.arms;
+  const auto& [left, right] = arms.arm;
+  const ToMessage copy;
+  message.stamp_ns = record.now_ns;
+  message.robot = run.robot;
+  copy(arms.order, message.order);
+  copy(arms.source, message.source, message.session);
+  message.sequence = arms.sequence;
+  message.refused = arms.refused;
+  copy(arms.refusal, message.last_refusal);
+  copy(left.activity, message.left);
+  copy(left.reached, message.left_reached);
+  message.left_error_m = left.position_error_m;
+  message.left_error_rad = left.turn_error_rad;
+  copy(left.palm.p_m, message.left_p_m);
+  copy(left.palm.R, message.left_orientation);
+  copy(right.activity, message.right);
+  copy(right.reached, message.right_reached);
+  message.right_error_m = right.position_error_m;
+  message.right_error_rad = right.turn_error_rad;
+  copy(right.palm.p_m, message.right_p_m);
+  copy(right.palm.R, message.right_orientation);
+}
+
 void fill(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped,
           pmg_msgs::timing_t& message) {
   const control::CycleTiming& timing = record.timing;
@@ -230,6 +276,13 @@ void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mod
   pair_request(copy, request, message);
 }
 
+void fill(const control::ArmsMessage& arms, const RunInfo& run, pmg_msgs::arms_t& message) {
+  message.version = pmg_msgs::arms_t::VERSION;
+  message.robot = run.robot;
+  const ToMessage copy;
+  pair_arms(copy, arms, message);
+}
+
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message) {
   message.stamp_ns = stamp_ns;
   message.robot = run.robot;
@@ -268,6 +321,14 @@ control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t 
   request.sealed = message.version != pmg_msgs::mode_t::UNSEALED;
   request.received_ns = received_ns;
   return request;
+}
+
+control::ArmsMessage arms_message(const pmg_msgs::arms_t& message, std::int64_t received_ns) {
+  control::ArmsMessage arms;
+  FromMessage take;
+  pair_arms(take, arms, message);
+  arms.received_ns = received_ns;
+  return arms;
 }
 
 bool robot_state(const pmg_msgs::robot_state_t& message, int joint_count, model::RobotState& state) {

@@ -9,6 +9,9 @@
 #include "model/ground_truth.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/arms_input_t.hpp"
+#include "pmg_msgs/arms_state_t.hpp"
+#include "pmg_msgs/arms_t.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
@@ -36,6 +39,8 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
           pmg_msgs::status_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::limited_t& message);
 void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message);
+void fill(const control::TickRecord& record, pmg_msgs::arms_input_t& message);
+void fill(const control::TickRecord& record, const RunInfo& run, pmg_msgs::arms_state_t& message);
 void fill(const control::TickRecord& record, const BusTiming& bus, const control::DroppedItems& dropped,
           pmg_msgs::timing_t& message);
 /// The fault of a tick in mode Fault.
@@ -43,12 +48,14 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
           pmg_msgs::fault_t& message);
 void fill(const control::DriveMessage& drive, const RunInfo& run, pmg_msgs::command_t& message);
 void fill(const control::ModeRequest& request, const RunInfo& run, pmg_msgs::mode_t& message);
+void fill(const control::ArmsMessage& arms, const RunInfo& run, pmg_msgs::arms_t& message);
 void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns, pmg_msgs::ack_t& message);
 void fill(std::int64_t stamp_ns, const model::GroundTruth& truth, bool hoisted, pmg_msgs::ground_truth_t& message);
 
 /// The other way: the values as they are. Unchecked: a caller that hears strangers validates first.
 control::DriveMessage drive_message(const pmg_msgs::command_t& message, std::int64_t received_ns);
 control::ModeRequest mode_request(const pmg_msgs::mode_t& message, std::int64_t received_ns);
+control::ArmsMessage arms_message(const pmg_msgs::arms_t& message, std::int64_t received_ns);
 /// False when the message's vectors don't have joint_count entries each.
 bool robot_state(const pmg_msgs::robot_state_t& message, int joint_count, model::RobotState& state);
 

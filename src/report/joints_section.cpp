@@ -28,7 +28,7 @@ std::vector<Joint> gather(const Runs& runs) {
   std::vector<Joint> joints;
   std::map<std::string, std::size_t> known;
   for (std::size_t run = 0; run < runs.size(); ++run) {
-    const std::vector<JointTracking> tracking = joint_tracking(runs[run]);
+    const std::vector<JointTracking>& tracking = runs[run].joint_tracking;
     for (std::size_t i = 0; i < tracking.size(); ++i) {
       const auto [entry, is_new] = known.try_emplace(runs[run].joint_names[i], joints.size());
       if (is_new) {

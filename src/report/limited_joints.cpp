@@ -8,11 +8,21 @@
 
 namespace pmg::report {
 
-double LimitedJoint::longest_s() const {
-  double longest = 0.0;
-  for (const Stretch& stretch : stretches) longest = std::max(longest, stretch.to_s - stretch.from_s);
-  return longest;
+namespace {
+
+void join_neighbours(std::vector<LimitedJoint::Stretch>& stretches) {
+  for (std::size_t i = 0; 2 * i + 1 < stretches.size(); ++i) {
+    LimitedJoint::Stretch joined = stretches[2 * i];
+    const LimitedJoint::Stretch& next = stretches[2 * i + 1];
+    joined.to_s = next.to_s;
+    for (std::size_t reason = 0; reason < joined.by.size(); ++reason)
+      joined.by[reason] = joined.by[reason] || next.by[reason];
+    stretches[i] = joined;
+  }
+  stretches.resize(stretches.size() / 2);
 }
+
+}  // namespace
 
 std::string LimitedJoint::reasons() const {
   std::string text;
@@ -41,8 +51,10 @@ void LimitedJoints::add(double t_s, const pmg_msgs::limited_t& message) {
         t_s - stretches.back().to_s < 0.5 * model::kControlPeriod_s) {
       stretches.back().to_s = t_s + model::kControlPeriod_s;
     } else {
+      if (stretches.size() == kMostStretches) join_neighbours(stretches);
       stretches.push_back({t_s, t_s + model::kControlPeriod_s, by});
     }
+    known->longest_s = std::max(known->longest_s, stretches.back().to_s - stretches.back().from_s);
   }
 }
 

@@ -10,6 +10,7 @@
 
 namespace pmg::report {
 
+inline constexpr std::size_t kMostStretches = 4096;  ///< of a joint: more than a picture shows
 inline constexpr std::array<const char*, 3> kLimitNames = {"range", "speed", "torque"};
 
 struct LimitedJoint {
@@ -21,9 +22,9 @@ struct LimitedJoint {
     double from_s, to_s;
     std::array<bool, 3> by;
   };
-  std::vector<Stretch> stretches;  ///< each with one set of reasons
+  std::vector<Stretch> stretches;  ///< each with one set of reasons; beyond kMostStretches neighbours are joined
+  double longest_s = 0.0;          ///< of the stretches before they were joined
 
-  double longest_s() const;
   std::string reasons() const;  ///< "torque in 12 ticks, speed in 3"
 };
 

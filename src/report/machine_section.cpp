@@ -14,18 +14,11 @@ namespace pmg::report {
 
 namespace {
 
-constexpr std::size_t kHottest = 4;     // joints whose temperatures are drawn
-constexpr double kDelayed_us = 2000.0;  // one bus cycle; a longer delay has its cause on the host
-constexpr std::size_t kListedDelays = 30;
-
-std::int64_t above_zero(const RunSeries::Samples& counts) {
-  return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
-}
+constexpr std::size_t kHottest = 4;  // joints whose temperatures are drawn
 
 /// Ticks with a limit of any kind; a tick with two kinds counts twice.
 std::int64_t limited_ticks(const RunSeries& run) {
-  return above_zero(run.status.limited_position) + above_zero(run.status.limited_rate) +
-         above_zero(run.status.limited_torque);
+  return run.status.position_ticks + run.status.rate_ticks + run.status.torque_ticks;
 }
 
 double hottest(const std::vector<float>& temperatures) {
@@ -42,14 +35,14 @@ void limit_table(pages::Page& page, const Runs& runs) {
     for (const RunSeries& run : runs) {
       const std::int64_t ticks = count(run);
       const double share =
-          static_cast<double>(ticks) / static_cast<double>(std::max<std::size_t>(run.status.t_s.size(), 1));
+          static_cast<double>(ticks) / static_cast<double>(std::max<std::int64_t>(run.status.ticks, 1));
       cells.push_back(ticks > 0 ? fmt::format("{} ({:.2f} %)", ticks, 100.0 * share) : "0");
     }
     table.rows.push_back(std::move(cells));
   };
-  row("a target limited by its range", [](const RunSeries& run) { return above_zero(run.status.limited_position); });
-  row("a target limited by its speed", [](const RunSeries& run) { return above_zero(run.status.limited_rate); });
-  row("a target limited by its torque", [](const RunSeries& run) { return above_zero(run.status.limited_torque); });
+  row("a target limited by its range", [](const RunSeries& run) { return run.status.position_ticks; });
+  row("a target limited by its speed", [](const RunSeries& run) { return run.status.rate_ticks; });
+  row("a target limited by its torque", [](const RunSeries& run) { return run.status.torque_ticks; });
   row("a command outside the admissible set", [](const RunSeries& run) { return run.reference.command_limited; });
   row("a reference clamped to a joint's range", [](const RunSeries& run) { return run.reference.joint_clamped; });
   row("no convergence of the ground-aware optimisation",
@@ -68,7 +61,7 @@ void limited_joints(pages::Page& page, const Runs& runs) {
     for (const LimitedJoint& one : runs[i].limited) {
       const std::string name = runs[i].joint_names[one.joint] + suffix(runs, i);
       table.rows.push_back({name, one.reasons(), fmt::format("{:.2f}", one.stretches.front().from_s),
-                            fmt::format("{:.2f}", one.longest_s())});
+                            fmt::format("{:.2f}", one.longest_s)});
     }
     for (std::size_t k = 0; k < std::min(kLimitedShown, runs[i].limited.size()); ++k) {
       const LimitedJoint& one = runs[i].limited[k];
@@ -133,34 +126,29 @@ void limit_chart(pages::Page& page, const Runs& runs) {
       });
 }
 
-/// Leaves out values that aren't finite: those stages did not run.
-void times(pages::Page& page, const Runs& runs, const char* title,
-           RunSeries::Samples decltype(RunSeries::timing)::*which) {
+void times(pages::Page& page, const Runs& runs, const char* title, Sampled RunTiming::*which) {
   pages::Histogram histogram{.title = title, .unit = "us", .sets = {}};
-  std::vector<RunSeries::Samples> kept;
-  kept.reserve(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    RunSeries::Samples& values = kept.emplace_back(runs[i].timing.*which);
-    std::erase_if(values, [](double value) { return !std::isfinite(value); });
-    if (!values.empty()) histogram.sets.push_back({runs[i].name + suffix(runs, i), values, palette(i).measured});
+    const Sampled& sampled = runs[i].timing.*which;
+    if (sampled.values().empty()) continue;
+    histogram.sets.push_back({.name = runs[i].name + suffix(runs, i),
+                              .values = sampled.values(),
+                              .colour = palette(i).measured,
+                              .each = sampled.each(),
+                              .largest = sampled.largest()});
   }
   if (!histogram.sets.empty()) page.histogram(histogram);
 }
 
 void delays(pages::Page& page, const Runs& runs) {
   pages::Table table{.header = {"time [s]", "late [us]", "thread"}, .rows = {}};
-  std::size_t count = 0;
+  std::int64_t count = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto& timing = runs[i].timing;
-    const auto add = [&](const RunSeries::Samples& late_us, const char* thread) {
-      for (std::size_t k = 0; k < late_us.size(); ++k) {
-        if (!(late_us[k] > kDelayed_us) || ++count > kListedDelays) continue;
-        table.rows.push_back(
-            {fmt::format("{:.2f}{}", timing.t_s[k], suffix(runs, i)), pages::number(late_us[k]), thread});
-      }
-    };
-    add(timing.wake_us, "control");
-    add(timing.bus_wake_us, "bus");
+    const RunTiming& timing = runs[i].timing;
+    count += timing.delay_count;
+    for (const RunTiming::Delay& delay : timing.delays)
+      table.rows.push_back(
+          {fmt::format("{:.2f}{}", delay.t_s, suffix(runs, i)), pages::number(delay.late_us), delay.thread});
     if (timing.missed_ticks + timing.bus_missed_cycles + timing.dropped_records > 0) {
       page.paragraph(fmt::format("Skipped{}: {} ticks, {} bus cycles; {} records dropped from the log's queue.",
                                  suffix(runs, i), timing.missed_ticks, timing.bus_missed_cycles,
@@ -168,9 +156,9 @@ void delays(pages::Page& page, const Runs& runs) {
     }
   }
   if (count == 0) return;
-  page.folded(
-      fmt::format("{} cycles woke more than 2 ms late{}", count, count > kListedDelays ? ", the first of them" : ""),
-      [&] { page.table(table); });
+  const bool all = count == static_cast<std::int64_t>(table.rows.size());
+  page.folded(fmt::format("{} cycles woke more than 2 ms late{}", count, all ? "" : ", the first of them"),
+              [&] { page.table(table); });
 }
 
 }  // namespace
@@ -187,21 +175,20 @@ void limits_and_temperatures(pages::Page& page, const Runs& runs) {
 
 void timing(pages::Page& page, const Runs& runs) {
   page.heading("Timing");
-  if (std::ranges::all_of(runs, [](const RunSeries& run) { return run.timing.t_s.empty(); })) {
+  if (std::ranges::all_of(runs, [](const RunSeries& run) { return run.timing.ticks == 0; })) {
     return page.paragraph("No wall-clock times: the log has no TIMING, and there is no timing.csv beside it.");
   }
   page.paragraph(
       "Counts are on a logarithmic axis; words give the few longest. On a computer that is shared with "
       "others, single long times mean little.");
-  using Timing = decltype(RunSeries::timing);
   page.columns([&] {
-    times(page, runs, "Whole tick", &Timing::tick_us);
-    times(page, runs, "Control thread's wake-up, behind its plan", &Timing::wake_us);
-    times(page, runs, "Bus thread's wake-up, the worst of each tick", &Timing::bus_wake_us);
-    times(page, runs, "Bus exchange, the longest of each tick", &Timing::bus_exchange_us);
-    times(page, runs, "Generator", &Timing::generator_us);
-    times(page, runs, "Ground-aware optimisation", &Timing::gco_us);
-    times(page, runs, "Policy", &Timing::policy_us);
+    times(page, runs, "Whole tick", &RunTiming::tick_us);
+    times(page, runs, "Control thread's wake-up, behind its plan", &RunTiming::wake_us);
+    times(page, runs, "Bus thread's wake-up, the worst of each tick", &RunTiming::bus_wake_us);
+    times(page, runs, "Bus exchange, the longest of each tick", &RunTiming::bus_exchange_us);
+    times(page, runs, "Generator", &RunTiming::generator_us);
+    times(page, runs, "Ground-aware optimisation", &RunTiming::gco_us);
+    times(page, runs, "Policy", &RunTiming::policy_us);
   });
   delays(page, runs);
 }

@@ -10,24 +10,14 @@ namespace pmg::report {
 
 namespace {
 
-constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: below it a foot counts as unloaded
 constexpr std::array<const char*, 2> kFeet = {"left", "right"};
 constexpr std::array<const char*, kChannels> kTitles = {
     "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
     "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
 
-/// The stretches in which a sampled condition holds.
-template <typename Condition>
-std::vector<pages::Lanes::Stretch> stretches(const RunSeries::Samples& t_s, const char* colour, Condition holds) {
+std::vector<pages::Lanes::Stretch> stretches(const Intervals& intervals, const char* colour) {
   std::vector<pages::Lanes::Stretch> found;
-  bool open = false;
-  for (std::size_t i = 0; i < t_s.size(); ++i) {
-    if (i > 0 && t_s[i] - t_s[i - 1] > kLongestGap_s) open = false;
-    const bool now = holds(i);
-    if (open) found.back().to = t_s[i];
-    if (now && !open) found.push_back({t_s[i], t_s[i], "", colour});
-    open = now;
-  }
+  for (const Intervals::Interval& one : intervals.all()) found.push_back({one.from_s, one.to_s, "", colour});
   return found;
 }
 
@@ -75,16 +65,10 @@ void contact_and_slip(pages::Page& page, const Runs& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& reference = runs[i].reference;
     const auto& truth = runs[i].truth;
-    const std::vector<bool> held = holding(runs[i], reference.t_s);
     for (std::size_t foot = 0; foot < 2; ++foot) {
       const std::string name = kFeet[foot] + suffix(runs, i);
-      if (!reference.t_s.empty())
-        lanes.lanes.push_back(
-            {name, stretches(reference.t_s, "#5b7fa6", [&](std::size_t k) { return reference.contact[foot][k]; })});
-      if (!truth.t_s.empty())
-        lanes.lanes.push_back({"", stretches(truth.t_s, "#b7cde4", [&](std::size_t k) {
-                                 return truth.foot_force_N[foot][k] > kLoadedFoot_N;
-                               })});
+      if (!reference.t_s.empty()) lanes.lanes.push_back({name, stretches(reference.contact[foot], "#5b7fa6")});
+      if (!truth.t_s.empty()) lanes.lanes.push_back({"", stretches(truth.loaded[foot], "#b7cde4")});
     }
   }
   if (!lanes.lanes.empty()) page.lanes(lanes);

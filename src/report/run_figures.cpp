@@ -22,12 +22,8 @@ nlohmann::ordered_json events_json(const std::vector<RunSeries::Event>& events) 
   return json;
 }
 
-nlohmann::ordered_json times_json(const RunSeries::Samples& times_us) {
-  return {{"p50", pages::percentile(times_us, 0.50)}, {"p99", pages::percentile(times_us, 0.99)}};
-}
-
-std::int64_t ticks_above_zero(const RunSeries::Samples& counts) {
-  return std::ranges::count_if(counts, [](double count) { return count > 0.0; });
+nlohmann::ordered_json times_json(const Sampled& times_us) {
+  return {{"p50", pages::percentile(times_us.values(), 0.50)}, {"p99", pages::percentile(times_us.values(), 0.99)}};
 }
 
 }  // namespace
@@ -42,32 +38,6 @@ std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s) {
               (mode == to_string(control::Mode::kStand) || mode == to_string(control::Mode::kWalk));
   }
   return held;
-}
-
-std::vector<JointTracking> joint_tracking(const RunSeries& run) {
-  std::vector<JointTracking> joints(run.joint_names.size());
-  const std::vector<bool> held = holding(run, run.state.t_s);
-  std::vector<std::int64_t> ticks(joints.size());
-  const auto &state_s = run.state.t_s, &reference_s = run.reference.t_s;
-  for (std::size_t i = 0, k = 0; i < state_s.size(); ++i) {
-    while (k < reference_s.size() && reference_s[k] < state_s[i]) ++k;
-    const bool same_tick = k < reference_s.size() && reference_s[k] == state_s[i];
-    for (std::size_t joint = 0; joint < joints.size(); ++joint) {
-      const double torque_Nm = std::abs(static_cast<double>(run.state.torque_Nm[joint][i]));
-      if (torque_Nm > joints[joint].torque_max_Nm) joints[joint].torque_max_Nm = torque_Nm;
-      if (!same_tick || !held[i]) continue;
-      const double error_rad =
-          static_cast<double>(run.reference.q_ref_rad[joint][k]) - static_cast<double>(run.state.q_rad[joint][i]);
-      if (!std::isfinite(error_rad)) continue;
-      joints[joint].error_rms_rad += error_rad * error_rad;
-      ++ticks[joint];
-    }
-  }
-  for (std::size_t joint = 0; joint < joints.size(); ++joint) {
-    if (ticks[joint] > 0)
-      joints[joint].error_rms_rad = std::sqrt(joints[joint].error_rms_rad / static_cast<double>(ticks[joint]));
-  }
-  return joints;
 }
 
 std::string tracking_text(const RunSeries& run) {
@@ -137,13 +107,13 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
   for (const RunSeries::Stretch& mode : run.modes) {
     modes[mode.text] = modes.value(mode.text, 0.0) + mode.to_s - mode.from_s;
   }
-  const std::vector<JointTracking> tracking = joint_tracking(run);
-  for (std::size_t i = 0; i < tracking.size(); ++i) errors[run.joint_names[i]] = tracking[i].error_rms_rad;
+  for (std::size_t i = 0; i < run.joint_tracking.size(); ++i)
+    errors[run.joint_names[i]] = run.joint_tracking[i].error_rms_rad;
   ordered_json limited = ordered_json::array(), steps = ordered_json::array();
   for (const LimitedJoint& one : run.limited) {
     limited.push_back({{"joint", run.joint_names[one.joint]},
                        {"first_s", one.stretches.front().from_s},
-                       {"longest_s", one.longest_s()},
+                       {"longest_s", one.longest_s},
                        {"position_ticks", one.ticks[0]},
                        {"rate_ticks", one.ticks[1]},
                        {"torque_ticks", one.ticks[2]}});
@@ -152,33 +122,32 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
     steps.push_back({{"number", step.number}, {"from_s", step.from_s}, {"to_s", step.to_s}, {"text", step.text}});
   }
   const bool judged = run.tracking.followed_s > 0.0;
-  return {{"log", run.name},
-          {"robot", run.info.robot},
-          {"model", run.info.model},
-          {"software", run.info.software},
-          {"policy", run.info.policy},
-          {"backend", run.info.backend},
-          {"bundle", run.info.bundle},
-          {"duration_s", run.duration_s},
-          {"fell", run.fell},
-          {"fell_at_s", run.fell ? ordered_json(run.fell_at_s) : ordered_json(nullptr)},
-          {"faults", events_json(run.faults)},
-          {"guard_trips", events_json(run.guard_trips)},
-          {"modes_s", modes},
-          {"hanging_s", hanging_s(run)},
-          {"tracking_rms_rad", errors},
-          {"tracking", judged ? sil::tracking_json(run.tracking) : ordered_json(nullptr)},
-          {"reference_slip", sil::reference_slip_json(run.reference_slip)},
-          {"scenario", run.scenario.empty() ? ordered_json(nullptr) : ordered_json(run.scenario)},
-          {"steps", steps},
-          {"limited_joints", limited},
-          {"limited_ticks",
-           {{"position", ticks_above_zero(run.status.limited_position)},
-            {"rate", ticks_above_zero(run.status.limited_rate)},
-            {"torque", ticks_above_zero(run.status.limited_torque)}}},
-          {"timing_us", {{"tick", times_json(run.timing.tick_us)}, {"wake", times_json(run.timing.wake_us)}}},
-          {"lost_ticks", run.lost_ticks},
-          {"problems", run.problems}};
+  return {
+      {"log", run.name},
+      {"robot", run.info.robot},
+      {"model", run.info.model},
+      {"software", run.info.software},
+      {"policy", run.info.policy},
+      {"backend", run.info.backend},
+      {"bundle", run.info.bundle},
+      {"duration_s", run.duration_s},
+      {"fell", run.fell},
+      {"fell_at_s", run.fell ? ordered_json(run.fell_at_s) : ordered_json(nullptr)},
+      {"faults", events_json(run.faults)},
+      {"guard_trips", events_json(run.guard_trips)},
+      {"modes_s", modes},
+      {"hanging_s", hanging_s(run)},
+      {"tracking_rms_rad", errors},
+      {"tracking", judged ? sil::tracking_json(run.tracking) : ordered_json(nullptr)},
+      {"reference_slip", sil::reference_slip_json(run.reference_slip)},
+      {"scenario", run.scenario.empty() ? ordered_json(nullptr) : ordered_json(run.scenario)},
+      {"steps", steps},
+      {"limited_joints", limited},
+      {"limited_ticks",
+       {{"position", run.status.position_ticks}, {"rate", run.status.rate_ticks}, {"torque", run.status.torque_ticks}}},
+      {"timing_us", {{"tick", times_json(run.timing.tick_us)}, {"wake", times_json(run.timing.wake_us)}}},
+      {"lost_ticks", run.lost_ticks},
+      {"problems", run.problems}};
 }
 
 }  // namespace pmg::report

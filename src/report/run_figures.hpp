@@ -14,12 +14,6 @@ namespace pmg::report {
 /// has no modes.
 std::vector<bool> holding(const RunSeries& run, std::span<const double> t_s);
 
-struct JointTracking {
-  double error_rms_rad = 0.0;  ///< RMS of q_ref - q while the drives follow; 0 without such a tick
-  double torque_max_Nm = 0.0;  ///< largest |torque|
-};
-std::vector<JointTracking> joint_tracking(const RunSeries& run);
-
 /// Tracking errors against the command, and slip: the figures of summary.json in a sentence. Empty without ground
 /// truth.
 std::string tracking_text(const RunSeries& run);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <stdexcept>
@@ -121,7 +122,9 @@ std::vector<double> followed(const RunSeries& run, std::span<const double> t_s, 
 void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title,
                    const std::function<std::vector<RunLine>(std::size_t)>& lines_of, int height_px) {
   std::vector<RunLine> drawn;
+  double longest_gap_s = 0.0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    longest_gap_s = std::max(longest_gap_s, runs[i].longest_gap_s);
     for (RunLine& line : lines_of(i)) {
       if (line.x.empty()) continue;
       line.name += suffix(runs, i);
@@ -130,7 +133,7 @@ void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title
   }
   if (drawn.empty()) return;
   pages::Chart chart{
-      .title = title, .lines = {}, .bands = fault_bands(runs), .height_px = height_px, .longest_gap = kLongestGap_s};
+      .title = title, .lines = {}, .bands = fault_bands(runs), .height_px = height_px, .longest_gap = longest_gap_s};
   for (const RunLine& line : drawn) {
     chart.lines.push_back({.name = line.name,
                            .x = line.x,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -20,9 +21,11 @@
 #include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
+#include "report/joint_errors.hpp"
 #include "report/measured_command.hpp"
 #include "report/run_judgement.hpp"
 #include "report/series_samples.hpp"
+#include "report/thinning.hpp"
 #include "report/timing_csv.hpp"
 
 namespace pmg::report {
@@ -35,6 +38,13 @@ namespace {
 std::string short_name(const fs::path& log) {
   const fs::path path = fs::weakly_canonical(log);
   return fs::is_directory(path) ? path.filename().string() : (path.parent_path().filename() / path.filename()).string();
+}
+
+template <typename... Groups>
+auto pointers(Groups&... groups) {
+  std::vector<std::common_type_t<decltype(groups.data())...>> all;
+  (std::ranges::transform(groups, std::back_inserter(all), [](auto& line) { return &line; }), ...);
+  return all;
 }
 
 /// Gathers the events of one run. If the log holds several runs, the last one remains.
@@ -78,6 +88,9 @@ class Gathering {
     }
     std::ranges::sort(run_.faults, {}, &RunSeries::Event::t_s);
     end_step();
+    run_.joint_tracking = joint_errors_.finish(run_.joint_names.size());
+    for (const Thinning* thinned : {&thin_state_, &thin_reference_, &thin_status_, &thin_truth_})
+      run_.longest_gap_s = std::max(run_.longest_gap_s, 1.5 * thinned->widest_pair_s());
     run_.limited = limited_.most_first();
     std::erase_if(run_.limited, [this](const LimitedJoint& one) { return one.joint >= run_.joint_names.size(); });
     if (judgement_) {
@@ -158,6 +171,11 @@ class Gathering {
   bool state(const pmg_msgs::robot_state_t& message) {
     if (!fits(message.joint_count)) return false;
     append(message, t_s_, run_);
+    thin_state_.appended({.t_s = &run_.state.t_s,
+                          .wide = {},
+                          .narrow = pointers(run_.state.q_rad, run_.state.torque_Nm, run_.state.temperature_degC)},
+                         kLongestGap_s);
+    joint_errors_.state(t_s_, message.q_rad, message.torque_Nm);
     return true;
   }
 
@@ -193,6 +211,13 @@ class Gathering {
     if (!fits(message.joint_count)) return false;
     if (judgement_) judgement_->reference(message);
     append(message, t_s_, run_);
+    auto& to = run_.reference;
+    thin_reference_.appended(
+        {.t_s = &to.t_s,
+         .wide = pointers(to.user, to.command, to.optimised, to.slip_before_m_s, to.slip_after_m_s),
+         .narrow = pointers(to.q_ref_rad)},
+        kLongestGap_s);
+    joint_errors_.reference(t_s_, message.q_ref_rad);
     if (message.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / message.phase_rate_per_s;
     return true;
   }
@@ -207,6 +232,11 @@ class Gathering {
     }
     if (judgement_) judgement_->status(message);
     append(message, t_s_, run_);
+    auto& to = run_.status;
+    thin_status_.appended(
+        {.t_s = &to.t_s, .wide = {&to.limited_position, &to.limited_rate, &to.limited_torque}, .narrow = {}},
+        kLongestGap_s);
+    joint_errors_.status(mode == control::Mode::kStand || mode == control::Mode::kWalk);
     return true;
   }
 
@@ -214,6 +244,9 @@ class Gathering {
     if (judgement_) judgement_->truth(message);
     const double standing_height_m = run_.info.standing_height_m;
     append(message, measured_command_.add(message, gait_period_s_, standing_height_m), t_s_, run_);
+    auto& to = run_.truth;
+    thin_truth_.appended({.t_s = &to.t_s, .wide = pointers(to.measured, to.foot_slip_m_s), .narrow = {}},
+                         kLongestGap_s);
     if (!run_.fell && fallen(message, standing_height_m)) {
       run_.fell = true;
       run_.fell_at_s = t_s_;
@@ -249,6 +282,8 @@ class Gathering {
   }
 
   RunSeries run_;
+  Thinning thin_state_, thin_reference_, thin_status_, thin_truth_;
+  JointErrors joint_errors_;
   MeasuredCommand measured_command_;
   std::optional<RunJudgement> judgement_;  // once the robot is known
   sil::TrackingSummary before_step_;
@@ -289,7 +324,7 @@ RunSeries read_run(const fs::path& log, const work::Progress& progress) {
   if (run.state.t_s.empty() && run.status.t_s.empty() && run.reference.t_s.empty() && !interrupted) {
     throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read");
   }
-  if (run.timing.t_s.empty()) {
+  if (run.timing.ticks == 0) {
     read_timing_csv((fs::is_directory(log) ? log : log.parent_path()) / "timing.csv", run);
   }
   return run;

@@ -11,13 +11,37 @@
 #include "pmg/command.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "report/limited_joints.hpp"
+#include "report/thinning.hpp"
 #include "sil/metrics.hpp"
 #include "work/progress.hpp"
 
 namespace pmg::report {
 
-/// One sample for each tick and channel; t_s counts from the log's beginning. Channels without a message are empty. The
-/// first index of a per-joint array is the joint; these arrays are float to save memory in long runs.
+inline constexpr double kLongestGap_s = 0.1;  ///< ten ticks; a longer gap interrupts a line
+
+/// How well a joint followed.
+struct JointTracking {
+  double error_rms_rad = 0.0;  ///< RMS of q_ref - q while the drives follow; 0 without such a tick
+  double torque_max_Nm = 0.0;  ///< largest |torque|
+};
+
+/// Times by the wall clock.
+struct RunTiming {
+  std::int64_t ticks = 0;
+  Sampled wake_us, tick_us, generator_us, gco_us, policy_us;
+  Sampled bus_wake_us, bus_exchange_us;  ///< largest value of the bus cycles since the last tick
+  std::int64_t missed_ticks = 0, bus_missed_cycles = 0, dropped_records = 0;
+  struct Delay {
+    double t_s, late_us;
+    const char* thread;
+  };
+  std::vector<Delay> delays;  ///< the first that were longer than a bus cycle
+  std::int64_t delay_count = 0;
+};
+
+/// One sample for each tick and channel, thinned in runs of more than five minutes (thinning.hpp), so that memory stays
+/// bounded; figures count every tick. t_s counts from the log's beginning. Channels without a message are empty. The
+/// first index of a per-joint array is the joint.
 struct RunSeries {
   using Samples = std::vector<double>;
   using JointSamples = std::vector<std::vector<float>>;
@@ -32,31 +56,31 @@ struct RunSeries {
     Samples t_s;
     JointSamples q_rad, torque_Nm, temperature_degC;
   } state;
+  std::vector<JointTracking> joint_tracking;  ///< one for each joint
+  double longest_gap_s = kLongestGap_s;       ///< more where samples are thinned
 
   struct {
     Samples t_s;
     JointSamples q_ref_rad;
     std::array<Samples, kChannels> user, command, optimised;
-    std::array<Samples, 2> contact_weight, slip_before_m_s, slip_after_m_s;
-    std::array<std::vector<bool>, 2> contact;
+    std::array<Samples, 2> slip_before_m_s, slip_after_m_s;
+    std::array<Intervals, 2> contact;
     std::int64_t not_converged = 0, command_limited = 0, joint_clamped = 0;  ///< ticks
   } reference;
 
   struct {
     Samples t_s, limited_position, limited_rate, limited_torque;
+    std::int64_t ticks = 0, position_ticks = 0, rate_ticks = 0, torque_ticks = 0;  ///< all; with a limited target
   } status;
 
   struct {
     Samples t_s;
     std::array<Samples, kChannels> measured;
-    std::array<Samples, 2> foot_force_N, foot_slip_m_s;
-  } truth;  ///< of a simulation
+    std::array<Samples, 2> foot_slip_m_s;
+    std::array<Intervals, 2> loaded;  ///< a foot carries load
+  } truth;                            ///< of a simulation
 
-  struct {
-    Samples t_s, wake_us, tick_us, generator_us, gco_us, policy_us;
-    Samples bus_wake_us, bus_exchange_us;  ///< largest value of the bus cycles since the last tick
-    std::int64_t missed_ticks = 0, bus_missed_cycles = 0, dropped_records = 0;
-  } timing;  ///< by the wall clock; NaN for stages that did not run
+  RunTiming timing;
 
   struct Stretch {
     double from_s, to_s;

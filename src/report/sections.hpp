@@ -13,8 +13,6 @@ namespace pmg::report {
 
 using Runs = std::vector<RunSeries>;
 
-inline constexpr double kLongestGap_s = 0.1;  ///< ten ticks; a longer gap interrupts a line
-
 /// Colours of one run's lines.
 struct Palette {
   const char *measured, *asked, *admissible, *optimised;

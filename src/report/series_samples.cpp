@@ -12,7 +12,10 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
-double stage_us(std::int64_t ns) { return ns > 0 ? us(ns) : kNone; }
+
+constexpr double kLoadedFoot_N = 20.0;  // as in the metrics: below it a foot counts as unloaded
+constexpr double kDelayed_us = 2000.0;  // one bus cycle; a longer delay has its cause on the host
+constexpr std::int64_t kListedDelays = 30;
 
 void append_row(const std::vector<double>& row, RunSeries::JointSamples& to) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i].push_back(static_cast<float>(row[i]));
@@ -43,8 +46,7 @@ void append(const pmg_msgs::reference_t& message, double t_s, RunSeries& run) {
     to.optimised[channel].push_back(message.optimised[channel]);
   }
   for (std::size_t foot = 0; foot < 2; ++foot) {
-    to.contact[foot].push_back(message.contact[foot] != 0);
-    to.contact_weight[foot].push_back(message.contact_weight[foot]);
+    to.contact[foot].add(t_s, message.contact[foot] != 0, kLongestGap_s);
     to.slip_before_m_s[foot].push_back(message.slip_before_m_s[foot]);
     to.slip_after_m_s[foot].push_back(message.slip_after_m_s[foot]);
   }
@@ -61,19 +63,34 @@ void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run) {
   run.status.limited_position.push_back(message.limited_position);
   run.status.limited_rate.push_back(message.limited_rate);
   run.status.limited_torque.push_back(message.limited_torque);
+  ++run.status.ticks;
+  run.status.position_ticks += message.limited_position > 0;
+  run.status.rate_ticks += message.limited_rate > 0;
+  run.status.torque_ticks += message.limited_torque > 0;
+}
+
+void add_times(RunTiming& to, double tick_us, double generator_us, double gco_us, double policy_us) {
+  ++to.ticks;
+  to.tick_us.add(tick_us);
+  const auto stage = [](Sampled& times, double time_us) { times.add(time_us > 0.0 ? time_us : kNone); };  // 0: not run
+  stage(to.generator_us, generator_us);
+  stage(to.gco_us, gco_us);
+  stage(to.policy_us, policy_us);
 }
 
 void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run) {
   auto& to = run.timing;
-  to.t_s.push_back(t_s);
-  to.wake_us.push_back(us(message.wake_ns));
-  to.tick_us.push_back(us(message.tick_ns));
-  to.generator_us.push_back(stage_us(message.generator_ns));
-  to.gco_us.push_back(stage_us(message.gco_ns));
-  to.policy_us.push_back(stage_us(message.policy_ns));
   const bool cycles = message.bus_cycles > 0;
-  to.bus_wake_us.push_back(cycles ? us(message.bus_wake_max_ns) : kNone);
-  to.bus_exchange_us.push_back(cycles ? us(message.bus_exchange_max_ns) : kNone);
+  add_times(to, us(message.tick_ns), us(message.generator_ns), us(message.gco_ns), us(message.policy_ns));
+  to.wake_us.add(us(message.wake_ns));
+  to.bus_wake_us.add(cycles ? us(message.bus_wake_max_ns) : kNone);
+  to.bus_exchange_us.add(cycles ? us(message.bus_exchange_max_ns) : kNone);
+  const auto delay = [&](double late_us, const char* thread) {
+    if (!(late_us > kDelayed_us)) return;
+    if (to.delay_count++ < kListedDelays) to.delays.push_back({t_s, late_us, thread});
+  };
+  delay(us(message.wake_ns), "control");
+  if (cycles) delay(us(message.bus_wake_max_ns), "bus");
   to.missed_ticks = message.missed_ticks;
   to.bus_missed_cycles = message.bus_missed_cycles;
   to.dropped_records = message.dropped_records;
@@ -86,7 +103,7 @@ void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kC
   for (std::size_t channel = 0; channel < kChannels; ++channel)
     to.measured[channel].push_back(message.hoisted != 0 ? kNone : measured[channel]);
   for (std::size_t foot = 0; foot < 2; ++foot) {
-    to.foot_force_N[foot].push_back(message.foot_force_N[foot]);
+    to.loaded[foot].add(t_s, message.foot_force_N[foot] > kLoadedFoot_N, kLongestGap_s);
     to.foot_slip_m_s[foot].push_back(message.foot_slip_m_s[foot]);
   }
   extend(run.hoisted, t_s, message.hoisted != 0 ? "on the gantry" : "");

@@ -21,6 +21,9 @@ void append(const pmg_msgs::status_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::timing_t& message, double t_s, RunSeries& run);
 void append(const pmg_msgs::tick_input_t& message, double t_s, RunSeries& run);
 
+/// One tick's times [us]; a stage of 0 did not run.
+void add_times(RunTiming& to, double tick_us, double generator_us, double gco_us, double policy_us);
+
 /// measured: the robot's motion by command channel. While the gantry carries the robot, the series gets NaN.
 void append(const pmg_msgs::ground_truth_t& message, const std::array<double, kChannels>& measured, double t_s,
             RunSeries& run);

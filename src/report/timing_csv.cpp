@@ -1,26 +1,27 @@
 #include "report/timing_csv.hpp"
 
 #include <array>
-#include <limits>
+#include <fstream>
 #include <sstream>
 
 #include "files/bounded_file.hpp"
+#include "report/series_samples.hpp"
 
 namespace pmg::report {
 
 namespace {
 constexpr std::uint64_t kLargest_bytes = 1u << 30;  // a day of ticks
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
   if (!std::filesystem::exists(file)) return;
-  std::istringstream in(files::read_bounded_text(file, kLargest_bytes, "times of a run"));
+  files::expect_bounded_file(file, kLargest_bytes, "times of a run");
+  std::ifstream in(file);
   std::string line;
   std::getline(in, line);
   if (line != "time_s,tick_us,generator_us,gco_us,policy_us") return;
-  auto& to = run.timing;
   std::array<double, 5> row{};
+  double newest_s = 0.0;
   while (std::getline(in, line)) {
     std::istringstream cells(line);
     bool whole = true;
@@ -28,12 +29,9 @@ void read_timing_csv(const std::filesystem::path& file, RunSeries& run) {
       std::string cell;
       whole = whole && std::getline(cells, cell, ',') && std::istringstream(cell) >> value;
     }
-    if (!whole || (!to.t_s.empty() && row[0] < to.t_s.back())) continue;
-    to.t_s.push_back(row[0]);
-    to.tick_us.push_back(row[1]);
-    to.generator_us.push_back(row[2] > 0.0 ? row[2] : kNotMeasured);
-    to.gco_us.push_back(row[3] > 0.0 ? row[3] : kNotMeasured);
-    to.policy_us.push_back(row[4] > 0.0 ? row[4] : kNotMeasured);
+    if (!whole || (run.timing.ticks > 0 && row[0] < newest_s)) continue;
+    newest_s = row[0];
+    add_times(run.timing, row[1], row[2], row[3], row[4]);
   }
 }
 

@@ -116,6 +116,8 @@ class RobotDiagnosisRun {
   SampleOptions sampling(SampleOptions of) const { return sampling(of, options_.low_pass_s); }
 
   void take(const RobotRecording& recording, double total_ticks) {
+    const std::string from = fmt::format("{}: {}", recording.name, source_text(recording.source));
+    if (std::ranges::find(result_.recordings, from) == result_.recordings.end()) result_.recordings.push_back(from);
     const std::string drives = drive_sampling_text(recording.drive);
     if (result_.drive_sampling.find(drives) == std::string::npos)
       result_.drive_sampling += (result_.drive_sampling.empty() ? "" : "; ") + drives;

@@ -36,6 +36,7 @@ struct RobotDiagnosis {
   double held_out_before = 0.0, held_out_after = 0.0;  ///< rms of left-out equations, in units of their noise
   std::vector<std::string> depends_on;                 ///< unexplained: equations whose residual exceeds the noise
   std::vector<RobotCause> others;                      ///< the next candidates, with their evidence, no parameters
+  std::vector<std::string> recordings;                 ///< each log, and where it was made
   std::string drive_sampling;                          ///< when the drives sample positions, and the source
   std::vector<evidence::Option> options;               ///< thresholds in force
   std::vector<std::string> not_seen;                   ///< "effect of place": not observable in these logs

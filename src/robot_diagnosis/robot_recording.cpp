@@ -1,6 +1,7 @@
 #include "robot_diagnosis/robot_recording.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -76,7 +77,12 @@ class LogTicks {
   void check_robot(const io::LogReader& event) {
     const auto info = event.decode<pmg_msgs::robot_info_t>();
     if (!info) return;
-    drive_ = drive_sampling(info->backend, info->options);
+    try {
+      drive_ = drive_sampling(info->backend, info->options, robot_.joint_index);
+    } catch (const std::runtime_error& error) {
+      fail(error.what());
+    }
+    source_ = recording_source(info->backend, info->options);
     if (info->joint_names == robot_.joint_index.names()) return;
     fail(fmt::format("of the robot {} with {} joints; expected the joints of {}", info->model, info->joint_count,
                      robot_.name));
@@ -116,6 +122,7 @@ class LogTicks {
       current_.name = name_;
       current_.period_s = model::kControlPeriod_s;
       current_.drive = drive_;
+      current_.source = source_;
       recordings_.push_back(std::move(current_));
     }
     current_ = {};
@@ -125,13 +132,35 @@ class LogTicks {
   std::string name_;
   io::LogSeries series_;
   std::optional<model::RobotState> state_;
-  DriveSampling drive_ = drive_sampling("unknown", "");
+  DriveSampling drive_ = drive_sampling("unknown", "", {});
+  RecordingSource source_;
   RobotRecording current_;
   std::vector<RobotRecording> recordings_;
   bool any_tick_ = false;
 };
 
 }  // namespace
+
+RecordingSource recording_source(const std::string& backend, const std::string& options) {
+  const nlohmann::json json = nlohmann::json::parse(options, nullptr, false);
+  RecordingSource source{.backend = backend, .simulated = backend == "sil"};
+  if (!json.is_object() || !json.contains("set_on_simulator") || !json["set_on_simulator"].is_array()) return source;
+  source.simulated = true;
+  std::vector<std::string>& set = source.set_on_simulator.emplace();
+  for (const nlohmann::json& line : json["set_on_simulator"]) {
+    if (line.is_string()) set.push_back(line.get<std::string>());
+  }
+  return source;
+}
+
+std::string source_text(const RecordingSource& source) {
+  if (source.backend.empty() && !source.simulated) return "unknown: the log doesn't say which backend made it";
+  if (!source.simulated)
+    return fmt::format("hardware (backend {}): nothing was set, what is found is the robot's own", source.backend);
+  if (!source.set_on_simulator) return "a simulation; the log doesn't say what was set on it";
+  if (source.set_on_simulator->empty()) return "a simulation on which nothing was set: the robot as its files say";
+  return fmt::format("a simulation on which was set: {}", fmt::join(*source.set_on_simulator, "; "));
+}
 
 std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::path>& logs,
                                             const model::RobotModel& robot) {
@@ -144,11 +173,26 @@ std::vector<RobotRecording> read_robot_logs(const std::vector<std::filesystem::p
 
 namespace {
 
+std::vector<std::string> names(const std::vector<int>& joints, const model::RobotModel& robot) {
+  std::vector<std::string> names;
+  for (const int joint : joints) names.push_back(robot.joint_index.name(joint));
+  return names;
+}
+
 void write_ticks(const RobotRecording& recording, const model::RobotModel& robot, const std::filesystem::path& file) {
   io::LogWriter writer(file);
   recording::RunInfo run;
   run.robot = robot.name;
-  run.options = nlohmann::json{{"drive_sampling_s", recording.drive.step_s}}.dump();
+  nlohmann::json options = {{"drive_sampling_s", recording.drive.step_s},
+                            {"command_delay_s", recording.drive.command_delay_s}};
+  options["older_joints"] = names(recording.drive.older_joints, robot);
+  options["older_imu"] = recording.drive.older_imu;
+  options["older_by_s"] = recording.drive.older_by_s;
+  options["closed_by_bus"] = names(recording.drive.closed_by_bus, robot);
+  options["bus_loop_age_s"] = recording.drive.bus_loop_age_s;
+  if (recording.source.set_on_simulator) options["set_on_simulator"] = *recording.source.set_on_simulator;
+  run.backend = recording.source.backend;
+  run.options = options.dump();
   pmg_msgs::robot_info_t info;
   recording::fill(run, robot, 1.0 / recording.period_s, 0, info);
   writer.write("ROBOT_INFO", 0, info);
@@ -189,8 +233,12 @@ RobotRecording play(sim::World& world, std::span<const model::JointCommand> comm
                     const work::Progress& progress) {
   constexpr std::size_t kTicksPerReport = 100;
   RobotRecording recording{.name = name,
+                           .source = {.backend = "sil", .simulated = true, .set_on_simulator = world.set_values()},
                            .period_s = model::kControlPeriod_s,
-                           .drive = {model::kBusPeriod_s, "the simulation that was recorded"}};
+                           .drive = {.step_s = model::kBusPeriod_s,
+                                     .known_from = "the simulation that was recorded",
+                                     .command_delay_s = 0.0,
+                                     .delay_known_from = "the same"}};
   recording.ticks.reserve(commands.size());
   for (const model::JointCommand& command : commands) {
     RobotTick tick;

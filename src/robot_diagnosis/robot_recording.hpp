@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +23,24 @@ struct RobotTick {
   model::JointCommand command;
 };
 
+/// Where a recording was made.
+struct RecordingSource {
+  std::string backend{};   ///< of the controller; "" if the log doesn't say
+  bool simulated = false;  ///< else hardware, as far as the log says
+  /// What was set on the simulator beside the robot's files, one line each; nullopt: the log doesn't say.
+  std::optional<std::vector<std::string>> set_on_simulator{};
+};
+
+/// (ROBOT_INFO's backend, its options as JSON) => (source).
+RecordingSource recording_source(const std::string& backend, const std::string& options);
+
+/// One line for people: what was set on the simulator, or that nothing was, or that nothing can be.
+std::string source_text(const RecordingSource& source);
+
 /// Ticks at a constant period. A gap in a log starts a new recording.
 struct RobotRecording {
   std::string name;  ///< short name of the log
+  RecordingSource source{};
   double period_s = 0.01;
   DriveSampling drive{};
   std::vector<RobotTick> ticks{};

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace pmg::robot_diagnosis {
 
@@ -78,6 +79,7 @@ nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& d) {
   json["unit"] = "noise of the equations";
   json["depends_on"] = d.depends_on;
   json["not_seen"] = d.not_seen;
+  json["recordings"] = d.recordings;
   json["drive_sampling"] = d.drive_sampling;
   json["options"] = evidence::options_json(d.options);
   const std::string next = next_excitation(d);
@@ -132,7 +134,10 @@ pages::Page robot_diagnosis_page(const std::string& robot, const RobotDiagnosis&
     }
   }
   if (!table.rows.empty()) page.table(table);
-  page.paragraph(robot_diagnosis_text(d));
+  std::istringstream lines(robot_diagnosis_text(d));
+  for (std::string line; std::getline(lines, line);) page.paragraph(line);
+  page.heading("Where the logs were made");
+  for (const std::string& recording : d.recordings) page.paragraph(recording);
   page.heading("What these logs would not have shown");
   page.paragraph(d.not_seen.empty() ? "Every cause of the list would have shown."
                                     : fmt::format("{}", fmt::join(d.not_seen, "; ")));

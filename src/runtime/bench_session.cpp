@@ -16,7 +16,7 @@ namespace pmg::runtime {
 void expect_no_policy(control::ControlSetup& setup) {
   if (setup.policy.empty()) setup.policy = "none";
   if (setup.policy != "none")
-    throw std::invalid_argument("--bench excites a joint without a policy; expected --policy none");
+    throw std::invalid_argument("joints are excited without a policy (--bench, --excite); expected --policy none");
 }
 
 control::ExcitationPlan excitation_plan(const model::RobotModel& robot, const std::string& joint,

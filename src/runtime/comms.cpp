@@ -14,7 +14,7 @@ namespace pmg::runtime {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000, kArmsPeriod_ns = 100'000'000;
 constexpr std::int64_t kVerifyPeriod_ns =
     10'000'000;                          // a signature takes 0.1 ms: a flood of forged ones must delay no stop
 constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
@@ -34,13 +34,17 @@ Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::Controll
       gate_(inbox, run.robot, clock, seal_),
       hoist_gate_(run.robot, clock, seal_),
       next_second_ns_(clock.now_ns()),
-      next_hoist_ns_(clock.now_ns()) {
+      next_hoist_ns_(clock.now_ns()),
+      next_arms_ns_(clock.now_ns()) {
   state_.robot = reference_.robot = motor_command_.robot = timing_.robot = run_.robot;
   link_.subscribe("COMMAND", [this](io::Bytes message) {
     if (!listening_) gate_.take_command(message);
   });
   link_.subscribe("MODE", [this](io::Bytes message) {
     if (!listening_) gate_.take_mode(message);
+  });
+  link_.subscribe("ARMS", [this](io::Bytes message) {
+    if (!listening_) gate_.take_arms(message);
   });
   link_.subscribe("HOIST", [this](io::Bytes message) {
     if (!listening_) hoist_gate_.take(message);
@@ -191,6 +195,7 @@ void Comms::publish_newest() {
     link_.publish("FAULT", fault_);
   }
   published_fault_ = fault;
+  publish_arms();
 }
 
 void Comms::publish_hoist() {
@@ -199,6 +204,17 @@ void Comms::publish_hoist() {
   next_hoist_ns_ = clock_.now_ns() + kHoistPeriod_ns;
   hoist_state_.stamp_ns = clock_.now_ns();
   link_.send("HOIST_STATE", seal_.prove("HOIST_STATE", hoist_state_));
+}
+
+void Comms::publish_arms() {
+  const control::ArmsState& arms = newest_.result.arms;
+  const auto activity = [&](Foot arm) { return static_cast<std::int8_t>(arms.arm[arm].activity); };
+  const bool news = arms_state_.left != activity(kLeft) || arms_state_.right != activity(kRight) ||
+                    arms_state_.order != static_cast<std::int8_t>(arms.order) || arms_state_.refused != arms.refused;
+  if (!arms.there || (!news && clock_.now_ns() < next_arms_ns_)) return;
+  next_arms_ns_ = clock_.now_ns() + kArmsPeriod_ns;
+  recording::fill(newest_, run_, arms_state_);
+  link_.send("ARMS_STATE", seal_.prove("ARMS_STATE", arms_state_));
 }
 
 void Comms::publish_each_second() {
@@ -224,6 +240,7 @@ void Comms::publish_each_second() {
   counts_.not_finite = intake.not_finite;
   counts_.no_lease = intake.no_lease;
   counts_.no_hoist = gate.no_hoist;
+  counts_.no_arms = intake.no_arms;
   link_.publish("LINK", counts_);
 }
 

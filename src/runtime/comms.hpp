@@ -14,6 +14,7 @@
 #include "io/lcm_link.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/arms_state_t.hpp"
 #include "pmg_msgs/fault_t.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
@@ -62,7 +63,8 @@ class Comms {
   HeldClaim hold_name();
 
   /// Waits up to timeout_ms for operators and takes a bounded number of their messages. Then publishes ACK for each
-  /// answer, the newest tick unless it was published, FAULT when one latches, and ROBOT_INFO and LINK once a second.
+  /// answer, the newest tick unless it was published, HOIST_STATE and ARMS_STATE ten times a second, FAULT when one
+  /// latches, and ROBOT_INFO and LINK once a second.
   void step(int timeout_ms);
 
   const GateCounts& gate_counts() const noexcept { return gate_.counts(); }
@@ -82,6 +84,7 @@ class Comms {
   void publish_acks();
   void publish_newest();
   void publish_hoist();
+  void publish_arms();
   void publish_each_second();
   void warn();
 
@@ -98,7 +101,7 @@ class Comms {
   std::vector<std::string> others_;
   std::int64_t impostors_heard_ = 0, impostor_session_ = 0, forgeries_heard_ = 0;
   std::array<bool, 7> warned_{};  // by Warning
-  std::int64_t next_second_ns_, next_hoist_ns_, verify_at_ns_ = 0;
+  std::int64_t next_second_ns_, next_hoist_ns_, next_arms_ns_, verify_at_ns_ = 0;
 
   control::TickRecord newest_;
   faults::Fault published_fault_;
@@ -110,6 +113,7 @@ class Comms {
   pmg_msgs::timing_t timing_;
   pmg_msgs::fault_t fault_;
   pmg_msgs::hoist_state_t hoist_state_{};
+  pmg_msgs::arms_state_t arms_state_{};
   pmg_msgs::robot_info_t info_;
   pmg_msgs::link_t counts_{};
 };

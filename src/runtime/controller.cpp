@@ -33,14 +33,16 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::T
                        const ControllerOptions& options)
     : options_(options),
       inbox_(link_.stop),
+      phase_source_(dynamic_cast<const hal::PhaseSource*>(&bus)),
       bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_) {
   if (options.realtime) refused_ = lock_memory();
-  bus_thread_ = std::make_unique<PeriodicThread>(scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
-                                                 [this](const control::CycleTiming& timing) { run_bus(timing); });
-  control_thread_ =
-      std::make_unique<PeriodicThread>(scheduled(options.control, options.realtime), control::ControlCycle::kPeriod_ns,
-                                       [this](const control::CycleTiming& timing) { run_control(timing); });
+  bus_thread_ = std::make_unique<PeriodicThread>(
+      scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
+      [this](const control::CycleTiming& timing) { run_bus(timing); }, &phase_ns_);
+  control_thread_ = std::make_unique<PeriodicThread>(
+      scheduled(options.control, options.realtime), control::ControlCycle::kPeriod_ns,
+      [this](const control::CycleTiming& timing) { run_control(timing); }, &phase_ns_);
   for (const PeriodicThread* thread : {bus_thread_.get(), control_thread_.get()}) {
     refused_.insert(refused_.end(), thread->refused().begin(), thread->refused().end());
   }
@@ -51,6 +53,7 @@ Controller::~Controller() { stop(); }
 
 void Controller::run_bus(const control::CycleTiming& timing) noexcept {
   bus_cycle_.run();
+  if (phase_source_ != nullptr) phase_ns_.fetch_add(phase_source_->phase_shift_ns(), std::memory_order_relaxed);
   if (bus_cycle_.sample().status == hal::BusStatus::kOk) drives_answered_.store(true, std::memory_order_release);
   control::CycleTiming done = timing;
   done.done_ns = clock_.now_ns();

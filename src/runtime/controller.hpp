@@ -15,6 +15,7 @@
 #include "control/controller_outbox.hpp"
 #include "control/operator_inbox.hpp"
 #include "hal/bus_cycle.hpp"
+#include "hal/phase_source.hpp"
 #include "io/clock.hpp"
 #include "io/mailbox.hpp"
 #include "runtime/periodic_thread.hpp"
@@ -97,6 +98,7 @@ class Controller {
   hal::BusLink link_;
   control::OperatorInbox inbox_;
   control::ControllerOutbox outbox_;
+  const hal::PhaseSource* phase_source_;  // null: the drives have no clock
   hal::BusCycle bus_cycle_;
   control::ControlCycle control_cycle_;
   control::TickRecord record_;  // the control thread's
@@ -105,6 +107,7 @@ class Controller {
   std::atomic<control::Mode> mode_{control::Mode::kPassive};
   Pass comms_, recorder_;
   std::vector<std::string> refused_;
+  std::atomic<std::int64_t> phase_ns_{0};  // by which the drives' clock has moved both threads
   std::unique_ptr<PeriodicThread> bus_thread_, control_thread_;
   std::jthread comms_thread_, recorder_thread_;
   mutable std::mutex failure_mutex_;  // ordinary threads only

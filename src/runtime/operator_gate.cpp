@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "control/source_memory.hpp"
+#include "pmg_msgs/arms_t.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "recording/tick_messages.hpp"
@@ -18,6 +19,14 @@ bool presentable(const std::string& name) {
   return !name.empty() && name.size() < control::Source{}.name.size() &&
          std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
 }
+
+namespace {
+
+bool is_wish(std::int8_t wish) noexcept {
+  return wish >= pmg_msgs::arms_t::HOLD && wish <= pmg_msgs::arms_t::HAND_BACK;
+}
+
+}  // namespace
 
 OperatorGate::OperatorGate(control::OperatorInbox& inbox, std::string robot, const io::Clock& clock,
                            const seal::ControllerSeal& seal)
@@ -37,6 +46,23 @@ void OperatorGate::take_command(io::Bytes bytes) {
     const control::DriveMessage drive = recording::drive_message(sealed->message, now_ns);
     const bool taken =
         rates_.admit(drive.source, control::MessageKind::kCommand, drive.received_ns) && inbox_.put(drive);
+    if (!taken) ++counts_.flooded;
+  }
+}
+
+void OperatorGate::take_arms(io::Bytes bytes) {
+  const auto sealed = seal::decode_sealed<pmg_msgs::arms_t, pmg_msgs::seal_t>(bytes);
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!sealed || !presentable(sealed->message.source) || !is_wish(sealed->message.left) ||
+      !is_wish(sealed->message.right)) {
+    ++counts_.malformed;
+  } else if (sealed->message.version != pmg_msgs::arms_t::VERSION) {
+    ++counts_.other_version;
+  } else if (sealed->message.robot != robot_) {
+    ++counts_.other_robot;
+  } else if (counts_.good(seal_.judge("ARMS", sealed->message.source, sealed->message_bytes, sealed->seal, now_ns))) {
+    const control::ArmsMessage arms = recording::arms_message(sealed->message, now_ns);
+    const bool taken = rates_.admit(arms.source, control::MessageKind::kArms, arms.received_ns) && inbox_.put(arms);
     if (!taken) ++counts_.flooded;
   }
 }

@@ -51,6 +51,7 @@ class OperatorGate {
 
   void take_command(io::Bytes message);  ///< channel COMMAND
   void take_mode(io::Bytes message);     ///< channel MODE
+  void take_arms(io::Bytes message);     ///< channel ARMS
 
   const GateCounts& counts() const noexcept { return counts_; }
 

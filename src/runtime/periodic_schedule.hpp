@@ -14,6 +14,9 @@ class PeriodicSchedule {
   constexpr std::int64_t planned_ns() const noexcept { return planned_ns_; }  ///< the next cycle
   constexpr std::int64_t missed() const noexcept { return missed_; }          ///< cycles left out since the start
 
+  /// The grid moves, the next cycle with it.
+  constexpr void shift(std::int64_t later_ns) noexcept { planned_ns_ += later_ns; }
+
   /// The planned cycle ran from woke_ns to done_ns. Its delay is max(woke - planned, done - (planned + period)).
   /// - Delay below half a period: the next cycle is the next of the grid. It begins at once if its time has come.
   /// - Longer (the host stalled, or the cycle took too long): the next cycle is the first of the grid that begins a

@@ -22,8 +22,13 @@ void sleep_until(std::int64_t wake_ns) noexcept {
 
 }  // namespace
 
-PeriodicThread::PeriodicThread(const ThreadSchedule& schedule, std::int64_t period_ns, Cycle cycle)
-    : schedule_(schedule), period_ns_(period_ns), cycle_(std::move(cycle)), statistics_(period_ns) {
+PeriodicThread::PeriodicThread(const ThreadSchedule& schedule, std::int64_t period_ns, Cycle cycle,
+                               const std::atomic<std::int64_t>* shift_ns)
+    : schedule_(schedule),
+      period_ns_(period_ns),
+      cycle_(std::move(cycle)),
+      shift_ns_(shift_ns),
+      statistics_(period_ns) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, kRealtimeStack_bytes);
@@ -65,6 +70,7 @@ void PeriodicThread::prepare() {
 void PeriodicThread::loop() noexcept {
   const io::WallClock clock;
   PeriodicSchedule schedule(first_ns_, period_ns_);
+  std::int64_t shifted_ns = 0;
   while (true) {
     if (!stopping_.load()) sleep_until(schedule.planned_ns());
     if (stopping_.load()) return;
@@ -74,6 +80,9 @@ void PeriodicThread::loop() noexcept {
     timing.done_ns = clock.now_ns();
     statistics_.add(timing);
     schedule.advance(timing.woke_ns, timing.done_ns);
+    if (shift_ns_ == nullptr) continue;
+    const std::int64_t shift_ns = shift_ns_->load(std::memory_order_relaxed);
+    schedule.shift(shift_ns - std::exchange(shifted_ns, shift_ns));
   }
 }
 

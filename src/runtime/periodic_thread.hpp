@@ -23,7 +23,9 @@ class PeriodicThread {
 
   /// Makes the thread, scheduled as wanted as far as the system allows, and lets it wait for start(). Throws
   /// std::system_error when the system refuses a thread altogether.
-  PeriodicThread(const ThreadSchedule& schedule, std::int64_t period_ns, Cycle cycle);
+  /// shift_ns: by how much the cycles' grid is moved in all, read after each cycle; outlives the thread. Null: never.
+  PeriodicThread(const ThreadSchedule& schedule, std::int64_t period_ns, Cycle cycle,
+                 const std::atomic<std::int64_t>* shift_ns = nullptr);
   ~PeriodicThread();  ///< stops
   PeriodicThread(const PeriodicThread&) = delete;
   PeriodicThread& operator=(const PeriodicThread&) = delete;
@@ -46,6 +48,7 @@ class PeriodicThread {
   ThreadSchedule schedule_;
   std::int64_t period_ns_;
   Cycle cycle_;
+  const std::atomic<std::int64_t>* shift_ns_;
   CycleStatistics statistics_;
   std::vector<std::string> refused_;
   pid_t id_ = 0;

@@ -64,6 +64,15 @@ void Lockstep::control(double time_s) {
   player_.step(time_s, clock_.now_ns());
   inbox_.put(player_.drive());
   inbox_.put(player_.request());
+  if (const auto arms = lead_arms ? lead_arms(time_s) : std::nullopt) {
+    const control::DriveMessage& driver = player_.drive();
+    inbox_.put(control::ArmsMessage{.source = driver.source,
+                                    .sequence = driver.sequence,
+                                    .stamp_ns = driver.stamp_ns,
+                                    .received_ns = driver.received_ns,
+                                    .lease_s = driver.lease_s,
+                                    .arm = *arms});
+  }
   if (!control_sleeps || !control_sleeps()) {
     // A tick that begins so much late ends so much late: here its own work takes no time.
     const double late_s = overrun_s ? overrun_s() : 0.0;

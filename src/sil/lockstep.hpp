@@ -38,6 +38,9 @@ class Lockstep {
   std::function<void(const RunProgress&)> after_tick;
   /// Called after every tick, with all of it.
   std::function<void(const control::TickRecord&)> after_record;
+  /// Asked before every tick, with the time since the run's begin [s]: what the scenario's operator wants of the arms.
+  /// Its sender, times and lease are filled in.
+  std::function<std::optional<arms::PerArm<control::ArmTarget>>(double)> lead_arms;
   /// In cycles in which its thread sleeps, a cycle is left out. While the bus sleeps the world goes on without it.
   std::function<bool()> bus_sleeps, control_sleeps;
   std::function<void()> while_bus_sleeps;

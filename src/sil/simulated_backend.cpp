@@ -6,6 +6,7 @@
 #include "sil/driving_window.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/motors_in_force.hpp"
+#include "sim/set_values.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sil {
@@ -29,6 +30,16 @@ class SimulatedBackend final : public hal::Backend {
   }
   hal::BackendLimits limits() const override {
     return option<bool>("robot-limits") ? hal::BackendLimits{} : limits_on_shared_host();
+  }
+
+  hal::BackendDescription description() const override {
+    // Simulated drives read positions once a physics step.
+    return {.drive_sampling_s = world_options_.timestep_s,
+            .command_delay_s = 0.0,
+            .older_joints = {},
+            .closed_by_bus = {},
+            .own_gains = {},
+            .set_on_simulator = sim::set_values(setup_.robot, world_options_)};
   }
 
   hal::Hal& connect(const std::function<bool()>& /*interrupted*/) override {

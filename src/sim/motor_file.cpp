@@ -5,6 +5,7 @@
 #include "files/config_reader.hpp"
 #include "files/nearest_name.hpp"
 #include "model/constants.hpp"
+#include "model/residual_torque_file.hpp"
 #include "sim/actuator_model.hpp"
 
 namespace pmg::sim {
@@ -34,6 +35,7 @@ model::ActuatorParameters read_actuator(files::ConfigReader& joint) {
     else
       joint.optional<std::string>(group, "");
   }
+  parameters.residual_torque = model::read_residual_torque(joint);
   joint.finish();
   return parameters;
 }
@@ -85,6 +87,7 @@ std::string motor_yaml(const ActuatorsByJoint& actuators, const std::vector<std:
       group = p.group();
       text += fmt::format("      {}: {}\n", p.key(), p.value(parameters));
     }
+    text += model::residual_torque_yaml(parameters.residual_torque);
   }
   return text;
 }

@@ -10,6 +10,7 @@
 #include "sim/motors_in_force.hpp"
 #include "sim/mujoco_objects.hpp"
 #include "sim/sensor_noise.hpp"
+#include "sim/set_values.hpp"
 #include "sim/suspension.hpp"
 
 namespace pmg::sim {
@@ -128,7 +129,7 @@ struct World::Impl {
 };
 
 World::World(const model::RobotModel& robot, const WorldOptions& options)
-    : robot_(robot), impl_(std::make_unique<Impl>(robot, options)) {
+    : robot_(robot), set_values_(sim::set_values(robot, options)), impl_(std::make_unique<Impl>(robot, options)) {
   model_ = impl_->model.get();
   data_ = impl_->data.get();
   reset();
@@ -187,13 +188,15 @@ void World::set_drives(const model::JointCommand& command) noexcept {
   Impl& w = *impl_;
   for (int j = 0; j < model_->nu; ++j) {
     const auto index = static_cast<std::size_t>(j);
-    const double q_rad = data_->qpos[w.qpos_address[index]], dq_rad_s = data_->qvel[w.dof_address[index]];
+    const int dof = w.dof_address[index];
+    const double q_rad = data_->qpos[w.qpos_address[index]], dq_rad_s = data_->qvel[dof];
     const ActuatorInput input{.q_rad = command.q[j],
                               .dq_rad_s = command.dq[j],
                               .kp = command.kp[j],
                               .kd = command.kd[j],
                               .feed_forward_Nm = command.tau_ff[j],
-                              .temperature_C = kDriveTemperature_degC};
+                              .temperature_C = kDriveTemperature_degC,
+                              .external_Nm = data_->qfrc_constraint[dof] - data_->qfrc_bias[dof]};
     apply(model_, data_, j, w.motors[index].step(input, q_rad, dq_rad_s), dq_rad_s);
   }
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "model/ground_truth.hpp"
 #include "model/robot_io.hpp"
@@ -49,6 +50,8 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
+  /// What it was told beside the robot's files, as sim::set_values.
+  const std::vector<std::string>& set_values() const noexcept { return set_values_; }
   void reset();  ///< standing posture, soles on the ground (or hanging on the gantry), at rest, time zero
 
   /// One physics step under the command (held), each joint through its actuator model. No heap. The command's vectors
@@ -85,6 +88,7 @@ class World {
   void check_divergence() noexcept;
 
   const model::RobotModel& robot_;
+  std::vector<std::string> set_values_;
   mjModel* model_ = nullptr;
   mjData* data_ = nullptr;
   struct Impl;

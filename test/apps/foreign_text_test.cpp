@@ -34,7 +34,6 @@ using test::RunningProgram;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kLog = "test/data/logs/walk_fault_reset.lcm";
 const std::string kForeign = "=1+1\x1b]0;owned\a\n=2";  // a formula, a terminal's new title, a line that begins anew
 
 void expect_harmless(const std::string& text, const std::string& where) {
@@ -86,23 +85,18 @@ class ForeignText : public testing::Test {
   ForeignText() { fs::create_directories(folder_); }
   ~ForeignText() override { fs::remove_all(folder_); }
 
-  struct Finished {
-    int exit_code;
-    std::string out, err;
-  };
-  Finished run(const std::string& name, const std::vector<std::string>& arguments) const {
+  test::Finished run(const std::string& name, const std::vector<std::string>& arguments) const {
     RunningProgram program(name, arguments, folder_);
-    const int exit_code = program.wait();
-    return {exit_code, program.out(), program.err()};
+    return program.finish();
   }
   std::string shown(const std::string& name, const std::vector<std::string>& arguments) const {
-    const Finished finished = run(name, arguments);
+    const test::Finished finished = run(name, arguments);
     return finished.out + finished.err;
   }
   /// The committed log with such names; everywhere, or only where controllers' and operators' names change.
   fs::path foreign_log(bool everywhere) const {
     const fs::path log = folder_ / (everywhere ? "all.lcm" : "some.lcm");
-    test::copy_log(kLog, log, [&](test::LogEvent& event) {
+    test::copy_log(test::kCommittedLog, log, [&](test::LogEvent& event) {
       const auto change = [&]<typename Message>(auto... texts) {
         auto message = event.as<Message>();
         ((message.*texts = kForeign), ...);
@@ -172,7 +166,7 @@ TEST_F(ForeignText, OperatorsProgramsShowItPlain) {
 
 TEST_F(ForeignText, ControllersShowItPlain) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
-    const Finished finished =
+    const test::Finished finished =
         run("pmg_controller", {"--hal", "sil", "--policy", "none", "--gantry", "--no-realtime", "--duration", "0.1",
                                "--json", "--name", kForeign, "--log", (folder_ / "log").string()});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/running_program.hpp"
 #include "io/clock.hpp"
 #include "io/private_network.hpp"
 #include "io/raw_datagrams.hpp"
@@ -31,11 +32,6 @@ using io::Multicast;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::MatchesRegex;
-
-struct Finished {
-  int exit_code = -1;
-  std::string out, err;
-};
 
 /// A program in the background, in the calling thread's network.
 class Background {
@@ -85,28 +81,19 @@ class OperatorApps : public testing::Test {
   OperatorApps() { fs::create_directories(folder_); }
   ~OperatorApps() override { fs::remove_all(folder_); }
 
-  Finished run(const std::string& command) {
-    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
-    const std::string line =
-        std::string(PMG_BIN_DIR) + "/" + command + " >" + out.string() + " 2>" + err.string() + " </dev/null";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
-  }
-  static std::string text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  }
+  test::Finished run(const std::string& command) { return test::run_in_shell(command, folder_); }
   std::unique_ptr<Background> controller(const std::string& name, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments = {"--hal",    "sil",  "--robot",  "z1",
                                           "--policy", "none", "--gantry", "--no-realtime",
                                           "--name",   name,   "--log",    (folder_ / ("log_" + name)).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto started = std::make_unique<Background>("pmg_controller", arguments, folder_ / (name + ".txt"));
-    EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0) << text(folder_ / (name + ".txt"));
+    EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot " + name).exit_code, 0)
+        << test::text_of(folder_ / (name + ".txt"));
     return started;
   }
   std::string mode_of(const std::string& name) {
-    const Finished watch = run("pmg_watch --once --json --timeout 10 --robot " + name);
+    const test::Finished watch = run("pmg_watch --once --json --timeout 10 --robot " + name);
     return watch.exit_code == 0 ? nlohmann::json::parse(watch.out)["mode"].get<std::string>() : watch.err;
   }
   /// A host that pauses these processes for 0.2 s ends a walk; a longer pause ends in a fault, as it should.
@@ -118,14 +105,15 @@ class OperatorApps : public testing::Test {
   void expect_one_runs(Background& first, Background& second, const std::string& first_name,
                        const std::string& second_name, int attempt) {
     const auto speaks = [&](const std::string& name) {
-      return text(folder_ / (name + ".txt")).find("mode: passive") != std::string::npos;
+      return test::text_of(folder_ / (name + ".txt")).find("mode: passive") != std::string::npos;
     };
     const auto decided = [&] {
       if (first.running() && second.running()) return speaks(first_name) && speaks(second_name);
       return speaks(first_name) || speaks(second_name) || (!first.running() && !second.running());
     };
     while (!decided()) ::usleep(10'000);
-    const std::string shown = text(folder_ / (first_name + ".txt")) + text(folder_ / (second_name + ".txt"));
+    const std::string shown =
+        test::text_of(folder_ / (first_name + ".txt")) + test::text_of(folder_ / (second_name + ".txt"));
     ASSERT_NE(first.running(), second.running()) << "try " << attempt << ": " << shown;
     EXPECT_THAT(shown, HasSubstr("is already run by another controller")) << "try " << attempt;
     const bool first_runs = first.running();
@@ -144,7 +132,7 @@ class OperatorApps : public testing::Test {
       driver->end(SIGINT);
       stand_again(name);
     }
-    ADD_FAILURE() << name << " doesn't walk; " << text(folder_ / "driver.txt");
+    ADD_FAILURE() << name << " doesn't walk; " << test::text_of(folder_ / "driver.txt");
     return std::make_unique<Background>("pmg_send", std::vector<std::string>{"--help"}, folder_ / "driver.txt");
   }
 
@@ -153,7 +141,7 @@ class OperatorApps : public testing::Test {
 
 TEST_F(OperatorApps, HelpHasAnExampleAndTheExitCodes) {
   for (const char* app : {"pmg_send", "pmg_watch"}) {
-    const Finished help = run(std::string(app) + " --help");
+    const test::Finished help = run(std::string(app) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("Exit codes: 0")));
   }
@@ -169,10 +157,16 @@ TEST_F(OperatorApps, BadInputIsRefused) {
            std::pair{"pmg_send walk --for -1", "--for"},
            std::pair{"pmg_send stop --timeout 0", "--timeout"},
            std::pair{"pmg_send stop --lcm-url udpm://10.0.0.1:7667", "expected a multicast group"},
+           std::pair{"pmg_send arms --for 1", "expected --left or --right, or --hand-back"},
+           std::pair{"pmg_send arms --hand-back --left 0.3 0.2 0.1 --for 1", "--hand-back alone"},
+           std::pair{"pmg_send arms --left 0.3 0.2 0.1", "--for is missing"},
+           std::pair{"pmg_send arms --left nan 0.2 0.1 --for 1", "'nan' isn't a number from -10 to 10"},
+           std::pair{"pmg_send arms --right 1e300 0.2 0.1 --for 1", "'1e300' isn't a number from -10 to 10"},
+           std::pair{"pmg_send arms --right 0.3 0.2 0.1 0.5 --for 1", "--right: 4 numbers; expected X Y Z"},
            std::pair{"pmg_watch --lcm-url file:///tmp/log", "expected udpm://GROUP:PORT"},
            std::pair{"pmg_watch --timeout never", "--timeout"},
        }) {
-    const Finished refused = run(command);
+    const test::Finished refused = run(command);
     EXPECT_EQ(refused.exit_code, 2) << command;
     EXPECT_THAT(refused.err + refused.out, HasSubstr(complaint)) << command;
   }
@@ -181,7 +175,7 @@ TEST_F(OperatorApps, BadInputIsRefused) {
 TEST_F(OperatorApps, WithoutAMulticastRouteTheWayOutIsSaid) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kNone, [&] {
     for (const char* app : {"pmg_send stop", "pmg_watch --once"}) {
-      const Finished failed = run(app);
+      const test::Finished failed = run(app);
       EXPECT_EQ(failed.exit_code, 2);
       EXPECT_THAT(failed.err, HasSubstr("ip route add 224.0.0.0/4 dev lo"));
       EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
@@ -193,11 +187,11 @@ TEST_F(OperatorApps, WithoutAControllerThatIsSaid) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     for (const char* command :
          {"pmg_send stop --timeout 0.3", "pmg_send stand --timeout 0.3", "pmg_watch --once --timeout 0.3"}) {
-      const Finished unheard = run(command);
+      const test::Finished unheard = run(command);
       EXPECT_EQ(unheard.exit_code, 1) << command;
       EXPECT_THAT(unheard.err, HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0")) << command;
     }
-    const Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
+    const test::Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
     EXPECT_EQ(named.exit_code, 1);
     EXPECT_THAT(named.err, HasSubstr("no controller of this name answers"));
   });
@@ -208,14 +202,14 @@ TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
     const auto robot = controller("z1");
     EXPECT_EQ(mode_of("z1"), "passive");
 
-    const Finished stand = run("pmg_send stand --json");
+    const test::Finished stand = run("pmg_send stand --json");
     EXPECT_EQ(stand.exit_code, 0) << stand.out << stand.err;
     const auto answer = nlohmann::json::parse(stand.out);
     EXPECT_EQ(answer["robots"][0]["robot"], "z1");
     EXPECT_EQ(answer["robots"][0]["acknowledged"], true);
     EXPECT_EQ(answer["robots"][0]["mode"], "stand");
 
-    Finished walk;
+    test::Finished walk;
     for (int attempt = 0; attempt < 5 && walk.exit_code != 0; ++attempt) {
       if (attempt > 0) stand_again("z1");
       walk = run("pmg_send walk --vx 0.2 --for 0.5");
@@ -224,7 +218,7 @@ TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
     EXPECT_THAT(walk.out, HasSubstr("z1: stand (drove for 0.5 s)"));
 
     const std::unique_ptr<Background> driver = walking_driver("z1");
-    const Finished stop = run("pmg_send stop");
+    const test::Finished stop = run("pmg_send stop");
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, MatchesRegex("z1: damping; acknowledged after [0-9]+ ms, damping known after [0-9]+ ms\n"));
     EXPECT_EQ(driver->wait(), 1) << "the driver is told that somebody stopped it";
@@ -233,11 +227,44 @@ TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
   });
 }
 
+TEST_F(OperatorApps, ARealControllersArmsAreLedHeldInStandAndHandedBack) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
+    const auto robot = controller("z1");
+    const auto arms = [&] { return nlohmann::json::parse(run("pmg_watch --once --json --timeout 10").out).at("arms"); };
+    const auto send = [&](const std::string& what) {
+      test::Finished sent;
+      for (int attempt = 0; attempt < 5 && sent.exit_code != 0; ++attempt) {
+        if (attempt > 0) stand_again("z1");
+        sent = run("pmg_send arms " + what);
+      }
+      return sent;
+    };
+    EXPECT_EQ(arms().at("left").at("activity"), "reference");
+    const std::vector<double> rest = arms().at("right").at("p_m");
+    const test::Finished led = send("--right " + std::to_string(rest[0] + 0.1) + " " + std::to_string(rest[1]) + " " +
+                                    std::to_string(rest[2] + 0.1) + " --for 2");
+    EXPECT_EQ(led.exit_code, 0) << led.err;
+    EXPECT_THAT(led.out, HasSubstr("right arm: at its target"));
+    EXPECT_EQ(arms().at("right").at("activity"), "held");
+    EXPECT_EQ(arms().at("left").at("activity"), "reference");
+    EXPECT_EQ(arms().at("order"), "not_walking");
+    EXPECT_THAT(run("pmg_watch --once").out, HasSubstr("the robot doesn't walk: arms are led in walk only"));
+
+    const test::Finished far = run("pmg_send arms --right 3 0 0 --for 1");
+    EXPECT_EQ(far.exit_code, 1);
+    EXPECT_THAT(far.err, HasSubstr("from its target"));
+    const test::Finished back = send("--hand-back --for 3");
+    EXPECT_EQ(back.exit_code, 0) << back.err;
+    EXPECT_EQ(arms().at("right").at("activity"), "reference");
+    EXPECT_EQ(robot->end(SIGINT), 0);
+  });
+}
+
 TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideThePromise) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     const fs::path file = folder_ / "failures.yaml";
     std::ofstream(file) << "failures:\n  - {kind: hot, at_s: 3.0, for_s: 100.0, joint: left_knee, value: 95.0}\n";
-    Finished damping;
+    test::Finished damping;
     std::string shown, mode;
     // A host that pauses the controller for longer than it can bear ends it in a fault of timing: then once more.
     for (int attempt = 0; attempt < 5; ++attempt) {
@@ -248,7 +275,7 @@ TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideTheProm
       while (mode = mode_of("z1"), mode != "fault" && clock.now_ns() < end_ns) {
       }
       EXPECT_EQ(robot->end(SIGINT), 0);
-      shown = text(folder_ / "z1.txt");
+      shown = test::text_of(folder_ / "z1.txt");
       if (shown.find("FAULT") == shown.find("FAULT, damping: temperature")) break;
     }
     EXPECT_EQ(damping.exit_code, 0);
@@ -258,7 +285,7 @@ TEST_F(OperatorApps, AnInjectedFailureOfTheSimulatedRobotIsReportedBesideTheProm
 }
 
 TEST_F(OperatorApps, FailuresAreInjectedIntoSimulatedDrivesOnly) {
-  const Finished refused = run("pmg_controller --hal can --inject failures.yaml --lcm-url memq:// --no-log");
+  const test::Finished refused = run("pmg_controller --hal can --inject failures.yaml --lcm-url memq:// --no-log");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--inject spoils simulated drives; expected --hal sil"));
 }
@@ -268,25 +295,25 @@ TEST_F(OperatorApps, AnInterruptedWalkIsBroughtToRest) {
     const auto robot = controller("z1");
     const std::unique_ptr<Background> driver = walking_driver("z1");
     EXPECT_EQ(driver->end(SIGINT), 130);
-    EXPECT_EQ(mode_of("z1"), "stand") << "brought to rest, not dropped; " << text(folder_ / "driver.txt");
+    EXPECT_EQ(mode_of("z1"), "stand") << "brought to rest, not dropped; " << test::text_of(folder_ / "driver.txt");
   });
 }
 
 TEST_F(OperatorApps, TwoControllersNeedTwoNamesAndOneStopReachesBoth) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     const auto first = controller("first");
-    const Finished refused =
+    const test::Finished refused =
         run("pmg_controller --hal sil --gantry --no-realtime --name first --log " + (folder_ / "x").string());
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, AllOf(HasSubstr("\"first\" is already run by another controller"), HasSubstr("--name")));
 
     const auto second = controller("second");
-    const Finished unclear = run("pmg_send stand");
+    const test::Finished unclear = run("pmg_send stand");
     EXPECT_EQ(unclear.exit_code, 2);
     EXPECT_THAT(unclear.err, HasSubstr("several robots are heard (first, second)"));
     EXPECT_EQ(run("pmg_send stand --robot first").exit_code, 0);
     EXPECT_EQ(run("pmg_send stand --robot second").exit_code, 0);
-    const Finished stop = run("pmg_send stop");
+    const test::Finished stop = run("pmg_send stop");
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, AllOf(HasSubstr("first: damping"), HasSubstr("second: damping")));
   });
@@ -347,10 +374,10 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
     const std::string start = "pmg_controller --hal sil --policy none --gantry --no-realtime --duration 0.1 --log " +
                               (folder_ / "x").string() + url;
     ::setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
-    const Finished refused = run(start);
+    const test::Finished refused = run(start);
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, AllOf(HasSubstr("pmg_key new"), HasSubstr("--insecure-without-keys")));
-    const Finished insecure = run(start + " --insecure-without-keys");
+    const test::Finished insecure = run(start + " --insecure-without-keys");
     EXPECT_EQ(insecure.exit_code, 0) << insecure.err;
     EXPECT_THAT(insecure.err, HasSubstr("INSECURE: without keys everybody"));
 
@@ -358,7 +385,7 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
       fs::create_directories(folder);
       std::string make_key = "pmg_key new --keys ";
       make_key.append(keys).append(" ").append(fs::path(folder).filename()).append(" --out ").append(folder);
-      const Finished made = run(make_key.append("/z1.key"));
+      const test::Finished made = run(make_key.append("/z1.key"));
       EXPECT_EQ(made.exit_code, 0) << made.err;
     }
     EXPECT_EQ(run("pmg_key list --keys " + keys).out, "anna\nbert\n");
@@ -367,14 +394,14 @@ TEST_F(OperatorApps, OnANetworkNobodyDrivesWhoHasNoKey) {
                       keys, "--log", (folder_ / "log").string()},
                      folder_ / "z1.txt");
     EXPECT_EQ(run("pmg_watch --once --timeout 60 --robot z1 --keys " + anna + url).exit_code, 0)
-        << text(folder_ / "z1.txt");
+        << test::text_of(folder_ / "z1.txt");
 
-    const Finished stranger = run("pmg_send stand --timeout 1" + url);
+    const test::Finished stranger = run("pmg_send stand --timeout 1" + url);
     EXPECT_EQ(stranger.exit_code, 1);
     EXPECT_THAT(stranger.err, HasSubstr("it takes only operators with a key"));
-    const Finished stand = run("pmg_send stand --keys " + anna + url);
+    const test::Finished stand = run("pmg_send stand --keys " + anna + url);
     EXPECT_EQ(stand.exit_code, 0) << stand.err;
-    const Finished stop = run("pmg_send stop" + url);
+    const test::Finished stop = run("pmg_send stop" + url);
     EXPECT_EQ(stop.exit_code, 0) << "a stop needs no key: " << stop.err;
     EXPECT_THAT(stop.out, MatchesRegex("z1: damping; acknowledged after [0-9]+ ms, damping known after [0-9]+ ms\n"));
 
@@ -403,7 +430,7 @@ TEST_F(OperatorApps, BadKeysAreRefusedInOneLine) {
            std::pair{"pmg_key new ../anna", std::string("expected 1 to 15 letters")},
            std::pair{"pmg_key new", std::string("NAME")},
        }) {
-    const Finished refused =
+    const test::Finished refused =
         run(std::string(command) + (command == std::string("pmg_key new ../anna") ? " --out x" : ""));
     EXPECT_EQ(refused.exit_code, 2) << command;
     EXPECT_THAT(refused.err + refused.out, HasSubstr(complaint)) << command;
@@ -411,7 +438,7 @@ TEST_F(OperatorApps, BadKeysAreRefusedInOneLine) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     for (const std::string& command :
          {"pmg_send stand" + keys, "pmg_watch --once" + keys, "pmg_send stand" + missing}) {
-      const Finished refused = run(command);
+      const test::Finished refused = run(command);
       EXPECT_EQ(refused.exit_code, 2) << command;
       EXPECT_THAT(refused.err, HasSubstr(".key")) << command;
       EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
@@ -425,7 +452,7 @@ TEST_F(OperatorApps, AStopGoesOutWhateverTheKeysAre) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     const auto robot = controller("z1");
     EXPECT_EQ(run("pmg_send stand").exit_code, 0);
-    const Finished stop = run("pmg_send stop --keys " + (folder_ / "keys").string());
+    const test::Finished stop = run("pmg_send stop --keys " + (folder_ / "keys").string());
     EXPECT_EQ(stop.exit_code, 0) << stop.err;
     EXPECT_THAT(stop.out, testing::StartsWith("z1: damping; acknowledged after "));
     EXPECT_THAT(stop.err, AllOf(HasSubstr("z1.key"), HasSubstr("the stop goes out without a key")));
@@ -511,7 +538,7 @@ TEST_F(OperatorApps, NoDatagramEndsAProgram) {
     Background watch("pmg_watch", {"--json"}, folder_ / "watch.txt");
     Background stop("pmg_send", {"stop", "--robot", "nobody", "--timeout", "100"}, folder_ / "stop.txt");
     const auto lines = [&] {
-      const std::string shown = text(folder_ / "watch.txt");
+      const std::string shown = test::text_of(folder_ / "watch.txt");
       return std::count(shown.begin(), shown.end(), '\n');
     };
     while (lines() < 2 && watch.running()) {

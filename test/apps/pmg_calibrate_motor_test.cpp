@@ -27,16 +27,11 @@ class PmgCalibrateMotor : public testing::Test {
   }
   ~PmgCalibrateMotor() override { fs::remove_all(folder_); }
 
-  struct Finished {
-    int exit_code;
-    std::string out, err;
-  };
-  Finished run(std::vector<std::string> arguments) const {
+  test::Finished run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), (folder_ / "servo").string());
     arguments.insert(arguments.end(), {"--out", out_.string(), "--threads", "2"});
     test::RunningProgram program("pmg_calibrate_motor", arguments, folder_);
-    const int exit_code = program.wait();
-    return {exit_code, program.out(), program.err()};
+    return program.finish();
   }
   calib::JointModel truth_;
   const fs::path folder_ = fs::path(testing::TempDir()) /
@@ -45,8 +40,8 @@ class PmgCalibrateMotor : public testing::Test {
 };
 
 TEST_F(PmgCalibrateMotor, WritesAMotorThatTheSimulationReads) {
-  const Finished done = run({"--also", "friction", "--fit", "kp_Nm_per_rad > 0 and file != run3.csv", "--score",
-                             "file == run3.csv", "--json"});
+  const test::Finished done = run({"--also", "friction", "--fit", "kp_Nm_per_rad > 0 and file != run3.csv", "--score",
+                                   "file == run3.csv", "--json"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
   EXPECT_EQ(json, nlohmann::json::parse(test::text_of(out_ / "fit.json")));
@@ -74,14 +69,14 @@ TEST_F(PmgCalibrateMotor, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--only"}, "nothing to fit"},
   };
   for (const auto& [arguments, message] : bad) {
-    const Finished done = run(arguments);
+    const test::Finished done = run(arguments);
     EXPECT_EQ(done.exit_code, 2) << message;
     EXPECT_THAT(done.err, HasSubstr(message));
     EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
     EXPECT_FALSE(fs::exists(out_));
   }
   fs::remove(folder_ / "servo" / "runs" / "run2.csv");
-  const Finished done = run({});
+  const test::Finished done = run({});
   EXPECT_EQ(done.exit_code, 2);
   EXPECT_THAT(done.err, AllOf(HasSubstr("run2.csv"), HasSubstr("there is no such file")));
   EXPECT_FALSE(fs::exists(out_));

@@ -22,17 +22,12 @@ class PmgCalibrateZero : public testing::Test {
   }
   ~PmgCalibrateZero() override { fs::remove_all(folder_); }
 
-  struct Finished {
-    int exit_code;
-    std::string out, err;
-  };
-  Finished run(const std::string& program_name, const std::vector<std::string>& arguments) const {
+  test::Finished run(const std::string& program_name, const std::vector<std::string>& arguments) const {
     test::RunningProgram program(program_name, arguments, folder_);
-    const int exit_code = program.wait();
-    return {exit_code, program.out(), program.err()};
+    return program.finish();
   }
   void make_stances() const {
-    const Finished done = run("pmg_calibrate_zero", {"--robot", "z1", "--make-stances", stances_.string()});
+    const test::Finished done = run("pmg_calibrate_zero", {"--robot", "z1", "--make-stances", stances_.string()});
     ASSERT_EQ(done.exit_code, 0) << done.err;
   }
   const fs::path folder_ = fs::path(testing::TempDir()) /
@@ -68,12 +63,12 @@ TEST_F(PmgCalibrateZero, FindsHiddenZeroPointsOfASimulatedRobot) {
   YAML::Node yaml = YAML::LoadFile((stances_ / "robot.yaml").string());
   yaml["imu"]["rpy_rad"] = std::vector<double>{0.0006, -0.0005, 0.0};
   std::ofstream(plant / "robot.yaml") << YAML::Dump(yaml);
-  const Finished played =
+  const test::Finished played =
       run("pmg_sil", {"--robot", plant.string(), "--scenario", (stances_ / "scenario.yaml").string(), "--motor",
                       (folder_ / "hidden.yaml").string(), "--seed", "3", "--out", (folder_ / "run").string()});
   ASSERT_EQ(played.exit_code, 0) << played.err;
 
-  const Finished done =
+  const test::Finished done =
       run("pmg_calibrate_zero", {(folder_ / "run").string(), "--robot", "z1", "--out", out_.string(), "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err << done.out;
   const auto json = nlohmann::json::parse(done.out);
@@ -89,8 +84,8 @@ TEST_F(PmgCalibrateZero, FindsHiddenZeroPointsOfASimulatedRobot) {
 
 TEST_F(PmgCalibrateZero, AMotorFileOfOtherJointsIsRefused) {
   std::ofstream(folder_ / "motor.yaml") << "joints:\n  left_elbw: {friction: {coulomb_Nm: 1}}\n";
-  const Finished done = run("pmg_calibrate_zero", {"test/data/logs/walk_fault_reset.lcm", "--out", out_.string(),
-                                                   "--motor", (folder_ / "motor.yaml").string()});
+  const test::Finished done = run("pmg_calibrate_zero", {"test/data/logs/walk_fault_reset.lcm", "--out", out_.string(),
+                                                         "--motor", (folder_ / "motor.yaml").string()});
   EXPECT_EQ(done.exit_code, 2);
   EXPECT_THAT(done.err, HasSubstr("left_elbw"));
 }
@@ -98,7 +93,7 @@ TEST_F(PmgCalibrateZero, AMotorFileOfOtherJointsIsRefused) {
 TEST_F(PmgCalibrateZero, BadInputIsOneLineAndNothingIsWritten) {
   const auto refused = [this](std::vector<std::string> arguments, const std::string& says) {
     arguments.insert(arguments.end(), {"--out", out_.string()});
-    const Finished done = run("pmg_calibrate_zero", arguments);
+    const test::Finished done = run("pmg_calibrate_zero", arguments);
     EXPECT_EQ(done.exit_code, 2) << says;
     EXPECT_THAT(done.err, HasSubstr(says));
     EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;

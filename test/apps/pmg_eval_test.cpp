@@ -23,14 +23,9 @@ class PmgEval : public testing::Test {
   PmgEval() { fs::create_directories(folder_); }
   ~PmgEval() override { fs::remove_all(folder_); }
 
-  struct Finished {
-    int exit_code;
-    std::string out, err;
-  };
-  Finished run(std::vector<std::string> arguments) {
+  test::Finished run(std::vector<std::string> arguments) {
     test::RunningProgram program("pmg_eval", std::move(arguments), folder_);
-    const int exit_code = program.wait();
-    return {exit_code, program.out(), program.err()};
+    return program.finish();
   }
   std::string out_folder(const std::string& name = "run") const { return (folder_ / name).string(); }
   std::string scenario(const std::string& seconds) {
@@ -41,7 +36,7 @@ class PmgEval : public testing::Test {
   }
   void expect_refused(std::vector<std::string> arguments, const std::string& message) {
     arguments.insert(arguments.end(), {"--out", out_folder()});
-    const Finished refused = run(arguments);
+    const test::Finished refused = run(arguments);
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
     EXPECT_THAT(refused.err, HasSubstr(message));
     EXPECT_EQ(refused.out, "");
@@ -52,11 +47,12 @@ class PmgEval : public testing::Test {
 };
 
 TEST_F(PmgEval, HelpHasAnExampleAndTheExitCodes) {
-  const Finished help = run({"--help"});
+  const test::Finished help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, HasSubstr("Examples:"));
   EXPECT_THAT(help.out, HasSubstr("Exit codes: 0"));
-  for (const char* command : {"table1", "push", "robust", "gait"}) EXPECT_THAT(help.out, HasSubstr(command));
+  for (const char* command : {"table1", "push", "robust", "gait", "steady", "jumps"})
+    EXPECT_THAT(help.out, HasSubstr(command));
 }
 
 TEST_F(PmgEval, BadInputIsToldInOneLineAndWritesNothing) {
@@ -70,6 +66,8 @@ TEST_F(PmgEval, BadInputIsToldInOneLineAndWritesNothing) {
   expect_refused({"push", "--policy", "none", "--strengths", "10,strong"}, "--strengths");
   expect_refused({"robust", "--policy", "none", "--robot", "no_such"}, "no_such");
   expect_refused({"gait", "--policy", "none", "--norms", "no/such.csv"}, "no/such.csv");
+  expect_refused({"steady", "--policy", "no_such"}, "no_such");
+  expect_refused({"jumps", "--policy", "none", "--duration", "0"}, "--duration");
 }
 
 TEST_F(PmgEval, TheTableIsTheSameHoweverManyJobsAndHasAPage) {
@@ -77,7 +75,7 @@ TEST_F(PmgEval, TheTableIsTheSameHoweverManyJobsAndHasAPage) {
     return run({"table1", "--policy", "a=none", "--policy", "b=none", "--scenario", scenario("0.4"), "--seeds", "2",
                 "--jobs", jobs, "--json", "--out", out_folder(name)});
   };
-  const Finished one = table("1", "one"), three = table("3", "three");
+  const test::Finished one = table("1", "one"), three = table("3", "three");
   ASSERT_LE(one.exit_code, 1) << one.err;
   EXPECT_EQ(one.out, three.out);
   const json result = json::parse(one.out);
@@ -94,7 +92,7 @@ TEST_F(PmgEval, TheTableIsTheSameHoweverManyJobsAndHasAPage) {
 }
 
 TEST_F(PmgEval, PushesAreCountedByStrengthAndDirection) {
-  const Finished push =
+  const test::Finished push =
       run({"push", "--policy", "none", "--strengths", "0,400", "--trials", "1", "--json", "--out", out_folder()});
   ASSERT_EQ(push.exit_code, 0) << push.err;
   const json result = json::parse(push.out);
@@ -103,6 +101,17 @@ TEST_F(PmgEval, PushesAreCountedByStrengthAndDirection) {
   EXPECT_EQ(result["strengths"][1]["directions"].size(), 8U);
   EXPECT_TRUE(result["limit"]["reached"].is_null()) << "the judged strength was not tried";
   EXPECT_THAT(test::text_of(folder_ / "run/report.html"), HasSubstr("survived, all"));
+}
+
+TEST_F(PmgEval, JumpsAreReportedByRobot) {
+  const test::Finished jumps = run(
+      {"jumps", "--policy", "none", "--nominal", "--seeds", "2", "--duration", "5", "--json", "--out", out_folder()});
+  ASSERT_EQ(jumps.exit_code, 1) << jumps.err;
+  const json result = json::parse(jumps.out);
+  EXPECT_EQ(result, json::parse(test::text_of(folder_ / "run/jumps.json")));
+  EXPECT_EQ(result["runs"].size(), 2U);
+  EXPECT_TRUE(result["variation"].is_null());
+  EXPECT_THAT(test::text_of(folder_ / "run/report.html"), HasSubstr("A robot fell or faulted"));
 }
 
 TEST_F(PmgEval, AnInterruptionKeepsWhatWasDone) {

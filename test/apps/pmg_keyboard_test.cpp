@@ -23,8 +23,6 @@ using test::PseudoTerminal;
 using test::RunningProgram;
 using testing::HasSubstr;
 
-constexpr double kDeadline_s = 90.0;
-
 class PmgKeyboard : public testing::Test {
  protected:
   PmgKeyboard() { fs::create_directories(folder_); }
@@ -45,7 +43,7 @@ class PmgKeyboard : public testing::Test {
             disturbed = place("FAULT") != std::string::npos;
             return disturbed || place(words, from) != std::string::npos;
           },
-          kDeadline_s);
+          test::kDeadline_s);
       EXPECT_TRUE(came) << words << " doesn't come: " << robot.err();
       return came && !disturbed;
     };
@@ -92,7 +90,7 @@ TEST_F(PmgKeyboard, HelpHasAnExampleAndTheExitCodes) {
 TEST_F(PmgKeyboard, TheTerminalIsAsBeforeHoweverItEnds) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT, SIGSEGV}) {
     PseudoTerminal terminal("pmg_keyboard", {"--lcm-url", "memq://"});
-    ASSERT_TRUE(terminal.shows("no controller is heard on memq://", kDeadline_s)) << terminal.text();
+    ASSERT_TRUE(terminal.shows("no controller is heard on memq://", test::kDeadline_s)) << terminal.text();
     EXPECT_FALSE(terminal.as_before());
     terminal.send(signal);
     const bool crash = signal == SIGABRT || signal == SIGSEGV;
@@ -104,7 +102,7 @@ TEST_F(PmgKeyboard, TheTerminalIsAsBeforeHoweverItEnds) {
 
 TEST_F(PmgKeyboard, OutOfTheForegroundTheTerminalIsAsBeforeAndKeysComeBackWithIt) {
   PseudoTerminal terminal("pmg_keyboard", {"--lcm-url", "memq://"});
-  ASSERT_TRUE(terminal.shows("no controller", kDeadline_s));
+  ASSERT_TRUE(terminal.shows("no controller", test::kDeadline_s));
   terminal.send(SIGTSTP);
   while (!terminal.stopped()) usleep(1000);
   EXPECT_TRUE(terminal.as_before());
@@ -118,9 +116,9 @@ TEST_F(PmgKeyboard, OutOfTheForegroundTheTerminalIsAsBeforeAndKeysComeBackWithIt
 TEST_F(PmgKeyboard, ByKeysALimpRobotStandsUpIsSetDownWalksRestsAndIsDamped) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     RunningProgram robot = controller();
-    ASSERT_TRUE(robot.until([&] { return robot.err().find("mode: passive") != std::string::npos; }, kDeadline_s));
+    ASSERT_TRUE(robot.until([&] { return robot.err().find("mode: passive") != std::string::npos; }, test::kDeadline_s));
     PseudoTerminal terminal("pmg_keyboard", {});
-    ASSERT_TRUE(terminal.shows("z1 PASSIVE", kDeadline_s)) << terminal.text();
+    ASSERT_TRUE(terminal.shows("z1 PASSIVE", test::kDeadline_s)) << terminal.text();
     // A computer that pauses these processes for a second may bring the robot down. Then the test makes it stand up
     // again, as an operator would.
     bool walked = false;
@@ -133,7 +131,7 @@ TEST_F(PmgKeyboard, ByKeysALimpRobotStandsUpIsSetDownWalksRestsAndIsDamped) {
         terminal.type("\r");
         terminal.shows("z1 STAND", 20.0);
       }
-      walked = terminal.shows("z1 WALK", kDeadline_s / 3, [&] { terminal.type("w"); }) &&
+      walked = terminal.shows("z1 WALK", test::kDeadline_s / 3, [&] { terminal.type("w"); }) &&
                terminal.shows("+0.40     +0.00", 10.0, [&] { terminal.type("w"); });
     }
     ASSERT_TRUE(walked) << terminal.picture();

@@ -20,27 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr const char* kLog = "test/data/logs/walk_fault_reset.lcm";
-
-struct Finished {
-  int exit_code = -1;
-  std::string out, err;
-};
-
 class PmgLog : public testing::Test {
  protected:
   PmgLog() { fs::create_directories(folder_); }
   ~PmgLog() override { fs::remove_all(folder_); }
 
-  Finished run(const std::string& arguments) const {
-    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
-    const std::string command =
-        std::string(PMG_BIN_DIR) + "/pmg_log " + arguments + " >" + out.string() + " 2>" + err.string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::text_of(out), test::text_of(err)};
-  }
+  test::Finished run(const std::string& arguments) const { return test::run_in_shell("pmg_log " + arguments, folder_); }
   void expect_refused(const std::string& arguments, const std::string& message) const {
-    const Finished refused = run(arguments);
+    const test::Finished refused = run(arguments);
     EXPECT_EQ(refused.exit_code, 2) << arguments;
     EXPECT_THAT(refused.err, HasSubstr(message)) << arguments;
     EXPECT_EQ(refused.out, "") << arguments;
@@ -51,7 +38,7 @@ class PmgLog : public testing::Test {
 
 TEST_F(PmgLog, HelpHasExamplesAndTheExitCodes) {
   for (const char* command : {"--help", "info --help", "export --help", "replay --help"}) {
-    const Finished help = run(command);
+    const test::Finished help = run(command);
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Examples:")) << command;
     EXPECT_THAT(help.out, HasSubstr("Exit codes: 0")) << command;
@@ -59,16 +46,17 @@ TEST_F(PmgLog, HelpHasExamplesAndTheExitCodes) {
 }
 
 TEST_F(PmgLog, InfoTellsPeopleAndMachines) {
-  const Finished text = run(std::string("info ") + kLog);
+  const test::Finished text = run(std::string("info ") + test::kCommittedLog);
   EXPECT_EQ(text.exit_code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("biped-7"));
-  const Finished json = run(std::string("info --json ") + kLog);
+  const test::Finished json = run(std::string("info --json ") + test::kCommittedLog);
   EXPECT_EQ(nlohmann::json::parse(json.out)["runs"][0]["robot"], "biped-7");
 }
 
 TEST_F(PmgLog, ExportWritesCsvAndMcap) {
   const fs::path csv = folder_ / "csv", mcap = folder_ / "log.mcap";
-  const Finished done = run(std::string("export ") + kLog + " --csv " + csv.string() + " --mcap " + mcap.string());
+  const test::Finished done =
+      run(std::string("export ") + test::kCommittedLog + " --csv " + csv.string() + " --mcap " + mcap.string());
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(fs::exists(csv / "STATE.csv"));
   EXPECT_EQ(test::text_of(mcap).substr(1, 5), "MCAP0");
@@ -78,14 +66,14 @@ TEST_F(PmgLog, ExportWritesCsvAndMcap) {
 TEST_F(PmgLog, ReplaySaysInItsExitCodeWhetherItIsTheSame) {
   const fs::path spoilt = folder_ / "spoilt.lcm";
   std::int64_t ticks = 0;
-  test::copy_log(kLog, spoilt, [&ticks](test::LogEvent& event) {
+  test::copy_log(test::kCommittedLog, spoilt, [&ticks](test::LogEvent& event) {
     if (event.channel != "MOTOR_COMMAND" || ++ticks != 100) return true;
     auto command = event.as<pmg_msgs::motor_command_t>();
     command.q_rad[0] += 0.001;
     event.set(command);
     return true;
   });
-  const Finished different = run("replay " + spoilt.string());
+  const test::Finished different = run("replay " + spoilt.string());
   EXPECT_EQ(different.exit_code, 1) << different.err;
   EXPECT_THAT(different.out, HasSubstr("(tick 99) MOTOR_COMMAND q_rad."));
   EXPECT_EQ(run("replay --tolerance 0.0005 " + spoilt.string()).exit_code, 1);
@@ -95,7 +83,7 @@ TEST_F(PmgLog, ReplaySaysInItsExitCodeWhetherItIsTheSame) {
   EXPECT_EQ(json["first_difference"]["tick"], 99);
   EXPECT_NEAR(json["largest_differences"]["MOTOR_COMMAND q_rad"].get<double>(), 0.001, 1e-12);
 
-  const Finished same = run(std::string("replay --tolerance 1e-9 ") + kLog);
+  const test::Finished same = run(std::string("replay --tolerance 1e-9 ") + test::kCommittedLog);
   EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
 }
 
@@ -105,10 +93,10 @@ TEST_F(PmgLog, BadInputIsOneClearLine) {
   const fs::path empty = folder_ / "empty.lcm";
   std::ofstream(empty).close();
   expect_refused("replay " + empty.string(), "no tick to replay");
-  expect_refused(std::string("export ") + kLog, "--csv or --mcap");
-  expect_refused(std::string("export ") + kLog + " --mcap /dev/full", "/dev/full");
-  expect_refused(std::string("replay --robot z1 ") + kLog, "other joints");
-  expect_refused(std::string("replay --tolerance -1 ") + kLog, "--tolerance");
+  expect_refused(std::string("export ") + test::kCommittedLog, "--csv or --mcap");
+  expect_refused(std::string("export ") + test::kCommittedLog + " --mcap /dev/full", "/dev/full");
+  expect_refused(std::string("replay --robot z1 ") + test::kCommittedLog, "other joints");
+  expect_refused(std::string("replay --tolerance -1 ") + test::kCommittedLog, "--tolerance");
 }
 
 TEST_F(PmgLog, OnceInARunOfTheSimulationReplaysBitForBit) {
@@ -117,7 +105,7 @@ TEST_F(PmgLog, OnceInARunOfTheSimulationReplaysBitForBit) {
                                "/pmg_sil --robot config/robots/z1 --scenario config/scenarios/stand.yaml --out " +
                                out.string() + " >" + (folder_ / "sil").string() + " 2>&1";
   ASSERT_EQ(std::system(simulate.c_str()), 0) << test::text_of(folder_ / "sil");
-  const Finished same = run("replay " + out.string());
+  const test::Finished same = run("replay " + out.string());
   EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
   EXPECT_THAT(same.out, HasSubstr("the same, bit for bit"));
 }
@@ -132,14 +120,14 @@ TEST_F(PmgLog, ABenchReplaysWithItsExcitationAndIsRefusedWithout) {
                            " --out " + out.string() + quiet;
   ASSERT_EQ(std::system(play.c_str()), 0) << test::text_of(folder_ / "said");
 
-  const Finished same = run("replay " + out.string());
+  const test::Finished same = run("replay " + out.string());
   EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
   EXPECT_THAT(same.out, HasSubstr("the same, bit for bit"));
   fs::rename(excitation, moved);
   expect_refused("replay " + out.string(), "expected its place now in --excitation");
   EXPECT_EQ(run("replay --excitation " + moved.string() + " " + out.string()).exit_code, 0);
   std::ofstream(moved / "commands/steps.csv", std::ios::app) << "4.00,0.0\n";
-  const Finished another = run("replay --excitation " + moved.string() + " " + out.string());
+  const test::Finished another = run("replay --excitation " + moved.string() + " " + out.string());
   EXPECT_EQ(another.exit_code, 1) << "a sample more";
   EXPECT_THAT(another.out, HasSubstr("the excitation of head_pitch is not the one that the log was made with"));
 }

@@ -19,14 +19,9 @@ class PmgReport : public testing::Test {
   PmgReport() { fs::create_directories(folder_); }
   ~PmgReport() override { fs::remove_all(folder_); }
 
-  struct Finished {
-    int exit_code;
-    std::string out, err;
-  };
-  Finished run(const std::vector<std::string>& arguments) const {
+  test::Finished run(const std::vector<std::string>& arguments) const {
     test::RunningProgram program("pmg_report", arguments, folder_);
-    const int exit_code = program.wait();
-    return {exit_code, program.out(), program.err()};
+    return program.finish();
   }
   std::string log(const std::string& name, const test::SmallLog& content = {}) const {
     content.write(folder_ / name);
@@ -38,7 +33,7 @@ class PmgReport : public testing::Test {
 };
 
 TEST_F(PmgReport, WritesAPageAndSaysWhatItSaw) {
-  const Finished done = run({log("a.lcm"), log("b.lcm", {.fault_at = 50}), "--out", page_});
+  const test::Finished done = run({log("a.lcm"), log("b.lcm", {.fault_at = 50}), "--out", page_});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out,
               testing::AllOf(HasSubstr("a.lcm: tiny, policy none"), HasSubstr("FAULT at 0.50 s"), HasSubstr(page_)));
@@ -47,7 +42,7 @@ TEST_F(PmgReport, WritesAPageAndSaysWhatItSaw) {
 }
 
 TEST_F(PmgReport, GivesMachinesTheFigures) {
-  const Finished done = run({log("a.lcm", {.fault_at = 50}), "--out", page_, "--json"});
+  const test::Finished done = run({log("a.lcm", {.fault_at = 50}), "--out", page_, "--json"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
   EXPECT_EQ(json["report"], page_);
@@ -68,7 +63,7 @@ TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
         folder_);
     sil.wait();
     const auto summary = nlohmann::json::parse(test::text_of(fs::path(out) / "summary.json"));
-    const Finished done = run({out, "--out", page_, "--json"});
+    const test::Finished done = run({out, "--out", page_, "--json"});
     const auto report = nlohmann::json::parse(done.out)["runs"][0];
     EXPECT_EQ(report["fell"], summary["fell"]) << policy;
     EXPECT_GT(summary["tracking"]["followed_s"].get<double>(), 1.0) << policy;
@@ -85,7 +80,7 @@ TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
 TEST_F(PmgReport, KeepsWhatIsReadableOfATruncatedLog) {
   const std::string path = log("cut.lcm");
   fs::resize_file(path, fs::file_size(path) / 2);
-  const Finished done = run({path, "--out", page_});
+  const test::Finished done = run({path, "--out", page_});
   EXPECT_EQ(done.exit_code, 1);
   EXPECT_THAT(done.out, HasSubstr("its end is missing"));
   EXPECT_TRUE(fs::exists(page_));
@@ -93,7 +88,7 @@ TEST_F(PmgReport, KeepsWhatIsReadableOfATruncatedLog) {
 
 TEST_F(PmgReport, RefusesBadInputInOneLine) {
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
-    const Finished done = run(arguments);
+    const test::Finished done = run(arguments);
     EXPECT_EQ(done.exit_code, 2) << message;
     EXPECT_THAT(done.err, HasSubstr(message));
     EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << done.err;
@@ -108,7 +103,7 @@ TEST_F(PmgReport, RefusesBadInputInOneLine) {
 }
 
 TEST_F(PmgReport, HelpShowsAnExampleAndTheExitCodes) {
-  const Finished done = run({"--help"});
+  const test::Finished done = run({"--help"});
   EXPECT_EQ(done.exit_code, 0);
   EXPECT_THAT(done.out, testing::AllOf(HasSubstr("Example:"), HasSubstr("Exit codes:")));
 }

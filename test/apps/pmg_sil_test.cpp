@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/running_program.hpp"
 #include "io/log_reader.hpp"
 #include "policy/linear_policy.hpp"
 
@@ -24,27 +25,12 @@ using testing::HasSubstr;
 
 constexpr const char* kStand = "config/scenarios/stand.yaml";
 
-struct Finished {
-  int exit_code = -1;
-  std::string out, err;
-};
-
 class PmgSil : public testing::Test {
  protected:
   PmgSil() { fs::create_directories(folder_); }
   ~PmgSil() override { fs::remove_all(folder_); }
 
-  Finished run(const std::string& arguments) {
-    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
-    const std::string command =
-        std::string(PMG_BIN_DIR) + "/pmg_sil " + arguments + " >" + out.string() + " 2>" + err.string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
-  }
-  static std::string text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  }
+  test::Finished run(const std::string& arguments) { return test::run_in_shell("pmg_sil " + arguments, folder_); }
   std::string out_folder() const { return (folder_ / "run").string(); }
   fs::path scenario(const std::string& yaml) {
     const fs::path file = folder_ / "scenario.yaml";
@@ -52,7 +38,7 @@ class PmgSil : public testing::Test {
     return file;
   }
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Finished refused = run(arguments + " --out " + out_folder());
+    const test::Finished refused = run(arguments + " --out " + out_folder());
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
     EXPECT_THAT(refused.err, HasSubstr(message));
     EXPECT_EQ(refused.out, "");
@@ -63,7 +49,7 @@ class PmgSil : public testing::Test {
 };
 
 TEST_F(PmgSil, HelpHasAnExampleAndTheExitCodes) {
-  const Finished help = run("--help");
+  const test::Finished help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, HasSubstr("Example:"));
   EXPECT_THAT(help.out, HasSubstr("Exit codes: 0"));
@@ -71,10 +57,10 @@ TEST_F(PmgSil, HelpHasAnExampleAndTheExitCodes) {
 }
 
 TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
-  const Finished stand = run(std::string("--scenario ") + kStand + " --out " + out_folder() + " --json");
+  const test::Finished stand = run(std::string("--scenario ") + kStand + " --out " + out_folder() + " --json");
   ASSERT_EQ(stand.exit_code, 0) << stand.out << stand.err;
   const auto summary = nlohmann::json::parse(stand.out);
-  EXPECT_EQ(summary, nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json")));
+  EXPECT_EQ(summary, nlohmann::json::parse(test::text_of(fs::path(out_folder()) / "summary.json")));
   EXPECT_EQ(summary["fell"], false);
   EXPECT_EQ(summary["robot"], "z1");
   EXPECT_EQ(summary["policy"], "pmg") << "robot.yaml names it";
@@ -91,7 +77,7 @@ TEST_F(PmgSil, StandingSucceedsAndWritesItsThreeFiles) {
   for (const char* key : {"tick", "generator", "gco", "policy"}) {
     EXPECT_TRUE(summary["timing_us"][key]["p99"].is_number()) << key;
   }
-  EXPECT_THAT(text(fs::path(out_folder()) / "timing.csv"), HasSubstr("time_s,tick_us"));
+  EXPECT_THAT(test::text_of(fs::path(out_folder()) / "timing.csv"), HasSubstr("time_s,tick_us"));
   io::LogReader log(fs::path(out_folder()) / "log.lcm");
   std::int64_t last_ns = 0;
   int events = 0;
@@ -108,19 +94,19 @@ TEST_F(PmgSil, TwoRunsOfOneSeedWriteTheSameLog) {
   const fs::path file =
       scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n");
   for (const char* name : {"a", "b"}) {
-    const Finished walk =
+    const test::Finished walk =
         run("--policy none --gantry --seed 5 --scenario " + file.string() + " --out " + (folder_ / name).string());
     ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
   }
   ASSERT_GT(fs::file_size(folder_ / "a/log.lcm"), 100'000u);
-  EXPECT_TRUE(text(folder_ / "a/log.lcm") == text(folder_ / "b/log.lcm"));
+  EXPECT_TRUE(test::text_of(folder_ / "a/log.lcm") == test::text_of(folder_ / "b/log.lcm"));
 }
 
 TEST_F(PmgSil, ThePolicyOfZ1WalksOnTheGround) {
   const fs::path file = scenario(
       "name: walk\nsteps:\n  - {for_s: 2.0, text: stand, mode: stand}\n"
       "  - {for_s: 6.0, text: walk, mode: walk, command: {vx_m_s: 0.5}}\n  - {for_s: 2.0, text: stand, mode: stand}\n");
-  const Finished walk = run("--policy pmg --scenario " + file.string() + " --out " + out_folder() + " --json");
+  const test::Finished walk = run("--policy pmg --scenario " + file.string() + " --out " + out_folder() + " --json");
   ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(summary["fell"], false);
@@ -134,13 +120,13 @@ TEST_F(PmgSil, ABaselineRunsLikeAnyPolicyAndIsAnnounced) {
   const fs::path file =
       scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: turn, mode: walk, command: {omega_rad_s: 0.5}}\n");
   const std::string arguments = "--gantry --policy " + policy.file().string() + " --scenario " + file.string();
-  const Finished walk = run(arguments + " --json --out " + out_folder());
+  const test::Finished walk = run(arguments + " --json --out " + out_folder());
   ASSERT_EQ(walk.exit_code, 0) << walk.out << walk.err;
   EXPECT_THAT(walk.err, HasSubstr("baseline single_gait"));
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(summary["variant"], "single_gait");
   EXPECT_GT(summary["timing_us"]["tick"]["p99"], summary["timing_us"]["policy"]["p50"]);
-  const Finished shown = run(arguments + " --print-config");
+  const test::Finished shown = run(arguments + " --print-config");
   EXPECT_EQ(nlohmann::json::parse(shown.out)["variant"], "single_gait");
 }
 
@@ -150,7 +136,7 @@ TEST_F(PmgSil, APolicyOfOtherClipsIsRefused) {
 
 TEST_F(PmgSil, AFallExitsWithOne) {
   const fs::path file = scenario("name: limp\nsteps:\n  - {for_s: 4.0, text: drives off, mode: passive}\n");
-  const Finished limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
+  const test::Finished limp = run("--scenario " + file.string() + " --out " + out_folder() + " --json");
   EXPECT_EQ(limp.exit_code, 1);
   EXPECT_EQ(nlohmann::json::parse(limp.out)["fell"], true);
 }
@@ -166,20 +152,20 @@ TEST_F(PmgSil, BadInputExitsWithTwoAndSaysWhat) {
   expect_refused("--blend both --scenario " + std::string(kStand), "--blend");
   expect_refused("--seed many --scenario " + std::string(kStand), "--seed");
   expect_refused("--frobnicate --scenario " + std::string(kStand), "--frobnicate");
-  const Finished no_out = run(std::string("--scenario ") + kStand);
+  const test::Finished no_out = run(std::string("--scenario ") + kStand);
   EXPECT_EQ(no_out.exit_code, 2);
   EXPECT_THAT(no_out.err, HasSubstr("--out is missing"));
 }
 
 TEST_F(PmgSil, AnOutputFolderThatCannotBeMadeIsRefused) {
   std::ofstream(folder_ / "file") << "in the way";
-  const Finished refused = run(std::string("--scenario ") + kStand + " --out " + (folder_ / "file/run").string());
+  const test::Finished refused = run(std::string("--scenario ") + kStand + " --out " + (folder_ / "file/run").string());
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("file"));
 }
 
 TEST_F(PmgSil, ConfigInForceIsPrinted) {
-  const Finished printed = run(std::string("--print-config --seed 3 --blend paper --scenario ") + kStand);
+  const test::Finished printed = run(std::string("--print-config --seed 3 --blend paper --scenario ") + kStand);
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   const auto config = nlohmann::json::parse(printed.out);
   EXPECT_EQ(config["seed"], 3);
@@ -190,16 +176,16 @@ TEST_F(PmgSil, ConfigInForceIsPrinted) {
 
 TEST_F(PmgSil, MjcfIsExported) {
   const fs::path file = folder_ / "z1.xml";
-  const Finished exported = run("--export-mjcf " + file.string());
+  const test::Finished exported = run("--export-mjcf " + file.string());
   EXPECT_EQ(exported.exit_code, 0) << exported.err;
-  EXPECT_THAT(text(file), HasSubstr("<mujoco"));
+  EXPECT_THAT(test::text_of(file), HasSubstr("<mujoco"));
 }
 
 TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
   const fs::path file = scenario(
       "name: walk\nsteps:\n  - {for_s: 1.0, text: up, mode: stand}\n"
       "  - {for_s: 1.5, text: walk, mode: walk, command: {vx_m_s: 0.4}}\n");
-  const Finished walk =
+  const test::Finished walk =
       run("--realtime --policy none --gantry --json --scenario " + file.string() + " --out " + out_folder());
   const auto summary = nlohmann::json::parse(walk.out);
   EXPECT_EQ(walk.exit_code, 0) << summary["faults"].dump();
@@ -221,7 +207,7 @@ TEST_F(PmgSil, RealTimeIsMeasuredAsLockstepIs) {
   EXPECT_EQ(states, summary["punctuality"]["control"]["cycles"].get<int>());
   EXPECT_EQ(timings, states);
   EXPECT_EQ(truths, states);
-  const Finished film = run("--realtime --video --scenario " + file.string() + " --out " + out_folder());
+  const test::Finished film = run("--realtime --video --scenario " + file.string() + " --out " + out_folder());
   EXPECT_EQ(film.exit_code, 2);
   EXPECT_THAT(film.err, HasSubstr("--video"));
 }
@@ -248,7 +234,7 @@ TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 130);
-  const auto summary = nlohmann::json::parse(text(fs::path(out_folder()) / "summary.json"));
+  const auto summary = nlohmann::json::parse(test::text_of(fs::path(out_folder()) / "summary.json"));
   EXPECT_EQ(summary["interrupted"], true);
   EXPECT_LT(summary["duration_s"], 600.0);
   io::LogReader reader(log);

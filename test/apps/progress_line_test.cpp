@@ -28,20 +28,39 @@ class Redirected {
   int before_;
 };
 
-/// Reads until the output contains the text; ends after 10 s without output, or with far too much of it.
-std::string read_until(int from, const std::string& text) {
-  constexpr int kDeadline_ms = 10'000;
-  constexpr std::size_t kTooMuch = 10'000;
-  std::string got;
-  pollfd readable{.fd = from, .events = POLLIN, .revents = 0};
-  char buffer[256];
-  while (got.find(text) == std::string::npos && got.size() < kTooMuch && poll(&readable, 1, kDeadline_ms) > 0) {
-    const ssize_t count = read(from, buffer, sizeof(buffer));
-    if (count <= 0) break;
-    got.append(buffer, static_cast<std::size_t>(count));
+/// Reads one end of a pipe or a terminal; what comes in one piece with a text stays for the next call.
+class Output {
+ public:
+  explicit Output(int from) : from_(from) {}
+
+  /// Up to the end of this text; ends after 10 s without output, or with far too much of it.
+  std::string until(const std::string& text) {
+    constexpr int kDeadline_ms = 10'000;
+    constexpr std::size_t kTooMuch = 10'000;
+    pollfd readable{.fd = from_, .events = POLLIN, .revents = 0};
+    char buffer[256];
+    while (rest_.find(text) == std::string::npos && rest_.size() < kTooMuch && poll(&readable, 1, kDeadline_ms) > 0) {
+      const ssize_t count = read(from_, buffer, sizeof(buffer));
+      if (count <= 0) break;
+      rest_.append(buffer, static_cast<std::size_t>(count));
+    }
+    const std::size_t at = rest_.find(text);
+    const std::size_t size = at == std::string::npos ? rest_.size() : at + text.size();
+    const std::string got = rest_.substr(0, size);
+    rest_.erase(0, size);
+    return got;
   }
-  return got;
-}
+
+  /// Nothing is left, and nothing comes for so long.
+  bool stays_quiet(int for_ms) const {
+    pollfd readable{.fd = from_, .events = POLLIN, .revents = 0};
+    return rest_.empty() && poll(&readable, 1, for_ms) == 0;
+  }
+
+ private:
+  int from_;
+  std::string rest_;
+};
 
 TEST(ProgressLine, InAPipeALineComesAgainAndAgainWhileTheWorkSaysNothing) {
   int ends[2];
@@ -49,10 +68,9 @@ TEST(ProgressLine, InAPipeALineComesAgainAndAgainWhileTheWorkSaysNothing) {
   const Redirected redirected(ends[1]);
   ProgressLine progress(1ms);
   progress.show(0.5, "making a clip");
-  const std::string first = read_until(ends[0], "\n"), second = read_until(ends[0], "\n");
-  EXPECT_THAT(first, testing::StartsWith("[0 s]  50 % making a clip\n"));
-  EXPECT_THAT(second, testing::HasSubstr(" 50 % making a clip\n"));
-  EXPECT_THAT(first, testing::Not(testing::HasSubstr("\r")));
+  Output output(ends[0]);
+  for (const char* which : {"first", "second"})
+    EXPECT_THAT(output.until("\n"), testing::MatchesRegex("\\[[0-9]+ s\\]  50 % making a clip\n")) << which;
 }
 
 TEST(ProgressLine, InAPipeTheNewestTextIsSaidHoweverSoonItFollowed) {
@@ -62,7 +80,7 @@ TEST(ProgressLine, InAPipeTheNewestTextIsSaidHoweverSoonItFollowed) {
   ProgressLine progress(1ms);
   progress.show("first");
   progress.show("second");
-  EXPECT_THAT(read_until(ends[0], "second\n"), testing::EndsWith("second\n"));
+  EXPECT_THAT(Output(ends[0]).until("second\n"), testing::EndsWith("second\n"));
 }
 
 TEST(ProgressLine, InAPipeShortWorkSaysNothing) {
@@ -74,7 +92,7 @@ TEST(ProgressLine, InAPipeShortWorkSaysNothing) {
     progress.show("short");
   }
   close(ends[1]);
-  EXPECT_EQ(read_until(ends[0], "short"), "");
+  EXPECT_EQ(Output(ends[0]).until("short"), "");
 }
 
 TEST(ProgressLine, InAPipeClearedTextIsNeverSaidAgain) {
@@ -84,12 +102,12 @@ TEST(ProgressLine, InAPipeClearedTextIsNeverSaidAgain) {
   const Redirected redirected(ends[1]);
   ProgressLine progress(1ms);
   progress.show("cleared");
-  read_until(ends[0], "cleared\n");
+  Output output(ends[0]);
+  output.until("cleared\n");
   progress.clear();
   std::cerr << "end" << std::flush;
-  EXPECT_THAT(read_until(ends[0], "end"), testing::EndsWith("end"));
-  pollfd readable{.fd = ends[0], .events = POLLIN, .revents = 0};
-  EXPECT_EQ(poll(&readable, 1, kManyLines_ms), 0);
+  EXPECT_THAT(output.until("end"), testing::EndsWith("end"));
+  EXPECT_TRUE(output.stays_quiet(kManyLines_ms));
 }
 
 TEST(ProgressLine, OnATerminalOneLineRenewsItself) {
@@ -98,10 +116,10 @@ TEST(ProgressLine, OnATerminalOneLineRenewsItself) {
   const Redirected redirected(program);
   ProgressLine progress(1ms);
   progress.show(0.5, "making a clip");
-  EXPECT_THAT(read_until(terminal, "clip"),
-              testing::StartsWith("\r[===============               ]  50 % making a clip"));
+  Output output(terminal);
+  EXPECT_THAT(output.until("clip"), testing::StartsWith("\r[===============               ]  50 % making a clip"));
   progress.clear();
-  EXPECT_THAT(read_until(terminal, "\r "), testing::Not(testing::HasSubstr("\n")));
+  EXPECT_THAT(output.until("\r "), testing::Not(testing::HasSubstr("\n")));
 }
 
 TEST(ProgressLine, ItsThreadTakesNoSignalFromTheWork) {
@@ -111,14 +129,15 @@ TEST(ProgressLine, ItsThreadTakesNoSignalFromTheWork) {
   const auto before = std::signal(SIGUSR1, [](int /*signal*/) {});
   ProgressLine progress(1ms);
   progress.show("working");
-  read_until(ends[0], "working\n");  // its thread runs
+  Output output(ends[0]);
+  output.until("working\n");  // its thread runs
   sigset_t one, pending, mask;
   sigemptyset(&one);
   sigaddset(&one, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &one, &mask);
   kill(getpid(), SIGUSR1);  // any thread that doesn't block it takes it now
   progress.show("afterwards");
-  read_until(ends[0], "afterwards\n");
+  output.until("afterwards\n");
   sigpending(&pending);
   EXPECT_TRUE(sigismember(&pending, SIGUSR1)) << "nobody took it from this thread";
   pthread_sigmask(SIG_SETMASK, &mask, nullptr);

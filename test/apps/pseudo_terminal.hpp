@@ -17,6 +17,8 @@
 
 namespace pmg::test {
 
+inline constexpr double kDeadline_s = 90.0;  ///< for what a program is expected to show
+
 /// A child process; killed when the object is destroyed.
 class PseudoTerminal {
  public:

@@ -21,6 +21,12 @@ inline std::string text_of(const std::filesystem::path& file) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
+/// What a program that has ended leaves.
+struct Finished {
+  int exit_code = -1;  ///< or minus the signal that ended it
+  std::string out, err;
+};
+
 /// A child process; killed when the object is destroyed.
 class RunningProgram {
  public:
@@ -55,6 +61,10 @@ class RunningProgram {
     child_ = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
+  Finished finish() {
+    const int exit_code = wait();
+    return {exit_code, out(), err()};
+  }
   /// True if the condition holds while the program runs.
   bool until(const std::function<bool()>& condition, double deadline_s = 60.0) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
@@ -76,5 +86,14 @@ class RunningProgram {
   std::filesystem::path out_, err_;
   pid_t child_ = 0;
 };
+
+/// "pmg_sil --list" => what it leaves; a shell parts the words.
+inline Finished run_in_shell(const std::string& command, const std::filesystem::path& folder) {
+  const std::filesystem::path out = folder / "stdout", err = folder / "stderr";
+  const std::string line =
+      std::string(PMG_BIN_DIR) + "/" + command + " >" + out.string() + " 2>" + err.string() + " </dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+}
 
 }  // namespace pmg::test

@@ -22,30 +22,24 @@ using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
 
-struct Finished {
-  int exit_code;
-  std::string out, err;
-};
-
 class Words : public testing::Test {
  protected:
   Words() { fs::create_directories(folder_); }
   ~Words() override { fs::remove_all(folder_); }
 
   /// Arguments separated by blanks.
-  Finished run(const std::string& line) const {
+  test::Finished run(const std::string& line) const {
     std::istringstream words(line);
     std::string program, word;
     words >> program;
     std::vector<std::string> arguments;
     while (words >> word) arguments.push_back(word);
     test::RunningProgram running(program, arguments, folder_);
-    const int exit_code = running.wait();
-    return {exit_code, running.out(), running.err()};
+    return running.finish();
   }
   /// Expects a refusal with exactly this line, and nothing on stdout.
   void expect_line(const std::string& command, const std::string& line) const {
-    const Finished refused = run(command);
+    const test::Finished refused = run(command);
     EXPECT_EQ(refused.exit_code, 2) << command;
     EXPECT_EQ(refused.err, line + "\n") << command;
     EXPECT_EQ(refused.out, "") << command;
@@ -61,7 +55,9 @@ const std::vector<std::string> kPrograms = {"pmg_bus",
                                             "pmg_clips",
                                             "pmg_controller",
                                             "pmg_diagnose",
+                                            "pmg_doctor",
                                             "pmg_eval",
+                                            "pmg_gamepad",
                                             "pmg_key",
                                             "pmg_keyboard",
                                             "pmg_log",
@@ -72,7 +68,7 @@ const std::vector<std::string> kPrograms = {"pmg_bus",
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {
-    const Finished version = run(program + " --version");
+    const test::Finished version = run(program + " --version");
     EXPECT_EQ(version.exit_code, 0) << program;
     EXPECT_THAT(version.out, MatchesRegex(program + " [0-9]+\\.[0-9]+\\.[0-9]+(\\+[0-9a-f]+(-dirty)?)?\n"));
     EXPECT_EQ(version.err, "");
@@ -80,8 +76,8 @@ TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
 }
 
 TEST_F(Words, WhoRunsARobotTellsItsBundleToo) {
-  const Finished none = run("pmg_sil --version --robot z1 --policy none"),
-                 policy = run("pmg_sil --version --robot z1 --policy pmg");
+  const test::Finished none = run("pmg_sil --version --robot z1 --policy none"),
+                       policy = run("pmg_sil --version --robot z1 --policy pmg");
   EXPECT_THAT(none.out, HasSubstr("\nbundle "));
   EXPECT_TRUE(std::regex_search(none.out, std::regex("bundle [0-9a-f]{64} "))) << none.out;
   EXPECT_NE(none.out, policy.out) << "the policy is a part of what runs";
@@ -91,7 +87,7 @@ TEST_F(Words, WhoRunsARobotTellsItsBundleToo) {
 
 TEST_F(Words, EveryHelpHasAnExampleAndItsExitCodesAndNoRangeOfThreeHundredDigits) {
   for (const std::string& program : kPrograms) {
-    const Finished help = run(program + " --help");
+    const test::Finished help = run(program + " --help");
     EXPECT_EQ(help.exit_code, 0) << program;
     EXPECT_THAT(help.out, HasSubstr("Example")) << program;
     EXPECT_THAT(help.out, HasSubstr("Exit codes: 0")) << program;
@@ -103,7 +99,7 @@ TEST_F(Words, EveryHelpHasAnExampleAndItsExitCodesAndNoRangeOfThreeHundredDigits
 
 TEST_F(Words, AMistypedOptionIsNamedBesideTheOneThatWasMeant) {
   for (const std::string& program : kPrograms) {
-    const Finished refused = run(program + " --versoin");
+    const test::Finished refused = run(program + " --versoin");
     EXPECT_EQ(refused.exit_code, 2) << program;
     EXPECT_EQ(refused.err, program + ": --versoin: unknown option; did you mean --version?\n");
   }
@@ -123,10 +119,10 @@ TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
   expect_line("pmg_log inof out", "pmg_log: inof: unknown command; did you mean info?");
   expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
   expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
-  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk");
-  expect_line(
-      "pmg_clips",
-      "pmg_clips: a command is missing; expected one of synth, show, invert, walk (pmg_clips --help shows an example)");
+  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk, inspect");
+  expect_line("pmg_clips",
+              "pmg_clips: a command is missing; expected one of synth, show, invert, walk, inspect (pmg_clips --help "
+              "shows an example)");
 }
 
 TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
@@ -175,8 +171,12 @@ TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
 
 TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {
   EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("can, drives on CAN buses"));
-  expect_line("pmg_controller --hal ethercat",
-              "pmg_controller: --hal ethercat: this build has no EtherCAT backend; expected one of sil, can");
+#ifdef PMG_ETHERCAT
+  EXPECT_THAT(run("pmg_controller --hal ethercat").err, HasSubstr("ethercat: is missing; expected a mapping"));
+#else
+  EXPECT_THAT(run("pmg_controller --hal ethercat").err,
+              HasSubstr("this build has no EtherCAT backend (SOEM: third_party/fetch-soem)"));
+#endif
   expect_line("pmg_controller --hal sli", "pmg_controller: --hal: 'sli' isn't known; did you mean sil?");
   EXPECT_THAT(run("pmg_controller --help").out, HasSubstr("sil: hang the robot in a gantry"));
   expect_line("pmg_controller --hal can --gantry",

@@ -238,5 +238,20 @@ TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
   EXPECT_EQ(start.actuator.friction.viscous_Nm_s_per_rad, 0.0);
 }
 
+TEST(FitResults, UnitsAreThoseOfTheRig) {
+  bench::Bench bench;
+  for (const auto& [turning, linear] : {std::pair{"Nm", "N"},
+                                        {"kg m^2", "kg"},
+                                        {"rad/s^2", "m/s^2"},
+                                        {"Nm s^2/rad^2", "N s^2/m^2"},
+                                        {"1/(Nm^2 s)", "1/(N^2 s)"},
+                                        {"s", "s"}}) {
+    bench.rig = bench::Rig::kPendulum;
+    EXPECT_EQ(calib::unit_on_rig(turning, bench), turning);
+    bench.rig = bench::Rig::kLinear;
+    EXPECT_EQ(calib::unit_on_rig(turning, bench), linear);
+  }
+}
+
 }  // namespace
 }  // namespace pmg

@@ -34,7 +34,8 @@ class MujocoJoint {
   }
 
   /// As World::step: MuJoCo's step in halves, the drive between them.
-  void step(const sim::ActuatorInput& input) {
+  void step(sim::ActuatorInput input) {
+    input.external_Nm = -data_->qfrc_bias[0];
     sim::apply(model_.get(), data_.get(), 0, actuator_.step(input, data_->qpos[0], data_->qvel[0]), data_->qvel[0]);
     mj_step2(model_.get(), data_.get());
     mj_step1(model_.get(), data_.get());

@@ -1,168 +1,49 @@
-// The simulation that fits are made with is the one that the SIL runs.
+// One joint's simulation: where a rollout begins, how it swings, and which samples count.
 #include "calib/single_joint.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 
-#include "calib/mujoco_joint.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "model/hanging_load.hpp"
-#include "sim/motors_in_force.hpp"
-#include "sim/robots.hpp"
-#include "sim/world.hpp"
 
 namespace pmg {
 namespace {
 
-struct Kind {
-  const char* name;
-  std::function<void(model::ActuatorParameters&)> set;
-};
-std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
-
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> kKinds = {
-      Kind{"Pd", [](auto&) {}},
-      Kind{"Limit", [](auto& p) { p.drive.limit = 5.0; }},
-      Kind{"Gain", [](auto& p) { p.drive.kp_scale = 0.7, p.drive.kd_scale = 1.4; }},
-      Kind{"Voltage",
-           [](auto& p) {
-             p.drive.torque_per_unit_Nm = 0.9;
-             p.drive.back_emf_s_per_rad = 0.3;
-             p.drive.limit = 6.0;
-             p.drive.supply_sag_per_Nm = 0.05;
-             p.drive.brake_when_disabled = 0.8;
-           }},
-      Kind{"Friction",
-           [](auto& p) {
-             p.friction = {.viscous_Nm_s_per_rad = 0.1, .coulomb_Nm = 0.4, .asymmetry = 0.2, .presliding_rad = 0.02};
-           }},
-      Kind{"Stribeck",
-           [](auto& p) { p.friction.coulomb_Nm = 0.2, p.friction.stribeck_Nm = 0.3, p.friction.stribeck_rad_s = 0.4; }},
-      Kind{"LoadFriction", [](auto& p) { p.friction.load_driving = 0.4, p.friction.load_backdriving = 0.1; }},
-      Kind{"Delay", [](auto& p) { p.command.delay_s = 0.0237, p.command.rate_limit_rad_s = 3.0; }},
-      Kind{"Sensor", [](auto& p) { p.sensor = {.zero_offset_rad = 0.03, .lag_s = 0.004, .velocity_lag_s = 0.002}; }},
-      Kind{"Hysteresis", [](auto& p) { p.sensor.hysteresis_rad = 0.04; }},
-      Kind{"Eccentricity", [](auto& p) { p.sensor.eccentricity_rad = 0.05, p.sensor.eccentricity_phase_rad = 0.7; }},
-      Kind{"Quantisation", [](auto& p) { p.sensor.quantum_rad = 0.0123; }},
-      Kind{"Hold", [](auto& p) { p.command.hold_s = 0.006, p.drive.dead_band_rad = 0.01; }},
-      Kind{"TorqueSpeed", [](auto& p) { p.drive.stall_torque_Nm = 4.0, p.drive.no_load_rad_s = 6.0; }},
-      Kind{"Backlash",
-           [](auto& p) {
-             p.transmission.armature_kg_m2 = 0.03;
-             p.transmission.stiffness_Nm_per_rad = 200.0;
-             p.transmission.damping_Nm_s_per_rad = 0.5;
-             p.transmission.backlash_rad = 0.02;
-           }},
-      Kind{"ThermalDrift",
-           [](auto& p) {
-             p.friction = {.viscous_Nm_s_per_rad = 0.2, .coulomb_Nm = 0.5};
-             p.thermal = {.friction_per_K = -0.03, .torque_per_K = -0.005};
-           }},
-      Kind{"SelfHeating",
-           [](auto& p) {
-             p.friction = {.viscous_Nm_s_per_rad = 0.2, .coulomb_Nm = 0.5};
-             p.thermal = {.friction_per_Nm2_s = -0.02, .cooling_s = 2.0};
-           }},
-      Kind{"Ripple",
-           [](auto& p) { p.ripple = {.amplitude_Nm = 0.3, .order = 7.0, .phase_rad = 0.4, .offset_Nm = 0.1}; }},
-  };
-  return kKinds;
-}
-
-/// The same run of a load that hangs askew, on a day when the joint warms from 25 to 55 degrees, switched off towards
-/// its end.
-calib::SingleJoint warming(const bench::Bench& bench, const calib::SingleJoint& joint) {
-  bench::BenchRun run = joint.run();
-  run.load.hangs_at_rad = 0.3;
-  const std::size_t samples = run.recording.t_s.size();
-  for (std::size_t k = 0; k < samples; ++k) {
-    run.recording.temp_C.push_back(25.0 + 30.0 * static_cast<double>(k) / static_cast<double>(samples));
-    run.recording.enabled.push_back(k < 250);
+/// A joint that has been told for a second to be where its reading is.
+calib::SingleJoint resting(const bench::Bench& bench, double q_rad, double hangs_at_rad) {
+  bench::BenchRun run;
+  run.kp = 20.0, run.kd = 0.8;
+  run.load = {0.02, 1.0, hangs_at_rad};
+  for (int k = 0; k < 100; ++k) {
+    run.recording.t_s.push_back(0.01 * k);
+    run.recording.q_cmd_rad.push_back(q_rad);
+    run.recording.q_rad.push_back(q_rad);
+    run.recording.valid.push_back(true);
   }
-  return {bench, run, joint.step_s()};
+  return {bench, run, calib::simulation_step_s(bench)};
 }
 
-class BothSimulators : public testing::TestWithParam<Kind> {};
-
-// 1e-6 rad is what the two may differ by after 3 s of 2 ms steps; the same arithmetic in another order leaves 1e-10.
-TEST_P(BothSimulators, MoveAJointAlike) {
-  const bench::Bench bench = test::pd_bench(true);
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.02;
-  GetParam().set(model.actuator);
-  const std::vector<calib::SingleJoint> joints = test::record(bench, model, 2);
-  for (const calib::SingleJoint& recorded : joints) {
-    const calib::SingleJoint joint = warming(bench, recorded);
-    test::MujocoJoint mujoco(joint.run().load, model.actuator, joint.step_s());
-    mujoco.reset(joint.input(0), joint.start_rad(model));
-    const std::vector<double> compiled = joint.rollout(model);
-    double largest_rad = 0.0, farthest_rad = 0.0;
-    for (std::size_t k = 0; k < joint.steps(); ++k) {
-      mujoco.step(joint.input(k));
-      farthest_rad = std::max(farthest_rad, std::abs(mujoco.q_rad()));
-      if ((k + 1) % 5 != 0) continue;  // five steps a sample
-      largest_rad = std::max(largest_rad, std::abs(mujoco.reading_rad() - compiled[(k + 1) / 5]));
+// Of a sensor on the motor the joint's own angle is not known. Where its load hangs, it may be anywhere in the play.
+TEST(SingleJoint, RestsBehindItsPlayAtTheReadingOfItsMotor) {
+  constexpr double kHalfPlay_rad = 0.03;
+  for (const double hangs_at_rad : {0.0, -0.4, 6.0}) {
+    for (const double from_there_rad : {0.0, 0.01, -0.02, 0.032, -0.05, 0.8, -2.0}) {
+      const double reading_rad = hangs_at_rad + from_there_rad;
+      const calib::SingleJoint joint = resting(test::pd_bench(true), reading_rad, hangs_at_rad);
+      calib::JointModel model;
+      model.actuator.sensor.on_motor = 1.0;
+      model.actuator.friction.coulomb_Nm = 1.5;  // holds the motor under any load
+      model.actuator.transmission = {.armature_kg_m2 = 0.02,
+                                     .stiffness_Nm_per_rad = 300.0,
+                                     .damping_Nm_s_per_rad = 0.5,
+                                     .backlash_rad = 2.0 * kHalfPlay_rad};
+      for (const double q_rad : joint.rollout(model)) EXPECT_NEAR(q_rad, reading_rad, 1e-6) << from_there_rad;
+      const double twist_rad = reading_rad - joint.start(model).q_rad;
+      const double wound_rad = std::max(0.0, std::abs(twist_rad) - kHalfPlay_rad);
+      const double load_Nm = std::abs(std::sin(joint.start(model).q_rad - hangs_at_rad));
+      EXPECT_NEAR(300.0 * wound_rad, load_Nm, 1e-6) << "the shaft carries the load at " << from_there_rad;
     }
-    EXPECT_LT(largest_rad, 1e-6);
-    EXPECT_GT(farthest_rad, 0.3) << "nothing moved, so nothing was compared";
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(EveryEffect, BothSimulators, testing::ValuesIn(kinds()),
-                         [](const auto& instance) { return instance.param.name; });
-
-TEST(BothSimulators, AreComparedInEveryParameterThatMotorYamlHas) {
-  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) {
-    const auto changes = [&](const Kind& kind) {
-      model::ActuatorParameters parameters;
-      kind.set(parameters);
-      return parameter.value(parameters) != parameter.value({});
-    };
-    EXPECT_TRUE(std::ranges::any_of(kinds(), changes)) << parameter.name;
-  }
-}
-
-// The same 1e-6 rad, of a whole robot's joint. Without a motor.yaml its numbers are robot.yaml's, and friction is the
-// actuator model's: MuJoCo's own moves a knee by up to a milliradian otherwise.
-TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
-  for (const char* name : {"left_knee", "left_ankle_roll", "head_pitch"}) {
-    const int index = z1().joint_index.at(name);
-    const model::Joint& joint = z1().joints[static_cast<std::size_t>(index)];
-    sim::WorldOptions options;
-    options.gantry = true;
-    options.benched_joint = name;
-    sim::World world(z1(), options);
-    model::JointCommand command = standing_command(z1());
-    model::RobotState state;
-    for (int step = 0; step < 1000; ++step) world.step(command);  // comes to rest
-
-    const model::HangingLoad load = model::hanging_load(z1(), name);
-    bench::Bench bench = test::pd_bench(true);
-    bench.sample_rate_hz = 500.0;
-    bench::BenchRun run;
-    run.kp = joint.kp_Nm_per_rad, run.kd = joint.kd_Nm_s_per_rad;
-    run.load = {load.inertia_kg_m2, load.gravity_Nm, load.hangs_at_rad};
-    for (int step = 0; step < 1500; ++step) {
-      const double t_s = 0.002 * step;
-      world.read(state);
-      command.q[index] = joint.stand_rad + (t_s < 0.1 ? 0.0 : t_s < 1.5 ? 0.2 * std::sin(9.0 * (t_s - 0.1)) : 0.15);
-      run.recording.t_s.push_back(t_s);
-      run.recording.q_cmd_rad.push_back(command.q[index]);
-      run.recording.q_rad.push_back(state.q[index]);
-      run.recording.valid.push_back(true);
-      world.step(command);
-    }
-    const calib::SingleJoint alone(bench, run, options.timestep_s);
-    const std::vector<double> q_rad = alone.rollout({.actuator = sim::actuator_in_force(joint, {})});
-    double worst_rad = 0.0, moved_rad = 0.0;
-    for (std::size_t k = 0; k < q_rad.size(); ++k) {
-      worst_rad = std::max(worst_rad, std::abs(q_rad[k] - run.recording.q_rad[k]));
-      moved_rad = std::max(moved_rad, std::abs(q_rad[k] - q_rad[0]));
-    }
-    EXPECT_GT(moved_rad, 0.1) << name;
-    EXPECT_LT(worst_rad, 1e-6) << name;
   }
 }
 
@@ -222,6 +103,20 @@ TEST(SingleJoint, LeavesASensorsDropoutsOut) {
   const calib::RolloutError error = calib::SingleJoint(bench, run, 0.002).error(model);
   EXPECT_EQ(error.samples, 299U);
   EXPECT_LT(error.mean_absolute_rad(), 1e-12);
+}
+
+TEST(SingleJoint, ABeginningIsTheRunUntilThen) {
+  const bench::Bench bench = test::pd_bench(true);
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.02;
+  const calib::SingleJoint whole = test::record(bench, model, 1).front();
+  const calib::SingleJoint beginning = whole.beginning(1.0);
+  const std::vector<double> all_rad = whole.rollout(model), first_rad = beginning.rollout(model);
+  ASSERT_EQ(first_rad.size(), 101U) << "samples are 10 ms apart";
+  EXPECT_EQ(beginning.run().recording.q_rad.size(), 101U);
+  EXPECT_LT(beginning.steps(), whole.steps());
+  for (std::size_t k = 0; k < first_rad.size(); ++k) EXPECT_EQ(first_rad[k], all_rad[k]) << k;
+  EXPECT_EQ(whole.beginning(100.0).rollout(model), all_rad);
 }
 
 }  // namespace

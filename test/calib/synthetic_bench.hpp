@@ -63,6 +63,20 @@ inline std::vector<calib::SingleJoint> record(const bench::Bench& bench, const c
   return joints;
 }
 
+/// The same runs under sines that never rest.
+inline std::vector<calib::SingleJoint> always_moving(const bench::Bench& bench, const calib::JointModel& truth,
+                                                     int count) {
+  std::vector<calib::SingleJoint> joints;
+  for (const calib::SingleJoint& joint : record(bench, truth, count)) {
+    bench::BenchRun run = joint.run();
+    for (std::size_t k = 0; k < run.recording.t_s.size(); ++k)
+      run.recording.q_cmd_rad[k] = std::sin((3.0 + 0.5 * run.load.gravity_Nm) * run.recording.t_s[k]);
+    run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(truth);
+    joints.emplace_back(bench, run, joint.step_s());
+  }
+  return joints;
+}
+
 /// The bench and its runs as files, as a bench engineer would have them.
 inline void write_bench(const std::filesystem::path& folder, const std::vector<calib::SingleJoint>& joints) {
   std::filesystem::create_directories(folder / "runs");

@@ -29,6 +29,29 @@ TEST(BusLoad, Z1sBusesCarryTheirFrames) {
   EXPECT_EQ(fullest, 14) << "an arm's seven drives";
 }
 
+TEST(BusLoad, TheImuTakesThreeFramesOfItsBus) {
+  drives::DriveSetup setup = drives::load_drives(z1());
+  drives::BusSetup bus = setup.buses[0];
+  const BusLoad without = planned_load(bus);
+  bus.imu = true;
+  EXPECT_EQ(planned_load(bus).frames, without.frames + 3);
+  EXPECT_NEAR(planned_load(bus).time_s, without.time_s + 3 * 135e-6, 1e-12);
+}
+
+TEST(BusLoad, ACanopenDriveTakesThreeFramesAndItsBusSyncAndHeartbeat) {
+  drives::DriveSetup setup = drives::load_drives(z1());
+  setup.buses.resize(1);
+  std::vector<drives::MotorSetup>& motors = setup.buses[0].motors;
+  motors.erase(motors.begin() + 4, motors.end());
+  for (drives::MotorSetup& motor : motors) motor.drive = drives::Cia402Settings{};
+  const BusLoad load = planned_load(setup.buses[0]);
+  EXPECT_EQ(load.frames, 14);
+  EXPECT_NEAR(load.time_s, 12 * 135e-6 + 55e-6 + 65e-6, 1e-12);
+  check_load(setup);
+  motors.push_back(motors.back());
+  EXPECT_THROW(check_load(setup), std::invalid_argument);
+}
+
 TEST(BusLoad, ABusThatCantCarryItsFramesIsRefused) {
   drives::DriveSetup setup = drives::load_drives(z1());
   setup.buses[0].motors.push_back(setup.buses[0].motors.back());

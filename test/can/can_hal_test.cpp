@@ -17,6 +17,7 @@
 #include "../sim/robots.hpp"
 #include "can/can_backend.hpp"
 #include "can/emulated_drives.hpp"
+#include "can/flood.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
 #include "generator_core/allocation_count.hpp"
@@ -107,6 +108,14 @@ TEST_F(Drives, NoMotorIsEnabledByACommandWithStiffness) {
   EXPECT_EQ(cycle(standing_), BusStatus::kOk);
 }
 
+TEST_F(Drives, NorByOneWithFeedForwardAlone) {
+  model::JointCommand pushes = limp();
+  pushes.tau_ff[0] = 1.0;
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(cycle(pushes), BusStatus::kLost);
+  EXPECT_EQ(trouble(), "left_hip_pitch (can0, node 1) is not enabled");
+  EXPECT_FALSE(drives_->drive(0, 0).enabled());
+}
+
 TEST_F(Drives, ASilentMotorIsLateInTheSecondCycleAndLostInTheSixth) {
   stand();
   knee().silent = true;
@@ -115,6 +124,17 @@ TEST_F(Drives, ASilentMotorIsLateInTheSecondCycleAndLostInTheSixth) {
   EXPECT_EQ(trouble(), "left_knee (can0, node 4) answers late");
   EXPECT_EQ(cycle(standing_), BusStatus::kLost);
   EXPECT_EQ(trouble(), "left_knee (can0, node 4) does not answer");
+}
+
+TEST_F(Drives, AStateKeepsItsValuesWhileSomebodyIsLateOrLost) {
+  stand();
+  const model::RobotState before = state_;
+  knee().silent = true;
+  cycle(standing_);
+  truth_.q[0] += 0.01;  // of a drive that answers
+  while (cycle(standing_) != BusStatus::kLost) EXPECT_EQ(state_.q[0], before.q[0]);
+  EXPECT_EQ(state_.q[0], before.q[0]);
+  EXPECT_EQ(state_.bus_sample, before.bus_sample + 1) << "the answer of the first cycle may have been under way";
 }
 
 TEST_F(Drives, ALossAndItsEndAreToldOnce) {
@@ -139,6 +159,17 @@ TEST_F(Drives, AWrongIdIsASilentMotorAndAStranger) {
   EXPECT_EQ(cycles_until(BusStatus::kLost), 5);
   EXPECT_EQ(trouble(), "left_knee (can0, node 4) does not answer");
   EXPECT_EQ(hal_->strangers(), 6u);
+}
+
+TEST_F(Drives, AReplyWithAnotherIdentifierThanItsDrivesIsNone) {
+  stand();
+  knee().silent = true;
+  hal_->send(standing_);
+  const drives::MitProtocol protocol(std::get<drives::MitRanges>(knee().setup().drive));
+  host_[0]->push(Frame::of(0x7E, protocol.reply({.node = 4, .reading = {.q_rad = 0.3}})));
+  hal_->receive(state_);
+  EXPECT_EQ(hal_->motor(0, 3).age_cycles(), 1);
+  EXPECT_EQ(hal_->unreadable(), 1u);
 }
 
 TEST_F(Drives, TwoMotorsOfOneNodeAreLostInTheThirdCycle) {
@@ -171,6 +202,19 @@ TEST_F(Drives, AnswersOneCycleLateAndOutOfOrderAreTaken) {
   EXPECT_EQ(hal_->receive(state_), BusStatus::kOk);
   EXPECT_EQ(hal_->motor(0, 3).uncalled(), 0u);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk);
+}
+
+TEST_F(Drives, AnAnswerThatComesAfterItsCycleIsNoneOfTheNext) {
+  stand();
+  hal_->send(standing_);
+  hal_->receive(state_);
+  drives_->serve();  // too late
+  knee().silent = true;
+  hal_->send(standing_);
+  drives_->serve();
+  hal_->receive(state_);
+  EXPECT_EQ(hal_->motor(0, 3).age_cycles(), 1) << "it answered the cycle before";
+  EXPECT_EQ(hal_->motor(0, 2).age_cycles(), 0);
 }
 
 TEST_F(Drives, ABusThatIsOffIsLostAtOnceAndComesBackUnderDamping) {
@@ -315,22 +359,13 @@ TEST_F(Drives, NothingThatABusSaysMovesAMotorBeyondItsLimits) {
   for (int k = 0; k < 2000; ++k) {
     for (MemoryLink* link : host_) {
       for (int i = 0; i < 5; ++i) {
-        Frame frame;
-        frame.id = static_cast<std::uint32_t>(random() % 4 == 0 ? random() % 2048 : 0);
-        frame.length = static_cast<std::uint8_t>(random() % 3 == 0 ? random() % 256 : 8);
-        for (std::uint8_t& byte : frame.data) byte = static_cast<std::uint8_t>(random());
-        if (random() % 2 == 0) frame.data[0] = static_cast<std::uint8_t>(random() % 8);
-        link->push(frame);
+        const auto id = static_cast<std::uint32_t>(random() % 4 == 0 ? random() % 2048 : 0);
+        link->push(test::any_frame(random, id, static_cast<std::uint8_t>(random() % 8)));
       }
     }
     cycle(standing_);
     ASSERT_TRUE(state_.q.allFinite());
-    for (int j = 0; j < acting_.q.size(); ++j) {
-      const model::Joint& joint = z1().joints[static_cast<std::size_t>(j)];
-      ASSERT_GE(acting_.q[j], std::min(joint.lower_rad, 0.0) - 1e-9);
-      ASSERT_LE(acting_.q[j], std::max(joint.upper_rad, 0.0) + 1e-9);
-      ASSERT_LE(std::abs(acting_.tau_ff[j]), joint.effort_limit_Nm + 1e-9);
-    }
+    ASSERT_NO_FATAL_FAILURE(test::expect_within_limits(acting_, z1()));
   }
 }
 
@@ -363,10 +398,10 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   std::vector<std::unique_ptr<Link>> links;
   links.push_back(std::move(host));
   CanHal hal(setup, z1(), clock_, std::move(links));
-  const drives::MitProtocol protocol(setup.buses[0].motors[4].ranges);
+  const drives::MitProtocol protocol(std::get<drives::MitRanges>(setup.buses[0].motors[4].drive));
 
   const Eigen::Vector2d q(-0.2, 0.1), dq(0.8, -0.5), torque(12.0, -3.0);
-  const Eigen::Vector2d theta = *ankle.motor_angles(q);
+  Eigen::Vector2d theta = *ankle.motor_angles(q);
   const Eigen::Matrix2d J = ankle.jacobian(theta, q);
   const Eigen::Vector2d dtheta = J * dq, crank_torque = J.transpose().inverse() * torque;
   const auto answer = [&] {
@@ -377,7 +412,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
       const int crank = static_cast<int>(frame.id) - 5;  // nodes 5 and 6
       if (crank >= 0)
         reply.reading = {.q_rad = theta[crank], .dq_rad_s = dtheta[crank], .torque_Nm = crank_torque[crank]};
-      const Frame sent = Frame::of(kReplyId, protocol.reply(reply));
+      const Frame sent = Frame::of(0, protocol.reply(reply));
       far->send(std::span(&sent, 1));
       if (crank >= 0)
         last_[static_cast<std::size_t>(crank)] = protocol.command([&frame] {
@@ -411,6 +446,17 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   // Rounding: 700 Nm/rad times half a step of 0.2 mrad, 12 Nm s/rad times half of 15 mrad/s, half of 0.08 Nm, twice.
   EXPECT_LT((J.transpose() * given - wanted).norm(), 0.8)
       << (J.transpose() * given).transpose() << " for " << wanted.transpose();
+  // Cranks that no posture of the joints belongs to.
+  BusStatus status = BusStatus::kOk;
+  for (int k = 0; k < 40 && status == BusStatus::kOk; ++k) {
+    theta += Eigen::Vector2d(0.1, -0.1);
+    hal.send(limp());
+    answer();
+    status = hal.receive(state_);
+  }
+  EXPECT_EQ(status, BusStatus::kLost);
+  EXPECT_EQ(hal.motor(0, 4).trouble(false), drives::Trouble::kNone) << "each motor by itself is believed";
+  EXPECT_EQ(describe(hal.trouble(), setup), "left_ankle_pitch (can0, node 5) its position jumped: a turn was lost");
 }
 
 TEST_F(Drives, TheRollCallNamesEveryProblem) {

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <tuple>
 
 #include "../sim/robots.hpp"
 #include "can/can_hal.hpp"
+#include "can/canopen_setup.hpp"
+#include "can/cia402_emulator.hpp"
 #include "can/memory_link.hpp"
+#include "can/mixed_drives.hpp"
 
 namespace pmg::can {
 namespace {
@@ -61,12 +66,12 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
   }
   const io::SimulationClock clock;
   CanHal hal(setup, z1(), clock, std::move(links));
-  const drives::MitProtocol protocol(setup.buses[0].motors[3].ranges);
+  const drives::MitProtocol protocol(std::get<drives::MitRanges>(setup.buses[0].motors[3].drive));
   std::string recording;
   for (int k = 0; k < 5; ++k) {
     const drives::MitFrame bytes =
         protocol.reply({.node = 4, .reading = {.q_rad = 0.3 + 0.001 * k, .dq_rad_s = 0.5, .temperature_degC = 40.0}});
-    recording += to_line({.stamp_ns = k * 2'000'000, .interface = "can0", .frame = Frame::of(kReplyId, bytes)}) + "\n";
+    recording += to_line({.stamp_ns = k * 2'000'000, .interface = "can0", .frame = Frame::of(0, bytes)}) + "\n";
   }
   model::JointCommand limp = standing_command(z1());
   limp.kp.setZero();
@@ -82,6 +87,62 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
   }
   EXPECT_NEAR(hal.motor(0, 3).reading().q_rad, 0.304, protocol.position().step());
   EXPECT_EQ(hal.motor(0, 3).age_cycles(), 0);
+}
+
+/// The same of a CANopen drive: what its emulator says on the bus is written as candump does, and read again.
+TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
+  const drives::DriveSetup setup = test::mixed_drives(z1());
+  const drives::MotorSetup& motor = setup.buses[0].motors[0];
+  test::Cia402Emulator drive(motor);
+  const auto say = [&](const Frame& frame, std::string& recording) {
+    test::Replies replies;
+    const int count = drive.hear(frame, replies);
+    for (int i = 0; i < count; ++i)
+      recording += to_line({.stamp_ns = 0, .interface = "can0a", .frame = replies[static_cast<std::size_t>(i)]}) + "\n";
+  };
+  std::vector<std::unique_ptr<Link>> host;
+  std::unique_ptr<Link> far;
+  std::tie(host.emplace_back(), far) = test::MemoryLink::pair();
+  const auto answer = [&] {
+    std::array<Frame, 8> asked;
+    while (const std::size_t count = far->receive(asked)) {
+      for (std::size_t i = 0; i < count; ++i) {
+        test::Replies replies;
+        far->send(std::span(replies).first(static_cast<std::size_t>(drive.hear(asked[i], replies))));
+      }
+    }
+  };
+  drives::DriveSetup one;
+  one.buses.push_back(setup.buses[0]);
+  one.buses[0].motors.erase(one.buses[0].motors.begin() + 1, one.buses[0].motors.end());
+  set_up_nodes(one, host, answer, {});
+  std::string recording;
+  drive.feel(motor.transmission.to_motor(drives::MotorReading{.q_rad = 0.3, .dq_rad_s = 0.5}));
+  say(canopen::sync(), recording);
+  ASSERT_EQ(std::ranges::count(recording, '\n'), 2) << recording;
+
+  std::vector<std::unique_ptr<Link>> links(setup.buses.size()), robots(setup.buses.size());
+  for (std::size_t b = 0; b < links.size(); ++b) std::tie(links[b], robots[b]) = test::MemoryLink::pair();
+  const io::SimulationClock clock;
+  CanHal hal(setup, z1(), clock, std::move(links));
+  model::JointCommand limp = standing_command(z1());
+  limp.kp.setZero();
+  hal.send(limp);
+  for (std::size_t at = 0; at < recording.size();) {
+    const std::size_t end = recording.find('\n', at);
+    const auto recorded = from_line(std::string_view(recording).substr(at, end - at));
+    ASSERT_TRUE(recorded);
+    robots[0]->send(std::span(&recorded->frame, 1));
+    at = end + 1;
+  }
+  model::RobotState state;
+  hal.receive(state);
+  const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+  EXPECT_NEAR(motor.transmission.to_joint(hal.motor(0, 0).reading()).q_rad, 0.3, settings.count_rad());
+  EXPECT_NEAR(hal.motor(0, 0).reading().dq_rad_s,
+              motor.transmission.to_motor(drives::MotorReading{.dq_rad_s = 0.5}).dq_rad_s,
+              settings.velocity_unit_rad_s);
+  EXPECT_EQ(hal.motor(0, 0).age_cycles(), 0);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
-// libFuzzer's entry: any bytes as frames from every bus of Z1, and as a line of a recording. Nothing may crash, and no
-// motor may be commanded beyond its limits.
-#include <cmath>
+// libFuzzer's entry: any bytes as frames from every bus of Z1, with MIT drives or with drives of both protocols, and as
+// a line of a recording. Nothing may crash, and no motor may be commanded beyond its limits.
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string_view>
@@ -10,18 +8,21 @@
 
 #include "can/can_hal.hpp"
 #include "can/candump.hpp"
+#include "can/limit_check.hpp"
 #include "can/memory_link.hpp"
+#include "can/mixed_drives.hpp"
 
 namespace {
 
 using namespace pmg;
-
-void require(bool promise) {
-  if (!promise) std::abort();
-}
+using test::check_limits;
+using test::require;
 
 struct Robot {
-  Robot() : model(model::load_robot(PMG_SOURCE_DIR "/config/robots/z1")), setup(drives::load_drives(model)) {
+  Robot()
+      : model(model::load_robot(PMG_SOURCE_DIR "/config/robots/z1")),
+        setup(drives::load_drives(model)),
+        mixed(test::mixed_drives(model)) {
     command.q = model.q_upper();
     const Eigen::Index n = command.q.size();
     command.dq = JointVector::Constant(n, 1e3);
@@ -30,7 +31,7 @@ struct Robot {
     command.tau_ff = JointVector::Constant(n, -1e6);
   }
   model::RobotModel model;
-  drives::DriveSetup setup;
+  drives::DriveSetup setup, mixed;
   model::JointCommand command;
 };
 
@@ -41,16 +42,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Robot robot;
   can::from_line(std::string_view(reinterpret_cast<const char*>(data), size));
 
+  const drives::DriveSetup& setup = size > 0 && (data[size - 1] & 1U) != 0 ? robot.mixed : robot.setup;
   std::vector<std::unique_ptr<can::Link>> links, far;
-  for (std::size_t b = 0; b < robot.setup.buses.size(); ++b) {
+  for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     auto [here, there] = test::MemoryLink::pair();
     links.push_back(std::move(here));
     far.push_back(std::move(there));
   }
   const io::SimulationClock clock;
-  can::CanHal hal(robot.setup, robot.model, clock, std::move(links));
+  can::CanHal hal(setup, robot.model, clock, std::move(links));
   model::RobotState state;
-  // Records of 12 bytes: bus, flags and length, identifier (2), data (8). A set high bit of the bus ends the cycle.
+  model::JointCommand limp = robot.command;  // so that drives are switched on now and then
+  limp.kp.setZero();
+  limp.kd.setZero();
+  limp.tau_ff.setZero();
+  // Records of 12 bytes: bus, flags and length, identifier (2), data (8). A set high bit of the bus ends the cycle, the
+  // next bit makes it limp.
   for (std::size_t at = 0; at + 12 <= size; at += 12) {
     can::Frame frame;
     frame.extended = (data[at + 1] & 0x80U) != 0;
@@ -58,26 +65,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     frame.length = data[at + 1] & 0x3FU;
     frame.id = static_cast<std::uint32_t>(data[at + 2] << 8U | data[at + 3]);
     std::memcpy(frame.data.data(), data + at + 4, 8);
+    can::canopen::sdo_answer(frame);
     far[data[at] % far.size()]->send(std::span(&frame, 1));
     if ((data[at] & 0x80U) == 0) continue;
-    hal.send(robot.command);
+    hal.send((data[at] & 0x40U) != 0 ? limp : robot.command);
     if (hal.receive(state) == hal::BusStatus::kOk)
       require(state.q.allFinite() && state.dq.allFinite() && state.tau.allFinite());
     for (std::size_t b = 0; b < far.size(); ++b) {
       std::array<can::Frame, 64> sent;
       const std::size_t count = far[b]->receive(sent);
-      for (std::size_t i = 0; i < count; ++i) {
-        const drives::MotorSetup& motor = robot.setup.buses[b].motors[i % robot.setup.buses[b].motors.size()];
-        drives::MitFrame bytes{};
-        std::memcpy(bytes.data(), sent[i].data.data(), 8);
-        const auto command = drives::MitProtocol(motor.ranges).command(bytes);
-        if (!command) continue;
-        constexpr double kRounding = 1e-9;
-        require(command->q_rad >= motor.limits.q_lower_rad - kRounding &&
-                command->q_rad <= motor.limits.q_upper_rad + kRounding);
-        require(std::abs(command->dq_rad_s) <= motor.limits.dq_rad_s + kRounding);
-        require(std::abs(command->torque_Nm) <= motor.limits.torque_Nm + kRounding);
-      }
+      for (std::size_t i = 0; i < count; ++i) check_limits(sent[i], setup.buses[b]);
     }
   }
   return 0;

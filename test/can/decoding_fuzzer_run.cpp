@@ -1,5 +1,6 @@
 // The fuzzer's entry with a compiler that has no libFuzzer: seeded random inputs, mutated from whole exchanges. Exit
 // code 0 when nothing was found; what is found ends the program.
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -21,6 +22,12 @@ int main(int argc, char** argv) {
       bytes[at + 2] = 0;
       bytes[at + 3] = random() % 6 == 0 ? 0x21 : 0;
       bytes[at + 4] = static_cast<std::uint8_t>(random() % 9);
+      if (random() % 2 == 0) continue;  // the messages of CANopen nodes: emergencies, TPDOs, SDO answers, heartbeats
+      constexpr std::array<unsigned, 6> kFunctions = {0x080, 0x180, 0x280, 0x580, 0x700, 0x07E};
+      const unsigned id = kFunctions[random() % kFunctions.size()] + static_cast<unsigned>(random() % 5);
+      bytes[at + 2] = static_cast<std::uint8_t>(id >> 8U);
+      bytes[at + 3] = static_cast<std::uint8_t>(id);
+      if (random() % 2 == 0) bytes[at + 4] = 0x37;  // operation enabled
     }
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }

@@ -1,97 +1,77 @@
-// One MIT drive as its frames show it: command in, reply out, its own watchdog, faults on demand. The motor behind it
-// is the caller's: it takes command() and gives the true reading.
+// One drive as its frames show it: commands in, replies out, its own watchdog, faults on demand. The motor behind it is
+// the caller's: it takes command() and gives the true reading.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <optional>
+#include <span>
 
-#include "can/can_hal.hpp"
+#include "can/frame.hpp"
 #include "drives/drive_setup.hpp"
-#include "drives/mit_protocol.hpp"
 
 namespace pmg::test {
 
+/// Frames that a drive sends to one that it heard, at most.
+using Replies = std::array<can::Frame, 6>;
+
 class DriveEmulator {
  public:
-  /// Cycles of 2 ms without a frame after which the drive lets go: 20 ms.
+  /// Cycles of 2 ms without a frame after which an MIT drive lets go: 20 ms.
   static constexpr int kWatchdogCycles = 10;
+  static constexpr double kBrake_Nm_s_per_rad = 2.0;  ///< of a watchdog, and of a quick stop
 
-  explicit DriveEmulator(const drives::MotorSetup& setup) : setup_(&setup), protocol_(setup.ranges), node(setup.node) {}
+  explicit DriveEmulator(const drives::MotorSetup& setup) : node(setup.node), setup_(&setup) {}
+  virtual ~DriveEmulator() = default;
+  DriveEmulator(const DriveEmulator&) = delete;
+  DriveEmulator& operator=(const DriveEmulator&) = delete;
 
-  /// A frame to this drive => its replies.
-  int hear(const can::Frame& frame, std::array<can::Frame, 2>& replies) noexcept {
-    if (silent || frame.extended || frame.id != static_cast<std::uint32_t>(setup_->node) || frame.length != 8) return 0;
-    silent_cycles_ = 0;
-    ++heard;
-    drives::MitFrame bytes{};
-    std::copy_n(frame.data.begin(), 8, bytes.begin());
-    if (bytes == drives::kMitEnable) {
-      enabled_ = fault == drives::DriveFault::kNone;
-      tripped_ = false;
-      command_ = {};
-    } else if (bytes == drives::kMitDisable) {
-      enabled_ = false;
-    } else if (bytes == drives::kMitZero) {
-      zero_rad_ += reading().q_rad;
-    } else if (enabled_) {
-      command_ = *protocol_.command(bytes);
-    }
-    replies[0] = can::Frame::of(can::kReplyId, protocol_.reply({static_cast<std::uint8_t>(node), reading()}), frame.fd);
-    if (!twice) return 1;
-    drives::MotorReading second = reading();
-    second.q_rad += 0.01;
-    replies[1] = can::Frame::of(can::kReplyId, protocol_.reply({static_cast<std::uint8_t>(node), second}), frame.fd);
-    return 2;
-  }
-
-  /// 2 ms pass.
-  void tick() noexcept {
-    if (++silent_cycles_ <= kWatchdogCycles || !enabled_) return;
-    enabled_ = false;
-    tripped_ = true;
-  }
-
+  virtual int hear(const can::Frame& frame, Replies& replies) noexcept = 0;  ///< => how many replies
+  virtual void tick() noexcept = 0;                                          ///< 2 ms pass
   /// What the motor is given: without torque while the drive is off; braked after its watchdog acted.
-  drives::MotorCommand command() const noexcept {
-    if (tripped_) return {.kd_Nm_s_per_rad = kBrake_Nm_s_per_rad};
-    return enabled_ && fault == drives::DriveFault::kNone ? command_ : drives::MotorCommand{};
-  }
-  void feel(const drives::MotorReading& motor) noexcept { motor_ = motor; }  ///< the true motor
+  virtual drives::MotorCommand command() const noexcept = 0;
+  virtual bool enabled() const noexcept = 0;
+  virtual bool tripped() const noexcept = 0;  ///< its watchdog has acted
 
-  bool enabled() const noexcept { return enabled_; }
-  bool tripped() const noexcept { return tripped_; }
+  /// The true motor, every 2 ms.
+  void feel(const drives::MotorReading& motor) noexcept {
+    motor_ = motor;
+    turn_rad += drift_rad;
+  }
   const drives::MotorSetup& setup() const noexcept { return *setup_; }
+
+  int patience =
+      1;  ///< its watchdog takes so many times its time: for a computer on which programs wait for each other
 
   // Faults on demand.
   bool silent = false;
-  bool twice = false;             ///< a second drive of this node number answers too
-  std::optional<double> stuck_q;  ///< the encoder shows this for ever [rad]
-  double turn_rad = 0.0;          ///< added to the encoder: a wrapped or lost turn
+  bool twice = false;                         ///< a second drive of this node number answers too
+  std::optional<double> stuck_q;              ///< the encoder shows this for ever [rad]
+  double turn_rad = 0.0;                      ///< added to the encoder: a wrapped or lost turn
+  double drift_rad = 0.0;                     ///< by which the encoder's zero moves every 2 ms
+  double speed_rad_s = 0.0, torque_Nm = 0.0;  ///< added to what the drive reads
   double temperature_degC = 35.0;
   drives::DriveFault fault = drives::DriveFault::kNone;
-  int heard = 0;
+  int node;  ///< that it answers as; another than its own: a wrong id
 
- private:
-  static constexpr double kBrake_Nm_s_per_rad = 2.0;
-  drives::MotorReading reading() const noexcept {
+  int heard = 0;   ///< frames that it answers: a command, or SYNC
+  int obeyed = 0;  ///< commands of a CANopen drive
+
+ protected:
+  drives::MotorReading shown() const noexcept {
     drives::MotorReading shown = motor_;
     shown.q_rad = stuck_q ? *stuck_q : shown.q_rad + turn_rad - zero_rad_;
+    shown.dq_rad_s += speed_rad_s;
+    shown.torque_Nm += torque_Nm;
     shown.temperature_degC = temperature_degC;
     shown.fault = fault;
     return shown;
   }
+  void set_zero() noexcept { zero_rad_ += shown().q_rad; }
 
+ private:
   const drives::MotorSetup* setup_;
-  drives::MitProtocol protocol_;
   drives::MotorReading motor_;
-  drives::MotorCommand command_;
-  bool enabled_ = false, tripped_ = false;
-  int silent_cycles_ = 0;
   double zero_rad_ = 0.0;
-
- public:
-  int node;  ///< that it answers as; another than its own: a wrong id
 };
 
 }  // namespace pmg::test

@@ -8,8 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "can/drive_emulator.hpp"
+#include "can/cia402_emulator.hpp"
 #include "can/link.hpp"
+#include "can/mit_emulator.hpp"
 #include "can/xsens_imu.hpp"
 #include "model/robot_io.hpp"
 
@@ -22,7 +23,13 @@ class EmulatedDrives {
       : setup_(setup), links_(std::move(links)) {
     for (const drives::BusSetup& bus : setup.buses) {
       auto& drives = buses_.emplace_back();
-      for (const drives::MotorSetup& motor : bus.motors) drives.emplace_back(motor);
+      for (const drives::MotorSetup& motor : bus.motors) {
+        if (std::holds_alternative<drives::MitRanges>(motor.drive)) {
+          drives.push_back(std::make_unique<MitEmulator>(motor));
+        } else {
+          drives.push_back(std::make_unique<Cia402Emulator>(motor));
+        }
+      }
     }
   }
 
@@ -36,9 +43,9 @@ class EmulatedDrives {
       std::array<can::Frame, 32> frames;
       while (const std::size_t count = links_[b]->receive(frames)) {
         for (const can::Frame& frame : std::span(frames).first(count)) {
-          for (DriveEmulator& drive : buses_[b]) {
-            std::array<can::Frame, 2> replies;
-            const int answers = drive.hear(frame, replies);
+          for (const auto& drive : buses_[b]) {
+            Replies replies;
+            const int answers = drive->hear(frame, replies);
             links_[b]->send(std::span(replies).first(static_cast<std::size_t>(answers)));
           }
         }
@@ -47,17 +54,20 @@ class EmulatedDrives {
   }
   void speak() noexcept {
     for (std::size_t b = 0; b < buses_.size(); ++b) {
-      if (setup_.buses[b].imu && !imu_silent) links_[b]->send(can::imu_frames(sensed_));
+      if (!setup_.buses[b].imu || imu_silent) continue;
+      model::RobotState shown = sensed_;
+      shown.orientation_WI = imu_lean * shown.orientation_WI;
+      links_[b]->send(can::imu_frames(shown));
     }
   }
 
   /// 2 ms pass: watchdogs; the drives' commands, joint by joint.
   void tick(model::JointCommand& command) noexcept {
     for (auto& bus : buses_) {
-      for (DriveEmulator& drive : bus) {
-        drive.tick();
-        const drives::MotorCommand joint = drive.setup().transmission.to_joint(drive.command());
-        const int index = drive.setup().index;
+      for (const auto& drive : bus) {
+        drive->tick();
+        const drives::MotorCommand joint = drive->setup().transmission.to_joint(drive->command());
+        const int index = drive->setup().index;
         command.q[index] = joint.q_rad;
         command.dq[index] = joint.dq_rad_s;
         command.kp[index] = joint.kp_Nm_per_rad;
@@ -70,9 +80,9 @@ class EmulatedDrives {
   void feel(const model::RobotState& state) noexcept {
     sensed_ = state;
     for (auto& bus : buses_) {
-      for (DriveEmulator& drive : bus) {
-        const int index = drive.setup().index;
-        drive.feel(drive.setup().transmission.to_motor(
+      for (const auto& drive : bus) {
+        const int index = drive->setup().index;
+        drive->feel(drive->setup().transmission.to_motor(
             drives::MotorReading{.q_rad = state.q[index], .dq_rad_s = state.dq[index], .torque_Nm = state.tau[index]}));
       }
     }
@@ -81,7 +91,14 @@ class EmulatedDrives {
   long heard() const noexcept {
     long sum = 0;
     for (const auto& bus : buses_) {
-      for (const DriveEmulator& drive : bus) sum += drive.heard;
+      for (const auto& drive : bus) sum += drive->heard;
+    }
+    return sum;
+  }
+  long obeyed() const noexcept {
+    long sum = 0;
+    for (const auto& bus : buses_) {
+      for (const auto& drive : bus) sum += drive->obeyed;
     }
     return sum;
   }
@@ -95,16 +112,20 @@ class EmulatedDrives {
     return true;
   }
 
-  DriveEmulator& drive(std::size_t bus, std::size_t motor) { return buses_[bus][motor]; }
+  DriveEmulator& drive(std::size_t bus, std::size_t motor) { return *buses_[bus][motor]; }
+  Cia402Emulator& cia402(std::size_t bus, std::size_t motor) {
+    return dynamic_cast<Cia402Emulator&>(drive(bus, motor));
+  }
   can::Link& link(std::size_t bus) { return *links_[bus]; }
   std::size_t buses() const { return buses_.size(); }
   std::size_t motors(std::size_t bus) const { return buses_[bus].size(); }
   bool imu_silent = false;
+  Eigen::Quaterniond imu_lean = Eigen::Quaterniond::Identity();  ///< of the world's axes, beside the true orientation
 
  private:
   const drives::DriveSetup& setup_;
   std::vector<std::unique_ptr<can::Link>> links_;
-  std::vector<std::vector<DriveEmulator>> buses_;
+  std::vector<std::vector<std::unique_ptr<DriveEmulator>>> buses_;
   model::RobotState sensed_;
 };
 

@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "can/emulated_robot.hpp"
 #include "can/memory_link.hpp"
+#include "can/mixed_drives.hpp"
+#include "model/hanging_load.hpp"
 #include "model/robots.hpp"
 #include "sil/simulated_robot.hpp"
 
@@ -18,7 +22,10 @@ namespace {
 /// motor turns the other way round.
 class FirstLight : public testing::Test {
  protected:
-  FirstLight() : setup_(drives::load_drives(test::z1())), world_(test::z1(), sil::world_with_noise(1, true)) {
+  explicit FirstLight(std::optional<drives::Cia402Mode> mode = {})
+      : setup_(drives::load_drives(test::z1())), world_(test::z1(), sil::world_with_noise(1, true)) {
+    drives::MotorSetup& motor = setup_.buses[0].motors[3];
+    if (mode) motor.drive = test::cia402_for(motor, test::z1(), *mode);
     auto [host, far] = test::link_pairs<test::MemoryLink>(setup_.buses.size());
     host_ = std::move(host);
     drives_.emplace(setup_, std::move(far));
@@ -34,7 +41,7 @@ class FirstLight : public testing::Test {
     world_.step(acting_);
   }
   Wiggle wiggle(const drives::MotorSetup& motor, const WiggleOptions& options = {}) {
-    return can::wiggle(test::z1(), setup_.buses[0], motor, *host_[0], options, [this] { tick(); }, {});
+    return can::wiggle(test::z1(), sensed_.q, setup_.buses[0], motor, *host_[0], options, [this] { tick(); }, {});
   }
   const drives::MotorSetup& knee() const { return setup_.buses[0].motors[3]; }
 
@@ -77,11 +84,55 @@ TEST_F(FirstLight, ASilentFaultyOrMisplacedMotorIsSwitchedOffWithALine) {
   EXPECT_FALSE(drives_->drive(0, 3).enabled());
 }
 
+// At a hip the whole leg hangs, the knee straighter than it stands: the model's torque is that of the leg as it hangs.
+TEST_F(FirstLight, ALimbIsComparedAsItHangs) {
+  const drives::MotorSetup& hip = setup_.buses[0].motors[0];
+  ASSERT_EQ(hip.joint, "left_hip_pitch");
+  const Wiggle result = wiggle(hip, {.by_rad = 0.05, .gain_share = 0.5});
+  EXPECT_NEAR(result.held_Nm, result.model_Nm, result.friction_Nm);
+  JointVector other = sensed_.q;
+  other[test::z1().joint_index.at("left_knee")] = 2.0;  // it doesn't hang like that
+  const Wiggle bent =
+      can::wiggle(test::z1(), other, setup_.buses[0], hip, *host_[0], {.by_rad = 0.05}, [this] { tick(); }, {});
+  EXPECT_GT(std::abs(bent.held_Nm - bent.model_Nm), bent.friction_Nm);
+}
+
+class FirstLightTorque : public FirstLight {
+ protected:
+  FirstLightTorque() : FirstLight(drives::Cia402Mode::kTorque) {}
+};
+class FirstLightPosition : public FirstLight {
+ protected:
+  FirstLightPosition() : FirstLight(drives::Cia402Mode::kPosition) {}
+};
+
+TEST_F(FirstLightTorque, AKneeMovesAndItsLoadTellsTheDirection) {
+  const Wiggle result = wiggle(knee(), {.by_rad = 0.1, .gain_share = 0.5});
+  EXPECT_GT(result.moved_rad, 0.5 * result.asked_rad);
+  EXPECT_LT(result.moved_rad, 1.5 * result.asked_rad);
+  tick();
+  EXPECT_FALSE(drives_->drive(0, 3).enabled());
+  EXPECT_NEAR(result.held_Nm, result.model_Nm, result.friction_Nm);
+}
+
+TEST_F(FirstLightPosition, AKneeMovesWithTheDrivesOwnGains) {
+  const Wiggle result = wiggle(knee(), {.by_rad = 0.1, .gain_share = 0.3});
+  EXPECT_NEAR(result.moved_rad, result.asked_rad, 0.1 * result.asked_rad);
+  tick();
+  EXPECT_FALSE(drives_->drive(0, 3).enabled());
+}
+
+TEST_F(FirstLightTorque, ADriveThatIsAnotherThanRobotYamlSaysDoesNotMove) {
+  drives_->cia402(0, 3).objects.value(0x6076) = 1000;
+  EXPECT_THROW(wiggle(knee()), std::runtime_error);
+  EXPECT_FALSE(drives_->drive(0, 3).enabled());
+}
+
 TEST(FirstLightText, TheWayOfAKneeIsBackwardAndUp) {
   // Z1's knee bends the shank backward for a positive angle; standing, it is bent by 0.3 rad already.
-  EXPECT_THAT(way_of(test::z1(), "left_knee", 0.05), testing::HasSubstr("backward"));
-  EXPECT_THAT(way_of(test::z1(), "left_hip_pitch", -0.05), testing::HasSubstr("forward"));
-  EXPECT_THAT(way_of(test::z1(), "left_hip_roll", 0.05), testing::HasSubstr("to the left"));
+  EXPECT_THAT(way_of(test::z1(), test::z1().q_stand(), "left_knee", 0.05), testing::HasSubstr("backward"));
+  EXPECT_THAT(way_of(test::z1(), test::z1().q_stand(), "left_hip_pitch", -0.05), testing::HasSubstr("forward"));
+  EXPECT_THAT(way_of(test::z1(), test::z1().q_stand(), "left_hip_roll", 0.05), testing::HasSubstr("to the left"));
 }
 
 TEST(FirstLightText, TheVerdictFollowsFromTheFigures) {

@@ -4,12 +4,22 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <net/if.h>
 #include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -53,6 +63,43 @@ TEST(SocketsOrNone, AKernelWithoutCanOrAMissingInterfaceIsOneLine) {
       refusal("can99"),
       testing::AnyOf("can99: this kernel has no CAN; expected one with the modules can and can_raw (modprobe can_raw)",
                      "can99: no such interface; expected a CAN interface (ip link show type can)"));
+}
+
+/// From here on this process gets no CAN socket, as in a container that grants none.
+void forbid_can_sockets() {
+  constexpr auto data = [](std::size_t at) { return static_cast<unsigned>(at); };
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, data(offsetof(seccomp_data, nr))),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_socket, 0, 3),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, data(offsetof(seccomp_data, args))),  // the low half of its first argument
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PF_CAN, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog program = {.len = static_cast<unsigned short>(std::size(filter)), .filter = filter};
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) std::_Exit(1);
+}
+
+// A kernel's CAN sockets are open to everybody; a container may refuse them. The child says what it got.
+TEST(SocketsOrNone, WhereTheyAreForbiddenTheCapabilityIsNamed) {
+  if (prctl(PR_GET_SECCOMP, 0, 0, 0, 0) < 0) GTEST_SKIP() << "this kernel has no filters of system calls";
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    forbid_can_sockets();
+    const std::string said = refusal("can0");
+    std::_Exit(write(ends[1], said.data(), said.size()) == static_cast<ssize_t>(said.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::array<char, 200> said{};
+  const ssize_t bytes = read(ends[0], said.data(), said.size());
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(std::string(said.data(), static_cast<std::size_t>(std::max<ssize_t>(bytes, 0))),
+            "can0: no permission for CAN sockets; expected CAP_NET_RAW");
 }
 
 TEST_F(Sockets, WhatIsNoCanInterfaceOrIsDownIsRefused) {

@@ -145,8 +145,8 @@ struct DrivenTick {
         state(standing_state(robot)),
         policy(any_policy.get()),
         tick(robot, library, std::move(any_policy), clock, control::tick_options(robot)) {
-    drive.source = request.source = control::Source::make("test", 1);
-    drive.lease_s = 0.5;
+    drive.source = request.source = arms.source = control::Source::make("test", 1);
+    drive.lease_s = arms.lease_s = 0.5;
   }
 
   /// Runs the next tick, with drives that follow at once.
@@ -156,13 +156,16 @@ struct DrivenTick {
     state.bus_sample += 5;
     ++drive.sequence;
     ++request.sequence;
+    ++arms.sequence;
     drive.stamp_ns = drive.received_ns = request.stamp_ns = request.received_ns = now_ns;
+    arms.stamp_ns = arms.received_ns = now_ns;
     const std::size_t messages = speaking ? 1 : 0;
     const control::TickResult& result = tick.step({.state = state,
                                                    .bus = bus,
                                                    .now_ns = now_ns,
                                                    .drives = {&drive, messages},
-                                                   .requests = {&request, asking ? messages : 0}});
+                                                   .requests = {&request, asking ? messages : 0},
+                                                   .arms = {&arms, leading ? messages : 0}});
     if (result.command.kp.sum() > 0.0) state.q = result.command.q;
     feet.apply(carried, state);
     return result;
@@ -183,6 +186,8 @@ struct DrivenTick {
   std::int64_t now_ns = 0;
   control::DriveMessage drive;
   control::ModeRequest request;
+  bool leading = false;  ///< sends arms in every tick
+  control::ArmsMessage arms;
 };
 
 }  // namespace pmg::test

@@ -11,9 +11,9 @@
 namespace pmg::test {
 
 /// Plays every run again with the bench's truth, with white noise of the readings, and records the speed.
-inline void play(RandomBench& made, unsigned seed) {
+inline void play(RandomBench& made, unsigned seed, double noise_rad = 3e-4) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, 3e-4);
+  std::normal_distribution<double> noise(0.0, noise_rad);
   const double step_s = 0.001;
   for (bench::BenchRun& run : made.runs) {
     const std::vector<double> q_rad = calib::SingleJoint(made.bench, run, step_s).rollout(made.truth);
@@ -52,6 +52,52 @@ inline RandomBench cascade_bench(unsigned seed) {
       run.recording.tau_ff_Nm.push_back(0.33 * run.load.gravity_Nm * std::sin(pace_rad_s * t_s));
   }
   play(made, seed);
+  return made;
+}
+
+/// Every run twice, with other noise.
+inline RandomBench with_repeats(RandomBench made, unsigned seed) {
+  const std::size_t runs = made.runs.size();
+  for (std::size_t i = 0; i < runs; ++i) {
+    bench::BenchRun again = made.runs[i];
+    again.file = "again_" + again.file;
+    again.repeat = 1;
+    made.runs.push_back(again);
+    // Runs of random_bench have commands of their own: only the two are a condition.
+    made.runs[i].trajectory = made.runs.back().trajectory = made.runs[i].file;
+  }
+  play(made, seed, 1e-3);
+  return made;
+}
+
+inline RandomBench repeated_bench(unsigned seed) { return with_repeats(random_bench(seed), seed); }
+
+/// A drive that is told torques: those of the load's weight and inertia along a planned motion, on two loads.
+inline RandomBench torque_bench(unsigned seed) {
+  RandomBench made = random_bench(seed);
+  made.bench.law = bench::DriveLaw::kTorque;
+  made.bench.known.transmission.armature_kg_m2 = made.truth.actuator.transmission.armature_kg_m2;
+  std::mt19937 random(seed + 2000);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (bench::BenchRun& run : made.runs) {
+    run.kp = 1.0, run.kd = 0.0;
+    bench::Recording& r = run.recording;
+    const double reach_rad = 0.5 + 0.5 * unit(random), pace_rad_s = 2.0 + 3.0 * unit(random);
+    const double friction_Nm = made.truth.actuator.friction.coulomb_Nm;
+    const double inertia_kg_m2 = run.load.inertia_kg_m2 + made.truth.actuator.transmission.armature_kg_m2;
+    r.torque_Nm.clear();
+    for (std::size_t k = 0; k < r.t_s.size(); ++k) {
+      const double t_s = r.t_s[k], soft = 1.0 - std::exp(-t_s);  // from rest
+      const double q_rad = soft * reach_rad * std::sin(pace_rad_s * t_s);
+      const double dq_rad_s = soft * reach_rad * pace_rad_s * std::cos(pace_rad_s * t_s);
+      r.q_cmd_rad[k] = q_rad;
+      r.torque_Nm.push_back(run.load.gravity_Nm * std::sin(q_rad) - inertia_kg_m2 * pace_rad_s * pace_rad_s * q_rad +
+                            friction_Nm * std::tanh(dq_rad_s / 0.05));
+    }
+    r.enabled.clear();
+  }
+  play(made, seed);
+  for (bench::BenchRun& run : made.runs) run.recording.dq_rad_s.clear();
   return made;
 }
 

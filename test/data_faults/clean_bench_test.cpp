@@ -75,10 +75,17 @@ TEST(SoundData, HaveNoFaultsWithFeedForwardAndSpeeds) {
   EXPECT_EQ(text(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1)), "");
 }
 
+TEST(SoundData, HaveNoFaultsUnderTorqueCommandsAndWithRepeats) {
+  const test::RandomBench told = test::torque_bench(32), repeated = test::repeated_bench(33);
+  EXPECT_EQ(text(find_data_faults(told.bench, told.runs, std::nullopt, {}, 1)), "");
+  EXPECT_EQ(text(find_data_faults(repeated.bench, repeated.runs, std::nullopt, {}, 1)), "");
+}
+
 TEST(SoundData, OfMeasuredJointsHaveNoFaults) {
   const fs::path data = fs::path(PMG_SOURCE_DIR) / "../shared/data/bench";
   if (!fs::exists(data)) GTEST_SKIP() << "no measured recordings in " << data;
-  for (const auto& [folder, filter] : {std::pair{"emps", ""}, {"sts3215", "kp_firmware in 4,16 and repeat == 0"}}) {
+  for (const auto& [folder, filter] :
+       {std::pair{"emps", ""}, {"sts3215", "kp_firmware in 4,16 and repeat == 0"}, {"xl330", ""}}) {
     const Examination found = examine(bench::read_bench(data / folder), {filter}, std::nullopt, {}, 1);
     EXPECT_EQ(text(found.faults), "") << folder;
   }

@@ -2,11 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "calib/synthetic_bench.hpp"
 #include "data_faults/data_faults_report.hpp"
 #include "data_faults/examine.hpp"
+#include "files/config_error.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::data_faults {
 namespace {
@@ -59,6 +63,15 @@ TEST(Examination, KeepsHalfOfTheRuns) {
   EXPECT_TRUE(found.uncorrected());
 }
 
+TEST(Examination, LeavesARunOfEveryGroup) {
+  const std::vector<std::vector<std::string>> groups = {{"run0.csv", "run1.csv"}, {"run3.csv"}};
+  const Examination found = examination({turned({"run3.csv"})}, ten_runs(), Handling::kLeaveOut, groups);
+  EXPECT_TRUE(found.left_out.empty()) << "nothing would be left to score";
+  EXPECT_TRUE(found.uncorrected());
+  const Examination fitted = examination({turned({"run1.csv"})}, ten_runs(), Handling::kLeaveOut, groups);
+  EXPECT_EQ(fitted.left_out, std::vector<std::string>{"run1.csv"});
+}
+
 TEST(Examination, SaysNothingOfSoundData) {
   const Examination sound = examination({}, ten_runs(), Handling::kCorrect);
   EXPECT_EQ(faults_text(sound), "");
@@ -93,6 +106,55 @@ TEST(Examination, EveryThresholdIsListedWithItsReason) {
 }
 
 TEST(Examination, RefusesAnUnknownHandling) { EXPECT_THROW(handling_of("ignore"), std::invalid_argument); }
+
+/// Four runs of a pendulum that moves up to 2.2 rad either way: 124 degrees, more than a reader takes for radians.
+std::vector<calib::SingleJoint> far_swings() {
+  const bench::Bench bench = test::pd_bench(true);
+  calib::JointModel truth;
+  truth.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  std::vector<calib::SingleJoint> swings;
+  for (const calib::SingleJoint& joint : test::record(bench, truth, 4)) {
+    bench::BenchRun run = joint.run();
+    for (double& q_rad : run.recording.q_cmd_rad) q_rad *= 1.8;
+    run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(truth);
+    swings.emplace_back(bench, run, joint.step_s());
+  }
+  return swings;
+}
+
+std::vector<calib::SingleJoint> with_readings(const std::vector<calib::SingleJoint>& joints, double factor,
+                                              std::size_t first, std::size_t last) {
+  std::vector<calib::SingleJoint> changed;
+  for (const calib::SingleJoint& joint : joints) {
+    bench::BenchRun run = joint.run();
+    for (std::size_t k = first; k < std::min(last, run.recording.q_rad.size()); ++k) run.recording.q_rad[k] *= factor;
+    changed.emplace_back(test::pd_bench(true), run, joint.step_s());
+  }
+  return changed;
+}
+
+TEST(Examination, DegreesTooLargeForRadiansAreNamedAndNotRefused) {
+  const test::TemporaryFolder folder;
+  test::write_bench(folder.path(), with_readings(far_swings(), 57.29577951308232, 0, 1000));
+  const bench::Bench bench = bench::read_bench(folder.path());
+  ASSERT_THROW(bench.read_runs(bench::RowFilter("")), files::ConfigError);
+  for (const Handling handling : {Handling::kCorrect, Handling::kLeaveOut}) {
+    const Examination found = examine(bench, {""}, std::nullopt, {.handling = handling}, 1);
+    ASSERT_EQ(found.faults.size(), 1U);
+    EXPECT_EQ(found.faults.front().kind, Kind::kUnit);
+    EXPECT_THAT(found.faults.front().correction, HasSubstr("degrees"));
+    const std::vector<bench::BenchRun> runs = examined_bench(bench, found).read_runs(bench::RowFilter(""));
+    const bool plausible = std::ranges::all_of(
+        runs, [](const bench::BenchRun& run) { return bench::plausible_positions(run.recording, false); });
+    EXPECT_EQ(plausible, handling == Handling::kCorrect);
+  }
+}
+
+TEST(Examination, PositionsThatNoFaultExplainsAreRefused) {
+  const test::TemporaryFolder folder;
+  test::write_bench(folder.path(), with_readings(far_swings(), 300.0, 140, 150));
+  EXPECT_THROW(examine(bench::read_bench(folder.path()), {""}, std::nullopt, {}, 1), files::ConfigError);
+}
 
 }  // namespace
 }  // namespace pmg::data_faults

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -54,13 +55,13 @@ PlantedFault wrong_mass(Random& random, Runs& runs) {
   return fault;
 }
 
-PlantedFault wrong_gain(Random& random, Runs& runs, double bench::BenchRun::*gain, bool all) {
+PlantedFault wrong_gain(Random& random, Runs& runs, double bench::BenchRun::*gain, bool all, double by = 0.0) {
   std::set<double> values;
   for (const bench::BenchRun& run : runs) values.insert(run.*gain);
   if ((!all && values.size() < 2) || *values.rbegin() == 0.0) return {};
   const double chosen = *std::next(values.begin(), static_cast<long>(any(random, values.size())));
   constexpr double kFactors[] = {2.0, 0.5, 4.0, 0.25};
-  const double factor = all ? kFactors[2 + any(random, 2)] : kFactors[any(random, 4)];
+  const double factor = by != 0.0 ? by : all ? kFactors[2 + any(random, 2)] : kFactors[any(random, 4)];
   PlantedFault fault{.kind = "gain_factor",
                      .where = {gain == &bench::BenchRun::kp ? "kp" : "kd"},
                      .files = {},
@@ -88,6 +89,20 @@ PlantedFault swapped_rows(Random& random, Runs& runs) {
     std::swap(a.kd, b.kd);
     std::swap(a.load, b.load);
     return {.kind = "swapped_runs", .where = {a.file}, .files = {a.file, b.file}};
+  }
+  return {};
+}
+
+/// A row with the load and the gains of another row: what was recorded with the one is written down as the other.
+PlantedFault wrong_row(Random& random, Runs& runs) {
+  for (int tries = 0; tries < 100; ++tries) {
+    bench::BenchRun& run = runs[any(random, runs.size())];
+    const bench::BenchRun& like = runs[any(random, runs.size())];
+    if (like.load == run.load || like.kp == run.kp) continue;
+    run.kp = like.kp;
+    run.kd = like.kd;
+    run.load = like.load;
+    return {.kind = "row", .where = {run.file}, .files = {run.file}};
   }
   return {};
 }
@@ -130,6 +145,57 @@ const std::map<std::string, Plant>& kinds() {
        [](Random& random, const bench::Bench&, Runs& runs) {
          return scaled(runs, one_of(random, runs), Column::kPositionCommand, kDegrees, "unit", {"q_cmd"});
        }},
+      {"readings in degrees, one run",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         return scaled(runs, one_of(random, runs), Column::kPosition, kDegrees, "unit", {" q_"});
+       }},
+      {"feed-forward turned, one run",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         Runs with;
+         std::copy_if(runs.begin(), runs.end(), std::back_inserter(with), [](const bench::BenchRun& run) {
+           return std::any_of(run.recording.tau_ff_Nm.begin(), run.recording.tau_ff_Nm.end(),
+                              [](double v) { return v != 0.0; });
+         });
+         if (with.empty()) return PlantedFault{};
+         return scaled(runs, one_of(random, with), Column::kFeedForward, -1.0, "sign", {"tau_ff"});
+       }},
+      {"speed turned",
+       [](Random&, const bench::Bench&, Runs& runs) {
+         return if_there(runs, Column::kSpeed,
+                         [&] { return scaled(runs, {}, Column::kSpeed, -1.0, "sign", {" dq_rad"}); });
+       }},
+      {"damping of some rows", [](Random& random, const bench::Bench&,
+                                  Runs& runs) { return wrong_gain(random, runs, &bench::BenchRun::kd, false); }},
+      {"feed-forward in another unit, one run",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         return if_there(runs, Column::kFeedForward, [&] {
+           return scaled(runs, one_of(random, runs), Column::kFeedForward, 3.0, "unit", {"tau_ff"});
+         });
+       }},
+      {"torque in another unit",
+       [](Random&, const bench::Bench&, Runs& runs) {
+         return scaled(runs, {}, Column::kTorque, 3.0, "unit", {"torque_Nm"});
+       }},
+      {"torque in another unit, one run",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         return scaled(runs, one_of(random, runs), Column::kTorque, 0.3, "unit", {"torque_Nm"});
+       }},
+      {"torque turned", [](Random&, const bench::Bench&,
+                           Runs& runs) { return scaled(runs, {}, Column::kTorque, -1.0, "sign", {"torque_Nm"}); }},
+      {"torque turned, one run",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         return scaled(runs, one_of(random, runs), Column::kTorque, -1.0, "sign", {"torque_Nm"});
+       }},
+      {"gain of some rows off by a fifth",
+       [](Random& random, const bench::Bench&, Runs& runs) {
+         return wrong_gain(random, runs, &bench::BenchRun::kp, false, 0.8);
+       }},
+      {"readings early by two samples, all runs",
+       [](Random&, const bench::Bench& bench, Runs& runs) {
+         const double early_s = std::max(0.015, 2.0 / bench.sample_rate_hz);
+         for (bench::BenchRun& run : runs) bench::correct(run, {.columns = {Column::kPosition}, .shift_s = early_s});
+         return PlantedFault{.kind = "time_shift", .where = {" q_"}, .files = {}, .shift_s = -early_s};
+       }},
       {"command turned",
        [](Random&, const bench::Bench&, Runs& runs) {
          return scaled(runs, {}, Column::kPositionCommand, -1.0, "sign", {"q_cmd"});
@@ -153,6 +219,7 @@ const std::map<std::string, Plant>& kinds() {
          return wrong_gain(random, runs, &bench::BenchRun::kp, true);
        }},
       {"swapped rows", [](Random& random, const bench::Bench&, Runs& runs) { return swapped_rows(random, runs); }},
+      {"row of another load", [](Random& random, const bench::Bench&, Runs& runs) { return wrong_row(random, runs); }},
       {"readings shifted, one run", [](Random& random, const bench::Bench& bench,
                                        Runs& runs) { return shifted(random, bench, runs, Column::kPosition, false); }},
       {"readings early, all runs", [](Random& random, const bench::Bench& bench,

@@ -4,8 +4,8 @@
 
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "diagnosis/intervals.hpp"
 #include "effects/folds.hpp"
+#include "effects/intervals.hpp"
 
 namespace pmg::diagnosis {
 namespace {

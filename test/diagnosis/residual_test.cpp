@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "diagnosis/random_bench.hpp"
-#include "diagnosis/report.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -81,40 +80,6 @@ TEST(Residual, SpectrumHasTheVarianceAndTheLine) {
   const auto peak = std::max_element(spectrum.residual_rad2_per_Hz.begin(), spectrum.residual_rad2_per_Hz.end());
   EXPECT_NEAR(spectrum.frequency_Hz[static_cast<std::size_t>(peak - spectrum.residual_rad2_per_Hz.begin())], kLine_Hz,
               spectrum.frequency_Hz.front());
-}
-
-TEST(Report, ShowsRunsCausesRejectedAndWhatToRecord) {
-  const test::RandomBench made = test::random_bench(1);
-  DiagnosedRuns runs;
-  runs.fitted = runs.scored = joints(made);
-  Diagnosis diagnosis;
-  diagnosis.before = diagnosis.after = made.truth;
-  diagnosis.before.actuator.friction.coulomb_Nm = 0.0;
-  diagnosis.verdict = evidence::Verdict::kAmbiguous;
-  diagnosis.held_out = true;
-  diagnosis.noise_floor = {0.001, 0.0012, false, "from the sensor's own noise"};
-  Cause cause;
-  cause.effect = "coulomb";
-  cause.parameters = {{"friction.coulomb_Nm", {0.2, 0.1, 0.3}, "Nm"}};
-  cause.or_instead = {"dead_band"};
-  cause.evidence = {"wins <all> folds"};
-  diagnosis.causes = {cause};
-  diagnosis.rejected = {{"backlash", "gains nothing"}};
-  NextExcitation next;
-  next.text = "record slow steps";
-  next.tells_apart = {"coulomb", "dead_band"};
-  NextRun& run = next.runs.emplace_back();
-  run.shape = "slow steps";
-  run.t_s = {0.0, 1.0, 2.0};
-  run.q_cmd_rad = {0.0, 0.5, 0.0};
-  diagnosis.next_excitation = next;
-  runs.checks = evidence::signatures(made.bench, made.runs);
-  const std::string html = diagnosis_report(made.bench, diagnosis, runs).html();
-  for (const char* text : {"Coulomb friction or dead band", "record slow steps", "gains nothing", "friction.coulomb_Nm",
-                           "wins &lt;all&gt; folds", "against velocity", "noise floor", "balance of torques"}) {
-    EXPECT_NE(html.find(text), std::string::npos) << text;
-  }
-  EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
 }  // namespace

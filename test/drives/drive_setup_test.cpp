@@ -75,6 +75,62 @@ TEST_F(DriveSetupFile, WhatADriveCantDoIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal(), testing::HasSubstr("joints.left_knee.bus.direction: is 2; expected 1 or -1"));
 }
 
+TEST_F(DriveSetupFile, AnImuOfItsOwnLineIsOnNoBus) {
+  replace("  rpy_rad: [0.0, 0.0, 0.0]\n",
+          "  rpy_rad: [0.0, 0.0, 0.0]\n  serial: {protocol: xsens_mti, device: /dev/ttyUSB0, baud: 921600, rate_Hz: "
+          "400}\n");
+  EXPECT_THAT(refusal(),
+              testing::HasSubstr("1 buses with drives have the IMU; expected none: robot.yaml has `imu.serial`"));
+  replace(", imu: xsens_can", "");
+  EXPECT_EQ(refusal(), "taken");
+}
+
+TEST_F(DriveSetupFile, SamplePointsAreReadAndBounded) {
+  replace("can0: {bitrate: 1000000", "can0: {bitrate: 1000000, sample_point: 0.8, data_sample_point: 0.7");
+  EXPECT_EQ(refusal(), "taken");
+  const BusSetup bus = load_drives(model::load_robot(folder_)).buses.front();
+  EXPECT_EQ(bus.sample_point, 0.8);
+  EXPECT_EQ(bus.data_sample_point, 0.7);
+  EXPECT_EQ(load_drives(test::z1()).buses.front().sample_point, 0.0);
+  replace("sample_point: 0.8", "sample_point: 80");
+  EXPECT_THAT(refusal(), testing::HasSubstr("buses.can0.sample_point: is '80'; expected a number from 0.5 to 0.95"));
+}
+
+TEST_F(DriveSetupFile, ACia402DriveIsReadAndRefusedWhereItDoesNotFit) {
+  replace("  arm: {",
+          "  knee: {protocol: cia402, mode: torque, counts_per_turn: 65536, velocity_unit_rad_s: 0.001, "
+          "rated_torque_Nm: 40, torque_Nm: 120, temperature_index: 8240}\n  arm: {");
+  replace("node: 4, drive: leg", "node: 4, drive: knee");
+  EXPECT_THAT(refusal(), testing::HasSubstr("buses.can0: has CANopen drives, and left_hip_pitch's replies have the "
+                                            "identifier 0, which switches CANopen nodes; expected a `reply_id`"));
+  replace("leg: {protocol: mit,", "leg: {protocol: mit, reply_id: 5,");
+  EXPECT_THAT(refusal(), testing::HasSubstr("have the identifier 5, which commands a drive"));
+  replace("reply_id: 5", "reply_id: 126");
+  EXPECT_EQ(refusal(), "taken");
+  const DriveSetup setup = load_drives(model::load_robot(folder_));
+  const auto& settings = std::get<Cia402Settings>(setup.buses[0].motors[3].drive);
+  EXPECT_EQ(settings.mode, Cia402Mode::kTorque);
+  EXPECT_EQ(settings.temperature_index, 0x2030);
+  EXPECT_TRUE(setup.buses[0].has_canopen());
+  EXPECT_FALSE(setup.buses[1].has_canopen());
+  replace("torque_Nm: 120", "torque_Nm: 119");
+  EXPECT_THAT(refusal(), testing::HasSubstr("covers a torque_Nm of 119 and left_knee's effort needs 120"));
+  replace("torque_Nm: 119", "torque_Nm: 120");
+  replace("rated_torque_Nm: 40", "rated_torque_Nm: 3");
+  EXPECT_THAT(refusal(), testing::HasSubstr("32.767 times rated_torque_Nm"));
+  replace("rated_torque_Nm: 3", "rated_torque_Nm: 40");
+  replace("mode: torque", "kp_Nm_per_rad: 700, kd_Nm_s_per_rad: 15, mode: position");
+  EXPECT_THAT(refusal(), testing::HasSubstr("closes its position loop with kp 700 and kd 15; left_knee's gains are 700 "
+                                            "and 16 at the motor; expected the drive's own gains, or `mode: torque`"));
+  replace("kd_Nm_s_per_rad: 15", "kd_Nm_s_per_rad: 16");
+  EXPECT_EQ(refusal(), "taken");
+  replace("node: 4, drive: knee", "node: 127, drive: knee");
+  EXPECT_THAT(refusal(), testing::HasSubstr("left_knee's node is 127; expected nodes up to 126"));
+  replace("node: 127, drive: knee", "node: 4, drive: knee");
+  replace("can0: {bitrate: 1000000}", "can0: {bitrate: 1000000, data_bitrate: 5000000}");
+  EXPECT_THAT(refusal(), testing::HasSubstr("CAN FD frames, which their controllers take for errors"));
+}
+
 TEST_F(DriveSetupFile, EveryBusIsDescribedAndOneHasTheImu) {
   replace(", imu: xsens_can", "");
   EXPECT_THAT(refusal(),

@@ -36,6 +36,84 @@ TEST(MitProtocol, FramesAreThoseOfThePublishedFirmware) {
   EXPECT_EQ(reply->reading.fault, DriveFault::kUnderVoltage);
 }
 
+// Bytes by an implementation that this project did not write: mini-cheetah-motor-driver-socketcan 0.4.3 (DFKI, on
+// PyPI), motor type AK80_9_V2. It cuts a value to the code below, where this project takes the nearest.
+constexpr MitRanges kAk80 = {
+    .position_rad = 12.5, .velocity_rad_s = 25.64, .torque_Nm = 18.0, .kp_Nm_per_rad = 500.0, .kd_Nm_s_per_rad = 5.0};
+
+TEST(MitProtocol, CommandsThatAForeignHostPackedAreReadAsItMeantThem) {
+  struct Packed {
+    MotorCommand asked;
+    MitFrame frame;
+  };
+  const MitProtocol protocol(kAk80);
+  for (const Packed& packed :
+       {Packed{{0.5, -3.0, 120.0, 2.5, 4.0}, {0x85, 0x1E, 0x70, 0xF3, 0xD6, 0x7F, 0xF9, 0xC6}},
+        Packed{{-7.25, 20.0, 33.0, 0.4, -11.5}, {0x35, 0xC2, 0xE3, 0xC1, 0x0E, 0x14, 0x72, 0xE3}},
+        Packed{{12.5, 25.64, 500.0, 5.0, 18.0}, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
+        Packed{{-12.5, -25.64, 0.0, 0.0, -18.0}, {}}}) {
+    const auto read = protocol.command(packed.frame);
+    ASSERT_TRUE(read);
+    EXPECT_NEAR(read->q_rad, packed.asked.q_rad, protocol.position().step());
+    EXPECT_NEAR(read->dq_rad_s, packed.asked.dq_rad_s, protocol.velocity().step());
+    EXPECT_NEAR(read->kp_Nm_per_rad, packed.asked.kp_Nm_per_rad, 500.0 / 4095.0);
+    EXPECT_NEAR(read->kd_Nm_s_per_rad, packed.asked.kd_Nm_s_per_rad, 5.0 / 4095.0);
+    EXPECT_NEAR(read->torque_Nm, packed.asked.torque_Nm, protocol.torque().step());
+  }
+}
+
+TEST(MitProtocol, RepliesAreReadAsAForeignHostReadsThem) {
+  const MitProtocol protocol(kAk80);
+  const auto read = [&](const MitFrame& frame) { return protocol.reply(frame)->reading; };
+  const MotorReading some = read({0x05, 0x85, 0x1E, 0x70, 0x89, 0xC3}),
+                     other = read({0x01, 0x12, 0x34, 0xFE, 0xD7, 0xBA});
+  EXPECT_NEAR(some.q_rad, 0.499923705, 1e-9);
+  EXPECT_NEAR(some.dq_rad_s, -3.099340659, 1e-9);
+  EXPECT_NEAR(some.torque_Nm, 3.969230769, 1e-9);
+  EXPECT_NEAR(other.q_rad, -10.722323949, 1e-9);
+  EXPECT_NEAR(other.dq_rad_s, 25.414593407, 1e-9);
+  EXPECT_NEAR(other.torque_Nm, -0.610989011, 1e-9);
+}
+
+// A joint at rest would else get half a step of torque and of kd times half a step of speed for ever: 15 mNm at a wrist
+// with a field of 40 Nm, whose hand weighs as much when it is turned by 0.1 rad.
+TEST(MitProtocol, OfACommandThatIsRepeatedTheMeanTorqueIsTheAskedOne) {
+  const MitProtocol protocol(kRanges);
+  std::mt19937_64 random(3);
+  constexpr int kFrames = 400;
+  for (int k = 0; k < 200; ++k) {
+    const MotorCommand asked = {
+        .q_rad = uniform(random, -2.0, 0.8),
+        .dq_rad_s = k % 2 == 0 ? 0.0 : uniform(random, -10.0, 10.0),
+        .kp_Nm_per_rad = protocol.command(MitFrame{0, 0, 0, static_cast<std::uint8_t>(k % 8), 7})->kp_Nm_per_rad,
+        .kd_Nm_s_per_rad = 50.0 * (k % 5) / 4095.0,
+        .torque_Nm = k % 3 == 0 ? 0.0 : uniform(random, -80.0, 80.0)};
+    double left_Nm = 0.0, sum_Nm = 0.0;
+    for (int n = 0; n < kFrames; ++n) {
+      const MotorCommand given = *protocol.command(protocol.command(asked, kLimits, left_Nm));
+      const double more_Nm = given.kp_Nm_per_rad * (given.q_rad - asked.q_rad) +
+                             given.kd_Nm_s_per_rad * (given.dq_rad_s - asked.dq_rad_s) + given.torque_Nm -
+                             asked.torque_Nm;
+      ASSERT_LE(std::abs(more_Nm), 1.001 * protocol.torque().step()) << n;
+      sum_Nm += more_Nm;
+    }
+    EXPECT_LE(std::abs(sum_Nm), 0.501 * protocol.torque().step()) << "what the last frame left";
+  }
+}
+
+TEST(MitProtocol, WhatALimitCutsIsNotMadeUpFor) {
+  const MitProtocol protocol(kRanges);
+  double left_Nm = 0.0;
+  for (int n = 0; n < 100; ++n) {
+    const MotorCommand given = *protocol.command(
+        protocol.command({.q_rad = 5.0, .kp_Nm_per_rad = 500.0, .torque_Nm = 200.0}, kLimits, left_Nm));
+    ASSERT_LE(given.q_rad, kLimits.q_upper_rad);
+    ASSERT_LE(given.torque_Nm, kLimits.torque_Nm);
+  }
+  const MotorCommand after = *protocol.command(protocol.command({}, kLimits, left_Nm));
+  EXPECT_LE(std::abs(after.torque_Nm), protocol.torque().step());
+}
+
 TEST(MitProtocol, EveryCodeOfEveryFieldComesBackAsItself) {
   for (const auto& [field, bits] : {std::pair{FixedPoint(-12.5, 12.5, 16), 16},
                                     {FixedPoint(-45.0, 45.0, 12), 12},

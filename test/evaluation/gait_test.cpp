@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <numbers>
 
 #include "files/config_error.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::evaluation {
 namespace {
@@ -27,6 +27,16 @@ TEST(Gait, AContactIsAFootThatComesDownAfterASwing) {
   lift(45, 48);  // a bounce
   lift(70, 80);
   EXPECT_THAT(initial_contacts(loaded, 0.01), ElementsAre(40U, 80U));
+}
+
+TEST(Gait, ATiltedPelvisIsTakenOffTheHipBecauseTheNormsAreTheThighs) {
+  JointVector q = JointVector::Zero(6);
+  q << -30.0, 1.0, 2.0, 40.0, -15.0, 3.0;  // the order of generator::LegRole
+  q *= std::numbers::pi / 180.0;
+  const auto flexed = flexions_deg(q, {0, 1, 2, 3, 4, 5}, 10.0 * std::numbers::pi / 180.0);
+  EXPECT_NEAR(flexed[kHip], 20.0, 1e-9);
+  EXPECT_NEAR(flexed[kKneeFlexion], 40.0, 1e-9);
+  EXPECT_NEAR(flexed[kAnkle], 15.0, 1e-9);
 }
 
 TEST(Gait, CyclesOfDifferentLengthAreStretchedOntoEachOther) {
@@ -61,7 +71,6 @@ TEST(Gait, AnOffsetSpoilsTheRmsButNeitherCorrelationNorShape) {
 
 class NormsFile : public testing::Test {
  protected:
-  ~NormsFile() override { std::filesystem::remove(file_); }
   void write(const std::string& text) { std::ofstream(file_) << text; }
   std::string refusal() {
     try {
@@ -71,8 +80,8 @@ class NormsFile : public testing::Test {
     }
     return "taken";
   }
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("gait_test_" + std::to_string(getpid()) + ".csv");
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.file("norms.csv");
 };
 
 constexpr const char* kHeader =

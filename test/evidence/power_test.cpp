@@ -117,7 +117,7 @@ TEST(MeasuredStrength, IsTheParameterThatWasPlanted) {
   for (const Case& c : {Case{"load_friction", 0.2, 0.4}, Case{"offset", 0.3, 0.4}, Case{"zero_offset", 0.08, 0.4},
                         Case{"direction_friction", 0.5, 0.5}, Case{"delay", 0.024, 0.15}, Case{"gain", 0.8, 0.2},
                         Case{"rate_limit", 2.0, 0.15}}) {
-    const effects::Effect& effect = effects::effect(c.effect);
+    const effects::Form& effect = effects::effect(c.effect).forms.front();
     const RandomBench made = random_bench(3, [&](RandomBench& b, std::mt19937&) {
       for (const std::string& parameter : effect.parameters) calib::set(b.truth, parameter, c.value);
     });

@@ -157,5 +157,21 @@ TEST(Signatures, SayWhatIsMissing) {
   EXPECT_TRUE(signatures(made.bench, {}).empty());
 }
 
+TEST(Signatures, TemperaturesOfRowsCountAsThoseOfColumns) {
+  RandomBench made = random_bench(
+      1, [](RandomBench&, std::mt19937&) {}, Kind::kPendulum);
+  const auto told = [&] {
+    const std::vector<Signature> checks = signatures(made.bench, made.runs);
+    return std::any_of(checks.begin(), checks.end(), [](const Signature& check) {
+      return check.effect == "thermal_drift" && check.sentence != "no temperature was recorded";
+    });
+  };
+  for (bench::BenchRun& run : made.runs) run.recording.temp_C.clear(), run.temp_C.reset();
+  EXPECT_FALSE(told());
+  double temp_C = 20.0;
+  for (bench::BenchRun& run : made.runs) run.temp_C = temp_C += 3.0;
+  EXPECT_TRUE(told());
+}
+
 }  // namespace
 }  // namespace pmg::evidence

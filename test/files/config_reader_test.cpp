@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "temporary_folder.hpp"
+
 namespace pmg::files {
 namespace {
 
@@ -13,12 +15,6 @@ using ::testing::HasSubstr;
 
 class Reader : public ::testing::Test {
  protected:
-  Reader() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pmg_reader_XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
-  }
-  ~Reader() override { std::filesystem::remove_all(directory_); }
-
   ConfigReader reader(const std::string& text) const {
     std::ofstream(directory_ / "a.yaml") << text;
     return ConfigReader::from_file(directory_ / "a.yaml");
@@ -36,7 +32,8 @@ class Reader : public ::testing::Test {
     return "nothing was thrown";
   }
 
-  std::filesystem::path directory_;
+  test::TemporaryFolder folder_;
+  std::filesystem::path directory_ = folder_.path();
 };
 
 TEST_F(Reader, GivesWhatTheFileSays) {
@@ -52,6 +49,16 @@ TEST_F(Reader, GivesWhatTheFileSays) {
   EXPECT_EQ(r.optional<double>("k", 7.0), 7.0);
   EXPECT_EQ(r.keys().front(), "a");
   r.finish();
+}
+
+TEST_F(Reader, TakesHexadecimalNumbersAndNoOthersThatOnlyLookLikeThem) {
+  ConfigReader hex = reader("{identifier: 0x7E, vendor: 0xFFFFFFFF, decimal: 010}");
+  EXPECT_EQ(hex.required<int>("identifier"), 126);
+  EXPECT_EQ(hex.required<double>("vendor"), 4294967295.0);
+  EXPECT_EQ(hex.required<int>("decimal"), 10) << "no octal numbers";
+  for (const char* text : {"0x", "0xG", "7Eh", "-0x1", "0x1.8", "0x100000000", "'0x1'"}) {
+    EXPECT_THAT(refusal([&] { reader(std::string("a: ") + text).required<int>("a"); }), HasSubstr("a: is '")) << text;
+  }
 }
 
 TEST_F(Reader, RefusesUnknownKeysAndSaysWhichAreKnown) {

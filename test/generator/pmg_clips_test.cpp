@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string>
 
+#include "temporary_folder.hpp"
+
 namespace pmg::generator {
 namespace {
 
@@ -28,14 +30,8 @@ Outcome run(const std::string& arguments, const std::filesystem::path& scratch) 
 
 class PmgClips : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pmg_clips_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    scratch_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(scratch_); }
-
-  std::filesystem::path scratch_;
+  test::TemporaryFolder folder_;
+  std::filesystem::path scratch_ = folder_.path();
 };
 
 TEST_F(PmgClips, RefusesAnUnknownRobotAndWritesNothing) {

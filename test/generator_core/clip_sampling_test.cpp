@@ -51,7 +51,7 @@ TEST_F(ClipCurveTest, SlopeIsTheDerivativeOfTheCurve) {
 TEST_F(ClipCurveTest, SumOfBlendedCurveIsGainTimesCurveAndItsProductRule) {
   curve.sample(0.37, q, dq);
   JointVector sum = JointVector::Constant(31, 0.5), rate = JointVector::Constant(31, -0.25);
-  curve.add_blended(0.37, 0.9, 0.6, 0.3, sum, rate);
+  curve.add_blended(curve.segment(0.37), 0.9, 0.6, 0.3, sum, rate);
   EXPECT_LT((sum - (0.6 * q).array().matrix() - JointVector::Constant(31, 0.5)).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_LT((rate - (0.6 * 0.9 * dq + 0.3 * q) - JointVector::Constant(31, -0.25)).cwiseAbs().maxCoeff(), 1e-13);
 }

@@ -21,12 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 json diagnose(const PreparedPlant& prepared) {
   diagnosis::DiagnoseOptions options;
   options.fit = hidden::kFitFilter;
@@ -53,6 +47,12 @@ void mend(const std::filesystem::path& file) {
 std::uint64_t seed_of(const json& result) { return result.at("truth").at("seed").get<std::uint64_t>(); }
 
 }  // namespace
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 std::vector<std::uint64_t> seeds_for(Use use, std::uint64_t first, std::uint64_t last) {
   std::vector<std::uint64_t> seeds;

@@ -18,6 +18,9 @@ enum class Use { kDevelopment, kFinal };
 /// The seeds from first to last that this use may see: the even ones, or the odd ones.
 std::vector<std::uint64_t> seeds_for(Use use, std::uint64_t first, std::uint64_t last);
 
+/// CPU time of this thread [s].
+double thread_seconds();
+
 /// Makes the plant of the seed in the folder and diagnoses it. The result has truth, diagnosis (verdict "refused" and
 /// the reader's message as `error` where the bench can't be read), seconds (of the diagnosis) and prepared_s (of the
 /// plant's making and calibration), both CPU time of this thread. keep: the folder stays.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 
@@ -64,6 +65,10 @@ std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
       "residual extension better on left-out data", all,
       [](const Judgement& j) { return j.counts && j.extension_better.has_value(); },
       [](const Judgement& j) { return *j.extension_better; }));
+  rates.push_back(rate_of(
+      "off the catalogue: residual extension better on left-out data", all,
+      [](const Judgement& j) { return j.counts && j.score.kind == "strange" && j.extension_better.has_value(); },
+      [](const Judgement& j) { return *j.extension_better; }));
   rates.push_back(parameters_inside(all));
   return rates;
 }
@@ -97,6 +102,16 @@ const Rate& rate(const CampaignReport& report, const std::string& what) {
       std::find_if(report.rates.begin(), report.rates.end(), [&](const Rate& r) { return r.what == what; });
   if (found == report.rates.end()) throw std::out_of_range("no rate is called '" + what + "'");
   return *found;
+}
+
+std::vector<std::string> absent(const CampaignReport& report, const std::vector<std::string>& wanted) {
+  std::vector<std::string> found;
+  std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(found), [&](const std::string& what) {
+    return std::none_of(report.judgements.begin(), report.judgements.end(), [&](const Judgement& j) {
+      return (j.counts && j.score.kind == what) || j.score.verdict == what;
+    });
+  });
+  return found;
 }
 
 std::string markdown(const CampaignReport& report) {

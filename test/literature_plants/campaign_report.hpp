@@ -27,6 +27,9 @@ CampaignReport report_of(std::vector<Judgement> judgements);
 /// The rate of that name. Throws std::out_of_range if there is none.
 const Rate& rate(const CampaignReport& report, const std::string& what);
 
+/// (report, strata and verdicts) => (those of which no plant counts, and which no diagnosis said).
+std::vector<std::string> absent(const CampaignReport& report, const std::vector<std::string>& wanted);
+
 /// The table of rates, what counted of each stratum, and the misses, as Markdown.
 std::string markdown(const CampaignReport& report);
 nlohmann::ordered_json report_json(const CampaignReport& report);

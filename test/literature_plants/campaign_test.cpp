@@ -153,6 +153,15 @@ TEST(LiteratureReport, CountsOnlyWhatCountsAndSaysHowSureItIs) {
   EXPECT_NE(markdown(report).find("| weak |"), std::string::npos);
 }
 
+TEST(LiteratureReport, SaysWhichStratumOrVerdictIsAbsent) {
+  const json weak = json::array({effect("delay", 1.0)}), strong = json::array({effect("delay", 5.0)});
+  const CampaignReport report = report_of({judge(result("double", weak, json::array(), said("none", {}))),
+                                           judge(result("single", strong, json::array(), said("found", {"delay"})))});
+  EXPECT_THAT(absent(report, {"single", "found", "none"}), testing::IsEmpty());
+  EXPECT_THAT(absent(report, {"double", "found", "ambiguous"}), testing::ElementsAre("double", "ambiguous"))
+      << "a weak plant doesn't count";
+}
+
 // The two simulations agree where nothing is hidden: the calibration of a healthy joint leaves about what noise leaves,
 // 1 / sqrt(2) of a floor, and half a floor for what neither model has of the other (the loop's ticks, for one).
 TEST(LiteraturePlants, AHealthyJointIsCalibratedToItsNoise) {

@@ -12,6 +12,11 @@ constexpr RigNeeds kHoldable{.laws = kPd | kServoLaw};  // a cascade holds alrea
 
 double band_rad(Draw& draw) { return draw.spread(0.02, 0.08); }
 
+/// What a drive that looks at the clock once in a tick makes of a period.
+double whole_ticks_s(double period_s, const Machine& m) {
+  return std::ceil(period_s * m.drive.loop_hz - 1e-6) / m.drive.loop_hz;
+}
+
 double factor(Draw& draw) { return std::pow(draw.spread(1.12, 1.6), draw.sign()); }
 
 const std::vector<Form> kDelay = {
@@ -24,12 +29,12 @@ const std::vector<Form> kDelay = {
     {"delay", "of readings", "Nilsson 1998", kOwnDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.sensor.delay_s = draw.spread(0.004, 0.016);
-       return {};
+       return {{"sensor.delay_s", kIs, m.sensor.delay_s}};
      }},
     {"delay", "of both: the loop's computation", "Astrom, Wittenmark 1997", kOwnDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.torque_delay_s = draw.spread(0.004, 0.016);
-       return {};
+       return {{"drive.torque_delay_s", kIs, m.drive.torque_delay_s}};
      }},
     {"delay", "of commands, another for each", "Nilsson 1998", kAny,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
@@ -50,13 +55,14 @@ const std::vector<Form> kRateLimit = {
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.command.rate_limit_rad_s = draw.spread(1.5, 5.0);
        m.command.acceleration_rad_s2 = m.command.rate_limit_rad_s * draw.uniform(5.0, 15.0);
-       return {};
+       return {{"command.rate_limit_rad_s", kIs, m.command.rate_limit_rad_s},
+               {"command.acceleration_limit_rad_s2", kIs, m.command.acceleration_rad_s2}};
      }},
     {"rate_limit", "of the output", "Klyde, McRuer, Myers 1997", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        const double one = m.drive.law == Law::kPositionPd ? rig.scale_Nm() : m.drive.law == Law::kServo ? 1.0 : 10.0;
        m.drive.output_rate_per_s = draw.spread(8.0, 40.0) * one;
-       return {};
+       return {{"drive.output_rate_limit_per_s", kIs, m.drive.output_rate_per_s}};
      }},
 };
 
@@ -64,17 +70,17 @@ const std::vector<Form> kHold = {
     {"hold", "of the drive's output", "Astrom, Wittenmark 1997", kHoldable,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.hold_s = draw.spread(0.008, 0.025);
-       return {{"command.hold_s", kIs, m.drive.hold_s}};
+       return {{"command.hold_s", kIs, whole_ticks_s(m.drive.hold_s, m)}};
      }},
     {"hold", "of commands", "Franklin, Powell, Workman 1998", kOwnDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.command.hold_s = draw.spread(0.03, 0.1);
-       return {};
+       return {{"command.update_s", kIs, whole_ticks_s(m.command.hold_s, m)}};
      }},
     {"hold", "of readings", "Franklin, Powell, Workman 1998", kHoldable,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.sensor.hold_s = draw.spread(0.008, 0.025);
-       return {};
+       return {{"sensor.hold_s", kIs, whole_ticks_s(m.sensor.hold_s, m)}};
      }},
 };
 
@@ -90,14 +96,14 @@ const std::vector<Form> kTorqueSpeed = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.speed_form = SpeedForm::kPower;
        m.drive.power_W = draw.spread(1.0, 4.0) * rig.scale_Nm();
-       return {};
+       return {{"drive.most_power_W", kIs, m.drive.power_W}};
      }},
     {"torque_speed", "a guard against overspeed", "Leonhard 2001", kCurrent,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.speed_form = SpeedForm::kCut;
        m.drive.stall_torque_Nm = m.drive.limit;
        m.drive.no_load_rad_s = draw.spread(2.0, 4.5);
-       return {};
+       return {{"drive.cut_speed_rad_s", kIs, m.drive.no_load_rad_s}};
      }},
 };
 
@@ -112,13 +118,14 @@ const std::vector<Form> kSag = {
        m.drive.sag_per_Nm = draw.spread(0.1, 0.4) / rig.scale_Nm();
        m.drive.sag_form = SagForm::kBattery;
        m.drive.sag_time_s = draw.uniform(0.2, 1.0);
-       return {};
+       return {{"drive.supply_sag_per_Nm", kIs, m.drive.sag_per_Nm},
+               {"drive.supply_sag_time_s", kIs, m.drive.sag_time_s}};
      }},
     {"supply_sag", "a supply with a current limit", "Horowitz, Hill 2015", kServo,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.sag_form = SagForm::kLimit;
        m.drive.sag_limit_Nm = draw.spread(0.25, 1.0) * rig.scale_Nm();
-       return {};
+       return {{"drive.supply_limit_Nm", kIs, m.drive.sag_limit_Nm}};
      }},
 };
 
@@ -135,7 +142,7 @@ const std::vector<Form> kGains = {
      {.laws = kPd | kCascadeLaw, .weight = true},
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.torque_factor = factor(draw);
-       return {};
+       return {{"drive.torque_scale", kIs, m.drive.torque_factor}};
      }},
     {"gain",
      "falls with torque: a saturated core",
@@ -143,7 +150,7 @@ const std::vector<Form> kGains = {
      {.laws = kPd, .weight = true},
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.saturation_per_Nm = draw.spread(0.1, 0.4) / rig.scale_Nm();
-       return {};
+       return {{"drive.saturation_per_Nm", kIs, m.drive.saturation_per_Nm}};
      }},
 };
 
@@ -157,20 +164,21 @@ const std::vector<Form> kDeadBand = {
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.dead_form = DeadBandForm::kSubtract;
        m.drive.dead_band_rad = band_rad(draw);
-       return {};
+       return {{"drive.dead_band_rad", kIs, m.drive.dead_band_rad}};
      }},
     {"dead_band", "of the output: dead time of a bridge", "Leggate, Kerkman 1997", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.dead_form = DeadBandForm::kOutput;
        const double one = rig.scale_Nm() / m.drive.torque_per_unit / (m.drive.law == Law::kServo ? rig.bus_V : 1.0);
        m.drive.dead_output = draw.spread(0.12, 0.5) * one;
-       return {};
+       return {{"drive.output_dead_band", kIs, m.drive.dead_output}};
      }},
     {"dead_band", "wakes up later than it falls asleep", "Gelb, Vander Velde 1968", kOwnDrive,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.drive.dead_form = DeadBandForm::kHysteresis;
        m.drive.dead_band_rad = draw.spread(0.015, 0.05);
-       return {};
+       return {{"drive.dead_band_rad", kIs, m.drive.dead_band_rad},
+               {"drive.dead_band_wake_rad", kIs, m.drive.dead_band_rad}};
      }},
 };
 

@@ -18,18 +18,17 @@ double more_coulomb_Nm(Draw& draw, const Rig& rig, Machine& m) {
   return more_Nm;
 }
 
-double stribeck(Draw& draw, const Rig& rig, Machine& m, double exponent) {
+Planted stribeck(Draw& draw, const Rig& rig, Machine& m, double exponent) {
   const double more_Nm = torque_Nm(draw, rig, 0.1, 0.4);
   m.friction.stribeck_Nm += more_Nm;
   m.friction.stribeck_rad_s = draw.spread(0.15, 0.7);
   m.friction.stribeck_exponent = exponent;
-  return more_Nm;
+  return {{"friction.stribeck_Nm", kAdds, more_Nm}, {"friction.stribeck_rad_s", kIs, m.friction.stribeck_rad_s}};
 }
 
 Planted load_friction(Draw& draw, Machine& m, LoadForm form) {
   m.friction.load_form = form;
   m.friction.load_driving = m.friction.load_backdriving = draw.uniform(0.12, 0.4);
-  if (form != LoadForm::kTransmitted) return {};
   return {{"friction.load_driving", kIs, m.friction.load_driving},
           {"friction.load_backdriving", kIs, m.friction.load_driving}};
 }
@@ -76,7 +75,7 @@ const std::vector<Form> kViscous = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.power_Nm = torque_Nm(draw, rig, 0.1, 0.5) / 4.0;
        m.friction.power_exponent = 2.0;
-       return {};
+       return {{"friction.viscous_quadratic_Nm_s2_per_rad2", kIs, m.friction.power_Nm}};
      }},
     {"viscous",
      "power below 1: grease",
@@ -92,23 +91,14 @@ const std::vector<Form> kViscous = {
 
 const std::vector<Form> kStribeck = {
     {"stribeck", "exponent 2", "Armstrong-Helouvry 1991", kAny,
-     [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       const double more_Nm = stribeck(draw, rig, m, 2.0);
-       return {{"friction.stribeck_Nm", kAdds, more_Nm}, {"friction.stribeck_rad_s", kIs, m.friction.stribeck_rad_s}};
-     }},
+     [](Draw& draw, const Rig& rig, Machine& m) { return stribeck(draw, rig, m, 2.0); }},
     {"stribeck", "exponent 1", "Tustin 1947", kAny,
-     [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       stribeck(draw, rig, m, 1.0);
-       return {};
-     }},
+     [](Draw& draw, const Rig& rig, Machine& m) { return stribeck(draw, rig, m, 1.0); }},
     {"stribeck",
      "exponent 0.5",
      "Bo, Pavelescu 1982",
      kAny,
-     [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       stribeck(draw, rig, m, 0.5);
-       return {};
-     },
+     [](Draw& draw, const Rig& rig, Machine& m) { return stribeck(draw, rig, m, 0.5); },
      {"coulomb", "viscous"}},
     {"stribeck", "Lorentz's curve", "Hess, Soom 1990", kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
@@ -149,7 +139,7 @@ const std::vector<Form> kDirection = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.viscous_Nm_s_per_rad += torque_Nm(draw, rig, 0.05, 0.15) / 2.0;
        m.friction.viscous_asymmetry = draw.sign() * draw.uniform(0.5, 0.9);
-       return {};
+       return {{"friction.viscous_asymmetry", kIs, m.friction.viscous_asymmetry}};
      },
      {"viscous"}},
     {"direction_friction",
@@ -160,7 +150,7 @@ const std::vector<Form> kDirection = {
        m.friction.stribeck_Nm += torque_Nm(draw, rig, 0.05, 0.15);
        m.friction.stribeck_rad_s = draw.spread(0.2, 0.6);
        m.friction.stribeck_asymmetry = draw.sign() * draw.uniform(0.6, 1.0);
-       return {};
+       return {{"friction.stribeck_asymmetry", kIs, m.friction.stribeck_asymmetry}};
      },
      {"stribeck"}},
 };

@@ -23,7 +23,7 @@ const std::vector<Form> kThermal = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.friction.viscous_Nm_s_per_rad += draw.spread(0.1, 0.25) * rig.scale_Nm() / 2.0;
        m.thermal.viscous_per_K = -draw.uniform(0.02, 0.05);
-       return {};
+       return {{"thermal.viscous_per_K", kIs, m.thermal.viscous_per_K}};
      },
      {"viscous"}},
     {"thermal_drift", "magnets lose torque", "Hanselman 2006", kWarmDrive,
@@ -34,7 +34,7 @@ const std::vector<Form> kThermal = {
     {"thermal_drift", "the winding's resistance grows", "Hughes, Drury 2013", kWarmServo,
      [](Draw&, const Rig&, Machine& m) -> Planted {
        m.thermal.resistance_per_K = 0.0039;  // copper
-       return {};
+       return {{"thermal.resistance_per_K", kIs, m.thermal.resistance_per_K}};
      }},
 };
 
@@ -47,20 +47,21 @@ const std::vector<Form> kSelfHeating = {
     {"self_heating", "friction falls with its own heat", "Bittencourt, Gunnarsson 2012", kAny,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.thermal.friction_per_J = -draw.spread(0.8, 3.0) / rig.scale_Nm();
-       return {};
+       return {{"thermal.friction_per_J", kIs, m.thermal.friction_per_J}};
      }},
     {"self_heating", "torque falls with the winding's heat", "Urata, Hirose, Namiki, Nakanishi, Mizuuchi, Inaba 2008",
      kWeight,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.thermal.torque_per_Nm2_s = draw.spread(0.04, 0.15) / (rig.scale_Nm() * rig.scale_Nm());
        m.thermal.cooling_s = draw.uniform(10.0, 60.0);
-       return {};
+       return {{"thermal.torque_per_Nm2_s", kIs, -m.thermal.torque_per_Nm2_s}};
      }},
     {"self_heating", "torque falls with time", "Urata, Hirose, Namiki, Nakanishi, Mizuuchi, Inaba 2008", kWeight,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.thermal.fade_share = draw.uniform(0.12, 0.35);
        m.thermal.fade_s = draw.uniform(0.8, 3.0);
-       return {};
+       return {{"thermal.torque_fade_share", kIs, m.thermal.fade_share},
+               {"thermal.torque_fade_s", kIs, m.thermal.fade_s}};
      }},
 };
 

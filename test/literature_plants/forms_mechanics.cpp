@@ -79,9 +79,9 @@ const std::vector<Form> kBacklash = {
      {"compliance"}},
     {"backlash", "sensor before the gear", "Nordin, Gutman 2002", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       play(draw, rig, m);
+       const PlantedParameter width = play(draw, rig, m);
        m.sensor.before_gear = true;
-       return {};
+       return {width};
      }},
 };
 
@@ -101,13 +101,14 @@ const std::vector<Form> kCompliance = {
        const double twist_rad = rig.scale_Nm() / m.transmission.stiffness_Nm_per_rad;
        m.transmission.hardening_Nm_per_rad3 =
            draw.uniform(1.0, 4.0) * m.transmission.stiffness_Nm_per_rad / (twist_rad * twist_rad);
-       return {};
+       return {{"transmission.stiffness_Nm_per_rad", kIs, m.transmission.stiffness_Nm_per_rad},
+               {"transmission.hardening_Nm_per_rad3", kIs, m.transmission.hardening_Nm_per_rad3}};
      }},
     {"compliance", "sensor before the gear", "Sweet, Good 1985", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
-       spring(draw, rig, m);
+       const PlantedParameter stiffness = spring(draw, rig, m);
        m.sensor.before_gear = true;
-       return {};
+       return {stiffness};
      }},
 };
 
@@ -129,7 +130,7 @@ const std::vector<Form> kCogging = {
        cogging(draw, rig, m);
        m.ripple.cogging_Nm = 0.0;
        m.ripple.current_share = draw.uniform(0.15, 0.45);
-       return {};
+       return {{"ripple.torque_share", kIs, m.ripple.current_share}, {"ripple.order", kIs, m.ripple.cogging_order}};
      }},
 };
 

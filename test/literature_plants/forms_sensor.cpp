@@ -34,13 +34,13 @@ const std::vector<Form> kLag = {
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.sensor.lag_form = LagForm::kMovingAverage;
        m.sensor.lag_s = draw.spread(0.005, 0.016);
-       return {};
+       return {{"sensor.lag_s", kIs, m.sensor.lag_s}};
      }},
     {"sensor_lag", "tracking loop", "Ellis 2002", kCurrent,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        m.sensor.lag_form = LagForm::kTracking;
        m.sensor.lag_s = draw.spread(0.005, 0.014);
-       return {};
+       return {{"sensor.lag_s", kIs, m.sensor.lag_s}};
      }},
 };
 
@@ -116,14 +116,16 @@ const std::vector<Form> kEccentricity = {
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        eccentricity(draw, m);
        m.sensor.eccentricity_second = draw.uniform(0.4, 0.8);
-       return {};
+       return {{"sensor.eccentricity_rad", kIs, m.sensor.eccentricity_rad},
+               {"sensor.ellipticity_rad", kIs, m.sensor.eccentricity_second * m.sensor.eccentricity_rad}};
      }},
     {"eccentricity", "of a disc on the motor's shaft", "Ellin, Dolsak 2008", kAny,
      [](Draw& draw, const Rig&, Machine& m) -> Planted {
        eccentricity(draw, m);
        m.sensor.eccentricity_order = 3.0 + static_cast<double>(draw.below(7));
        m.sensor.eccentricity_rad /= m.sensor.eccentricity_order;
-       return {};
+       return {{"sensor.eccentricity_rad", kIs, m.sensor.eccentricity_rad},
+               {"sensor.eccentricity_order", kIs, m.sensor.eccentricity_order}};
      }},
 };
 

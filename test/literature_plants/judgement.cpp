@@ -58,26 +58,33 @@ bool placed(const json& planted, const json& said) {
   return files == strings(planted.at("runs"));
 }
 
-void judge_faults(const json& truth, const json& diagnosis, Judgement& judgement) {
-  for (const json& said : list(diagnosis, "data_faults")) {
-    bool meant = false;
-    for (const json& planted : list(truth, "faults")) {
-      if (kind_in_diagnosis(planted.at("kind")) != said.at("kind")) continue;
-      meant = judgement.fault_named = true;
-      judgement.fault_placed = judgement.fault_placed || placed(planted, said);
-    }
-    judgement.false_fault = judgement.false_fault || !meant;
-  }
-  if (diagnosis.at("verdict") != "found") return;
+/// Late readings in every run are a delay: that name is right, too.
+bool named_as_effect(const json& truth, const json& diagnosis) {
+  if (diagnosis.at("verdict") != "found") return false;
   for (const json& planted : list(truth, "faults")) {
     const std::set<std::string> same = strings(list(planted, "same_here"));
     for (const json& cause : diagnosis.at("causes")) {
-      if (same.contains(cause.at("effect").get<std::string>())) judgement.fault_named = judgement.fault_placed = true;
+      if (same.contains(cause.at("effect").get<std::string>())) return true;
     }
   }
+  return false;
 }
 
 }  // namespace
+
+FaultJudgement judge_faults(const json& truth, const json& diagnosis) {
+  FaultJudgement judgement;
+  for (const json& said : list(diagnosis, "data_faults")) {
+    bool meant = false;
+    for (const json& planted : list(truth, "faults")) {
+      if (kind_in_diagnosis(planted.at("kind")) != said.at("kind").get<std::string>()) continue;
+      meant = judgement.named = true;
+      judgement.placed = judgement.placed || placed(planted, said);
+    }
+    judgement.false_fault = judgement.false_fault || !meant;
+  }
+  return judgement;
+}
 
 Judgement judge(const json& result) {
   const json &truth = result.at("truth"), &diagnosis = result.at("diagnosis");
@@ -93,7 +100,10 @@ Judgement judge(const json& result) {
     for (const json& one : truth.at(key)) j.floors = std::min(j.floors, one.at("moves_floors").get<double>());
   }
   j.counts = j.floors >= hidden::kStrong_floors;
-  judge_faults(truth, diagnosis, j);
+  const FaultJudgement faults = judge_faults(truth, diagnosis);
+  const bool as_effect = named_as_effect(truth, diagnosis);
+  j.fault_named = faults.named || as_effect, j.fault_placed = faults.placed || as_effect;
+  j.false_fault = faults.false_fault;
   // Off the catalogue no cause is right.
   const bool strange = j.score.kind == "strange";
   j.false_cause =

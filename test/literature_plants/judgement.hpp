@@ -23,6 +23,13 @@ struct Judgement {
   double floors = 0.0;  ///< of the weakest planted effect or fault
 };
 
+struct FaultJudgement {
+  bool named = false, placed = false, false_fault = false;  ///< as Judgement has them, of data_faults alone
+};
+
+/// (truth, diagnosis.json or its data_faults alone) => (what data_faults says, against the truth).
+FaultJudgement judge_faults(const nlohmann::json& truth, const nlohmann::json& diagnosis);
+
 /// result: a line that a campaign wrote.
 Judgement judge(const nlohmann::json& result);
 

@@ -2,15 +2,20 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <mutex>
+#include <sstream>
 
 #include "apps/program.hpp"
 #include "blind_plants/promise.hpp"
 #include "campaign.hpp"
 #include "campaign_report.hpp"
+#include "fault_examination.hpp"
 #include "forms_table.hpp"
 #include "io/whole_file.hpp"
 #include "prepared_plant.hpp"
+#include "work/parallel.hpp"
 
 namespace {
 
@@ -24,6 +29,7 @@ Examples:
   literature_plants make --seeds 2:4 --out out/literature    # benches with truth.json and base.yaml beside them
   literature_plants run --seeds 0:199 --workers 2 --out out/even.jsonl
   literature_plants report out/even.jsonl
+  literature_plants faults out/literature --seeds 2:4        # the search for data faults alone
   literature_plants forms                                    # every form with its source
 
 Even seeds only; with --final odd seeds only, which nobody looks at before the final report.
@@ -35,21 +41,33 @@ struct Arguments {
   std::vector<fs::path> results;
   unsigned workers = 1;
   bool final = false, keep = false, again = false;
-  std::vector<std::string> likely;
+  std::vector<std::string> likely, occurs, strata;
 };
 
+/// "0:8,20,26:28" => those of the use that it asks for.
 std::vector<std::uint64_t> chosen_seeds(const Arguments& arguments) {
-  const std::size_t colon = arguments.seeds.find(':');
+  const literature::Use use = arguments.final ? literature::Use::kFinal : literature::Use::kDevelopment;
+  std::vector<std::uint64_t> all;
   try {
-    if (colon == std::string::npos) throw std::invalid_argument("");
-    const std::uint64_t first = std::stoul(arguments.seeds.substr(0, colon));
-    const std::uint64_t last = std::stoul(arguments.seeds.substr(colon + 1));
-    if (last < first) throw std::invalid_argument("");
-    return literature::seeds_for(arguments.final ? literature::Use::kFinal : literature::Use::kDevelopment, first,
-                                 last);
+    std::istringstream parts(arguments.seeds);
+    for (std::string part; std::getline(parts, part, ',');) {
+      const std::size_t colon = part.find(':');
+      const std::uint64_t first = std::stoul(part),
+                          last = colon == std::string::npos ? first : std::stoul(part.substr(colon + 1));
+      if (last < first) throw std::invalid_argument("");
+      const std::vector<std::uint64_t> seeds = literature::seeds_for(use, first, last);
+      all.insert(all.end(), seeds.begin(), seeds.end());
+    }
+    if (all.empty()) throw std::invalid_argument("");
   } catch (const std::logic_error&) {
-    throw std::invalid_argument(fmt::format("--seeds {}; expected FIRST:LAST, as in 0:60", arguments.seeds));
+    throw std::invalid_argument(
+        fmt::format("--seeds {}; expected seeds and FIRST:LAST, as in 0:60 or 0:8,20", arguments.seeds));
   }
+  std::erase_if(all, [&](std::uint64_t seed) {
+    const std::string stratum = literature::name(literature::stratum_of(seed));
+    return !arguments.strata.empty() && std::ranges::find(arguments.strata, stratum) == arguments.strata.end();
+  });
+  return all;
 }
 
 int make(const Arguments& arguments) {
@@ -110,7 +128,33 @@ int report(const Arguments& arguments) {
   if (!arguments.json.empty()) io::write_whole_file(arguments.json, literature::report_json(report).dump(1) + "\n");
   bool all = true;
   for (const std::string& demand : arguments.likely) all = likely(report, demand) && all;
+  for (const std::string& what : literature::absent(report, arguments.occurs)) {
+    std::cerr << fmt::format("no plant is {}; expected at least one\n", what);
+    all = false;
+  }
   return all ? kOk : kBroken;
+}
+
+int faults(const Arguments& arguments) {
+  std::vector<fs::path> folders;
+  for (const std::uint64_t seed : chosen_seeds(arguments)) {
+    const fs::path folder = arguments.out / fmt::format("{:03}", seed);
+    if (fs::exists(folder / "truth.json")) folders.push_back(folder);
+  }
+  if (folders.empty()) throw std::invalid_argument(arguments.out.string() + ": none of these plants; run make first");
+  std::vector<literature::ExaminedPlant> plants(folders.size());
+  std::mutex mutex;
+  work::Progress progress;
+  progress.interrupted = [] { return apps::interrupt_requested != 0; };
+  const auto examine = [&](std::size_t i) {
+    plants[i] = literature::examine_faults(folders[i]);
+    const std::lock_guard lock(mutex);
+    std::cout << literature::examined_text(plants[i]) << '\n' << std::flush;
+  };
+  work::for_each_in_parallel(folders.size(), arguments.workers, examine, progress);
+  if (apps::interrupt_requested != 0) return kInterrupted;
+  std::cout << '\n' << literature::fault_tables(plants);
+  return kOk;
 }
 
 int forms() {
@@ -127,7 +171,10 @@ int main(int argc, char** argv) {
   Arguments arguments;
   const auto of_seeds = [&](const char* name, const char* text) {
     CLI::App* command = app.add_subcommand(name, text);
-    command->add_option("--seeds", arguments.seeds, "FIRST:LAST; of these the even ones")->capture_default_str();
+    command->add_option("--seeds", arguments.seeds, "seeds and FIRST:LAST, with commas between; of these the even ones")
+        ->capture_default_str();
+    command->add_option("--stratum", arguments.strata, "of these only single, double, clean, strange or fault")
+        ->check(CLI::IsMember({"single", "double", "clean", "strange", "fault"}));
     command->add_flag("--final", arguments.final, "the odd ones instead: for the final report, never to develop on");
     return command;
   };
@@ -143,10 +190,19 @@ int main(int argc, char** argv) {
   report_command->add_option("--json", arguments.json, "write it for machines, too");
   report_command->add_option("--likely", arguments.likely,
                              "fail if a row's count is out of the question for that share: 'clean kept clean >= 0.95'");
+  report_command->add_option(
+      "--occurs", arguments.occurs,
+      "fail unless a plant of this stratum counts, or a diagnosis says this verdict: double, fault, found ...");
+  CLI::App* faults_command = of_seeds("faults", "search for data faults alone in plants that make wrote");
+  faults_command->add_option("PLANTS", arguments.out, "folder that make wrote")->required();
+  faults_command->add_option("--workers", arguments.workers, "threads")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   CLI::App* forms_command = app.add_subcommand("forms", "every form with its source");
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM});
     if (forms_command->parsed()) return forms();
+    if (faults_command->parsed()) return faults(arguments);
     return make_command->parsed() ? make(arguments) : run_command->parsed() ? run(arguments) : report(arguments);
   });
 }

@@ -12,6 +12,9 @@
 
 namespace pmg::test {
 
+/// A walk with a fault and a reset, by the controller of its day.
+inline constexpr const char* kCommittedLog = "test/data/logs/walk_fault_reset.lcm";
+
 struct LogEvent {
   std::string channel;
   std::int64_t stamp_ns = 0;

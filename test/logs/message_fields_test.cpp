@@ -11,6 +11,9 @@
 
 #include "log_surgery.hpp"
 #include "pmg_msgs/ack_t.hpp"
+#include "pmg_msgs/arms_input_t.hpp"
+#include "pmg_msgs/arms_state_t.hpp"
+#include "pmg_msgs/arms_t.hpp"
 #include "pmg_msgs/claim_t.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/hoist_t.hpp"
@@ -22,6 +25,7 @@
 #include "pmg_msgs/scenario_step_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "recorded_run.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::logs {
 namespace {
@@ -33,6 +37,9 @@ const std::map<std::string_view, std::string> kTypes = {{"ROBOT_INFO", "robot_in
                                                         {"STATE", "robot_state_t"},
                                                         {"COMMAND", "command_t"},
                                                         {"MODE", "mode_t"},
+                                                        {"ARMS", "arms_t"},
+                                                        {"ARMS_INPUT", "arms_input_t"},
+                                                        {"ARMS_STATE", "arms_state_t"},
                                                         {"TICK", "tick_input_t"},
                                                         {"REFERENCE", "reference_t"},
                                                         {"STATUS", "status_t"},
@@ -80,12 +87,15 @@ std::vector<std::uint8_t> bytes_of(const Message& message) {
 class MessageFields : public testing::Test {
  protected:
   MessageFields() {
-    const fs::path file = fs::temp_directory_path() / ("pmg_fields_test_" + std::to_string(getpid()) + ".lcm");
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.file("run.lcm");
     test::record_run(file);
     for (const test::LogEvent& event : test::read_events(file)) examples_.emplace(event.channel, event.data);
-    fs::remove(file);
     // Messages that the run doesn't contain.
     examples_.emplace("SCENARIO", bytes_of(pmg_msgs::scenario_step_t{}));
+    examples_.emplace("ARMS", bytes_of(pmg_msgs::arms_t{}));
+    examples_.emplace("ARMS_INPUT", bytes_of(pmg_msgs::arms_input_t{}));
+    examples_.emplace("ARMS_STATE", bytes_of(pmg_msgs::arms_state_t{}));
     examples_.emplace("LIMITED", bytes_of(pmg_msgs::limited_t{}));
     examples_.emplace("TIMING", bytes_of(pmg_msgs::timing_t{}));
     examples_.emplace("GROUND_TRUTH", bytes_of(pmg_msgs::ground_truth_t{}));

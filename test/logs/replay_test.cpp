@@ -25,8 +25,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr const char* kCommittedLog = "test/data/logs/walk_fault_reset.lcm";
-
 class ReplayTest : public testing::Test {
  protected:
   ReplayTest() {
@@ -71,7 +69,7 @@ TEST_F(ReplayTest, TheRunHasWalkingAFaultAndItsResetInIt) {
 }
 
 TEST_F(ReplayTest, TheCommittedLogIsWhatThisControllerDoes) {
-  const ReplayReport report = replay({kCommittedLog}, {});
+  const ReplayReport report = replay({test::kCommittedLog}, {});
   const char* how_to =
       "\nIf the controller is meant to behave differently now, record it anew: test_logs "
       "--gtest_also_run_disabled_tests --gtest_filter='*RecordTheCommittedLog'";
@@ -85,7 +83,7 @@ TEST_F(ReplayTest, TheCommittedLogIsWhatThisControllerDoes) {
   EXPECT_GT(report.ticks, 200);
 }
 
-TEST_F(ReplayTest, DISABLED_RecordTheCommittedLog) { test::record_run(fs::path(kCommittedLog)); }
+TEST_F(ReplayTest, DISABLED_RecordTheCommittedLog) { test::record_run(fs::path(test::kCommittedLog)); }
 
 TEST_F(ReplayTest, OneBitOfAStateIsNoticedAndNamed) {
   // While damping, the drives' command contains the measured angles.

@@ -11,6 +11,7 @@
 #include "files/config_error.hpp"
 #include "model/clip_library_writer.hpp"
 #include "model/robots.hpp"
+#include "pmg/periodic_slopes.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {

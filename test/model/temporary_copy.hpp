@@ -9,22 +9,18 @@
 #include <sstream>
 #include <string>
 
+#include "temporary_folder.hpp"
+
 namespace pmg::model {
 
 class TemporaryCopy {
  public:
   explicit TemporaryCopy(const std::filesystem::path& source) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pmg_test_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    directory_ = pattern;
-    std::filesystem::copy(source, directory_, std::filesystem::copy_options::recursive);
+    std::filesystem::copy(source, folder_.path(), std::filesystem::copy_options::recursive);
   }
-  ~TemporaryCopy() { std::filesystem::remove_all(directory_); }
-  TemporaryCopy(const TemporaryCopy&) = delete;
-  TemporaryCopy& operator=(const TemporaryCopy&) = delete;
 
-  const std::filesystem::path& directory() const { return directory_; }
-  std::filesystem::path file(const std::string& name) const { return directory_ / name; }
+  const std::filesystem::path& directory() const { return folder_.path(); }
+  std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
 
   std::string read(const std::string& name) const {
     std::ifstream stream(file(name));
@@ -52,7 +48,7 @@ class TemporaryCopy {
   }
 
  private:
-  std::filesystem::path directory_;
+  test::TemporaryFolder folder_;
 };
 
 }  // namespace pmg::model

@@ -1,7 +1,6 @@
 // A URDF that is too much is refused in one line, at once, with little memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 
 #include "files/config_error.hpp"
 #include "model/urdf_tree.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::model {
 namespace {
@@ -18,8 +18,6 @@ using ::testing::HasSubstr;
 
 class UrdfBounds : public testing::Test {
  protected:
-  ~UrdfBounds() override { fs::remove(file_); }
-
   std::string refusal() const {
     try {
       read_urdf(file_);
@@ -33,7 +31,8 @@ class UrdfBounds : public testing::Test {
     return refusal();
   }
 
-  fs::path file_ = fs::temp_directory_path() / ("pmg_urdf_bounds_" + std::to_string(getpid()) + ".urdf");
+  test::TemporaryFolder folder_;
+  fs::path file_ = folder_.file("robot.urdf");
 };
 
 std::string link(const std::string& name) {

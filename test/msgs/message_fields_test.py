@@ -37,7 +37,7 @@ class MessageFields(unittest.TestCase):
         before = message_fields.header(message_fields.read(str(ROOT / "msgs/status_t.lcm")))
         after = message_fields.header(message_fields.read(str(path)))
         added = set(after.splitlines()) - set(before.splitlines())
-        self.assertTrue(any('{"supply_V", "double", "", false, {}, "of the battery"' in line for line in added), added)
+        self.assertTrue(any('{"supply_V", "double", "", false, {}, {}, "of the battery"' in line for line in added), added)
 
     def test_every_message_of_this_project_has_a_channel(self):
         for path in (ROOT / "msgs").glob("*.lcm"):

@@ -18,8 +18,10 @@ namespace pmg::test {
 
 struct NetworkedRobot {
   NetworkedRobot(const std::string& name, io::LcmLink& link, const io::Clock& clock,
-                 const std::optional<seal::ControllerKeys>& keys = std::nullopt)
-      : run{.robot = name, .session = 1},
+                 const std::optional<seal::ControllerKeys>& keys = std::nullopt,
+                 const model::RobotModel& model = biped())
+      : robot(model),
+        run{.robot = name, .session = 1},
         comms(link, inbox, outbox, robot, run, 100.0, clock, seal::ControllerSeal(keys)),
         clock_(clock) {
     bus_cycle.run();  // the first sample
@@ -35,7 +37,7 @@ struct NetworkedRobot {
   const control::TickResult& result() const { return cycle.record().result; }
 
   bool acks_lost = false;
-  const model::RobotModel& robot = biped();
+  const model::RobotModel& robot;
   recording::RunInfo run;
   hal::BusLink bus_link;
   control::OperatorInbox inbox{bus_link.stop};
@@ -56,8 +58,9 @@ struct NetworkedRobot {
 
 class Network {
  public:
-  NetworkedRobot& add_robot(const std::string& name, const std::optional<seal::ControllerKeys>& keys = std::nullopt) {
-    return robots_.emplace_back(name, link, clock, keys);
+  NetworkedRobot& add_robot(const std::string& name, const std::optional<seal::ControllerKeys>& keys = std::nullopt,
+                            const model::RobotModel& model = biped()) {
+    return robots_.emplace_back(name, link, clock, keys, model);
   }
 
   /// 10 ms of every robot; messages are delivered meanwhile.

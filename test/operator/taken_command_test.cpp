@@ -78,6 +78,28 @@ TEST_F(TakenCommandTest, TogetherTooMuchIsSaidOfEachChannel) {
               AllOf(HasSubstr("vx "), HasSubstr("omega "), HasSubstr("; together they are more than the clips")));
 }
 
+TEST_F(TakenCommandTest, WhereTheReachIsPublishedItIsTheReason) {
+  nlohmann::json options = nlohmann::json::parse(robot_.run.options);
+  options["command"]["velocities_together"] = 1.0;
+  robot_.run.options = options.dump();
+  for (int k = 0; k < 120; ++k) network_.advance();  // ROBOT_INFO is repeated each second
+  const CommandLimits& limits = robot_.robot.command_limits;
+  Command asked;
+  asked[kVx] = 5.0 * limits.upper[kVx];
+  asked[kOmega] = 0.75 * limits.lower[kOmega];
+  const auto lines = told(asked, 5.0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], HasSubstr("; the velocities together are 175 % of their ranges, the clips give 100 %"))
+      << "what is beyond one range doesn't count twice";
+  const RobotNews& news = board_.robots().at("biped");
+  Command within;
+  within[kVx] = 0.5 * limits.upper[kVx];
+  within[kOmega] = 0.5 * limits.upper[kOmega];
+  EXPECT_EQ(beyond_reach(within.u.data(), news), "");
+  within[kPitch] = 10.0;
+  EXPECT_EQ(beyond_reach(within.u.data(), news), "") << "postures are no velocities";
+}
+
 TEST_F(TakenCommandTest, AChannelThatWasNotAskedForIsNotMentioned) {
   Command asked;
   asked[kVx] = 0.9 * robot_.robot.command_limits.upper[kVx];

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "pages/page.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::pages {
 
@@ -27,8 +27,8 @@ inline std::optional<std::string> find_browser() {
 inline std::string document_in_browser(const std::string& browser, std::string html, const std::string& before,
                                        const std::string& after) {
   namespace fs = std::filesystem;
-  std::string folder = (fs::temp_directory_path() / "pmg_page_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  const test::TemporaryFolder temporary;
+  const std::string folder = temporary.path().string();
   html.insert(html.find("<style>"), "<script>" + before + "</script>");
   html.insert(html.rfind("</body>"), "<script>" + after + "</script>");
   std::ofstream(fs::path(folder) / "page.html") << html;
@@ -43,7 +43,6 @@ inline std::string document_in_browser(const std::string& browser, std::string h
   char buffer[65536];
   for (std::size_t n = 0; pipe && (n = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;)
     document.append(buffer, n);
-  fs::remove_all(folder);
   return document;
 }
 

@@ -2,9 +2,6 @@
 // clips and variant. training/tests/make_linear_policy.py writes it again when robot or layout change.
 #pragma once
 
-#include <unistd.h>
-
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +10,7 @@
 
 #include "model/bundle.hpp"
 #include "pmg/variant.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::test {
 
@@ -38,7 +36,6 @@ class LinearPolicyFile {
     now.resize(longest.size(), ' ');
     exchange("\"variant\": " + now, "\"variant\": " + name);
   }
-  ~LinearPolicyFile() { std::filesystem::remove(file_); }
   LinearPolicyFile(const LinearPolicyFile&) = delete;
   LinearPolicyFile& operator=(const LinearPolicyFile&) = delete;
 
@@ -70,12 +67,9 @@ class LinearPolicyFile {
 
  private:
   void save() const { std::ofstream(file_, std::ios::binary) << bytes_; }
-  static std::string unique_name() {
-    static std::atomic<int> made{0};
-    return "pmg_linear_policy_" + std::to_string(getpid()) + "_" + std::to_string(made++) + ".onnx";
-  }
 
-  std::filesystem::path file_ = std::filesystem::temp_directory_path() / unique_name();
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.file("linear.onnx");
   std::string bytes_;
 };
 

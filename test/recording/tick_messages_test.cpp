@@ -68,7 +68,7 @@ class TickMessages : public testing::Test {
     model::JointCommand& command = record_->result.command;
     for (JointVector* values : {&command.q, &command.dq, &command.kp, &command.kd, &command.tau_ff})
       *values = robot_.q_stand();
-    record_->drive_count = record_->request_count = 1;
+    record_->drive_count = record_->request_count = record_->arms_count = 1;
     record_->result.limited.by[2] = 1;
   }
   const model::RobotModel robot_ = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
@@ -93,6 +93,9 @@ TEST_F(TickMessages, NoFieldOfAMessageIsForgotten) {
   EXPECT_EQ(untouched<fault_t>([&](auto& m) { fill(record, run_, robot_, m); }), none);
   EXPECT_EQ(untouched<command_t>([&](auto& m) { fill(record.drives[0], run_, m); }), none);
   EXPECT_EQ(untouched<pmg_msgs::mode_t>([&](auto& m) { fill(record.requests[0], run_, m); }), none);
+  EXPECT_EQ(untouched<arms_t>([&](auto& m) { fill(record.arms[0], run_, m); }), none);
+  EXPECT_EQ(untouched<arms_input_t>([&](auto& m) { fill(record, m); }), none);
+  EXPECT_EQ(untouched<arms_state_t>([&](auto& m) { fill(record, run_, m); }), none);
   EXPECT_EQ(untouched<ack_t>([&](auto& m) { fill(control::ModeAck{}, run_, 7, m); }), none);
   EXPECT_EQ(untouched<ground_truth_t>([&](auto& m) { fill(7, model::GroundTruth{}, false, m); }), none);
 }
@@ -196,6 +199,45 @@ TEST_F(TickMessages, AnOperatorsMessagesAreReadBackAsTheyWere) {
   EXPECT_FALSE(mode_request(mode, 17).sealed) << "a replay must know that a stop came without a seal";
   mode.version = 1;
   EXPECT_TRUE(mode_request(mode, 17).sealed) << "logs from before seals";
+}
+
+TEST_F(TickMessages, ArmsAreReadBackAsTheyWere) {
+  control::ArmsMessage arms{
+      .source = control::Source::make("vr", 5), .sequence = 9, .stamp_ns = 11, .received_ns = 13, .lease_s = 0.25};
+  arms.arm[kLeft] = {.wish = control::ArmWish::kAim, .palm = {.p_m = {0.1, 0.2, 0.3}, .R = {0.5, 0.5, -0.5, 0.5}}};
+  arms.arm[kRight] = {.wish = control::ArmWish::kHandBack, .palm = {.p_m = {4.0, 5.0, 6.0}, .R = {0.0, 0.6, 0.0, 0.8}}};
+  pmg_msgs::arms_t message;
+  fill(arms, run_, message);
+  EXPECT_EQ(message.version, pmg_msgs::arms_t::VERSION);
+  EXPECT_EQ(message.left_orientation[2], -0.5) << "w first";
+  const control::ArmsMessage read = arms_message(message, 13);
+  EXPECT_EQ(read.source, arms.source);
+  EXPECT_EQ(read.sequence, 9);
+  EXPECT_EQ(read.stamp_ns, 11);
+  EXPECT_EQ(read.received_ns, 13);
+  EXPECT_EQ(read.lease_s, 0.25);
+  EXPECT_EQ(read.arm, arms.arm);
+}
+
+TEST_F(TickMessages, ConstantsOfArmsAreTheControllersNumbers) {
+  using State = pmg_msgs::arms_state_t;
+  using control::ArmsOrder;
+  using Verdict = control::CommandIntake::DriveVerdict;
+  const auto number = [](auto value) { return static_cast<std::int8_t>(value); };
+  EXPECT_EQ(number(control::ArmWish::kHandBack), pmg_msgs::arms_t::HAND_BACK);
+  EXPECT_EQ(number(arms::ArmActivity::kReference), State::REFERENCE);
+  EXPECT_EQ(number(arms::ArmActivity::kReturning), State::RETURNING);
+  EXPECT_EQ(number(arms::ArmActivity::kBlocked), State::BLOCKED);
+  EXPECT_EQ(number(ArmsOrder::kInForce), State::IN_FORCE);
+  EXPECT_EQ(number(ArmsOrder::kNoneCame), State::NONE_CAME);
+  EXPECT_EQ(number(ArmsOrder::kLeaseOver), State::LEASE_OVER);
+  EXPECT_EQ(number(ArmsOrder::kNotWalking), State::NOT_WALKING);
+  EXPECT_EQ(number(Verdict::kAccepted), State::NEVER);
+  EXPECT_EQ(number(Verdict::kOtherSourceDrives), State::OTHER_SOURCE);
+  EXPECT_EQ(number(Verdict::kOutOfOrder), State::OUT_OF_ORDER);
+  EXPECT_EQ(number(Verdict::kLate), State::LATE);
+  EXPECT_EQ(number(Verdict::kNotFinite), State::NO_POSE);
+  EXPECT_EQ(number(Verdict::kNoLease), State::NO_LEASE);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "excitation/robot_excitation.hpp"
 #include "model/clip_library_file.hpp"
-#include "robot_diagnosis/robot_excitation.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::robot_diagnosis {
@@ -167,12 +167,12 @@ std::vector<RobotRecording> record_hidden(const HiddenRobot& hidden) {
   options.gantry = true;
   {
     sim::World world(hidden.robot, options);
-    recordings.push_back(play(world, hanging_excitation(hidden.robot), "hanging"));
+    recordings.push_back(play(world, excitation::hanging_excitation(hidden.robot), "hanging"));
   }
   options.gantry = false;
   sim::World world(hidden.robot, options);
   const ClipLibrary clips = model::load_clip_library(hidden.robot.directory / "clips", hidden.robot);
-  recordings.push_back(play(world, standing_excitation(hidden.robot, clips), "standing"));
+  recordings.push_back(play(world, excitation::standing_excitation(hidden.robot, clips), "standing"));
   return recordings;
 }
 

@@ -40,8 +40,8 @@ Message message_in(io::Bytes bytes) {
 class CommsTest : public testing::Test {
  protected:
   CommsTest() {
-    for (const char* channel :
-         {"ACK", "STATUS", "STATE", "REFERENCE", "MOTOR_COMMAND", "TIMING", "FAULT", "ROBOT_INFO", "LINK"}) {
+    for (const char* channel : {"ACK", "STATUS", "STATE", "REFERENCE", "MOTOR_COMMAND", "TIMING", "FAULT", "ROBOT_INFO",
+                                "LINK", "ARMS_STATE"}) {
       link_.subscribe(channel, [this, channel](io::Bytes) { ++heard_[channel]; });
     }
     link_.subscribe("TIMING", [this](io::Bytes bytes) { timing_ = *io::decode_message<pmg_msgs::timing_t>(bytes); });
@@ -150,9 +150,25 @@ TEST_F(CommsTest, AFaultIsToldOnceHoweverLongItIsLatched) {
   EXPECT_EQ(heard_["FAULT"], 2) << "the same cause again is another fault";
 }
 
+TEST_F(CommsTest, ArmsAreToldTenTimesASecondAndWhenTheySaySomethingNew) {
+  for (int k = 0; k < 50; ++k) tick();
+  EXPECT_EQ(heard_["ARMS_STATE"], 0) << "a robot without arms";
+  record_.result.arms.there = true;
+  for (int k = 0; k < 100; ++k) tick();
+  EXPECT_EQ(heard_["ARMS_STATE"], 10);
+  record_.result.arms.arm[kRight].activity = arms::ArmActivity::kBlocked;
+  tick();
+  record_.result.arms.order = control::ArmsOrder::kLeaseOver;
+  tick();
+  record_.result.arms.refused = 1;
+  tick();
+  tick();
+  EXPECT_EQ(heard_["ARMS_STATE"], 13);
+}
+
 TEST_F(CommsTest, LinkTellsWhatBecameOfEveryMessage) {
   record_.result.ignored = {
-      .accepted = 1, .other_source = 2, .out_of_order = 3, .late = 4, .not_finite = 5, .no_lease = 6};
+      .accepted = 1, .other_source = 2, .out_of_order = 3, .late = 4, .not_finite = 5, .no_lease = 6, .no_arms = 7};
   link_.send("COMMAND", std::vector<std::uint8_t>{1, 2, 3});
   pmg_msgs::mode_t request = stop();
   request.mode = pmg_msgs::mode_t::STAND;
@@ -181,6 +197,7 @@ TEST_F(CommsTest, LinkTellsWhatBecameOfEveryMessage) {
   EXPECT_EQ(counts_.late, 4);
   EXPECT_EQ(counts_.not_finite, 5);
   EXPECT_EQ(counts_.no_lease, 6);
+  EXPECT_EQ(counts_.no_arms, 7);
 }
 
 TEST_F(CommsTest, WhatIsWrongIsSaidOnTheConsoleOnce) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "control/command_intake.hpp"
+#include "pmg_msgs/arms_t.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 
@@ -37,6 +38,12 @@ class OperatorGateTest : public testing::Test {
     command_.source = mode_.source = "gamepad";
     command_.lease_s = 0.5;
     mode_.mode = Modes::STAND;
+    arms_.version = pmg_msgs::arms_t::VERSION;
+    arms_.robot = "z1";
+    arms_.source = "gamepad";
+    arms_.lease_s = 0.3;
+    arms_.left = pmg_msgs::arms_t::AIM;
+    arms_.left_orientation[0] = 1.0;
   }
 
   void pass_ms(int milliseconds) { clock_.advance_to(clock_.now_ns() + milliseconds * kMillisecond_ns); }
@@ -80,6 +87,7 @@ class OperatorGateTest : public testing::Test {
   OperatorGate gate_{inbox_, "z1", clock_, seal_};
   pmg_msgs::command_t command_{};
   Modes mode_{};
+  pmg_msgs::arms_t arms_{};
 };
 
 TEST_F(OperatorGateTest, ACommandArrivesAsItWasSentWithOurClocksTime) {
@@ -341,18 +349,81 @@ TEST_F(OperatorGateTest, AFullQueueIsCountedAndAStopGetsThroughAllTheSame) {
   EXPECT_EQ(gate_.counts().flooded, 1);
 }
 
+TEST_F(OperatorGateTest, ArmsArriveAsTheyWereSentAndForeignOnesAreCounted) {
+  pass_ms(30);
+  arms_.session = 9;
+  arms_.sequence = 4;
+  arms_.stamp_ns = 77;
+  arms_.left_p_m[2] = 0.4;
+  arms_.right = pmg_msgs::arms_t::HAND_BACK;
+  gate_.take_arms(sealed(arms_));
+  control::ArmsMessage arms;
+  ASSERT_TRUE(inbox_.take(arms));
+  EXPECT_EQ(arms.source, control::Source::make("gamepad", 9));
+  EXPECT_EQ(arms.sequence, 4);
+  EXPECT_EQ(arms.stamp_ns, 77);
+  EXPECT_EQ(arms.received_ns, 30 * kMillisecond_ns);
+  EXPECT_EQ(arms.lease_s, 0.3);
+  EXPECT_EQ(arms.arm[kLeft].wish, control::ArmWish::kAim);
+  EXPECT_EQ(arms.arm[kLeft].palm.p_m.z(), 0.4);
+  EXPECT_EQ(arms.arm[kLeft].palm.R.w(), 1.0);
+  EXPECT_EQ(arms.arm[kRight].wish, control::ArmWish::kHandBack);
+  EXPECT_EQ(gate_.counts(), GateCounts{});
+
+  const auto sent = [&](const std::function<void()>& spoil) {
+    const pmg_msgs::arms_t good = arms_;
+    spoil();
+    gate_.take_arms(sealed(arms_));
+    arms_ = good;
+  };
+  sent([&] { arms_.version = 2; });
+  sent([&] { arms_.robot = "z2"; });
+  sent([&] { arms_.source = ""; });
+  sent([&] { arms_.left = 3; });
+  sent([&] { arms_.right = -1; });
+  gate_.take_arms(sealed(command_));
+  gate_.take_arms(encoded(arms_));
+  std::vector<std::uint8_t> recorded = sealed(arms_);
+  pass_ms(1001);
+  gate_.take_arms(recorded);
+  EXPECT_EQ(gate_.counts().other_version, 1);
+  EXPECT_EQ(gate_.counts().other_robot, 1);
+  EXPECT_EQ(gate_.counts().malformed, 4);
+  EXPECT_EQ(gate_.counts().not_fresh, 2) << "without a seal, and more than a second old";
+  EXPECT_FALSE(inbox_.take(arms));
+}
+
+TEST_F(OperatorGateTest, AFloodOfArmsTakesNoRoomFromCommandsRequestsAndStops) {
+  for (int k = 0; k < 5000; ++k) {
+    arms_.source = "flood." + std::to_string(k % 7);
+    ++arms_.sequence;
+    gate_.take_arms(sealed(arms_));
+  }
+  send_command("gamepad");
+  send_mode("gamepad", Modes::STAND);
+  send_mode("bystander", Modes::DAMPING);
+  EXPECT_EQ(stop_line_.pulls(), 1u);
+  EXPECT_EQ(take_commands(), std::vector<std::string>{"gamepad"});
+  EXPECT_EQ(take_requests().size(), 2u);
+  control::ArmsMessage arms;
+  int taken = 0;
+  while (inbox_.take(arms)) ++taken;
+  EXPECT_EQ(taken, 7 * 4) << "four of each that a delay may have bunched";
+  EXPECT_EQ(gate_.counts().flooded, 5000 - 7 * 4);
+}
+
 TEST_F(OperatorGateTest, RandomBytesEndNothing) {
   std::mt19937 random(20);
   std::uniform_int_distribution<int> byte(0, 255);
   std::uniform_int_distribution<std::size_t> size(0, 300), flips(1, 4);
-  const std::vector<std::uint8_t> command = sealed(command_), mode = sealed(mode_);
+  const std::vector<std::uint8_t> command = sealed(command_), mode = sealed(mode_), arms = sealed(arms_);
   for (int k = 0; k < 100'000; ++k) {
     std::vector<std::uint8_t> bytes;
     if (k % 3 == 0) {
       bytes.resize(size(random));
       for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(byte(random));
     } else {  // nearly correct: with the type's hash, decoders read on
-      bytes = k % 3 == 1 ? command : mode;
+      bytes = k % 3 == 1 ? command : k % 2 == 0 ? mode : arms;
       std::uniform_int_distribution<std::size_t> position(8, bytes.size() - 1);
       for (std::size_t flip = flips(random); flip > 0; --flip) {
         bytes[position(random)] = static_cast<std::uint8_t>(byte(random));
@@ -360,6 +431,7 @@ TEST_F(OperatorGateTest, RandomBytesEndNothing) {
     }
     gate_.take_command(bytes);
     gate_.take_mode(bytes);
+    gate_.take_arms(bytes);
     if (k % 100 == 0) {
       pass_ms(10);
       take_commands();

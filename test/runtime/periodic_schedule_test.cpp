@@ -30,6 +30,16 @@ TEST(PeriodicSchedule, ASmallDelayCostsNoCycle) {
   EXPECT_EQ(schedule.missed(), 0);
 }
 
+TEST(PeriodicSchedule, AShiftMovesTheGridFromTheNextCycleOn) {
+  PeriodicSchedule schedule(0, kGrid_ns);
+  schedule.shift(20'000);
+  EXPECT_EQ(schedule.planned_ns(), 20'000);
+  schedule.advance(20'000, 90'000);
+  schedule.shift(-5'000);
+  EXPECT_EQ(schedule.planned_ns(), kGrid_ns + 15'000);
+  EXPECT_EQ(schedule.missed(), 0);
+}
+
 /// (length of a stall, its end within a cycle or before it) => (time from the end of that cycle to the next one).
 std::int64_t pause_after(std::int64_t stall_ns, bool within_cycle) {
   PeriodicSchedule schedule(0, kGrid_ns);

@@ -56,6 +56,27 @@ TEST(PeriodicThread, ACpuThatIsNotThereIsNamedAndTheThreadRunsOn) {
   EXPECT_TRUE(eventually([&] { return cycles > 3; }));
 }
 
+TEST(PeriodicThread, ItsGridFollowsTheShift) {
+  constexpr std::int64_t kShift_ns = 15'000;
+  std::atomic<std::int64_t> shift_ns{0};
+  std::vector<std::int64_t> planned_ns;
+  planned_ns.reserve(10'000);
+  std::atomic<int> cycles{0};
+  PeriodicThread thread(
+      {.name = "drawn"}, kPeriod_ns,
+      [&](const control::CycleTiming& timing) {
+        if (planned_ns.size() < planned_ns.capacity()) planned_ns.push_back(timing.planned_ns);
+        shift_ns.fetch_add(kShift_ns);
+        ++cycles;
+      },
+      &shift_ns);
+  thread.start(kWall.now_ns());
+  EXPECT_TRUE(eventually([&] { return cycles > 20; }));
+  thread.stop();
+  for (std::size_t k = 1; k < planned_ns.size(); ++k)
+    EXPECT_EQ((planned_ns[k] - planned_ns[k - 1] - kShift_ns) % kPeriod_ns, 0) << k << ": on the moved grid";
+}
+
 /// Runs without any privilege, in a process of its own; the exit code names the broken promise.
 int run_without_privilege() {
   const rlimit none{0, 0};

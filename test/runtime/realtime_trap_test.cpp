@@ -35,10 +35,12 @@ class RealtimeTrap : public testing::Test {
 
 TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAndModes) {
   ThreadedRobot run(test::z1());
+  std::atomic<bool> led{false};
   run.controller.start([&] { run.speaker(); },
                        [&] {
                          control::TickRecord tick;
                          while (run.controller.outbox().records.pop(tick)) {
+                           if (control::led(tick.result.arms)) led = true;
                          }
                        });
   ASSERT_TRUE(run.sees(control::Mode::kPassive));
@@ -46,6 +48,7 @@ TEST_F(RealtimeTrap, NoHeapAndNoLockInBusAndControlThreadThroughWalkingFaultsAnd
   ASSERT_TRUE(run.reach(control::Mode::kStand));
   ASSERT_TRUE(run.reach(control::Mode::kWalk));
   ASSERT_TRUE(ticks(run, 60));  // more than half a gait cycle
+  EXPECT_TRUE(eventually([&] { return led.load(); })) << "the arms move meanwhile";
   run.bus.lost = true;
   ASSERT_TRUE(run.sees(control::Mode::kFault));
   run.bus.lost = false;

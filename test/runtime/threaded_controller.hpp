@@ -66,19 +66,26 @@ class SwitchablePolicy final : public policy::Policy {
   std::mutex mutex_;
 };
 
-/// A test's work in the comms thread: a command every 5 ms and, on demand, one request.
+/// A test's work in the comms thread: a command and palms' targets every 5 ms and, on demand, one request.
 class TestOperator {
  public:
   explicit TestOperator(control::OperatorInbox& inbox) : inbox_(inbox) {
     drive_.source = request_.source = control::Source::make("test", 1);
     drive_.lease_s = 0.5;
     drive_.command[kVx] = 0.4;
+    arms_.source = drive_.source;
+    arms_.lease_s = 0.1;
+    arms_.arm[kLeft] = {.wish = control::ArmWish::kAim, .palm = {.p_m = {0.3, 0.25, 0.15}}};
+    arms_.arm[kRight] = {.wish = control::ArmWish::kAim, .palm = {.p_m = {0.3, -0.25, 0.15}}};
   }
   void operator()() {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     drive_.stamp_ns = drive_.received_ns = request_.stamp_ns = request_.received_ns = clock_.now_ns();
     ++drive_.sequence;
     inbox_.put(drive_);
+    arms_.stamp_ns = arms_.received_ns = drive_.stamp_ns;
+    ++arms_.sequence;
+    inbox_.put(arms_);
     if (!asked_.exchange(false)) return;
     ++request_.sequence;
     request_.mode = wanted_;
@@ -97,6 +104,7 @@ class TestOperator {
   io::WallClock clock_;
   control::DriveMessage drive_;
   control::ModeRequest request_;
+  control::ArmsMessage arms_;
   std::atomic<bool> asked_{false}, reset_{false};
   std::atomic<control::Mode> wanted_{control::Mode::kPassive};
 };

@@ -8,7 +8,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LISTS = (  # where options are listed, and the rooms that decide by them
     ("src/evidence/signature_options.cpp", ("evidence",)),
-    ("src/diagnosis/options.cpp", ("diagnosis",)),
+    ("src/diagnosis/options.cpp", ("diagnosis", "effects")),
     ("src/robot_diagnosis/robot_options.cpp", ("robot_diagnosis",)),
 )
 LISTED = re.compile(r"\w+\.((?:\w+\.)*\w+)(?=,\s+(?:\"|unit))")  # the value of an Option: o.window_s, size.wide

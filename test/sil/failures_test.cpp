@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "sil/failing_parts.hpp"
 #include "sil/failure_report.hpp"
 #include "sil/varied_robot.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::sil {
 namespace {
@@ -22,7 +22,6 @@ using ::testing::HasSubstr;
 
 class FailureFile : public testing::Test {
  protected:
-  ~FailureFile() override { std::filesystem::remove(file_); }
   std::string refusal(const std::string& entry) const {
     std::ofstream(file_) << "failures:\n  - {" << entry << "}\n";
     try {
@@ -32,8 +31,8 @@ class FailureFile : public testing::Test {
     }
     return "accepted";
   }
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("pmg_failures_test_" + std::to_string(getpid()) + ".yaml");
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.file("failures.yaml");
 };
 
 TEST_F(FailureFile, EveryKindIsReadWithWhatItNeedsAndNothingElse) {

@@ -1,20 +1,19 @@
 #include "sil/scenario.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 
 #include "control/fixtures.hpp"
 #include "files/config_error.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::sil {
 namespace {
 
 class ScenarioFile : public testing::Test {
  protected:
-  ~ScenarioFile() override { std::filesystem::remove(file_); }
   Scenario load(const std::string& text) {
     std::ofstream(file_) << text;
     return load_scenario(file_);
@@ -33,8 +32,8 @@ class ScenarioFile : public testing::Test {
     EXPECT_NE(said.find(key), std::string::npos) << said;
   }
 
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("pmg_scenario_test_" + std::to_string(getpid()) + ".yaml");
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.file("scenario.yaml");
 };
 
 constexpr const char* kGood = R"(name: short

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
@@ -38,6 +39,34 @@ TEST(HangingLoad, OfEveryJointIsMuJoCos) {
       EXPECT_NEAR(load.gravity_Nm * std::sin(q_rad - load.hangs_at_rad), data->qfrc_bias[dof], 1e-6) << q_rad;
     }
     data->qpos[address] = joint.stand_rad;
+    mj_forward(model, data);
+    const Eigen::Map<const Eigen::Vector3d> base(data->xpos +
+                                                 3 * mj_name2id(model, mjOBJ_BODY, robot.base_link.c_str())),
+        axis(data->xaxis + 3 * id), anchor(data->xanchor + 3 * id),
+        center(data->subtree_com + 3 * model->jnt_bodyid[id]);
+    EXPECT_LT((load.center_m - (center - base)).norm(), 1e-6);
+    EXPECT_LT((load.center_m_per_rad - axis.cross(center - anchor)).norm(), 1e-6);
+  }
+}
+
+TEST(HangingLoad, InAnotherPostureIsMuJoCos) {
+  const model::RobotModel& robot = z1();
+  World world(robot, WorldOptions{});
+  const mjModel* model = world.mj_model();
+  mjData* data = world.mj_data();
+  JointVector q = robot.q_stand();
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    q[j] += 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(j));
+    const int id = mj_name2id(model, mjOBJ_JOINT, robot.joint_index.name(static_cast<int>(j)).c_str());
+    data->qpos[model->jnt_qposadr[id]] = q[j];
+  }
+  mju_zero(data->qvel, model->nv);
+  mj_forward(model, data);
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const std::string& name = robot.joint_index.name(static_cast<int>(j));
+    const model::HangingLoad load = model::hanging_load(robot, name, q);
+    const int dof = model->jnt_dofadr[mj_name2id(model, mjOBJ_JOINT, name.c_str())];
+    EXPECT_NEAR(load.gravity_Nm * std::sin(q[j] - load.hangs_at_rad), data->qfrc_bias[dof], 1e-6) << name;
   }
 }
 

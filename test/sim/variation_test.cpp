@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "files/config_error.hpp"
 #include "robots.hpp"
 #include "sim/world.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -242,7 +242,6 @@ TEST(Variation, WhatTheRangesDontNameIsAsTheModelSays) {
 
 class RangesFile : public testing::Test {
  protected:
-  ~RangesFile() override { std::filesystem::remove(file_); }
   std::string refusal(const std::string& yaml) {
     std::ofstream(file_) << yaml;
     try {
@@ -252,8 +251,8 @@ class RangesFile : public testing::Test {
     }
     return "taken";
   }
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("variation_test_" + std::to_string(getpid()) + ".yaml");
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.file("ranges.yaml");
 };
 
 TEST_F(RangesFile, WhatIsWrongIsNamedWithItsPlace) {

@@ -1,9 +1,11 @@
 // The record of actuator models at work, which training's batched ones are tested against, is what src/sim's do.
 // Written anew with PMG_WRITE_RECORDS=1 when an effect is added or changed.
+// Longer than 300 lines: the cases are data.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "sim/actuator_model.hpp"
+#include "sim/motor_file.hpp"
 
 namespace pmg::test {
 namespace {
@@ -45,7 +48,14 @@ const std::map<std::string, Values> kCases = {
       {"sensor.eccentricity_rad", 0.015},
       {"sensor.eccentricity_phase_rad", 0.7},
       {"sensor.zero_offset_rad", 0.01}}},
+    {"elliptic disc on the motor's shaft",
+     {{"sensor.eccentricity_rad", 0.01},
+      {"sensor.eccentricity_order", 5.0},
+      {"sensor.ellipticity_rad", 0.02},
+      {"sensor.ellipticity_phase_rad", -0.6}}},
     {"lag", {{"sensor.lag_s", 0.006}}},
+    {"lag of a tracking loop", {{"sensor.lag_s", 0.009}, {"sensor.lag_stages", 2.0}}},
+    {"lag of a moving average", {{"sensor.lag_s", 0.009}, {"sensor.lag_stages", 3.0}}},
     {"velocity lag", {{"sensor.velocity_lag_s", 0.008}}},
     {"friction",
      {{"friction.viscous_Nm_s_per_rad", 0.3},
@@ -74,6 +84,74 @@ const std::map<std::string, Values> kCases = {
     {"heats up", {{"thermal.friction_per_Nm2_s", -0.05}, {"thermal.cooling_s", 0.2}, {"friction.coulomb_Nm", 0.8}}},
     {"ripple",
      {{"ripple.amplitude_Nm", 0.5}, {"ripple.order", 12.0}, {"ripple.phase_rad", 0.4}, {"ripple.offset_Nm", -0.2}}},
+    {"ripple in proportion to the current",
+     {{"ripple.torque_share", 0.3},
+      {"ripple.order", 9.0},
+      {"ripple.phase_rad", 1.1},
+      {"drive.back_emf_s_per_rad", 0.3}}},
+    {"profile", {{"command.rate_limit_rad_s", 4.0}, {"command.acceleration_limit_rad_s2", 30.0}}},
+    {"profile without a rate limit", {{"command.acceleration_limit_rad_s2", 20.0}}},
+    {"update", {{"command.update_s", 0.033}, {"command.delay_s", 0.003}}},
+    {"dead band that subtracts and sleeps",
+     {{"drive.dead_band_rad", 0.05}, {"drive.dead_band_subtracts", 0.8}, {"drive.dead_band_wake_rad", 0.04}}},
+    {"output", {{"drive.output_dead_band", 1.5}, {"drive.output_rate_limit_per_s", 300.0}}},
+    {"late output", {{"drive.torque_delay_s", 0.0051}}},
+    {"late and slow output",
+     {{"drive.torque_delay_s", 0.004}, {"drive.output_rate_limit_per_s", 150.0}, {"drive.limit", 9.0}}},
+    {"other torque", {{"drive.torque_scale", 0.8}, {"drive.saturation_per_Nm", 0.05}}},
+    {"battery",
+     {{"drive.limit", 10.0},
+      {"drive.supply_sag_per_Nm", 0.05},
+      {"drive.supply_sag_time_s", 0.04},
+      {"drive.supply_sag_slow_share", 0.7}}},
+    {"supply with a limit", {{"drive.limit", 15.0}, {"drive.supply_limit_Nm", 2.5}}},
+    {"power", {{"drive.most_power_W", 1.5}}},
+    {"overspeed guard", {{"drive.cut_speed_rad_s", 1.2}}},
+    {"overspeed guard of a limited drive", {{"drive.cut_speed_rad_s", 1.2}, {"drive.limit", 8.0}}},
+    {"late readings", {{"sensor.delay_s", 0.0067}, {"sensor.quantum_rad", 0.001}}},
+    {"held readings", {{"sensor.hold_s", 0.009}}},
+    {"sensor on the motor, hard shaft, friction behind it",
+     {{"sensor.on_motor", 1.0},
+      {"sensor.delay_s", 0.001},
+      {"transmission.armature_kg_m2", 0.03},
+      {"transmission.stiffness_Nm_per_rad", 300.0},
+      {"transmission.hardening_Nm_per_rad3", 40000.0},
+      {"transmission.friction_on_joint", 0.7},
+      {"friction.coulomb_Nm", 0.6},
+      {"friction.load_driving", 0.1}}},
+    {"other friction",
+     {{"friction.viscous_Nm_s_per_rad", 0.2},
+      {"friction.viscous_quadratic_Nm_s2_per_rad2", 0.15},
+      {"friction.viscous_asymmetry", 0.4},
+      {"friction.coulomb_Nm", 0.5},
+      {"friction.stribeck_Nm", 0.5},
+      {"friction.stribeck_rad_s", 0.3},
+      {"friction.stribeck_exponent", 0.7},
+      {"friction.stribeck_asymmetry", -0.5}}},
+    {"friction under the motor's torque",
+     {{"friction.load_driving", 0.15}, {"friction.load_backdriving", 0.1}, {"friction.load_by_motor", 1.0}}},
+    {"friction under the net torque", {{"friction.load_driving", 0.15}, {"friction.load_net", 0.8}}},
+    {"warm, other forms",
+     {{"thermal.viscous_per_K", -0.03},
+      {"thermal.resistance_per_K", 0.0039},
+      {"thermal.friction_per_J", -0.4},
+      {"thermal.torque_per_Nm2_s", -0.04},
+      {"thermal.torque_fade_share", 0.4},
+      {"thermal.torque_fade_s", 0.1},
+      {"drive.back_emf_s_per_rad", 0.2},
+      {"friction.viscous_Nm_s_per_rad", 0.3},
+      {"friction.coulomb_Nm", 0.8}}},
+    {"residual of position and of speed", {{"friction.coulomb_Nm", 0.6}}},
+    {"residual of error, time and bend", {{"command.delay_s", 0.003}}},
+    {"residual of a change, friction behind the shaft",
+     {{"transmission.armature_kg_m2", 0.03},
+      {"transmission.stiffness_Nm_per_rad", 900.0},
+      {"transmission.friction_on_joint", 0.6},
+      {"drive.kp_scale", 0.9},
+      {"friction.coulomb_Nm", 0.4}}},
+    {"residual of integral, drive and rest", {{"friction.coulomb_Nm", 0.8}, {"friction.presliding_rad", 0.02}}},
+    {"residual that repeats every turn, elastic",
+     {{"transmission.armature_kg_m2", 0.03}, {"transmission.stiffness_Nm_per_rad", 900.0}}},
     {"much, rigid",
      {{"command.delay_s", 0.005},
       {"command.rate_limit_rad_s", 3.0},
@@ -96,6 +174,35 @@ const std::map<std::string, Values> kCases = {
       {"sensor.quantum_rad", 0.0005}}},
 };
 
+/// Residual torques of some cases, as motor.yaml has them: every quantity, within and beyond its axis.
+const std::map<std::string, std::string> kResidualTorques = {
+    {"residual of position and of speed",
+     R"({"terms": [{"acts_as": "torque", "over": [{"quantity": "position_rad", "from": -0.2, "to": 0.15, "knots": 4}],
+         "values_Nm": [0.3, -0.2, 0.5, 0.1]},
+        {"acts_as": "friction", "over": [{"quantity": "speed_rad_s", "from": 0.1, "to": 2.2, "knots": 3},
+         {"quantity": "temperature_C", "from": 15, "to": 35, "knots": 2}], "values_Nm": [0.2, 0.3, 0.1, -0.4, 0.6, 0.5]}]})"},
+    {"residual of error, time and bend",
+     R"({"terms": [{"acts_as": "torque", "over": [{"quantity": "error_rad", "from": -0.2, "to": 0.25, "knots": 3},
+         {"quantity": "time_s", "from": 0.0, "to": 0.2, "knots": 3}], "values_Nm": [0.3, -0.2, 0.5, 0.1, 0.2, 0.3, -0.4, 0.3, 0.2]},
+        {"acts_as": "torque", "over": [{"quantity": "bend_rad", "from": -0.1, "to": 0.1, "knots": 4}],
+         "values_Nm": [0.5, 0.1, -0.2, -0.6]}]})"},
+    {"residual of a change, friction behind the shaft",
+     R"({"terms": [{"acts_as": "torque", "over": [{"quantity": "drive_Nm", "from": -4, "to": 3, "knots": 3},
+         {"quantity": "command_change_Nm", "from": -2, "to": 3, "knots": 2, "lag_s": 0.08}], "values_Nm": [0.9, 0.5, 0.1, 0.1, -0.6, -0.8]},
+        {"acts_as": "friction", "over": [{"quantity": "position_rad", "from": -0.2, "to": 0.2, "knots": 3}],
+         "values_Nm": [0.3, -0.2, 0.4]}]})"},
+    {"residual of integral, drive and rest",
+     R"({"terms": [{"acts_as": "torque", "over": [{"quantity": "integral_Nm_s", "from": -0.3, "to": 0.2, "knots": 4},
+         {"quantity": "drive_Nm", "from": -4, "to": 5, "knots": 2}], "values_Nm": [-0.3, -0.2, -0.1, 0.1, 0.2, 0.3, 0.5, 0.4]},
+        {"acts_as": "friction", "over": [{"quantity": "rest_s", "from": 0.0, "to": 0.01, "knots": 3}],
+         "values_Nm": [-0.4, 0.5, 0.6]}]})"},
+    {"residual that repeats every turn, elastic",
+     R"({"terms": [{"acts_as": "torque", "over": [{"quantity": "position_rad", "periodic": true, "from": -0.1, "knots": 9}],
+         "values_Nm": [0.3, -0.2, 0.5, 0.1, 0.2, 0.3, -0.4, 0.3, 0.2]},
+        {"acts_as": "torque", "over": [{"quantity": "time_s", "periodic": true, "from": 0.01, "to": 0.06, "knots": 4}],
+         "values_Nm": [0.3, -0.2, 0.5, 0.1]}]})"},
+};
+
 struct Step {
   sim::ActuatorInput input;
   double q_rad = 0.0, dq_rad_s = 0.0;
@@ -115,7 +222,8 @@ Step step_at(int k) {
                 .feed_forward_Nm = 0.7 * std::cos(5.0 * t),
                 .supply = 1.0 - 0.1 * std::sin(7.0 * t),
                 .enabled = k < 70 || k >= 80,
-                .temperature_C = 25.0 + 15.0 * std::sin(4.0 * t)};
+                .temperature_C = 25.0 + 15.0 * std::sin(4.0 * t),
+                .external_Nm = 2.0 * std::sin(11.0 * t)};
   return step;
 }
 
@@ -131,14 +239,25 @@ ordered_json inputs() {
                      {"supply", input.supply},
                      {"enabled", input.enabled},
                      {"temperature_C", input.temperature_C},
+                     {"external_Nm", input.external_Nm},
                      {"q_rad", q_rad},
                      {"dq_rad_s", dq_rad_s}});
   }
   return steps;
 }
 
-ordered_json outputs(const Values& values) {
+model::ResidualTorque residual_torque(const std::string& text) {
+  if (text.empty()) return {};
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "residual_torque_of_a_record.yaml";
+  std::ofstream(file) << R"({"joints": {"one": {"residual_torque": )" << text << "}}}";
+  const model::ResidualTorque read = sim::read_motor_file(file).at("one").residual_torque;
+  std::filesystem::remove(file);
+  return read;
+}
+
+ordered_json outputs(const Values& values, const std::string& residual = "") {
   model::ActuatorParameters parameters;
+  parameters.residual_torque = residual_torque(residual);
   for (const auto& [name, value] : values) model::actuator_parameter(name).in(parameters) = value;
   sim::ActuatorModel model(parameters, kStep_s);
   model.reset(step_at(0).q_rad);
@@ -149,13 +268,18 @@ ordered_json outputs(const Values& values) {
     torque_Nm.push_back(torque.torque_Nm);
     slope.push_back(torque.slope_Nm_s_per_rad);
   }
-  return {{"parameters", values}, {"torque_Nm", torque_Nm}, {"slope_Nm_s_per_rad", slope}};
+  ordered_json of_file = values;
+  if (!residual.empty()) of_file["residual_torque"] = ordered_json::parse(residual);
+  return {{"parameters", of_file}, {"torque_Nm", torque_Nm}, {"slope_Nm_s_per_rad", slope}};
 }
 
 ordered_json actuators_now() {
   ordered_json names = ordered_json::array(), cases = ordered_json::object();
   for (const model::ActuatorParameter& parameter : model::actuator_parameters()) names.push_back(parameter.name);
-  for (const auto& [name, values] : kCases) cases[name] = outputs(values);
+  for (const auto& [name, values] : kCases) {
+    const auto residual = kResidualTorques.find(name);
+    cases[name] = outputs(values, residual == kResidualTorques.end() ? "" : residual->second);
+  }
   return {{"step_s", kStep_s}, {"names", names}, {"steps", inputs()}, {"cases", cases}};
 }
 
@@ -170,6 +294,16 @@ TEST(ActuatorRecord, ShowsEveryEffectAtWork) {
     for (const auto& [name, values] : kCases) used = used || values.contains(std::string(parameter.name));
     EXPECT_TRUE(used) << parameter.name;
   }
+}
+
+TEST(ActuatorRecord, ShowsEveryQuantityOfAResidualTorqueAtWork) {
+  std::string all;
+  for (const auto& [name, text] : kResidualTorques) {
+    all += text;
+    EXPECT_NE(outputs(kCases.at(name), text)["torque_Nm"], outputs(kCases.at(name))["torque_Nm"]) << name;
+  }
+  for (const auto& [quantity, quantity_name] : model::residual_quantities())
+    EXPECT_NE(all.find(std::string(quantity_name)), std::string::npos) << quantity_name;
 }
 
 TEST(ActuatorRecord, IsWhatTheActuatorModelsGive) {

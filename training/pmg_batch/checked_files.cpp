@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files/bounded_file.hpp"
+#include "model/residual_torque_file.hpp"
 #include "model/robot_model.hpp"
 #include "sil/scenario.hpp"
 #include "sim/motor_file.hpp"
@@ -18,15 +19,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A number as files::ConfigReader reads it; whole ones stay whole.
-ordered_json number_of(const std::string& text) {
+/// A number as files::ConfigReader reads it, whole ones stay whole; true or false; else a word.
+ordered_json scalar_of(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
   double value = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
+  if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc{}) return text;
   if (text.find_first_of(".eE") != std::string::npos) return value;
   return static_cast<std::int64_t>(value);
 }
 
-/// Of a file that its reader has accepted: mappings, lists and numbers.
+/// Of a file that its reader has accepted: mappings, lists, numbers and words.
 ordered_json json_of(const YAML::Node& node) {
   ordered_json json;
   if (node.IsMap()) {
@@ -36,7 +38,7 @@ ordered_json json_of(const YAML::Node& node) {
     json = ordered_json::array();
     for (const YAML::Node& item : node) json.push_back(json_of(item));
   } else {
-    json = number_of(node.Scalar());
+    json = scalar_of(node.Scalar());
   }
   return json;
 }
@@ -57,6 +59,9 @@ std::string motors_json(const std::filesystem::path& robot, const std::filesyste
     for (const model::ActuatorParameter& p : model::actuator_parameters()) {
       if (p.value(actuator) != p.value(neutral)) values[std::string(p.name)] = p.value(actuator);
     }
+    if (actuator.residual_torque.count > 0)
+      values["residual_torque"] =
+          json_of(YAML::Load(model::residual_torque_yaml(actuator.residual_torque)))["residual_torque"];
   }
   return json.dump();
 }

@@ -13,8 +13,16 @@ def read_randomization(library: str | Path, path: str | Path) -> dict:
 
 
 def read_motor_file(library: str | Path, robot: str | Path, path: str | Path) -> dict[str, dict[str, float]]:
-    """What isn't neutral, as "group.key", of each joint in the file. robot: the robot's directory."""
-    return _read(library, "motors", robot, path)
+    """What isn't neutral, as "group.key", of each joint in the file. robot: the robot's directory. ValueError also for what training can't
+    simulate."""
+    motors = _read(library, "motors", robot, path)
+    for joint, values in motors.items():
+        if values.get("friction.load_net", 0.0) != 0.0:
+            raise ValueError(
+                f"{path}: joints.{joint}.friction.load_net: training doesn't know what else turns a joint; "
+                "calibrate without it, or with load_by_motor"
+            )
+    return motors
 
 
 def read_scenario(library: str | Path, path: str | Path) -> list[dict]:

@@ -5,7 +5,6 @@ Exit codes: 0 done, 2 bad input.
 """
 
 import argparse
-import hashlib
 import json
 import sys
 from pathlib import Path
@@ -15,23 +14,13 @@ import onnx
 import torch
 from onnx import TensorProto, helper, numpy_helper
 
+from pmg_train.inputs import clip_library_hash
 from pmg_train.robot import policy_gains
 
 OPSET, IR_VERSION = 17, 8  # ONNX Runtime 1.21 reads IR 10 and below
 GOLDEN_PAIRS = 8
 GOLDEN_TOLERANCE = 1e-4
 ACTION_LIMIT = 4.0  # the environment's clamp
-
-
-def clip_library_hash(robot: Path) -> str:
-    """The same as model::clip_library_sha256 (src/model/bundle.hpp)."""
-    digest = hashlib.sha256()
-    for path in sorted((robot / "clips").iterdir()):
-        if path.suffix in (".csv", ".yaml"):
-            content = path.read_bytes()
-            digest.update(f"{path.name}\n{len(content)}\n".encode())
-            digest.update(content)
-    return digest.hexdigest()
 
 
 def graph_of(actor: dict[str, torch.Tensor]) -> onnx.ModelProto:
@@ -108,11 +97,13 @@ def metadata(checkpoint: dict, robot: Path) -> dict:
         "policy_rate_Hz": round(1 / config["tick_s"]),
         "clip_library_sha256": clip_library_hash(robot),
         "golden_tolerance": GOLDEN_TOLERANCE,
-        "training": {k: checkpoint[k] for k in ("seed", "iteration", "steps", "learned_s")},
+        "training": {k: checkpoint[k] for k in ("seed", "iteration", "steps", "learned_s", "processes", "inputs")},
     }
 
 
 def export(checkpoint: dict, robot: Path, out: Path) -> dict:
+    if clip_library_hash(robot) != checkpoint["inputs"]["clips"]:
+        raise ValueError(f"{robot}: other clips than those that the policy was trained on")
     model = graph_of(checkpoint["actor"])
     meta = metadata(checkpoint, robot)
     meta["golden"] = golden(model, checkpoint["actor"])

@@ -25,6 +25,7 @@ import yaml
 from pmg_train.checked_files import read_motor_file, read_randomization
 from pmg_train.configuration import load_config
 from pmg_train.environment import Environment
+from pmg_train.inputs import changed_inputs, input_hashes
 from pmg_train.networks import ActorCritic, log_probability
 from pmg_train.ppo import Ppo, Rollout
 from pmg_train.reference_pool import ReferencePool
@@ -68,6 +69,7 @@ class Training:
             self.device = f"cuda:{os.environ.get('LOCAL_RANK', 0)}"
         self.cuda = self.device.startswith("cuda")
         self.config, self.ranges = load_config(a.config), read_randomization(a.library, a.randomization)
+        self.inputs = input_hashes(a)
         c, ppo = self.config, self.config["ppo"]
         for key, value in (("streams", a.streams), ("ticks", a.ticks)):
             c["references"][key] = value or c["references"][key]
@@ -110,7 +112,16 @@ class Training:
         if self.rank == 0:
             (a.out / "training.yaml").write_text(
                 yaml.safe_dump(
-                    dict(variant=a.variant, seed=a.seed, config=self.config, randomization=self.ranges, motors=self.motors), sort_keys=False
+                    dict(
+                        variant=a.variant,
+                        seed=a.seed,
+                        processes=self.ppo.world_size,
+                        inputs=self.inputs,
+                        config=self.config,
+                        randomization=self.ranges,
+                        motors=self.motors,
+                    ),
+                    sort_keys=False,
                 )
             )
             self.board = _tensorboard(a.out)
@@ -240,8 +251,6 @@ class Training:
                     last_kept = time.time()
                     self.save_actor(a.out / f"actor_{self.iteration}.pt")
         self.save()
-        if self.rank == 0:
-            self.save_actor(a.out / "actor.pt")
         self.log(f"done: {self.iteration} iterations, {self.steps / 1e6:.0f} M steps, {self.learned_s / 60:.1f} min")
 
     def _strictness(self) -> float:
@@ -306,6 +315,8 @@ class Training:
             randomization=self.ranges,
             variant=self.a.variant,
             seed=self.a.seed,
+            processes=self.ppo.world_size,
+            inputs=self.inputs,
             iteration=self.iteration,
             steps=self.steps,
             learned_s=self.learned_s,
@@ -313,11 +324,13 @@ class Training:
 
     def save_actor(self, path: Path) -> None:
         actor = {k: v.cpu() for k, v in self.network.state_dict().items() if k.startswith("actor")}
-        torch.save(dict(actor=actor, **self._meta()), path)
+        _write(dict(actor=actor, **self._meta()), path)
 
     def save(self) -> None:
-        """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation."""
+        """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation. actor.pt: the policy
+        so far, so that a host that goes away takes a minute of training with it, not all of it."""
         if self.rank == 0:
+            self.save_actor(self.a.out / "actor.pt")
             _write(
                 dict(
                     network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate, curve=self.curve, **self._meta()
@@ -344,6 +357,8 @@ class Training:
         state = torch.load(path, map_location=self.device, weights_only=False)
         if state["variant"] != self.a.variant:
             raise ValueError(f"{path} is a {state['variant']} policy")
+        if changed := changed_inputs(state["inputs"], self.inputs):
+            raise ValueError(f"{path} was made from another {', '.join(changed)}; start a new run, with --initial if it shall go on from this one")
         self.network.load_state_dict(state["network"])
         self.ppo.optimizer.load_state_dict(state["optimizer"])
         self.ppo.rate.copy_(state["rate"])

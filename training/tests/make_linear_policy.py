@@ -34,7 +34,7 @@ def main(library: str, robot: Path, out: Path) -> None:
         "actor.0.weight": 0.02 * torch.randn(actions, size, generator=generator),
         "actor.0.bias": torch.zeros(actions),
     }
-    checkpoint = dict(description=description, config=config, variant="pmg", seed=1, iteration=0, steps=0, learned_s=0.0)
+    checkpoint = dict(description=description, config=config, variant="pmg", seed=1, iteration=0, steps=0, learned_s=0.0, processes=1, inputs={})
     model = export.graph_of(actor)
     meta = export.metadata(checkpoint, robot) | {"clip_library_sha256": "0" * 64, "training": {}, "golden": export.golden(model, actor)[:2]}
     text = json.dumps(meta)

@@ -37,6 +37,11 @@ def test_the_committed_randomization_is_complete():
     "option, text, said",
     [
         ("--motor", NO_KEY, ":3:16: joints.left_knee.friction.culomb_Nm: is unknown; did you mean coulomb_Nm?"),
+        (
+            "--motor",
+            "joints: {left_knee: {friction: {load_driving: 0.1, load_net: 1}}}\n",
+            ": joints.left_knee.friction.load_net: training doesn't know what else turns a joint; calibrate without it, or with load_by_motor",
+        ),
         ("--randomization", "friction: [1.2, 0.4]\n", ":1:11: friction: runs backwards; expected [lower, upper]"),
     ],
 )

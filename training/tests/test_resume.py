@@ -18,8 +18,10 @@ pytestmark = pytest.mark.skipif(not (LIBRARY and ROBOT and MJCF), reason="PMG_BA
 def train(out: Path, processes: int, iterations: int, *more: str) -> dict:
     start = [sys.executable, "-m"]
     if processes > 1:
+        # Port 0: a free one. --standalone of torch 1.13 takes port 29400, whoever holds it.
+        start += ["torch.distributed.run", "--rdzv_backend", "c10d", "--rdzv_endpoint", "localhost:0", "--nproc_per_node", str(processes)]
         # Tee of stdout: with no redirection, the default, torch 1.13 fails under Python 3.11.
-        start += ["torch.distributed.run", "--standalone", "--nproc_per_node", str(processes), "--redirects", "1", "--tee", "1", "-m"]
+        start += ["--redirects", "1", "--tee", "1", "-m"]
     given = [word for option, path in (("--robot", ROBOT), ("--mjcf", MJCF), ("--library", LIBRARY)) for word in (option, str(Path(path).resolve()))]
     subprocess.run(
         [

@@ -1,0 +1,21 @@
+# pmg_soem: the EtherCAT master SOEM without its network driver, which src/ethercat brings. Optional (GPLv2 with an exception for linking):
+# without it `--hal ethercat` says what is missing.
+option(PMG_ETHERCAT "Build the backend `ethercat`; it needs SOEM (third_party/fetch-soem)" ON)
+if(PMG_ETHERCAT)
+  execute_process(COMMAND ${PROJECT_SOURCE_DIR}/third_party/fetch-soem RESULT_VARIABLE fetched)
+  if(NOT fetched EQUAL 0)
+    message(WARNING "third_party/fetch-soem failed; see its message above. This build has no backend `ethercat`.")
+    set(PMG_ETHERCAT OFF)
+  endif()
+endif()
+if(PMG_ETHERCAT)
+  set(soem ${PROJECT_SOURCE_DIR}/third_party/prefix-soem)
+  add_library(pmg_soem STATIC ${soem}/soem/ethercatbase.c ${soem}/soem/ethercatcoe.c ${soem}/soem/ethercatconfig.c ${soem}/soem/ethercatdc.c
+    ${soem}/soem/ethercatmain.c ${soem}/soem/ethercatsoe.c ${soem}/osal/linux/osal.c ${soem}/oshw/linux/oshw.c ${soem}/soem_config.c)
+  foreach(folder ${soem} ${soem}/soem ${soem}/osal ${soem}/osal/linux ${soem}/oshw/linux)
+    target_include_directories(pmg_soem SYSTEM PUBLIC $<BUILD_INTERFACE:${folder}>)
+  endforeach()
+  target_compile_definitions(pmg_soem PUBLIC EC_VER2 USE_SOEM_CONFIG_H)
+  target_compile_options(pmg_soem PRIVATE -w)
+  set_target_properties(pmg_soem PROPERTIES UNITY_BUILD OFF C_EXTENSIONS ON)
+endif()

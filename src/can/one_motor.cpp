@@ -1,0 +1,91 @@
+#include "can/one_motor.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "can/canopen_setup.hpp"
+
+namespace pmg::can {
+
+namespace {
+constexpr int kAnswerCycles = 250;  // 0.5 s: some nodes take their time to start
+constexpr int kPatience = 5;        // ticks: 10 ms, which some adapters take; drives let go after 20 ms
+}  // namespace
+
+std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor) {
+  return fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
+}
+
+OneMotor::OneMotor(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
+                   const std::function<void()>& tick)
+    : bus_(bus), setup_(motor), motor_(motor, bus.data_bitrate != 0), link_(link), tick_(tick) {
+  if (std::holds_alternative<drives::Cia402Settings>(motor.drive)) set_up_node(bus, motor, link, tick);
+  for (int k = 0; k < kAnswerCycles && !motor_.monitor().answered(); ++k) exchange_off();
+  if (!motor_.monitor().answered())
+    throw std::runtime_error(name_of(bus, motor) + " does not answer; expected a powered drive with this node number");
+}
+
+OneMotor::~OneMotor() {
+  try {
+    exchange_off();
+  } catch (...) {  // tick's; the drive's watchdog remains
+    return;
+  }
+  if (!std::holds_alternative<drives::Cia402Settings>(setup_.drive)) return;
+  const Frame quiet = canopen::node_command(canopen::NodeCommand::kPreOperational, setup_.node);
+  link_.send(std::span(&quiet, 1));
+}
+
+void OneMotor::cycle(const std::function<std::optional<Frame>()>& begin) {
+  if (bus_.has_canopen()) {
+    const bool due = ticks_ >= kHeartbeatCycles;
+    if (due) ticks_ = 0;
+    std::array<Frame, 2> network;
+    link_.send(std::span(network).first(network_frames(due ? 0 : 1, network)));
+  }
+  if (const auto frame = begin()) link_.send(std::span(&*frame, 1));
+  for (int k = 0; k < kPatience && (k == 0 || motor_.monitor().age_cycles() > 0); ++k) {
+    tick_();
+    ++ticks_;
+    std::array<Frame, 32> frames;
+    while (const std::size_t count = link_.receive(frames)) {
+      for (const Frame& got : std::span(frames).first(count)) motor_.hear(got);
+    }
+  }
+  if (const auto targets = motor_.targets()) link_.send(std::span(&*targets, 1));
+}
+
+void OneMotor::exchange_off() {
+  cycle([this] { return motor_.begin_off(); });
+}
+
+bool OneMotor::switch_on() {
+  for (int k = 0; k < kAnswerCycles && !motor_.monitor().enabled(); ++k)
+    cycle([this] { return motor_.begin({}, false); });
+  return motor_.monitor().enabled();
+}
+
+void OneMotor::exchange(const drives::MotorCommand& joint) {
+  cycle([&] { return motor_.begin(joint, true); });
+  if (motor_.monitor().condition(true) != drives::Condition::kLost) return;
+  const drives::Trouble trouble = motor_.monitor().trouble(true);
+  throw std::runtime_error(name_of(bus_, setup_) + " " +
+                           (trouble == drives::Trouble::kFault
+                                ? std::string("reports ") + drives::to_string(motor_.monitor().reading().fault)
+                                : std::string(drives::to_string(trouble))) +
+                           "; it is switched off");
+}
+
+void OneMotor::set_zero() {
+  const Frame frame = Frame::of(static_cast<std::uint32_t>(setup_.node), drives::kMitZero, bus_.data_bitrate != 0);
+  link_.send(std::span(&frame, 1));
+  tick_();
+  std::array<Frame, 32> answers;
+  while (link_.receive(answers) > 0) {
+  }
+  motor_ = BusMotor(setup_, bus_.data_bitrate != 0);  // the position jumps
+}
+
+}  // namespace pmg::can

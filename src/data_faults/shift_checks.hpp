@@ -1,0 +1,16 @@
+// Times between commands and readings that no drive explains.
+#pragma once
+
+#include <vector>
+
+#include "data_faults/run_evidence.hpp"
+
+namespace pmg::data_faults {
+
+/// Readings of one run that are early or late, where those of similar runs are not. The examined runs must have a fit.
+void try_shifts(const Examined& examined, std::vector<Explained>& into);
+
+/// In all runs: readings before their commands, or later than a drive's delay; empty if there is none.
+std::vector<DataFault> common_shift(const Examined& examined);
+
+}  // namespace pmg::data_faults

@@ -1,0 +1,203 @@
+#include "diagnosis_page/first_paragraph.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "diagnosis_page/assemblies.hpp"
+#include "diagnosis_page/workshop.hpp"
+#include "effects/catalogue.hpp"
+
+namespace pmg::diagnosis_page {
+
+namespace {
+
+using diagnosis::Cause;
+using diagnosis::Diagnosis;
+
+/// Lengths in mm, angles in degrees: a workshop knows no milliradians.
+std::string size(const bench::Bench& bench, double value) {
+  const bool linear = bench.rig == bench::Rig::kLinear;
+  const double shown = linear ? 1e3 * value : value * 180.0 / std::numbers::pi;
+  return fmt::format("{} {}", shown < 100.0 ? fmt::format("{:.2g}", shown) : fmt::format("{:.0f}", shown),
+                     linear ? "mm" : "degrees");
+}
+
+std::string recordings(int count) { return fmt::format("{} recording{}", count, count == 1 ? "" : "s"); }
+
+/// The cause, and every name that it may have as well.
+std::string with_other_names(const Cause& cause) {
+  std::vector<std::string> names{cause.effect};
+  names.insert(names.end(), cause.or_instead.begin(), cause.or_instead.end());
+  names.insert(names.end(), cause.same_here.begin(), cause.same_here.end());
+  return in_workshop_words(names, " or ");
+}
+
+std::string all_causes(const Diagnosis& diagnosis) {
+  std::string text;
+  for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
+    if (i > 0) text += i + 1 == diagnosis.causes.size() ? "; and " : "; ";
+    text += with_other_names(diagnosis.causes[i]);
+  }
+  return text;
+}
+
+bool some(const Diagnosis& diagnosis, std::vector<std::string> Cause::*names) {
+  return std::any_of(diagnosis.causes.begin(), diagnosis.causes.end(),
+                     [&](const Cause& cause) { return !(cause.*names).empty(); });
+}
+
+std::string plain(const std::string& circumstance) {
+  static const std::map<std::string, std::string> kPlain = {
+      {"velocity", "the speed"},
+      {"position", "the position"},
+      {"load", "the torque of the load"},
+      {"drive", "how hard the motor works"},
+      {"temperature", "the temperature"},
+      {"time since the command changed", "the time since the command changed"},
+      {"time", "the time since the recording began"}};
+  const auto found = kPlain.find(circumstance);
+  return found == kPlain.end() ? circumstance : found->second;
+}
+
+std::string on_what(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const std::string& name : diagnosis.depends_on) names.push_back(plain(name));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string what_every_assembly_has(const Diagnosis& diagnosis) {
+  const std::string causes = all_causes(diagnosis);
+  switch (diagnosis.verdict) {
+    case evidence::Verdict::kNone:
+      return "We found nothing in this joint that its simulation doesn't have already.";
+    case evidence::Verdict::kFound:
+    case evidence::Verdict::kAmbiguous:
+      if (causes.empty()) return "Its simulation is right on average over the assemblies of this joint.";
+      return fmt::format("This joint has {}. Its simulation did not have this, or not in the right size.", causes);
+    case evidence::Verdict::kUnexplained:
+      break;
+  }
+  std::string text = "This joint does something that its simulation doesn't do, and no effect on our list explains it.";
+  if (!diagnosis.depends_on.empty()) text += fmt::format(" It changes with {}.", on_what(diagnosis));
+  if (!causes.empty()) text += fmt::format(" Besides, it has {}.", causes);
+  return text;
+}
+
+std::string what_is_wrong(const Diagnosis& diagnosis) {
+  const std::string differences = differences_in_words(diagnosis);
+  return what_every_assembly_has(diagnosis) + (differences.empty() ? "" : " " + differences);
+}
+
+std::string how_sure(const Diagnosis& diagnosis) {
+  std::string text;
+  switch (diagnosis.verdict) {
+    case evidence::Verdict::kFound:
+      text = "We are fairly sure: no other effect on our list explains the recordings as well.";
+      break;
+    case evidence::Verdict::kAmbiguous:
+      text = "We are not sure which: where it says \"or\", these recordings fit the one as well as the other.";
+      break;
+    case evidence::Verdict::kNone:
+      text = "We are fairly sure of what these recordings can show; \"Not ruled out\" lists what we can't say.";
+      break;
+    case evidence::Verdict::kUnexplained:
+      text = "We are sure that something is there: it is clearly larger than the noise of the recordings.";
+      break;
+  }
+  if (some(diagnosis, &Cause::or_instead) && diagnosis.verdict == evidence::Verdict::kUnexplained)
+    text += " Where it says \"or\", these recordings don't tell which.";
+  if (some(diagnosis, &Cause::same_here) && diagnosis.verdict != evidence::Verdict::kAmbiguous)
+    text += " On this test rig the names with \"or\" mean the same; the simulation is right with either.";
+  return text;
+}
+
+std::string how_much_better(const bench::Bench& bench, const Diagnosis& diagnosis) {
+  const double before = diagnosis.held_out_before.value, after = diagnosis.held_out_after.value;
+  const std::string runs = diagnosis.held_out ? " on recordings that we kept aside for this test" : "";
+  const std::string noise =
+      diagnosis.noise_floor.mean_absolute_rad > 0.0
+          ? fmt::format("; noise alone makes {}", size(bench, diagnosis.noise_floor.mean_absolute_rad))
+          : "";
+  if (diagnosis.causes.empty() && diagnosis.assemblies.varies.empty())
+    return fmt::format("On average the simulation misses the measured position by {}{}{}.", size(bench, after), runs,
+                       noise);
+  if (after < before)
+    return fmt::format(
+        "With it the simulation gets better: on average it missed the measured position by {}, now by "
+        "{}{}{}.",
+        size(bench, before), size(bench, after), runs, noise);
+  return fmt::format(
+      "But with it the simulation gets no better: on average it missed the measured position by {}, now "
+      "by {}{}{}. So don't rely on it.",
+      size(bench, before), size(bench, after), runs, noise);
+}
+
+bool contradict_each_other(const Diagnosis& diagnosis) {
+  const std::vector<bench::OddRun>& odd = diagnosis.noise_floor.odd_runs;
+  return std::any_of(odd.begin(), odd.end(),
+                     [](const bench::OddRun& one) { return !one.left_out && one.deviation_rad > 0.0; });
+}
+
+std::string record_next(const diagnosis::NextExcitation& next) {
+  int count = 0;
+  for (const diagnosis::NextRun& run : next.runs) count += run.times;
+  return fmt::format("make the {} that \"What to record next\" shows, and start the diagnosis again",
+                     recordings(count));
+}
+
+std::string what_next(const Diagnosis& diagnosis) {
+  const bool more = diagnosis.next_excitation && !diagnosis.next_excitation->runs.empty();
+  if (diagnosis.verdict == evidence::Verdict::kAmbiguous && more)
+    return fmt::format("Next: {}.", record_next(*diagnosis.next_excitation));
+  if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: nothing to do.";
+  if (!diagnosis.causes.empty()) {
+    std::string text = fmt::format("Next: {}", workshop_words(diagnosis.causes.front().effect).check);
+    if (diagnosis.causes.size() > 1) text += " \"What to check\" has the rest.";
+    return text;
+  }
+  if (!diagnosis.assemblies.varies.empty()) return fmt::format("Next: {}", check_of_differences(diagnosis));
+  if (contradict_each_other(diagnosis))
+    return "Some recordings of the same motion contradict each other: that alone may be the reason. Next: look at the "
+           "odd "
+           "runs that are named below, and record them again.";
+  return "Next: look at the pictures of the recordings that fit worst, and check what the list doesn't know: loose "
+         "screws, a table that shakes, a cable that pulls, something that rubs.";
+}
+
+}  // namespace
+
+std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosis) {
+  if (diagnosis.data.uncorrected())
+    return "The recordings have faults: they stand above. All that follows was computed from the faulty recordings: "
+           "don't "
+           "trust it. Next: repair the recordings, or start the diagnosis again with the corrections, and read its new "
+           "page.";
+  return fmt::format("{} {} {} {}", what_is_wrong(diagnosis), how_sure(diagnosis), how_much_better(bench, diagnosis),
+                     what_next(diagnosis));
+}
+
+void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {
+  if (diagnosis.causes.empty()) return;
+  page.heading("What to check");
+  pages::Table table{.header = {"what it may be", "name in the tables below", "check this"}, .rows = {}};
+  std::set<std::string> listed;
+  const auto add = [&](const std::string& effect) {
+    if (!listed.insert(effect).second) return;
+    const WorkshopWords words = workshop_words(effect);
+    table.rows.push_back({words.what, effects::title(effect), words.check});
+  };
+  for (const Cause& cause : diagnosis.causes) {
+    add(cause.effect);
+    for (const std::string& other : cause.or_instead) add(other);
+    for (const std::string& other : cause.same_here) add(other);
+  }
+  page.table(table);
+}
+
+}  // namespace pmg::diagnosis_page

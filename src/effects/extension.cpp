@@ -1,0 +1,84 @@
+#include "effects/extension.hpp"
+
+#include <algorithm>
+
+#include "calib/fit_problem.hpp"
+#include "effects/period.hpp"
+
+namespace pmg::effects {
+
+namespace {
+
+bool has(const Form& form, const std::string& parameter) {
+  return contains(form.parameters, parameter) ||
+         std::any_of(form.fixed.begin(), form.fixed.end(),
+                     [&](const FixedValue& fixed) { return fixed.parameter == parameter; });
+}
+
+}  // namespace
+
+const Form& form_of(const std::string& effect_name, const Forms& forms) {
+  const auto found = forms.find(effect_name);
+  return effect(effect_name).forms.at(found == forms.end() ? 0 : found->second);
+}
+
+std::size_t Extension::numbers() const {
+  std::size_t count = fitted.unknowns.size();
+  for (const std::string& name : effects) {
+    const std::vector<std::string>& parameters = form_of(name, forms).parameters;
+    count += static_cast<std::size_t>(std::count_if(parameters.begin(), parameters.end(), is_jagged));
+  }
+  return count;
+}
+
+std::vector<Unknown> ExtensionFits::unknowns(const std::vector<std::string>& effects, const Forms& forms) const {
+  std::vector<Unknown> found = base_.unknowns;
+  for (const std::string& name : effects) {
+    for (const std::string& parameter : form_of(name, forms).parameters) {
+      if (is_jagged(parameter)) continue;
+      const Unknown full = unknown(parameter, bench_, base_.scale);
+      const auto there =
+          std::find_if(found.begin(), found.end(), [&](const Unknown& u) { return u.name == parameter; });
+      if (there == found.end())
+        found.push_back(full);
+      else
+        *there = full;
+    }
+  }
+  return found;
+}
+
+calib::JointModel ExtensionFits::without(calib::JointModel model, const std::string& effect_name,
+                                         const std::vector<std::string>& kept, const Forms& forms) const {
+  const auto reset = [&](const std::string& parameter) {
+    const bool shared = std::any_of(kept.begin(), kept.end(),
+                                    [&](const std::string& name) { return has(form_of(name, forms), parameter); });
+    if (!shared) calib::set(model, parameter, calib::value(base_.model, parameter));
+  };
+  for (const Form& form : effect(effect_name).forms) {
+    for (const std::string& parameter : form.parameters) reset(parameter);
+    for (const FixedValue& fixed : form.fixed) reset(fixed.parameter);
+  }
+  return model;
+}
+
+Extension ExtensionFits::fitted(const std::vector<std::string>& effects, const Forms& forms,
+                                const calib::JointModel& start, int most_iterations) const {
+  const std::vector<Unknown> free = unknowns(effects, forms);
+  Extension extension{effects, fit_.fit(start, free, most_iterations), {}, forms, {}};
+  for (const std::string& name : effects) {
+    for (const std::string& parameter : form_of(name, forms).parameters) {
+      if (!is_period(parameter)) continue;
+      calib::JointModel better = extension.fitted.model;
+      const double period_s = best_period_s(fit_, better, parameter);
+      if (period_s == calib::value(better, parameter)) continue;
+      calib::set(better, parameter, period_s);
+      extension.fitted = fit_.fit(better, free, most_iterations);
+    }
+  }
+  if (extension.fitted.blocks.empty()) fit_.linearise(extension.fitted);
+  extension.held_out = fit_.held_out_squares(extension.fitted, compare_.folds());
+  return extension;
+}
+
+}  // namespace pmg::effects

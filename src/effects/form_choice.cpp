@@ -1,0 +1,93 @@
+#include "effects/form_choice.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "calib/fit_problem.hpp"
+#include "effects/strengths.hpp"
+
+namespace pmg::effects {
+
+namespace {
+
+Eigen::VectorXd fitted_squares(const Extension& extension) {
+  Eigen::VectorXd squares(static_cast<Eigen::Index>(extension.fitted.blocks.size()));
+  for (Eigen::Index b = 0; b < squares.size(); ++b)
+    squares[b] = extension.fitted.blocks[static_cast<std::size_t>(b)].squares;
+  return squares;
+}
+
+/// The best starts of the form, and where all its parameters are those of the present form, their present values.
+std::vector<ScreenedStart> starts_of(const StartScreen& screen, const Effect& family, std::size_t form,
+                                     const Extension& current, const BenchScale& scale) {
+  std::vector<ScreenedStart> found = screen.best(family, form, scale);
+  const std::vector<std::string>& parameters = family.forms[form].parameters;
+  if (found.empty() || parameters != form_of(family.name, current.forms).parameters) return found;
+  std::vector<double> present;
+  for (const std::string& parameter : parameters) present.push_back(calib::value(current.fitted.model, parameter));
+  for (const ScreenedStart& start : screen.at(family, form, present)) {
+    found.insert(start.squares < found.front().squares ? found.begin() : found.end(), start);
+  }
+  return found;
+}
+
+/// The extension with the effect in another form; nothing where these recordings can't have it, or where it is far from
+/// explaining as much.
+std::optional<Extension> in_form(const ExtensionFits& fits, const StartScreen& screen, const Extension& current,
+                                 const Effect& family, std::size_t form, const FormLimits& limits) {
+  const std::vector<ScreenedStart> starts = starts_of(screen, family, form, current, fits.base().scale);
+  if (starts.empty()) return std::nullopt;
+  Forms forms = current.forms;
+  forms[family.name] = form;
+  const NestedModel first = fits.fit().fit(starts.front().model, fits.unknowns(current.effects, forms),
+                                           limits.first_iterations, &screen.jacobian());
+  const Eigen::VectorXd squares = fits.fit().blocks().squares(fits.fit().residuals(first.model));
+  if (fits.compare()(squares, fitted_squares(current)).deviations > limits.hopeless_deviations) return std::nullopt;
+  Extension found = fits.fitted(current.effects, forms, first.model, limits.most_iterations);
+  if (fades_unseen(family.name, forms, found.fitted.model, fits.base().scale.speed_rad_s)) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+bool told_apart(const SeenSeparation& seen, const ApartLimits& limits) {
+  return seen.blocks >= limits.blocks && seen.deviations >= limits.deviations &&
+         seen.share_of_expected >= limits.share_of_expected;
+}
+
+Extension in_best_form(const ExtensionFits& fits, const Extension& current, const StartScreen& without,
+                       const std::string& effect_name, const FormLimits& limits) {
+  const Effect& family = effect(effect_name);
+  if (family.forms.size() < 2) return current;
+  const auto taken = current.forms.find(effect_name);
+  const std::size_t present = taken == current.forms.end() ? 0 : taken->second;
+  std::map<std::size_t, Extension> tried = {{present, current}};
+  for (std::size_t form = 0; form < family.forms.size(); ++form) {
+    if (form == present) continue;
+    if (std::optional<Extension> other = in_form(fits, without, current, family, form, limits))
+      tried.emplace(form, std::move(*other));
+  }
+  const auto level = [&](const auto& one) { return fits.compare().mean_log_square(one.second.held_out.mean()); };
+  const auto best =
+      std::min_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return level(a) < level(b); });
+  const auto chosen = std::find_if(tried.begin(), tried.end(), [&](const auto& one) {
+    return fits.compare()(one.second.held_out, best->second.held_out).deviations < limits.better_deviations;
+  });
+  Extension found = chosen->second;
+  std::vector<OpenForm>& open = found.open_forms[effect_name];
+  open.clear();
+  for (const auto& [form, other] : tried) {
+    if (form == chosen->first) continue;
+    const SeenSeparation seen =
+        seen_separation(fits.fit(), found.fitted.model, other.fitted.model, found.held_out.mean(),
+                        other.held_out.mean(), limits.apart.noise_squares, limits.apart.visible_share);
+    if (told_apart(seen, limits.apart)) continue;
+    open.push_back({family.forms[form].name, {}});
+    for (const std::string& parameter : family.forms[form].parameters)
+      open.back().values[parameter] = calib::value(other.fitted.model, parameter);
+  }
+  return found;
+}
+
+}  // namespace pmg::effects

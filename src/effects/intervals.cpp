@@ -1,0 +1,159 @@
+#include "effects/intervals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "effects/integration_part.hpp"
+#include "fitting/covariance.hpp"
+#include "fitting/f_distribution.hpp"
+#include "fitting/statistics.hpp"
+
+namespace pmg::effects {
+
+namespace {
+
+constexpr int kResamples = 1000;
+constexpr double kDamping = 1e-6;  // of a step from a minimum
+
+/// Coordinates that the runs show and that are inside their ranges.
+std::vector<Eigen::Index> seen_inside(const NestedModel& model, const Eigen::MatrixXd& information) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < model.coordinates.size(); ++i) {
+    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const double value = u.value(model.coordinates[i]), edge = 1e-6 * (u.upper - u.lower);
+    const bool inside = value > u.lower + edge && value < u.upper - edge;
+    if (inside && information(i, i) > fitting::kUnseen_rad2) seen.push_back(i);
+  }
+  return seen;
+}
+
+/// Half-widths of 95 % intervals in deviations: Student's t with the effective number of blocks.
+Eigen::VectorXd student_widths(const NestedModel& model, const Eigen::MatrixXd& information) {
+  Eigen::VectorXd widths = Eigen::VectorXd::Constant(model.coordinates.size(), fitting::kNormal95);
+  const fitting::Covariance covariance = fitting::cluster_robust_covariance(model, seen_inside(model, information));
+  const Eigen::VectorXd freedom = fitting::effective_blocks(model, covariance);
+  for (std::size_t s = 0; s < covariance.of.size(); ++s)
+    widths[covariance.of[s]] = fitting::student95(freedom[static_cast<Eigen::Index>(s)]);
+  return widths;
+}
+
+evidence::Interval percentiles(double value, const std::vector<double>& drawn) {
+  return {value, fitting::quantile(drawn, 0.025), fitting::quantile(drawn, 0.975)};
+}
+
+}  // namespace
+
+Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vector<fitting::Fold>& folds,
+                                      double noise_squares, const IntervalOptions& options) {
+  const Eigen::Index count = model.coordinates.size();
+  const Eigen::MatrixXd information = fitting::information(model);
+  const std::vector<Eigen::Index> seen = seen_inside(model, information);
+  const auto [of, inverse, robust] = fitting::cluster_robust_covariance(model, seen);
+  Eigen::MatrixXd covariance = robust;
+  double squares = 0.0, samples = 0.0;
+  for (const fitting::NormalEquations& block : model.blocks) squares += block.squares, samples += block.samples;
+  covariance += options.form_of_squares * std::max(0.0, squares - samples * noise_squares) * inverse;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool fitted = std::find(seen.begin(), seen.end(), i) != seen.end();
+    if (fitted || !(information(i, i) > fitting::kUnseen_rad2)) continue;
+    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const double range = u.coordinate(u.upper) - u.coordinate(u.lower);
+    if (u.upper - u.lower > options.widest_tolerance * u.upper)
+      continue;  // an effect's parameter at its bound, not one known to a tolerance
+    const Eigen::VectorXd pull = inverse * information(seen, i) * (range / std::sqrt(12.0));
+    covariance += pull * pull.transpose();
+  }
+  const Eigen::VectorXd moved = fitting::jackknife_variance(model, folds);
+  Eigen::VectorXd deviations = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index s = 0; s < std::ssize(seen); ++s) {
+    const Eigen::Index i = seen[static_cast<std::size_t>(s)];
+    deviations[i] = std::sqrt(std::max({0.0, covariance(s, s), moved[i]}));
+  }
+  return deviations;
+}
+
+std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, const std::vector<fitting::Fold>& folds,
+                                                    double noise_squares, const IntervalOptions& options) {
+  const Eigen::VectorXd deviations = coordinate_deviations(model, folds, noise_squares, options);
+  const Eigen::MatrixXd information = fitting::information(model);
+  const Eigen::VectorXd widths = student_widths(model, information);
+  std::vector<evidence::Interval> found;
+  for (Eigen::Index i = 0; i < model.coordinates.size(); ++i) {
+    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const double x = model.coordinates[i], value = u.value(x);
+    if (!(information(i, i) > fitting::kUnseen_rad2)) {
+      found.push_back({value, u.lower, u.upper});
+      continue;
+    }
+    if (deviations[i] == 0.0) {
+      found.push_back({value, value, value});
+      continue;
+    }
+    const double shift = model.step_shift.size() > 0 ? model.step_shift[i] : 0.0;
+    const double half = widths[i] * deviations[i], form = options.form_of_value * std::abs(value);
+    const double low = u.value(x + std::min(0.0, shift) - half) - form;
+    const double high = u.value(x + std::max(0.0, shift) + half) + form;
+    found.push_back({value, std::max(u.lower, low), std::min(u.upper, high)});
+  }
+  return found;
+}
+
+NestedModel with_wide_differences(const NestedFit& fit, NestedModel model, const std::vector<fitting::Fold>& folds,
+                                  double noise_squares, const IntervalOptions& options) {
+  for (int round = 0; round < static_cast<int>(options.widenings); ++round) {
+    const Eigen::VectorXd deviations = coordinate_deviations(model, folds, noise_squares, options);
+    bool wider = false;
+    for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
+      const fitting::Coordinate& range = model.ranges[i];
+      const Unknown& u = model.unknowns[i];
+      const auto place = static_cast<Eigen::Index>(i);
+      // Jumps make a number look surer than it is; none is surer than its form.
+      const double value = u.value(model.coordinates[place]);
+      const double of_form = std::abs(u.coordinate(value + options.form_of_value * value) - u.coordinate(value));
+      const double width =
+          std::min(std::max(deviations[place], of_form), options.widest_difference * (range.upper - range.lower));
+      if (width < options.wider * range.step) continue;
+      model.unknowns[i].difference = width;
+      wider = true;
+    }
+    if (!wider) break;
+    model = fit.fit(model.model, model.unknowns, static_cast<int>(options.iterations), nullptr, model.prior_weight);
+    fit.linearise(model);
+  }
+  return model;
+}
+
+Eigen::VectorXd step_shift(const bench::Bench& bench, const NestedFit& fit, const NestedModel& model) {
+  const fitting::Residuals residuals = fit.residuals(model.model);
+  const fitting::Residuals error = integration_residuals(bench, fit, model.model, residuals);
+  if (error.empty() || model.coordinates.size() == 0) return {};
+  const fitting::Jacobian slopes = fit.jacobian(model, residuals).of_run;
+  fitting::NormalEquations sum = fitting::prior(model);
+  sum.information += fitting::products(slopes, slopes);
+  sum.gradient = -fitting::products(slopes, error);
+  return fitting::bounded_step(sum.information, sum.gradient, model.ranges, model.coordinates, kDamping);
+}
+
+HeldOutErrors held_out_errors(const NestedFit& runs_before, const calib::JointModel& before,
+                              const NestedFit& runs_after, const calib::JointModel& after, unsigned seed) {
+  const fitting::BlockSums first = runs_before.blocks().absolutes(runs_before.residuals(before));
+  const fitting::BlockSums second = runs_after.blocks().absolutes(runs_after.residuals(after));
+  std::mt19937 random(seed);
+  std::vector<double> drawn_before, drawn_after;
+  const std::size_t count = first.samples.size();
+  for (int i = 0; i < kResamples; ++i) {
+    double samples = 0.0, sum_before = 0.0, sum_after = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t block = random() % count;
+      samples += first.samples[block];
+      sum_before += first.values[block];
+      sum_after += second.values[block];
+    }
+    drawn_before.push_back(sum_before / std::max(1.0, samples));
+    drawn_after.push_back(sum_after / std::max(1.0, samples));
+  }
+  return {percentiles(first.mean(), drawn_before), percentiles(second.mean(), drawn_after)};
+}
+
+}  // namespace pmg::effects

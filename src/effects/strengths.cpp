@@ -1,0 +1,76 @@
+#include "effects/strengths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/fit_problem.hpp"
+#include "fitting/covariance.hpp"
+
+namespace pmg::effects {
+
+namespace {
+
+/// Difference of the effect's strengths from neutral, in coordinates; 0 elsewhere.
+Eigen::VectorXd from_neutral(const NestedModel& model, const Forms& forms, const calib::JointModel& neutral,
+                             const std::string& effect) {
+  Eigen::VectorXd away = Eigen::VectorXd::Zero(model.coordinates.size());
+  const std::vector<std::string> names = strengths(effect, forms);
+  for (Eigen::Index i = 0; i < away.size(); ++i) {
+    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    if (contains(names, u.name)) away[i] = model.coordinates[i] - u.coordinate(calib::value(neutral, u.name));
+  }
+  return away;
+}
+
+}  // namespace
+
+std::vector<std::string> strengths(const std::string& effect, const Forms& forms) {
+  constexpr std::array kShapes = {"drive.supply_sag_slow_share",
+                                  "drive.supply_sag_time_s",
+                                  "friction.stribeck_rad_s",
+                                  "ripple.order",
+                                  "ripple.phase_rad",
+                                  "sensor.eccentricity_order",
+                                  "sensor.eccentricity_phase_rad",
+                                  "sensor.ellipticity_phase_rad",
+                                  "thermal.cooling_s",
+                                  "thermal.torque_fade_s",
+                                  "transmission.damping_Nm_s_per_rad"};
+  std::vector<std::string> found = form_of(effect, forms).parameters;
+  std::erase_if(found, [&](const std::string& name) {
+    const bool shape = std::find(kShapes.begin(), kShapes.end(), name) != kShapes.end();
+    return shape || (effect == "backlash" && name == "transmission.stiffness_Nm_per_rad");
+  });
+  return found;
+}
+
+bool has_other_sign(const std::string& effect, const calib::JointModel& model) {
+  return effect == "stribeck" && model.actuator.friction.stribeck_Nm < 0.0;
+}
+
+bool fades_unseen(const std::string& effect, const Forms& forms, const calib::JointModel& model, double speed_rad_s) {
+  if (!contains(form_of(effect, forms).parameters, "friction.stribeck_rad_s")) return false;
+  constexpr double kHalf = 0.5;
+  const auto& friction = model.actuator.friction;
+  return std::exp(-std::pow(speed_rad_s / friction.stribeck_rad_s, friction.stribeck_exponent)) > kHalf;
+}
+
+double likeness(const NestedModel& model, const Forms& forms, const calib::JointModel& neutral,
+                const std::string& first, const std::string& second) {
+  const Eigen::VectorXd one = from_neutral(model, forms, neutral, first),
+                        two = from_neutral(model, forms, neutral, second);
+  const Eigen::MatrixXd information = fitting::information(model);
+  std::vector<Eigen::Index> of, other;
+  for (Eigen::Index i = 0; i < one.size(); ++i) {
+    if (!(information(i, i) > fitting::kUnseen_rad2)) continue;
+    (one[i] != 0.0 || two[i] != 0.0 ? of : other).push_back(i);
+  }
+  if (of.empty()) return 0.0;
+  const Eigen::MatrixXd left = fitting::beyond(information(of, of), information(other, of), information(other, other));
+  const Eigen::VectorXd a = one(of), b = two(of);
+  const double scale = std::sqrt(a.dot(left * a) * b.dot(left * b));
+  return scale > 0.0 ? a.dot(left * b) / scale : 0.0;
+}
+
+}  // namespace pmg::effects

@@ -1,0 +1,30 @@
+// What of an effect's parameters is its strength, and whether two effects are one torque.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "effects/extension.hpp"
+
+namespace pmg::effects {
+
+/// The parameters of an effect's form that are neutral without it. Not its shape: a speed, an order, a phase, a
+/// damping.
+std::vector<std::string> strengths(const std::string& effect, const Forms& forms);
+
+/// True if the effect's strength has the other sign than its physics: a Stribeck term below zero is viscous friction
+/// that levels off.
+bool has_other_sign(const std::string& effect, const calib::JointModel& model);
+
+/// True if the effect's form has Stribeck friction of which less than half fades up to this speed [rad/s]: on such runs
+/// it is Coulomb friction by another name, and may take the place of Coulomb friction and of a second effect.
+bool fades_unseen(const std::string& effect, const Forms& forms, const calib::JointModel& model, double speed_rad_s);
+
+/// (linearised model, its forms, the model without effects, two of its effects) => (cosine of what the two do to the
+/// rollouts). With the difference d of an effect's strengths from neutral and the Jacobian's columns J of these
+/// strengths, beyond what all other unknowns can do, the effect does J d. 1: both do the same; -1: they cancel. 0 where
+/// one does nothing.
+double likeness(const NestedModel& model, const Forms& forms, const calib::JointModel& neutral,
+                const std::string& first, const std::string& second);
+
+}  // namespace pmg::effects

@@ -1,0 +1,47 @@
+#include "ethercat/drive_link.hpp"
+
+#include <algorithm>
+
+namespace pmg::ethercat {
+
+DriveLink::DriveLink(std::vector<int> nodes) : in_(2 * nodes.size()) {
+  for (const int node : nodes) drives_.push_back({.node = static_cast<std::uint32_t>(node)});
+}
+
+void DriveLink::send(std::span<const can::Frame> frames) noexcept {
+  for (const can::Frame& frame : frames) {
+    ++counts_.sent;
+    if (frame.id == can::canopen::kSync && frame.length == 0) {
+      in_first_ = in_count_ = 0;
+      for (Drive& drive : drives_) drive.asked = true;
+      continue;
+    }
+    const auto drive =
+        std::ranges::find_if(drives_, [&](const Drive& one) { return frame.id == can::canopen::kReceive1 + one.node; });
+    if (drive == drives_.end() || frame.length != kDriveOutputs) continue;
+    std::copy_n(frame.data.begin(), kDriveOutputs, drive->targets.begin());
+  }
+}
+
+std::size_t DriveLink::receive(std::span<can::Frame> frames) noexcept {
+  const std::size_t count = std::min(frames.size(), in_count_ - in_first_);
+  std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(in_first_), count, frames.begin());
+  in_first_ += count;
+  counts_.received += count;
+  return count;
+}
+
+void DriveLink::take(std::size_t at, std::span<const std::uint8_t> inputs) noexcept {
+  Drive& drive = drives_[at];
+  if (!drive.asked || inputs.size() <= kFirstInputs || in_count_ + 2 > in_.size()) return;
+  drive.asked = false;
+  in_[in_count_++] = can::Frame::of(can::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
+  in_[in_count_++] = can::Frame::of(can::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));
+}
+
+void DriveLink::fill(std::size_t at, std::span<std::uint8_t> outputs) const noexcept {
+  std::ranges::copy_n(drives_[at].targets.begin(), static_cast<std::ptrdiff_t>(std::min(outputs.size(), kDriveOutputs)),
+                      outputs.begin());
+}
+
+}  // namespace pmg::ethercat

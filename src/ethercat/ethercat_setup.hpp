@@ -1,0 +1,34 @@
+// What robot.yaml says of the robot's EtherCAT cable.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "drives/drive_setup.hpp"
+#include "ethercat/master.hpp"
+#include "model/robot_model.hpp"
+
+namespace pmg::ethercat {
+
+/// robot.yaml's `ethercat`.
+struct EthercatSetup {
+  std::string interface;
+  int frames_out = 0, frames_in = 0;              ///< room of a bridge's channel in a cycle; 0: there is no bridge
+  std::uint32_t vendor_id = 0, product_code = 0;  ///< of the bridges; 0: any
+  StartTiming timing{};                           ///< not of robot.yaml
+};
+
+/// Throws files::ConfigError when robot.yaml doesn't describe it, when a bus is neither behind a bridge nor one of
+/// drives that are slaves, when two things have one slave or one channel, when a position of the cable has no slave,
+/// when two slaves can't be told apart, or when a channel has too little room for its bus.
+EthercatSetup load_ethercat(const model::RobotModel& robot, const drives::DriveSetup& drives);
+
+/// Called with each drive that is a slave, in pre-operational: the bus's and the motor's index, and its objects.
+using PrepareDrive = std::function<void(std::size_t bus, std::size_t motor, drives::ObjectDictionary& objects)>;
+
+/// The slaves that these buses and the IMU need, in the cable's order.
+std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const drives::DriveSetup& drives,
+                                        const PrepareDrive& prepare);
+
+}  // namespace pmg::ethercat

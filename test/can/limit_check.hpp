@@ -1,0 +1,49 @@
+// What fuzzers ask of every command to a drive.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include "can/canopen.hpp"
+#include "drives/drive_setup.hpp"
+#include "drives/mit_protocol.hpp"
+
+namespace pmg::test {
+
+inline void require(bool promise) {
+  if (!promise) std::abort();
+}
+
+/// A frame to a drive: its targets lie within its motor's limits.
+inline void check_limits(const can::Frame& frame, const drives::BusSetup& bus) {
+  constexpr double kRounding = 1e-9;
+  const auto node = static_cast<int>(frame.id & can::canopen::kNodeBits);
+  const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
+  if (frame.length != 8 || motor == bus.motors.end()) return;
+  const drives::MotorLimits& limits = motor->limits;
+  const auto within = [&](double q_rad) {
+    require(q_rad >= limits.q_lower_rad - kRounding && q_rad <= limits.q_upper_rad + kRounding);
+  };
+  if (const auto* settings = std::get_if<drives::Cia402Settings>(&motor->drive)) {
+    if (frame.id - static_cast<std::uint32_t>(node) != can::canopen::kReceive1) return;
+    std::int32_t position = 0;
+    std::int16_t torque = 0;
+    std::memcpy(&position, frame.data.data() + 2, sizeof position);
+    std::memcpy(&torque, frame.data.data() + 6, sizeof torque);
+    within(position * settings->count_rad());
+    require(std::abs(1e-3 * torque * settings->rated_torque_Nm) <= limits.torque_Nm + kRounding);
+    return;
+  }
+  drives::MitFrame bytes{};
+  std::memcpy(bytes.data(), frame.data.data(), 8);
+  const auto command = drives::MitProtocol(std::get<drives::MitRanges>(motor->drive)).command(bytes);
+  if (!command) return;
+  within(command->q_rad);
+  require(std::abs(command->dq_rad_s) <= limits.dq_rad_s + kRounding);
+  require(std::abs(command->torque_Nm) <= limits.torque_Nm + kRounding);
+}
+
+}  // namespace pmg::test

@@ -1,0 +1,64 @@
+// An MIT drive.
+#pragma once
+
+#include <algorithm>
+
+#include "can/drive_emulator.hpp"
+#include "drives/mit_protocol.hpp"
+
+namespace pmg::test {
+
+class MitEmulator final : public DriveEmulator {
+ public:
+  explicit MitEmulator(const drives::MotorSetup& setup)
+      : DriveEmulator(setup),
+        protocol_(std::get<drives::MitRanges>(setup.drive)),
+        reply_id_(std::get<drives::MitRanges>(setup.drive).reply_id) {}
+
+  int hear(const can::Frame& frame, Replies& replies) noexcept override {
+    if (silent || frame.extended || frame.id != static_cast<std::uint32_t>(setup().node) || frame.length != 8) return 0;
+    silent_cycles_ = 0;
+    ++heard;
+    drives::MitFrame bytes{};
+    std::copy_n(frame.data.begin(), 8, bytes.begin());
+    if (bytes == drives::kMitEnable) {
+      enabled_ = fault == drives::DriveFault::kNone;
+      tripped_ = false;
+      command_ = {};
+    } else if (bytes == drives::kMitDisable) {
+      enabled_ = false;
+    } else if (bytes == drives::kMitZero) {
+      set_zero();
+    } else if (enabled_) {
+      command_ = *protocol_.command(bytes);
+    }
+    replies[0] = can::Frame::of(reply_id_, protocol_.reply({static_cast<std::uint8_t>(node), shown()}), frame.fd);
+    if (!twice) return 1;
+    drives::MotorReading second = shown();
+    second.q_rad += 0.01;
+    replies[1] = can::Frame::of(reply_id_, protocol_.reply({static_cast<std::uint8_t>(node), second}), frame.fd);
+    return 2;
+  }
+
+  void tick() noexcept override {
+    if (++silent_cycles_ <= patience * kWatchdogCycles || !enabled_) return;
+    enabled_ = false;
+    tripped_ = true;
+  }
+
+  drives::MotorCommand command() const noexcept override {
+    if (tripped_) return {.kd_Nm_s_per_rad = kBrake_Nm_s_per_rad};
+    return enabled_ && fault == drives::DriveFault::kNone ? command_ : drives::MotorCommand{};
+  }
+  bool enabled() const noexcept override { return enabled_; }
+  bool tripped() const noexcept override { return tripped_; }
+
+ private:
+  drives::MitProtocol protocol_;
+  std::uint32_t reply_id_;
+  drives::MotorCommand command_;
+  bool enabled_ = false, tripped_ = false;
+  int silent_cycles_ = 0;
+};
+
+}  // namespace pmg::test

@@ -1,0 +1,303 @@
+// Rules by which effects are taken and left: each test fails where its rule is disabled.
+// Longer than 300 lines: every rule, over one simulated bench.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "calib/fit_problem.hpp"
+#include "diagnosis/effect_search.hpp"
+#include "diagnosis/rules_fixture.hpp"
+#include "effects/catalogue.hpp"
+#include "effects/folds.hpp"
+
+namespace pmg::diagnosis {
+namespace {
+
+/// Judges trials on runs of a healthy joint.
+class Judged : public Rules {
+ protected:
+  EffectSearch search(JointDiagnosisOptions options = {}, double of_beginning = 0.0) const {
+    BaseModel base;
+    base.model = truth_;
+    base.scale = effects::scale_of(bench_, fit_->runs(), truth_);
+    const SearchLimits limits{
+        .noise_squares = 4e-8, .healthy_squares = 0.0, .of_noise = 0.0, .of_beginning = of_beginning, .of_rest = 0.0};
+    return {bench_, *fit_, base, limits, {}, options, {}};
+  }
+  /// An extension by one effect, fitted from this value of its first parameter.
+  Extension extension(const EffectSearch& search, const std::string& effect, double value, int iterations = 10) const {
+    Extension made{{effect}, {}, {}, {}, {}};
+    calib::JointModel start = truth_;
+    std::vector<effects::Unknown> unknowns;
+    for (const std::string& name : effects::effect(effect).forms.front().parameters)
+      unknowns.push_back(effects::unknown(name, bench_, search.base_model().scale));
+    calib::set(start, unknowns.front().name, value);
+    made.fitted = fit_->fit(start, unknowns, iterations);
+    fit_->linearise(made.fitted);
+    made.held_out = fit_->held_out_squares(made.fitted, folds(*fit_));
+    return made;
+  }
+  /// All folds are for it.
+  static Trial convincing(const std::string& effect, Extension extension) {
+    Trial trial{effect, {}, 1.0, std::move(extension)};
+    trial.comparison.gain = trial.comparison.log_gain = trial.comparison.folds_won = 1.0;
+    trial.comparison.deviations = 100.0;
+    return trial;
+  }
+
+  const calib::JointModel truth_ = [] {
+    calib::JointModel model;
+    model.actuator = healthy_actuator();
+    return model;
+  }();
+  /// Runs of a joint that a constant torque pushes: as much with every load, or with two loads another one.
+  effects::NestedFit pushed(double torque_Nm, double with_second_load_Nm) const {
+    std::vector<calib::SingleJoint> joints;
+    for (int load = 0; load < 2; ++load) {
+      calib::JointModel truth = truth_;
+      truth.actuator.ripple.offset_Nm = load == 0 ? torque_Nm : with_second_load_Nm;
+      for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, 2e-4)) {
+        bench::BenchRun run = joint.run();
+        run.load = {0.03 + 0.01 * load, 1.0 + 0.5 * load, 0.0};
+        run.recording.q_rad = calib::SingleJoint(bench_, run, joint.step_s()).rollout(truth);
+        joints.emplace_back(bench_, run, joint.step_s());
+      }
+    }
+    return {std::move(joints), 1};
+  }
+
+  const effects::NestedFit healthy_{test::record(bench_, truth_, 4, 2e-4), 1},
+      pushed_ = pushed(0.2, 0.2), moving_{test::always_moving(bench_, truth_, 4), 1};
+  const effects::NestedFit* fit_ = &healthy_;
+};
+
+TEST_F(Judged, WhatIsWorseOnOneKindOfRunsLeftOutIsNotTaken) {
+  fit_ = &pushed_;
+  const EffectSearch at = search();
+  Trial trial = convincing("offset", extension(at, "offset", 0.2));
+  trial.comparison.of_kind = {{"gain", 9.0, 9.0}, {"load", 0.0, -0.5}};
+  EXPECT_EQ(at.objection(trial), "") << "loads can't show it";
+  trial.comparison.of_kind[1] = {"load", -3.0, 0.5};
+  EXPECT_NE(at.objection(trial).find("runs of a load left out"), std::string::npos);
+  trial.comparison.of_kind[1] = {"load", 0.5, -3.0};
+  EXPECT_NE(at.objection(trial).find("runs of a load left out"), std::string::npos);
+  JointDiagnosisOptions blind;
+  blind.worse_deviations = 1e9;
+  EXPECT_EQ(search(blind).objection(trial), "") << "the rule alone is against it";
+}
+
+TEST_F(Judged, AnEffectWhoseIntervalContainsNeutralIsNotTaken) {
+  const EffectSearch at = search();
+  EXPECT_NE(at.objection(convincing("offset", extension(at, "offset", 0.001))).find("may as well be 0"),
+            std::string::npos);
+}
+
+TEST_F(Judged, AnEffectWhoseStrengthEndsAtTheEdgeOfItsRangeIsNotTaken) {
+  const EffectSearch at = search();
+  EXPECT_NE(at.objection(convincing("direction_friction", extension(at, "direction_friction", 0.95, 0))).find("edge"),
+            std::string::npos);
+}
+
+TEST_F(Judged, AWaveOfNoMoreThanOnePeriodIsNoCogging) {
+  const EffectSearch at = search();
+  Extension wave{{"cogging"}, {}, {}, {}, {}};
+  calib::JointModel start = truth_;
+  start.actuator.ripple.amplitude_Nm = 0.1;
+  std::vector<effects::Unknown> unknowns;
+  for (const std::string& name : effects::effect("cogging").forms.front().parameters)
+    unknowns.push_back(effects::unknown(name, bench_, at.base_model().scale));
+  const auto objection = [&](double order) {
+    start.actuator.ripple.order = order;
+    wave.fitted = fit_->fit(start, unknowns, 0);
+    fit_->linearise(wave.fitted);
+    return at.objection(convincing("cogging", wave));
+  };
+  const double lowest = effects::lowest_order(at.base_model().scale);
+  EXPECT_NE(objection(lowest).find("ripple.order ends at the edge"), std::string::npos) << objection(lowest);
+  EXPECT_EQ(objection(2.0 * lowest).find("ripple.order"), std::string::npos) << objection(2.0 * lowest);
+}
+
+TEST_F(Judged, WhatExplainsNearlyAllOfTheRestMayBeSmallBesideTheBeginning) {
+  fit_ = &pushed_;
+  const EffectSearch at = search({}, 1e9);
+  Trial trial = convincing("offset", extension(at, "offset", 0.2));
+  trial.share_of_rest = 0.9;
+  EXPECT_EQ(at.objection(trial), "");
+  trial.missed_alone = false;
+  EXPECT_NE(at.objection(trial), "") << "a verdict forgives what is left without it";
+  trial.missed_alone = true;
+  trial.share_of_rest = 0.5;
+  EXPECT_NE(at.objection(trial), "");
+}
+
+TEST_F(Judged, TwoNamesOfOneTorqueAreNotBothTaken) {
+  fit_ = &moving_;
+  const EffectSearch at = search();
+  Extension both{{"direction_friction", "offset"}, {}, {}, {}, {}};
+  calib::JointModel start = truth_;
+  start.actuator.friction.asymmetry = 0.4;
+  start.actuator.ripple.offset_Nm = 0.02;
+  both.fitted = fit_->fit(start,
+                          {effects::unknown("friction.asymmetry", bench_, at.base_model().scale),
+                           effects::unknown("ripple.offset_Nm", bench_, at.base_model().scale)},
+                          0);
+  fit_->linearise(both.fitted);
+  EXPECT_NE(at.objection(convincing("offset", both)).find("by another name"), std::string::npos);
+}
+
+TEST_F(Judged, AStribeckTermOfTheOtherSignMustBeClearlyBetterThanAllOthers) {
+  const EffectSearch at = search();
+  const std::vector<Trial> round = {convincing("stribeck", extension(at, "stribeck", -0.02, 0)),
+                                    convincing("cogging", extension(at, "offset", 0.0, 0))};
+  EXPECT_NE(at.aliased(round[0], round).find("other sign"), std::string::npos);
+  EXPECT_EQ(at.aliased(round[0], {round[0]}), "") << "nothing else explains it";
+  const std::vector<Trial> physical = {convincing("stribeck", extension(at, "stribeck", 0.02, 0)), round[1]};
+  EXPECT_EQ(at.aliased(physical[0], physical), "");
+}
+
+TEST_F(Judged, AChosenEffectThatDoesNotStandUpToALastLookLeaves) {
+  EffectSearch at = search();
+  const Settled settled = at.settled(extension(at, "offset", 0.001));
+  EXPECT_TRUE(settled.chosen.effects.empty());
+  EXPECT_TRUE(settled.with_priors.effects.empty());
+  ASSERT_EQ(at.left_out().size(), 1U);
+  EXPECT_EQ(at.left_out().front().first, "offset");
+  EXPECT_FALSE(at.left_out().front().second.empty());
+}
+
+TEST_F(Judged, WhatTakesThePlaceOfAnEffectThatLeftIsFound) {
+  fit_ = &pushed_;
+  EffectSearch at = search();
+  const Extension proxy = extension(at, "zero_offset", 0.05);
+  const Extension after = at.leave_out(proxy, "zero_offset", "a proxy");
+  EXPECT_EQ(after.effects, std::vector<std::string>{"offset"});
+  const Extension without = at.leave_out(after, "offset", "for once");
+  for (const char* left : {"offset", "zero_offset"})
+    EXPECT_FALSE(effects::contains(without.effects, left)) << left << " was left out";
+}
+
+TEST_F(Judged, NothingTakesThePlaceOfAnEffectWithoutWhichLittleRemains) {
+  fit_ = &pushed_;
+  JointDiagnosisOptions forgiving;
+  forgiving.remains_of_noise = 1e9;
+  EffectSearch at = search(forgiving);
+  EXPECT_TRUE(at.leave_out(extension(at, "zero_offset", 0.05), "zero_offset", "a proxy").effects.empty());
+}
+
+TEST_F(Judged, StribeckFrictionThatFadesAtSpeedsThatNobodyRecordedIsNotTaken) {
+  const EffectSearch at = search();
+  Extension slow = extension(at, "stribeck", 0.2, 0);
+  EXPECT_EQ(at.unsure("stribeck", {}, slow.fitted).find("fades"), std::string::npos);
+  slow.fitted.model.actuator.friction.stribeck_rad_s = 10.0 * at.base_model().scale.speed_rad_s;
+  EXPECT_NE(at.unsure("stribeck", {}, slow.fitted).find("fades"), std::string::npos);
+}
+
+/// The rounds look only at viscous friction and a constant torque. Viscous friction is a proxy of the dry friction that
+/// is there.
+TEST_F(Judged, AtTheEndAProxyIsExchangedForWhatExplainsMore) {
+  calib::JointModel dry = truth_;
+  dry.actuator.friction.coulomb_Nm = 0.3;
+  dry.actuator.ripple.offset_Nm = 0.2;
+  const effects::NestedFit runs(test::record(bench_, dry, 4, 2e-4), 1);
+  BaseModel base;
+  base.model = truth_;
+  base.scale = effects::scale_of(bench_, runs.runs(), truth_);
+  DirectEvidence evidence;
+  evidence.evident = {{"viscous", {0.3}}, {"offset", {0.2}}};
+  const SearchLimits limits{
+      .noise_squares = 4e-8, .healthy_squares = 0.0, .of_noise = 0.0, .of_beginning = 0.0, .of_rest = 0.0};
+  JointDiagnosisOptions options;
+  options.fitted_effects = options.fitted_pairs = 0.0;
+  options.least_deviations = options.least_folds_won = 0.0;  // beside a wrong effect a right one gains little
+  options.worse_deviations = 1e9;
+  const auto chosen = [&] {
+    EffectSearch at(bench_, runs, base, limits, evidence, options, {});
+    const std::vector<std::string> effects = at.choose().effects;
+    return std::set<std::string>(effects.begin(), effects.end());
+  };
+  EXPECT_EQ(chosen(), (std::set<std::string>{"coulomb", "offset"}));
+  options.exchanged_effects = 0.0;
+  EXPECT_EQ(chosen(), (std::set<std::string>{"offset", "viscous"}));
+}
+
+/// The acceleration limit of a profile smooths commands nearly as a delay does.
+TEST_F(Judged, ADelayBesideARateLimitIsNoProfile) {
+  calib::JointModel late = truth_;
+  late.actuator.command.rate_limit_rad_s = 1.5;
+  late.actuator.command.delay_s = 0.004;
+  const effects::NestedFit runs(test::record(bench_, late, 6, 2e-4), 1);
+  fit_ = &runs;
+  JointDiagnosisOptions options;
+  options.fitted_effects = 4.0, options.exchanged_effects = 2.0;
+  EffectSearch at = search(options);
+  const Extension found = at.choose();
+  EXPECT_EQ(std::set<std::string>(found.effects.begin(), found.effects.end()),
+            (std::set<std::string>{"delay", "rate_limit"}));
+  EXPECT_EQ(effects::form_of("rate_limit", found.forms).name, "command");
+}
+
+/// Fitted to both loads it helps. But each load left out tells another story.
+TEST_F(Judged, AnEffectThatHelpsInTheSumAndHurtsLoadsLeftOutIsNotTaken) {
+  const effects::NestedFit differing = pushed(0.3, 0.09);
+  fit_ = &differing;
+  JointDiagnosisOptions options;
+  options.least_deviations = options.least_folds_won = 0.0;
+  const EffectSearch at = search(options);
+  Trial trial{"offset", {}, 1.0, extension(at, "offset", 0.2)};
+  trial.comparison = at.compared(at.base(), trial.extension);
+  EXPECT_GT(trial.comparison.gain, 0.0);
+  EXPECT_GT(trial.comparison.log_gain, 0.0);
+  EXPECT_NE(at.objection(trial).find("runs of a load left out"), std::string::npos) << at.objection(trial);
+  options.worse_deviations = 1e9;
+  trial.extension.fitted.blocks.clear();  // what two loads tell so differently is not sure either: no look at that
+  EXPECT_EQ(search(options).objection(trial), "") << "the rule alone is against it";
+}
+
+TEST_F(Rules, TwoEffectsThatNoSingleOneBetraysAreFoundTogether) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.sensor.lag_s = 0.02;  // no check looks for a lag
+  truth.actuator.ripple.offset_Nm = 0.2;
+  const bench::Bench bench = written(test::record(bench_, truth, 4, 2e-4));
+  DiagnoseOptions options = given_healthy();
+  options.decide_by.fitted_effects = 0.0;              // no effect is tried alone,
+  options.decide_by.signatures.friction_share = 10.0;  // and none is evident
+  options.decide_by.signatures.sure_deviations = 1e9;
+  std::set<std::string> named;
+  for (const Cause& cause : diagnose(bench, options).causes) named.insert(cause.effect);
+  EXPECT_EQ(named, (std::set<std::string>{"offset", "sensor_lag"}));
+  options.decide_by.fitted_pairs = 0.0;
+  for (const Cause& cause : diagnose(bench, options).causes) EXPECT_NE(cause.effect, "offset");
+}
+
+/// Two names of one torque where friction varies neither with speed nor with load: no recording parts them.
+TEST_F(Rules, NamesThatNoRecordingPartsBecomeOneCause) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.ripple.offset_Nm = 0.02;
+  DiagnoseOptions options = given_healthy();
+  options.decide_by.apart_share = 1e12;  // every effect that could take the cause's place is a rival
+  const Diagnosis found = diagnose(written(test::always_moving(bench_, truth, 4)), options);
+  ASSERT_FALSE(found.causes.empty());
+  const Cause& cause = found.causes.front();
+  std::set<std::string> names = {cause.effect};
+  names.insert(cause.same_here.begin(), cause.same_here.end());
+  EXPECT_EQ(names, (std::set<std::string>{"direction_friction", "offset"}));
+  for (const std::string& other : cause.or_instead) EXPECT_FALSE(names.contains(other)) << other;
+  for (const std::string& sentence : cause.evidence)
+    EXPECT_EQ(sentence.find("is -"), std::string::npos) << "less than nothing worse is better: " << sentence;
+}
+
+TEST(DirectEvidence, FrictionThatLevelsOffIsNoEvidentStribeckFriction) {
+  evidence::Signature check;
+  check.effect = "stribeck";
+  check.agreement = evidence::Agreement::kAgrees;
+  check.value = {0.2, 0.15, 0.25};
+  EXPECT_TRUE(direct_evidence({check}, {}, 1e-4, 3.0, {}).evident.contains("stribeck"));
+  check.value = {-0.2, -0.25, -0.15};
+  EXPECT_FALSE(direct_evidence({check}, {}, 1e-4, 3.0, {}).evident.contains("stribeck"));
+}
+
+}  // namespace
+}  // namespace pmg::diagnosis

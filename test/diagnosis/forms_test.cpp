@@ -1,0 +1,267 @@
+// Forms of effects: what the catalogue promises of each, and which of them a diagnosis names or leaves open.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "calib/fit_problem.hpp"
+#include "calib/synthetic_bench.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis_page/diagnosis_page.hpp"
+#include "effects/extension.hpp"
+#include "effects/folds.hpp"
+#include "effects/form_choice.hpp"
+#include "effects/starts.hpp"
+
+namespace pmg::diagnosis {
+namespace {
+
+namespace fs = std::filesystem;
+using effects::Effect;
+using effects::Form;
+
+calib::JointModel dry_joint() {
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.01;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  model.actuator.friction.coulomb_Nm = 0.05;
+  return model;
+}
+
+/// A pendulum that a position PD moves, or a voltage servo without a recorded bus; both with temperatures, and with a
+/// speed in some commands.
+struct Joint {
+  explicit Joint(bench::DriveLaw law) : model(dry_joint()) {
+    bench = test::pd_bench(true);
+    bench.law = law;
+    if (law == bench::DriveLaw::kServoVoltage) {
+      bench.supply_V = 12.0;
+      model.actuator.drive.limit = 1.0;
+      model.actuator.drive.torque_per_unit_Nm = 0.25;
+      model.actuator.drive.back_emf_s_per_rad = 2.0;
+    }
+    for (const calib::SingleJoint& joint : test::record(bench, model, 3)) {
+      bench::BenchRun run = joint.run();
+      if (law == bench::DriveLaw::kServoVoltage) run.kp = 8.0;
+      run.recording.temp_C.assign(run.recording.t_s.size(), 40.0);
+      runs.emplace_back(bench, run, joint.step_s());
+    }
+  }
+
+  std::vector<std::vector<double>> rollouts(const calib::JointModel& at) const {
+    std::vector<std::vector<double>> all;
+    for (const calib::SingleJoint& run : runs) all.push_back(run.rollout(at));
+    return all;
+  }
+
+  bench::Bench bench;
+  calib::JointModel model;
+  std::vector<calib::SingleJoint> runs;
+};
+
+TEST(Forms, EveryStartOfEveryFormCanBeSimulatedAndShows) {
+  std::set<std::string> possible;
+  for (const bench::DriveLaw law : {bench::DriveLaw::kPositionPd, bench::DriveLaw::kServoVoltage}) {
+    const Joint joint(law);
+    const auto without = joint.rollouts(joint.model);
+    effects::BenchScale scale = effects::scale_of(joint.bench, joint.runs, joint.model);
+    scale.quantum_rad = 0.01;
+    for (const Effect& effect : effects::catalogue()) {
+      for (const Form& form : effect.forms) {
+        bool shows = false;
+        for (const std::vector<double>& values : starts(effect, form, joint.model, scale)) {
+          ASSERT_EQ(values.size(), form.parameters.size()) << effect.name << " " << form.name;
+          calib::JointModel with = joint.model;
+          for (const effects::FixedValue& fixed : form.fixed) calib::set(with, fixed.parameter, fixed.value);
+          for (std::size_t p = 0; p < values.size(); ++p) calib::set(with, form.parameters[p], values[p]);
+          std::vector<std::vector<double>> rollouts;
+          ASSERT_NO_THROW(rollouts = joint.rollouts(with)) << effect.name << " " << form.name;
+          for (const std::vector<double>& q_rad : rollouts)
+            ASSERT_TRUE(std::isfinite(q_rad.back())) << effect.name << " " << form.name;
+          shows = shows || rollouts != without;
+        }
+        if (shows) possible.insert(effect.name + "." + form.name);
+      }
+    }
+  }
+  for (const Effect& effect : effects::catalogue()) {
+    for (const Form& form : effect.forms) EXPECT_TRUE(possible.contains(effect.name + "." + form.name)) << form.name;
+  }
+}
+
+TEST(Forms, FixedValuesAloneChangeNothing) {
+  const Joint joint(bench::DriveLaw::kPositionPd);
+  const auto without = joint.rollouts(joint.model);
+  for (const Effect& effect : effects::catalogue()) {
+    for (const Form& form : effect.forms) {
+      calib::JointModel with = joint.model;
+      for (const effects::FixedValue& fixed : form.fixed) calib::set(with, fixed.parameter, fixed.value);
+      EXPECT_EQ(joint.rollouts(with), without) << effect.name << " " << form.name;
+    }
+  }
+}
+
+/// The form's parameters at their first start, and its fixed values.
+calib::JointModel in_form(const Joint& joint, calib::JointModel model, const Effect& effect, const Form& form) {
+  const effects::BenchScale scale = effects::scale_of(joint.bench, joint.runs, joint.model);
+  for (const effects::FixedValue& fixed : form.fixed) calib::set(model, fixed.parameter, fixed.value);
+  const auto values = starts(effect, form, joint.model, scale);
+  for (std::size_t p = 0; !values.empty() && p < form.parameters.size(); ++p)
+    calib::set(model, form.parameters[p], values.front()[p]);
+  return model;
+}
+
+/// Fits to the runs of a joint; no fit is made.
+struct Fits {
+  explicit Fits(const Joint& joint)
+      : fit(joint.runs, 1),
+        base{joint.model, {}, effects::scale_of(joint.bench, joint.runs, joint.model)},
+        compare(fit.blocks(), folds(fit), 1e-8),
+        fits(joint.bench, fit, base, compare) {}
+  effects::NestedFit fit;
+  effects::BaseModel base;
+  fitting::BlockComparison compare;
+  effects::ExtensionFits fits;
+};
+
+TEST(Forms, AnEffectLeavesTheModelInWhateverFormItWas) {
+  const Joint joint(bench::DriveLaw::kPositionPd);
+  const Fits of(joint);
+  for (const Effect& effect : effects::catalogue()) {
+    for (const Form& form : effect.forms) {
+      const calib::JointModel with = in_form(joint, joint.model, effect, form);
+      const calib::JointModel without = of.fits.without(with, effect.name, {}, {});
+      EXPECT_EQ(without.actuator, joint.model.actuator) << effect.name << " " << form.name;
+      EXPECT_EQ(without.gravity_scale, 1.0);
+    }
+  }
+}
+
+TEST(Forms, WhatAKeptEffectsFormNeedsStays) {
+  const Joint joint(bench::DriveLaw::kPositionPd);
+  const Fits of(joint);
+  const Effect& compliance = effects::effect("compliance");
+  ASSERT_EQ(compliance.forms[1].name, "spring_before");
+  const calib::JointModel with = in_form(joint, joint.model, compliance, compliance.forms[1]);
+  const calib::JointModel kept = of.fits.without(with, "backlash", {"compliance"}, {{"compliance", 1}});
+  EXPECT_EQ(kept.actuator, with.actuator);
+  EXPECT_EQ(of.fits.without(with, "backlash", {"compliance"}, {}).actuator.transmission.friction_on_joint, 0.0)
+      << "the first form of compliance doesn't need it";
+}
+
+TEST(Forms, ParametersThatAFormFixesAreNotFitted) {
+  const Joint joint(bench::DriveLaw::kPositionPd);
+  const Fits of(joint);
+  std::vector<std::string> names;
+  for (const effects::Unknown& u : of.fits.unknowns({"stribeck"}, {{"stribeck", 1}})) names.push_back(u.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"friction.stribeck_Nm", "friction.stribeck_rad_s"}));
+}
+
+/// A joint whose hidden change is diagnosed from files.
+class FormsOfABench : public testing::Test {
+ protected:
+  Diagnosis diagnosed(const std::function<void(model::ActuatorParameters&)>& hide, double noise_rad = 2e-4,
+                      const JointDiagnosisOptions& decide_by = {}) {
+    calib::JointModel truth = dry_joint();
+    hide(truth.actuator);
+    test::write_bench(folder_, test::record(test::pd_bench(true), truth, 6, noise_rad));
+    DiagnoseOptions options;
+    options.model = dry_joint().actuator;
+    options.decide_by = decide_by;
+    return diagnose(bench_ = bench::read_bench(folder_), options, &runs_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  const fs::path folder_ = fs::temp_directory_path() / ("pmg_forms_" + std::to_string(getpid()));
+  bench::Bench bench_;
+  DiagnosedRuns runs_;
+};
+
+void plant_quadratic(model::ActuatorParameters& p) { p.friction.viscous_quadratic_Nm_s2_per_rad2 = 0.06; }
+
+TEST_F(FormsOfABench, FrictionByTheSquareOfSpeedIsViscousFrictionInThatForm) {
+  const Diagnosis found = diagnosed(plant_quadratic);
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "viscous");
+  EXPECT_EQ(cause.form, "quadratic");
+  EXPECT_TRUE(cause.form_or_instead.empty());
+  ASSERT_EQ(cause.parameters.size(), 1U);
+  EXPECT_LT(cause.parameters.front().estimate.low, 0.06);
+  EXPECT_GT(cause.parameters.front().estimate.high, 0.06);
+  EXPECT_EQ(diagnosis_json(found).at("causes").at(0).at("form"), "quadratic");
+  EXPECT_NE(
+      diagnosis_page::verdict_text(bench_, found, runs_).find("viscous friction, growing with the square of speed"),
+      std::string::npos);
+}
+
+TEST_F(FormsOfABench, TheSimplestFormStandsWhereItIsTheTruth) {
+  const Diagnosis found = diagnosed([](model::ActuatorParameters& p) { p.friction.viscous_Nm_s_per_rad += 0.2; });
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "viscous");
+  EXPECT_EQ(found.causes.front().form, "linear");
+  EXPECT_TRUE(found.causes.front().form_or_instead.empty());
+}
+
+TEST_F(FormsOfABench, TheSimplestFormWinsATie) {
+  JointDiagnosisOptions options;
+  options.better_form_deviations = options.hopeless_form_deviations = 1e12;  // whatever the folds say is a tie
+  options.most_effects = 1.0;  // no other effect mends what the form leaves
+  const Diagnosis found = diagnosed(plant_quadratic, 2e-4, options);
+  ASSERT_FALSE(found.causes.empty());
+  EXPECT_EQ(found.causes.front().effect, "viscous");
+  EXPECT_EQ(found.causes.front().form, "linear");
+}
+
+TEST_F(FormsOfABench, AFormThatTheNoiseHidesIsLeftOpen) {
+  const Diagnosis found = diagnosed(
+      [](model::ActuatorParameters& p) {
+        p.friction.stribeck_Nm = 0.4;
+        p.friction.stribeck_rad_s = 0.5;
+        p.friction.stribeck_exponent = 1.0;
+      },
+      3e-3);  // the whole effect moves the joint by 4 mrad
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.verdict, evidence::Verdict::kFound) << "the cause is known";
+  EXPECT_EQ(found.causes.front().effect, "stribeck");
+  EXPECT_FALSE(found.causes.front().form_or_instead.empty());
+  for (const evidence::ParameterEstimate& p : found.causes.front().parameters) {
+    const double truth = p.name == "friction.stribeck_Nm" ? 0.4 : 0.5;
+    EXPECT_LT(p.estimate.low, truth) << p.name << ": any open form's value may be right";
+    EXPECT_GT(p.estimate.high, truth) << p.name;
+  }
+}
+
+TEST_F(FormsOfABench, WhatIsLeftOpenIsSaidInPlainWords) {
+  JointDiagnosisOptions options;
+  options.apart_share = 1e12;  // no form is so much worse
+  options.hopeless_form_deviations = 1e12;
+  const Diagnosis found = diagnosed(plant_quadratic, 2e-4, options);
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "viscous");
+  ASSERT_EQ(cause.form_or_instead, std::vector<std::string>{"linear"});
+  EXPECT_EQ(diagnosis_json(found).at("causes").at(0).at("form_or_instead").at(0), "linear");
+  EXPECT_NE(diagnosis_page::verdict_text(bench_, found, runs_).find("not told from: growing in proportion to speed"),
+            std::string::npos);
+}
+
+TEST_F(FormsOfABench, AValueThatAFormFixesIsInTheModel) {
+  const Diagnosis found = diagnosed([](model::ActuatorParameters& p) {
+    p.friction.stribeck_Nm = 0.4;
+    p.friction.stribeck_rad_s = 1.5;
+    p.friction.stribeck_exponent = 1.0;
+  });
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "stribeck");
+  EXPECT_EQ(found.causes.front().form, "exponent_1");
+  EXPECT_TRUE(found.causes.front().form_or_instead.empty());
+  EXPECT_EQ(found.after.actuator.friction.stribeck_exponent, 1.0);
+  EXPECT_EQ(found.before.actuator.friction.stribeck_exponent, 2.0);
+}
+
+}  // namespace
+}  // namespace pmg::diagnosis

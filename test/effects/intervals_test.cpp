@@ -1,0 +1,111 @@
+// Intervals of a fit's numbers where rollouts jump, and where the simulation's step is coarse.
+#include "effects/intervals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calib/fit_problem.hpp"
+#include "calib/step_choice.hpp"
+#include "calib/synthetic_bench.hpp"
+#include "effects/folds.hpp"
+#include "fitting/covariance.hpp"
+#include "fitting/f_distribution.hpp"
+
+namespace pmg::effects {
+namespace {
+
+constexpr double kNoise_rad = 1e-4, kNoise_rad2 = kNoise_rad * kNoise_rad, kDelay_s = 0.02;
+
+calib::JointModel dry_joint() {
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.01;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  model.actuator.friction.coulomb_Nm = 0.2;
+  return model;
+}
+
+calib::JointModel delayed_joint() {
+  calib::JointModel model = dry_joint();
+  model.actuator.friction.coulomb_Nm = 0.0;
+  model.actuator.command.delay_s = kDelay_s;
+  return model;
+}
+
+/// Fits of one number.
+struct Fitted {
+  bench::Bench bench = test::pd_bench(true);
+  calib::JointModel truth;
+  NestedFit fit;
+  Unknown number;
+
+  Fitted(const char* name, double recorded_step_s, double fitted_step_s, calib::JointModel joint = dry_joint())
+      : truth(joint),
+        fit(calib::with_step(bench, test::record(bench, truth, 4, kNoise_rad, 1, recorded_step_s), fitted_step_s), 1),
+        number(unknown(name, bench, scale_of(bench, fit.runs(), truth))) {}
+
+  NestedModel from(double value) const {
+    calib::JointModel start = truth;
+    calib::set(start, number.name, value);
+    NestedModel model = fit.fit(start, {number}, 15);
+    fit.linearise(model);
+    return model;
+  }
+  evidence::Interval interval(const NestedModel& model) const {
+    return parameter_intervals(model, folds(fit), kNoise_rad2).front();
+  }
+};
+
+TEST(WideDifferences, AreAsWideAsTheNumberIsUnsure) {
+  Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
+  of.number.difference = 1e-9;  // a joint that sticks doesn't feel it, or jumps by it
+  const NestedModel narrow = of.from(0.21);
+  const NestedModel wide = with_wide_differences(of.fit, narrow, folds(of.fit), kNoise_rad2);
+  EXPECT_LE(wide.squares, narrow.squares);
+  const double deviation = coordinate_deviations(wide, folds(of.fit), kNoise_rad2)[0];
+  EXPECT_GT(wide.unknowns.front().difference, 0.3 * deviation);
+  EXPECT_EQ(wide.ranges.front().step, wide.unknowns.front().difference);
+  const evidence::Interval found = of.interval(wide);
+  EXPECT_LT(found.low, 0.2);
+  EXPECT_GT(found.high, 0.2);
+}
+
+TEST(WideDifferences, StayWhereTheyAreWideEnough) {
+  Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
+  of.number.difference = 0.05;  // far wider than what these runs leave open
+  const NestedModel fitted = of.from(0.21);
+  EXPECT_EQ(with_wide_differences(of.fit, fitted, folds(of.fit), kNoise_rad2).unknowns.front().difference, 0.05);
+}
+
+// Euler's steps of 4 ms act like 2 ms less delay; a fit makes up for them.
+TEST(Intervals, AreStudentsWithTheBlocksThatDetermineTheNumber) {
+  const Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
+  const NestedModel fitted = of.from(0.21);
+  const double freedom = fitting::effective_blocks(fitted, fitting::cluster_robust_covariance(fitted, {0}))[0];
+  EXPECT_LT(freedom, 0.9 * static_cast<double>(fitted.blocks.size())) << "not every block shows dry friction alike";
+  const evidence::Interval found = of.interval(fitted);
+  const double deviation = coordinate_deviations(fitted, folds(of.fit), kNoise_rad2)[0];
+  EXPECT_NEAR(found.high - found.value, fitting::student95(freedom) * deviation + 0.03 * found.value, 1e-9);
+}
+
+TEST(StepShift, ReachesFromACoarseStepsNumberToTheTruth) {
+  const Fitted of("command.delay_s", 1e-4, 4e-3, delayed_joint());
+  NestedModel fitted = of.from(0.02);
+  const evidence::Interval before = of.interval(fitted);
+  fitted.step_shift = step_shift(of.bench, of.fit, fitted);
+  ASSERT_EQ(fitted.step_shift.size(), 1);
+  const evidence::Interval after = of.interval(fitted);
+  EXPECT_GT(before.low, kDelay_s) << "the step alone biases it";
+  EXPECT_LT(after.low, kDelay_s);
+  EXPECT_GT(after.high, kDelay_s);
+}
+
+TEST(StepShift, IsSmallWithAFineStep) {
+  const Fitted of("command.delay_s", 1e-4, 2e-4, delayed_joint());
+  const NestedModel fitted = of.from(0.02);
+  const evidence::Interval found = of.interval(fitted);
+  EXPECT_LT(std::abs(step_shift(of.bench, of.fit, fitted)[0]), found.high - found.low);
+}
+
+}  // namespace
+}  // namespace pmg::effects

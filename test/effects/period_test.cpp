@@ -1,0 +1,78 @@
+// Periods of holds: rollouts with a wrong one are out of step with the recording after a while.
+#include "effects/period.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/synthetic_bench.hpp"
+#include "effects/catalogue.hpp"
+#include "effects/extension.hpp"
+#include "effects/start_screen.hpp"
+
+namespace pmg::effects {
+namespace {
+
+calib::JointModel prompt_joint() {
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.01;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  model.actuator.friction.coulomb_Nm = 0.05;
+  return model;
+}
+
+NestedFit recorded_with(double update_s) {
+  calib::JointModel truth = prompt_joint();
+  truth.actuator.command.update_s = update_s;
+  return {test::record(test::pd_bench(true), truth, 6, 1e-4), 1};
+}
+
+TEST(Period, IsFoundBetweenTheStartsOfTheCatalogue) {
+  for (const double update_s : {0.036, 0.046, 0.09}) {
+    const NestedFit fit = recorded_with(update_s);
+    const std::vector<double> periods_s = promising_periods_s(fit, prompt_joint(), "command.update_s", 0.02, 0.1);
+    ASSERT_FALSE(periods_s.empty());
+    bool found = false;  // runs of 3 s are out of step by a quarter of a period where it is off by P / 12 s
+    for (const double period_s : periods_s) found = found || std::abs(period_s - update_s) < update_s * update_s / 12.0;
+    EXPECT_TRUE(found) << update_s << " s; the best is " << periods_s.front() << " s";
+  }
+}
+
+TEST(Period, OfAHoldIsInStepWithItsStart) {
+  const NestedFit fit = recorded_with(0.046);
+  NestedModel current = fit.fit(prompt_joint(), {}, 0);
+  fit.linearise(current);
+  const StartScreen screen(fit, current);
+  const Effect& hold = effect("hold");
+  const auto commands = std::find_if(hold.forms.begin(), hold.forms.end(),
+                                     [](const Form& form) { return form.name == std::string("commands"); });
+  const std::vector<ScreenedStart> starts = screen.best(hold, static_cast<std::size_t>(commands - hold.forms.begin()),
+                                                        scale_of(test::pd_bench(true), fit.runs(), prompt_joint()));
+  ASSERT_FALSE(starts.empty());
+  EXPECT_LT(starts.front().squares, 0.05 * current.squares) << "the nearest periods of the catalogue leave more";
+}
+
+TEST(Period, CountsAsANumberAsOtherParametersDo) {
+  Extension hold{{"hold"}, {}, {}, {}, {}}, lag{{"sensor_lag"}, {}, {}, {}, {}};
+  const bench::Bench bench = test::pd_bench(true);
+  const BenchScale scale = scale_of(bench, recorded_with(0.05).runs(), prompt_joint());
+  lag.fitted.unknowns.push_back(unknown("sensor.lag_s", bench, scale));
+  EXPECT_EQ(hold.numbers(), 1U) << "it is searched and no unknown of the fit";
+  EXPECT_EQ(lag.numbers(), 1U);
+}
+
+TEST(BenchScale, KnowsTheTemperaturesOfRows) {
+  const bench::Bench bench = test::pd_bench(true);
+  std::vector<calib::SingleJoint> runs = test::record(bench, prompt_joint(), 2);
+  EXPECT_FALSE(scale_of(bench, runs, prompt_joint()).temperature_recorded);
+  for (calib::SingleJoint& joint : runs) {
+    bench::BenchRun run = joint.run();
+    run.temp_C = 40.0;
+    joint = calib::SingleJoint(bench, run, joint.step_s());
+  }
+  EXPECT_TRUE(scale_of(bench, runs, prompt_joint()).temperature_recorded);
+}
+
+}  // namespace
+}  // namespace pmg::effects
