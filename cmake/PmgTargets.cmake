@@ -66,18 +66,32 @@ endfunction()
 # memory that glibc has not written there since 2.25, and then crashes (google/sanitizers 1322); GCC 14 no longer needs it.
 set(PMG_LSAN_OPTIONS "suppressions=${PROJECT_SOURCE_DIR}/test/lsan.supp:print_suppressions=0:intercept_tls_get_addr=0")
 
-# pmg_add_test(NAME SOURCES... LINK targets...): the GoogleTest executable test_NAME; one ctest entry per TEST, run from the source root.
+# pmg_add_test(NAME SOURCES... LINK targets... [SLOW tests...] [REALTIME tests...]): the GoogleTest executable test_NAME; one ctest entry per
+# TEST, run from the source root. Tests are named as --gtest_filter takes them, * for all, and get the label: slow, what takes long without
+# checking what a quick test could; realtime, what runs threads, processes, sockets or windows against a clock, and runs alone.
 function(pmg_add_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINK;SLOW;REALTIME" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
   target_compile_options(test_${name} PRIVATE ${PMG_QUICK_OPTIONS})
   pmg_use_common_headers(test_${name} tests)
   target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PMG_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." NO_PRETTY_VALUES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-                       DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300
-                       ENVIRONMENT "LSAN_OPTIONS=${PMG_LSAN_OPTIONS}")
+  list(JOIN TEST_SLOW ":" slow)
+  list(JOIN TEST_REALTIME ":" realtime)
+  pmg_discover_tests(${name} quick "*-${slow}:${realtime}")
+  if(slow)
+    pmg_discover_tests(${name} slow "${slow}" LABELS slow)
+  endif()
+  if(realtime)
+    pmg_discover_tests(${name} realtime "${realtime}" LABELS realtime)
+  endif()
+endfunction()
+
+function(pmg_discover_tests name which filter)
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${filter}" TEST_LIST ${name}_${which} NO_PRETTY_VALUES
+                       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 300 ENVIRONMENT "LSAN_OPTIONS=${PMG_LSAN_OPTIONS}" ${ARGN})
 endfunction()
 
 # fuzz_<room> decodes whatever a bus says, from decoding_fuzzer.cpp; the test <room>.fuzz gives it so many seeded random inputs. Clang: libFuzzer,
