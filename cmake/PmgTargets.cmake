@@ -67,8 +67,8 @@ endfunction()
 set(PMG_LSAN_OPTIONS "suppressions=${PROJECT_SOURCE_DIR}/test/lsan.supp:print_suppressions=0:intercept_tls_get_addr=0")
 
 # pmg_add_test(NAME SOURCES... LINK targets... [SLOW tests...] [REALTIME tests...]): the GoogleTest executable test_NAME; one ctest entry per
-# TEST, run from the source root. Tests are named as --gtest_filter takes them, * for all, and get the label: slow, what takes long without
-# checking what a quick test could; realtime, what runs threads, processes, sockets or windows against a clock, and runs alone.
+# TEST, run from the source root. SLOW and REALTIME take patterns as --gtest_filter does, * for all, and give these tests a label: slow, what
+# .ci/run leaves out for its time; realtime, what has threads, processes, sockets or windows work against a clock, and .ci/run tries alone.
 function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK;SLOW;REALTIME" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
@@ -88,6 +88,7 @@ function(pmg_add_test name)
   endif()
 endfunction()
 
+# pmg_discover_tests(NAME LIST FILTER [properties...]): those tests of test_NAME that the filter lets through.
 function(pmg_discover_tests name which filter)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${filter}" TEST_LIST ${name}_${which} NO_PRETTY_VALUES
                        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
