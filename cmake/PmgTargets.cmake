@@ -7,16 +7,11 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  # Paths from the build folder on, so that another clone of the same sources finds its objects there, whatever its place.
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true ${CCACHE_PROGRAM})
 endif()
 
 include(PmgSanitize)
-
-# A target's sources are compiled together, up to six at a time: most of the time of one goes to headers that all of them share. -DPMG_UNITY=OFF
-# compiles each on its own, as clang-tidy needs it and as suits who works on one file.
-option(PMG_UNITY "Compile several sources of a target together" ON)
-set(CMAKE_UNITY_BUILD ${PMG_UNITY})
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
 
 # GCC collects its own garbage from 128 MiB on, again and again. A source needs 300 to 900 MiB here; collecting later saves 5 to 13 % of its time.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
@@ -73,10 +68,15 @@ function(pmg_add_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK;SLOW;REALTIME" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
-  target_link_libraries(test_${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
+  target_link_libraries(test_${name} PRIVATE ${TEST_LINK} test_folders GTest::gtest GTest::gmock GTest::gtest_main pmg_warnings)
   target_compile_options(test_${name} PRIVATE ${PMG_QUICK_OPTIONS})
   pmg_use_common_headers(test_${name} tests)
-  target_compile_definitions(test_${name} PRIVATE PMG_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PMG_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  if(NOT "${TEST_SLOW}" STREQUAL "*")
+    pmg_needed_in_ci(test_${name})
+  endif()
+  foreach(pattern ${TEST_SLOW} ${TEST_REALTIME})
+    set_property(GLOBAL APPEND_STRING PROPERTY PMG_LABELLED_TESTS "test_${name} ${pattern}\n")
+  endforeach()
   list(JOIN TEST_SLOW ":" slow)
   list(JOIN TEST_REALTIME ":" realtime)
   pmg_discover_tests(${name} quick "*-${slow}:${realtime}")
@@ -86,6 +86,14 @@ function(pmg_add_test name)
   if(realtime)
     pmg_discover_tests(${name} realtime "${realtime}" LABELS realtime)
   endif()
+endfunction()
+
+# pmg_needed_in_ci(TARGETS...): .ci/run builds these, as the target `ci_programs`, and not what `slow` tests alone run.
+if(NOT TARGET ci_programs AND PMG_BUILD_TESTS)
+  add_custom_target(ci_programs)
+endif()
+function(pmg_needed_in_ci)
+  add_dependencies(ci_programs ${ARGN})
 endfunction()
 
 # pmg_discover_tests(NAME LIST FILTER [properties...]): those tests of test_NAME that the filter lets through.
@@ -100,8 +108,8 @@ endfunction()
 function(pmg_add_fuzzer room runs)
   add_executable(fuzz_${room} decoding_fuzzer.cpp)
   target_include_directories(fuzz_${room} PRIVATE ${CMAKE_SOURCE_DIR}/test)
-  target_compile_definitions(fuzz_${room} PRIVATE PMG_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  target_link_libraries(fuzz_${room} PRIVATE pmg_room_${room} pmg_warnings)
+  target_link_libraries(fuzz_${room} PRIVATE pmg_room_${room} test_folders pmg_warnings)
+  pmg_needed_in_ci(fuzz_${room})
   if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
     target_compile_options(fuzz_${room} PRIVATE -fsanitize=fuzzer)
     target_link_options(fuzz_${room} PRIVATE -fsanitize=fuzzer)

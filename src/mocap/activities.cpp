@@ -57,13 +57,13 @@ ActivityKind kind_of_step(const Scene& scene, const Step& step) {
   const bool walks = speed > scene.options.walking_speed * std::sqrt(9.81 * scene.leg_m);
   const bool turns = std::abs(around.yaw_rad) > scene.options.turning_rad_per_cycle * cycles;
   const bool left = around.yaw_rad > 0.0;
-  if (!walks && !turns) return ActivityKind::step_in_place;
-  if (!walks) return left ? ActivityKind::turn_left : ActivityKind::turn_right;
+  if (!walks && !turns) return ActivityKind::kStepInPlace;
+  if (!walks) return left ? ActivityKind::kTurnLeft : ActivityKind::kTurnRight;
   if (std::abs(around.vy_m_s) > std::abs(around.vx_m_s))
-    return around.vy_m_s > 0.0 ? ActivityKind::side_left : ActivityKind::side_right;
-  if (around.vx_m_s < 0.0) return ActivityKind::walk_backward;
-  if (turns) return left ? ActivityKind::circle_left : ActivityKind::circle_right;
-  return ActivityKind::walk_forward;
+    return around.vy_m_s > 0.0 ? ActivityKind::kSideLeft : ActivityKind::kSideRight;
+  if (around.vx_m_s < 0.0) return ActivityKind::kWalkBackward;
+  if (turns) return left ? ActivityKind::kCircleLeft : ActivityKind::kCircleRight;
+  return ActivityKind::kWalkForward;
 }
 
 /// One kind of walking from the step `first` to before the step `last`.
@@ -130,7 +130,7 @@ void add_postures(const Scene& scene, std::vector<Activity>& activities) {
   const ActivityOptions& o = scene.options;
   std::vector<double> drop, pitch, left, right;
   for (const Eigen::Vector3d& p : course.pelvis_m) drop.push_back(course.standing_height_m - p.z());
-  add_episodes(scene, drop, o.squat_depth * scene.leg_m, o.squat_edge * scene.leg_m, ActivityKind::squat, activities);
+  add_episodes(scene, drop, o.squat_depth * scene.leg_m, o.squat_edge * scene.leg_m, ActivityKind::kSquat, activities);
   const double usual_pitch = fitting::quantile(course.pitch_rad, 0.5),
                usual_roll = fitting::quantile(course.roll_rad, 0.5);
   for (std::size_t f = 0; f < course.pitch_rad.size(); ++f) {
@@ -138,9 +138,9 @@ void add_postures(const Scene& scene, std::vector<Activity>& activities) {
     right.push_back(course.roll_rad[f] - usual_roll);
     left.push_back(-right.back());
   }
-  add_episodes(scene, pitch, o.bend_rad, o.posture_edge * o.bend_rad, ActivityKind::bend, activities);
-  add_episodes(scene, left, o.lean_rad, o.posture_edge * o.lean_rad, ActivityKind::lean_left, activities);
-  add_episodes(scene, right, o.lean_rad, o.posture_edge * o.lean_rad, ActivityKind::lean_right, activities);
+  add_episodes(scene, pitch, o.bend_rad, o.posture_edge * o.bend_rad, ActivityKind::kBend, activities);
+  add_episodes(scene, left, o.lean_rad, o.posture_edge * o.lean_rad, ActivityKind::kLeanLeft, activities);
+  add_episodes(scene, right, o.lean_rad, o.posture_edge * o.lean_rad, ActivityKind::kLeanRight, activities);
 }
 
 /// Times that no activity covers.

@@ -28,25 +28,25 @@ struct ActivityOptions {
 };
 
 enum class ActivityKind {
-  walk_forward,
-  walk_backward,
-  side_left,
-  side_right,
-  circle_left,
-  circle_right,
-  turn_left,
-  turn_right,
-  step_in_place,
-  squat,
-  bend,
-  lean_left,
-  lean_right,
-  stand
+  kWalkForward,
+  kWalkBackward,
+  kSideLeft,
+  kSideRight,
+  kCircleLeft,
+  kCircleRight,
+  kTurnLeft,
+  kTurnRight,
+  kStepInPlace,
+  kSquat,
+  kBend,
+  kLeanLeft,
+  kLeanRight,
+  kStand
 };
 const char* name_of(ActivityKind kind);
 
 struct Activity {
-  ActivityKind kind = ActivityKind::stand;
+  ActivityKind kind = ActivityKind::kStand;
   double from_s = 0.0, to_s = 0.0;
   double vx_m_s = 0.0, vy_m_s = 0.0;  ///< mean of the pelvis in its heading frame, x forward, y left
   double yaw_rad = 0.0;               ///< turned in all, + left

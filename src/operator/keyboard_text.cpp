@@ -125,8 +125,9 @@ DrivingTable driving_table(const RobotDriver& driver, const RobotNews* news, dou
   }
   DrivingTable table;
   for (const Row& row : rows) {
-    table.labels += (table.labels.empty() ? "" : "\n") + io::plain_text(row.label);
-    table.values += (&row == rows.data() ? "" : "\n") + io::plain_text(row.value);
+    const char* const separator = &row == rows.data() ? "" : "\n";
+    table.labels.append(separator).append(io::plain_text(row.label));
+    table.values.append(separator).append(io::plain_text(row.value));
   }
   return table;
 }

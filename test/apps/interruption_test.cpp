@@ -12,6 +12,7 @@
 
 #include "apps/interrupted_program.hpp"
 #include "apps/running_program.hpp"
+#include "folders.hpp"
 #include "io/log_reader.hpp"
 
 namespace pmg {
@@ -155,7 +156,7 @@ class FilmTrouble : public Interruption {
       std::ofstream(programs / "ffmpeg") << "#!/bin/sh\n" << script;
       fs::permissions(programs / "ffmpeg", fs::perms::owner_all);
     }
-    const std::string command = "PATH='" + programs.string() + "' '" + PMG_BIN_DIR +
+    const std::string command = "PATH='" + programs.string() + "' '" + pmg::test::program_folder() +
                                 "/pmg_sil' --policy none --scenario '" + scenario(2.0) + "' --video --out '" +
                                 at("run") + "' > '" + at("out") + "' 2> '" + at("err") + "'";
     const int status = std::system(command.c_str());

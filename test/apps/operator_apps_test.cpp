@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "apps/running_program.hpp"
+#include "folders.hpp"
 #include "io/clock.hpp"
 #include "io/private_network.hpp"
 #include "io/raw_datagrams.hpp"
@@ -47,7 +48,7 @@ class Background {
           std::freopen(output.c_str(), "a", stderr) == nullptr) {
         ::_exit(126);
       }
-      ::execv((std::string(PMG_BIN_DIR) + "/" + program).c_str(), argv.data());
+      ::execv((pmg::test::program_folder() + "/" + program).c_str(), argv.data());
       ::_exit(127);
     }
   }

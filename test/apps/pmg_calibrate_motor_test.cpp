@@ -7,6 +7,7 @@
 #include "apps/running_program.hpp"
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "folders.hpp"
 #include "sim/motor_file.hpp"
 
 namespace pmg {
@@ -117,7 +118,7 @@ TEST_F(PmgCalibrateMotor, ExplainsItself) {
 TEST_F(PmgCalibrateMotor, AnswersWithThePublishedParametersWhereTheDriveWasRecorded) {
   const char* named = std::getenv("PMG_BENCHES");
   const fs::path emps =
-      (named != nullptr ? fs::path(named) : fs::path(PMG_SOURCE_DIR) / "../shared/data/bench") / "emps";
+      (named != nullptr ? fs::path(named) : fs::path(pmg::test::project_folder()) / "../shared/data/bench") / "emps";
   if (!fs::exists(emps)) GTEST_SKIP() << "no recordings at " << emps << "; PMG_BENCHES names another folder";
   test::RunningProgram program("pmg_calibrate_motor",
                                {emps.string(), "--joint", "axis", "--out", out_.string(), "--threads", "2"}, folder_);

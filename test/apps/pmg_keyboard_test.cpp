@@ -11,6 +11,7 @@
 
 #include "apps/pseudo_terminal.hpp"
 #include "apps/running_program.hpp"
+#include "folders.hpp"
 #include "io/private_network.hpp"
 #include "sim/display.hpp"
 
@@ -67,7 +68,7 @@ class PmgKeyboard : public testing::Test {
   }
   nlohmann::json watch() {
     const std::string out = (folder_ / "watch").string();
-    const std::string command = std::string(PMG_BIN_DIR) + "/pmg_watch --once --json --timeout 20 >" + out + " 2>&1";
+    const std::string command = pmg::test::program_folder() + "/pmg_watch --once --json --timeout 20 >" + out + " 2>&1";
     if (std::system(command.c_str()) != 0) return {{"mode", "unheard"}};
     return nlohmann::json::parse(test::text_of(out));
   }

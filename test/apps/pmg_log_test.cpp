@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "folders.hpp"
 #include "logs/log_surgery.hpp"
 #include "pmg_msgs/motor_command_t.hpp"
 #include "running_program.hpp"
@@ -49,8 +50,8 @@ TEST_F(PmgLog, InfoTellsPeopleAndMachines) {
   const test::Finished text = run(std::string("info ") + test::kCommittedLog);
   EXPECT_EQ(text.exit_code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("biped-7"));
-  const test::Finished json = run(std::string("info --json ") + test::kCommittedLog);
-  EXPECT_EQ(nlohmann::json::parse(json.out)["runs"][0]["robot"], "biped-7");
+  const test::Finished answer = run(std::string("info --json ") + test::kCommittedLog);
+  EXPECT_EQ(nlohmann::json::parse(answer.out)["runs"][0]["robot"], "biped-7");
 }
 
 TEST_F(PmgLog, ExportWritesCsvAndMcap) {
@@ -78,10 +79,10 @@ TEST_F(PmgLog, ReplaySaysInItsExitCodeWhetherItIsTheSame) {
   EXPECT_THAT(different.out, HasSubstr("(tick 99) MOTOR_COMMAND q_rad."));
   EXPECT_EQ(run("replay --tolerance 0.0005 " + spoilt.string()).exit_code, 1);
   EXPECT_EQ(run("replay --tolerance 0.002 " + spoilt.string()).exit_code, 0);
-  const auto json = nlohmann::json::parse(run("replay --json " + spoilt.string()).out);
-  EXPECT_EQ(json["equal"], false);
-  EXPECT_EQ(json["first_difference"]["tick"], 99);
-  EXPECT_NEAR(json["largest_differences"]["MOTOR_COMMAND q_rad"].get<double>(), 0.001, 1e-12);
+  const auto answer = nlohmann::json::parse(run("replay --json " + spoilt.string()).out);
+  EXPECT_EQ(answer["equal"], false);
+  EXPECT_EQ(answer["first_difference"]["tick"], 99);
+  EXPECT_NEAR(answer["largest_differences"]["MOTOR_COMMAND q_rad"].get<double>(), 0.001, 1e-12);
 
   const test::Finished same = run(std::string("replay --tolerance 1e-9 ") + test::kCommittedLog);
   EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
@@ -101,7 +102,7 @@ TEST_F(PmgLog, BadInputIsOneClearLine) {
 
 TEST_F(PmgLog, OnceInARunOfTheSimulationReplaysBitForBit) {
   const fs::path out = folder_ / "run";
-  const std::string simulate = std::string(PMG_BIN_DIR) +
+  const std::string simulate = pmg::test::program_folder() +
                                "/pmg_sil --robot config/robots/z1 --scenario config/scenarios/stand.yaml --out " +
                                out.string() + " >" + (folder_ / "sil").string() + " 2>&1";
   ASSERT_EQ(std::system(simulate.c_str()), 0) << test::text_of(folder_ / "sil");
@@ -112,7 +113,7 @@ TEST_F(PmgLog, OnceInARunOfTheSimulationReplaysBitForBit) {
 
 TEST_F(PmgLog, ABenchReplaysWithItsExcitationAndIsRefusedWithout) {
   const fs::path excitation = folder_ / "excitation", moved = folder_ / "moved", out = folder_ / "bench";
-  const std::string bin = std::string(PMG_BIN_DIR) + "/", quiet = " >" + (folder_ / "said").string() + " 2>&1";
+  const std::string bin = pmg::test::program_folder() + "/", quiet = " >" + (folder_ / "said").string() + " 2>&1";
   const std::string make = bin + "pmg_calibrate_motor --make-excitation --robot z1 --joint head_pitch --seconds 4 " +
                            "--repeats 1 --gains 40,1 --out " + excitation.string() + quiet;
   ASSERT_EQ(std::system(make.c_str()), 0) << test::text_of(folder_ / "said");

@@ -44,11 +44,11 @@ TEST_F(PmgReport, WritesAPageAndSaysWhatItSaw) {
 TEST_F(PmgReport, GivesMachinesTheFigures) {
   const test::Finished done = run({log("a.lcm", {.fault_at = 50}), "--out", page_, "--json"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  const auto json = nlohmann::json::parse(done.out);
-  EXPECT_EQ(json["report"], page_);
-  EXPECT_EQ(json["runs"][0]["robot"], "tiny");
-  EXPECT_EQ(json["runs"][0]["faults"].size(), 1U);
-  EXPECT_EQ(json["runs"][0]["fell"], false);
+  const auto answer = nlohmann::json::parse(done.out);
+  EXPECT_EQ(answer["report"], page_);
+  EXPECT_EQ(answer["runs"][0]["robot"], "tiny");
+  EXPECT_EQ(answer["runs"][0]["faults"].size(), 1U);
+  EXPECT_EQ(answer["runs"][0]["fell"], false);
 }
 
 // (a run that walks, and one that walks without a policy until it falls) => errors and slip in the report equal the

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "apps/running_program.hpp"
+#include "folders.hpp"
 #include "sim/motors_in_force.hpp"
 
 namespace pmg {
@@ -62,7 +63,7 @@ class KnownMotor : public RobotBench, public testing::WithParamInterface<Known> 
 // One percent, because the fit's simulation is also the recorded one: they differ only by sensor noise.
 TEST_P(KnownMotor, ComesBackWithinOnePercent) {
   const Known known = GetParam();
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(robot.joint_index.at(known.joint))];
   const model::ActuatorParameters truth = sim::actuator_in_force(joint, {{known.joint, known.of_motor_yaml}});
   excitation(known.joint, known.excitation);
@@ -100,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
 // README.md's example: a knee is recorded and calibrated; a knee with wear (play, and friction under load) is recorded
 // and diagnosed against it.
 TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
-  const fs::path hidden_file = PMG_SOURCE_DIR "/config/examples/worn_knee.yaml";
+  const fs::path hidden_file = pmg::test::project_folder() + "/config/examples/worn_knee.yaml";
   const model::ActuatorParameters hidden = sim::read_motor_file(hidden_file).at("left_knee");
   ASSERT_EQ(run("pmg_calibrate_motor", {"--make-excitation", "--robot", "z1", "--joint", "left_knee", "--angle",
                                         "0.1:1.3", "--seconds", "5", "--out", at("excitation")}),
@@ -139,7 +140,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   EXPECT_GT(diagnosis["held_out_error_before"].get<double>(), 8.0 * floor) << "something was wrong";
   EXPECT_LT(diagnosis["held_out_error_after"].get<double>(), 1.5 * floor) << "and little of it is left";
   // The found motor can drive the simulation.
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   EXPECT_NO_THROW(sim::read_motor_file(at("why/motor.yaml"), robot.joint_index));
 }
 

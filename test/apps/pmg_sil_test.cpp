@@ -14,6 +14,7 @@
 #include <string>
 
 #include "apps/running_program.hpp"
+#include "folders.hpp"
 #include "io/log_reader.hpp"
 #include "policy/linear_policy.hpp"
 
@@ -116,7 +117,7 @@ TEST_F(PmgSil, ThePolicyOfZ1WalksOnTheGround) {
 }
 
 TEST_F(PmgSil, ABaselineRunsLikeAnyPolicyAndIsAnnounced) {
-  const test::LinearPolicyFile policy(PMG_SOURCE_DIR "/config/robots/z1/clips", Variant::kSingleGait);
+  const test::LinearPolicyFile policy(pmg::test::project_folder() + "/config/robots/z1/clips", Variant::kSingleGait);
   const fs::path file =
       scenario("name: walk\nsteps:\n  - {for_s: 2.0, text: turn, mode: walk, command: {omega_rad_s: 0.5}}\n");
   const std::string arguments = "--gantry --policy " + policy.file().string() + " --scenario " + file.string();
@@ -219,7 +220,7 @@ TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    const std::string program = std::string(PMG_BIN_DIR) + "/pmg_sil";
+    const std::string program = pmg::test::program_folder() + "/pmg_sil";
     execl(program.c_str(), "pmg_sil", "--scenario", file.c_str(), "--out", out_folder().c_str(),
           static_cast<char*>(nullptr));
     _exit(127);

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
+
 namespace pmg::test {
 
 inline constexpr double kDeadline_s = 90.0;  ///< for what a program is expected to show
@@ -27,7 +29,7 @@ class PseudoTerminal {
     int slave = -1;
     if (openpty(&master_, &slave, nullptr, nullptr, &size) != 0) return;
     tcgetattr(slave, &before_);
-    std::string path = std::string(PMG_BIN_DIR) + "/" + program;
+    std::string path = pmg::test::program_folder() + "/" + program;
     std::vector<char*> argv{path.data()};
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
+
 namespace pmg::test {
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -32,7 +34,7 @@ class RunningProgram {
  public:
   RunningProgram(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder)
       : out_(folder / (name + ".out")), err_(folder / (name + ".err")) {
-    std::string program = std::string(PMG_BIN_DIR) + "/" + name;
+    std::string program = pmg::test::program_folder() + "/" + name;
     std::vector<char*> argv{program.data()};
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
@@ -91,7 +93,7 @@ class RunningProgram {
 inline Finished run_in_shell(const std::string& command, const std::filesystem::path& folder) {
   const std::filesystem::path out = folder / "stdout", err = folder / "stderr";
   const std::string line =
-      std::string(PMG_BIN_DIR) + "/" + command + " >" + out.string() + " 2>" + err.string() + " </dev/null";
+      pmg::test::program_folder() + "/" + command + " >" + out.string() + " 2>" + err.string() + " </dev/null";
   const int status = std::system(line.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
 }

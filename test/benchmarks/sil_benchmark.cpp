@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "benchmarks/trained_policy.hpp"
+#include "folders.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "io/clock.hpp"
 #include "io/log_writer.hpp"
@@ -50,7 +51,7 @@ sil::Scenario scenario() {
 using MakePolicy = std::unique_ptr<policy::Policy> (*)(const model::RobotModel&);
 
 void sil(benchmark::State& state, MakePolicy make_policy) {
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
   const sil::Scenario played = scenario();
   const control::TickOptions options = control::tick_options(robot);
@@ -97,7 +98,7 @@ void BM_sil_policy(benchmark::State& state) {
 
 /// The world's own model, which has no friction constraints, on MuJoCo's position servos with robot.yaml's gains.
 void BM_sil_floor(benchmark::State& state) {
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const sim::WorldOptions options;
   for (auto _ : state) {
     sim::World world(robot, options);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "benchmarks/trained_policy.hpp"
+#include "folders.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "model/clip_library_file.hpp"
 #include "sil/lockstep.hpp"
@@ -67,7 +68,7 @@ class AllocationsPerTick {
 
 /// On the gantry: the cost of a tick doesn't depend on how well the policy fits today's clips.
 void BM_tick(benchmark::State& state) {
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const ClipLibrary library = model::load_clip_library(robot.directory / "clips", robot);
   const sil::Scenario played = walking();
   const ThreadCpuClock stopwatch;

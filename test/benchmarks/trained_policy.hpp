@@ -9,11 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "folders.hpp"
 #include "policy/onnx_policy.hpp"
 
 namespace pmg::test {
 
-inline std::filesystem::path trained_policy_file() { return PMG_SOURCE_DIR "/config/robots/z1/policies/pmg.onnx"; }
+inline std::filesystem::path trained_policy_file() {
+  return pmg::test::project_folder() + "/config/robots/z1/policies/pmg.onnx";
+}
 
 inline std::unique_ptr<policy::OnnxPolicy> trained_policy(const model::RobotModel& robot) {
   const std::filesystem::path file = trained_policy_file();

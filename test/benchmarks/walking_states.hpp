@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "folders.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/reference.hpp"
 
@@ -14,7 +15,7 @@ namespace pmg::test {
 struct WalkingStates {
   static constexpr std::size_t kCount = 64;
 
-  WalkingStates() : robot(model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / "config/robots/z1")) {
+  WalkingStates() : robot(model::load_robot(std::filesystem::path(pmg::test::project_folder()) / "config/robots/z1")) {
     for (std::size_t k = 0; k < kCount; ++k) {
       Reference& reference = states[k];
       reference.q = robot.q_stand();

@@ -7,6 +7,7 @@
 
 #include "calib/fit_problem.hpp"
 #include "calib/inverse_dynamics.hpp"
+#include "folders.hpp"
 
 namespace pmg {
 namespace {
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 fs::path benches() {
   const char* named = std::getenv("PMG_BENCHES");
-  return named != nullptr ? fs::path(named) : fs::path(PMG_SOURCE_DIR) / "../shared/data/bench";
+  return named != nullptr ? fs::path(named) : fs::path(pmg::test::project_folder()) / "../shared/data/bench";
 }
 
 #define PMG_NEEDS_BENCH(name)          \

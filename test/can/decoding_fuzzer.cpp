@@ -11,6 +11,7 @@
 #include "can/limit_check.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
+#include "folders.hpp"
 
 namespace {
 
@@ -20,7 +21,7 @@ using test::require;
 
 struct Robot {
   Robot()
-      : model(model::load_robot(PMG_SOURCE_DIR "/config/robots/z1")),
+      : model(model::load_robot(pmg::test::project_folder() + "/config/robots/z1")),
         setup(drives::load_drives(model)),
         mixed(test::mixed_drives(model)) {
     command.q = model.q_upper();

@@ -8,13 +8,14 @@
 #include <cmath>
 
 #include "can/robot_stage.hpp"
+#include "folders.hpp"
 
 namespace pmg::sil {
 
 /// Tracking errors of five seeds' tours. more: of the stage's constructor, after the seed and `true`.
 template <typename AnyStage, typename... More>
 void expect_the_tour_tracked_as_in_process(More... more) {
-  const Scenario tour = load_scenario(PMG_SOURCE_DIR "/config/scenarios/tour.yaml");
+  const Scenario tour = load_scenario(pmg::test::project_folder() + "/config/scenarios/tour.yaml");
   std::array<double, 5> sums_bus{}, sums_sil{};
   constexpr int kSeeds = 5;
   for (int seed = 1; seed <= kSeeds; ++seed) {

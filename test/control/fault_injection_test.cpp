@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "control/control_rig.hpp"
+#include "folders.hpp"
 
 namespace pmg::control {
 namespace {
@@ -172,7 +173,7 @@ faults::CycleRange range_in(const std::string& cell) {
 /// The fault table (seven columns) of docs/reference/safety.md: code -> bus cycles.
 std::map<std::string, faults::Reaction> documented_reactions() {
   constexpr std::size_t kColumns = 7, kCode = 1, kSitDown = 5, kDamping = 6;  // the first cell is before the first bar
-  std::ifstream file(std::filesystem::path(PMG_SOURCE_DIR) / "docs/reference/safety.md");
+  std::ifstream file(std::filesystem::path(pmg::test::project_folder()) / "docs/reference/safety.md");
   std::map<std::string, faults::Reaction> reactions;
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> cells = cells_of(line);

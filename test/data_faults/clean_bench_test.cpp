@@ -7,6 +7,7 @@
 #include "data_faults/benches.hpp"
 #include "data_faults/examine.hpp"
 #include "fitting/statistics.hpp"
+#include "folders.hpp"
 
 namespace pmg::data_faults {
 namespace {
@@ -82,7 +83,7 @@ TEST(SoundData, HaveNoFaultsUnderTorqueCommandsAndWithRepeats) {
 }
 
 TEST(SoundData, OfMeasuredJointsHaveNoFaults) {
-  const fs::path data = fs::path(PMG_SOURCE_DIR) / "../shared/data/bench";
+  const fs::path data = fs::path(pmg::test::project_folder()) / "../shared/data/bench";
   if (!fs::exists(data)) GTEST_SKIP() << "no measured recordings in " << data;
   for (const auto& [folder, filter] :
        {std::pair{"emps", ""}, {"sts3215", "kp_firmware in 4,16 and repeat == 0"}, {"xl330", ""}}) {

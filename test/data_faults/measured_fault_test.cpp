@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "data_faults/examine.hpp"
+#include "folders.hpp"
 
 namespace pmg::data_faults {
 namespace {
@@ -65,7 +66,7 @@ class MeasuredFault : public testing::TestWithParam<Case> {};
 
 TEST_P(MeasuredFault, IsNamedWithItsPlace) {
   const Case& one = GetParam();
-  const fs::path folder = fs::path(PMG_SOURCE_DIR) / "../shared/data/bench" / one.folder;
+  const fs::path folder = fs::path(pmg::test::project_folder()) / "../shared/data/bench" / one.folder;
   if (!fs::exists(folder)) GTEST_SKIP() << "no measured recordings in " << folder;
   const bench::Bench bench = bench::read_bench(folder);
   Runs runs = bench.read_runs(bench::RowFilter(one.filter));

@@ -36,20 +36,20 @@ bool names(const DataFault& fault, const test::PlantedFault& planted) {
          std::abs(fault.fixes.front().shift_s - planted.shift_s) < 0.02;
 }
 
-struct Case {
+struct PlantedCase {
   std::string what;
   unsigned seed;
   test::RandomBench (*bench)(unsigned seed);
 };
-std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.what << ", seed " << one.seed; }
+std::ostream& operator<<(std::ostream& out, const PlantedCase& one) { return out << one.what << ", seed " << one.seed; }
 
 test::RandomBench position_pd(unsigned seed) { return test::random_bench(seed); }
 test::RandomBench servo(unsigned seed) { return test::random_bench(seed, {}, test::Kind::kServo); }
 
-class PlantedFault : public testing::TestWithParam<Case> {};
+class PlantedFault : public testing::TestWithParam<PlantedCase> {};
 
 TEST_P(PlantedFault, IsNamedWithItsPlaceAndItsCorrectionAndNothingElseIs) {
-  const Case& one = GetParam();
+  const PlantedCase& one = GetParam();
   test::RandomBench made = one.bench(one.seed);
   const test::PlantedFault planted = test::plant(one.what, one.seed, made.bench, made.runs);
   ASSERT_FALSE(planted.kind.empty()) << "this bench can't have the fault";
@@ -60,8 +60,8 @@ TEST_P(PlantedFault, IsNamedWithItsPlaceAndItsCorrectionAndNothingElseIs) {
   EXPECT_FALSE(found.front().evidence.empty());
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<PlantedCase> planted_cases() {
+  std::vector<PlantedCase> all;
   for (const char* what :
        {"command in degrees", "readings in degrees", "command in degrees, one run", "command turned",
         "readings turned, one run", "command turned, one run", "mass", "gain of some rows", "gain of all rows",
@@ -92,7 +92,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(DataFaults, PlantedFault, testing::ValuesIn(cases()), [](const auto& one) {
+INSTANTIATE_TEST_SUITE_P(DataFaults, PlantedFault, testing::ValuesIn(planted_cases()), [](const auto& one) {
   std::string text = one.param.what + "_" + std::to_string(one.param.seed);
   std::erase(text, ',');
   std::replace_if(

@@ -9,6 +9,7 @@
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
 #include "effects/starts.hpp"
+#include "folders.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -46,7 +47,7 @@ TEST(Catalogue, FormsOfAnEffectHaveNamesTitlesAndSources) {
 }
 
 TEST(Catalogue, EveryFormIsInTheDocumentationWithItsSource) {
-  std::ifstream in(std::string(PMG_SOURCE_DIR) + "/docs/reference/effects.md");
+  std::ifstream in(pmg::test::project_folder() + "/docs/reference/effects.md");
   std::ostringstream read;
   read << in.rdbuf();
   const std::string text = read.str();

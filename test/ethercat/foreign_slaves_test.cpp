@@ -28,6 +28,7 @@
 #include "ethercat/datagrams.hpp"
 #include "ethercat/ethercat_hal.hpp"
 #include "ethercat/packet_wire.hpp"
+#include "folders.hpp"
 #include "temporary_folder.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): some libraries' headers lack it
@@ -137,7 +138,7 @@ class ForeignSlaves : public testing::Test {
   std::filesystem::path program() const { return kickcat_ / "build/simulation/network_simulator"; }
   /// The drive of test/ethercat/foreign with this alias, and with the first `old` of its description as `changed`.
   std::filesystem::path drive(int alias, const std::string& old = {}, const std::string& changed = {}) const {
-    const std::filesystem::path from = std::filesystem::path(PMG_SOURCE_DIR) / "test/ethercat/foreign";
+    const std::filesystem::path from = std::filesystem::path(pmg::test::project_folder()) / "test/ethercat/foreign";
     const std::string name = fmt::format("drive{}", alias);
     std::ifstream source(from / "drive.xml");
     std::string xml{std::istreambuf_iterator<char>(source), {}};

@@ -15,6 +15,7 @@
 
 #include "calib/single_joint.hpp"
 #include "effects/catalogue.hpp"
+#include "folders.hpp"
 #include "pages/plot_picture.hpp"
 
 namespace pmg::evidence {
@@ -196,7 +197,7 @@ TEST(EffectPictures, ShowEveryEffectOfTheCatalogue) {
 }
 
 TEST(EffectPictures, AreInTheDocumentation) {
-  const fs::path root = PMG_SOURCE_DIR;
+  const fs::path root = pmg::test::project_folder();
   std::ifstream in(root / "docs/reference/effects.md");
   std::ostringstream text;
   text << in.rdbuf();

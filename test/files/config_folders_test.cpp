@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "files/config_error.hpp"
+#include "folders.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::files {
@@ -25,7 +26,8 @@ class ConfigFolders : public testing::Test {
 TEST_F(ConfigFolders, TheBuildTreeHasThemBesideItsBinaries) {
   const auto folders = config_folders("scenarios");
   ASSERT_EQ(folders.size(), 1U);
-  EXPECT_EQ(folders.front(), fs::canonical(PMG_SOURCE_DIR "/config/scenarios")) << "by its own name, not the link's";
+  EXPECT_EQ(folders.front(), fs::canonical(pmg::test::project_folder() + "/config/scenarios"))
+      << "by its own name, not the link's";
 }
 
 TEST_F(ConfigFolders, TheEnvironmentsFolderGoesFirst) {

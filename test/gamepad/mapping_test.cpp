@@ -1,6 +1,7 @@
 // What a mapping file may say, and what it may not.
 #include "gamepad/mapping.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "files/config_error.hpp"
+#include "folders.hpp"
 
 namespace pmg::gamepad {
 namespace {
@@ -101,9 +103,9 @@ TEST(Mapping, TheDeadZoneIsRoundAndTheEndIsReachedInEveryDirection) {
 
 TEST(Mapping, ThePageHasTheTableOfTheStandardMapping) {
   std::stringstream page;
-  page << std::ifstream(std::string(PMG_SOURCE_DIR) + "/docs/how-to/operation.md").rdbuf();
+  page << std::ifstream(pmg::test::project_folder() + "/docs/how-to/operation.md").rdbuf();
   for (const auto& [hold, meaning] : mapping_rows(read_mapping(kStandard)))
-    EXPECT_THAT(page.str(), testing::HasSubstr("| " + hold + " | " + meaning + " |\n"));
+    EXPECT_THAT(page.str(), testing::HasSubstr(fmt::format("| {} | {} |\n", hold, meaning)));
 }
 
 }  // namespace

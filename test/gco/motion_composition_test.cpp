@@ -3,13 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "folders.hpp"
 #include "model/clip_library_file.hpp"
 
 namespace pmg::gco {
 namespace {
 
 const model::RobotModel& z1() {
-  static const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  static const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   return robot;
 }
 

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "folders.hpp"
 #include "gco/contact_problem.hpp"
 #include "gco/ground_aware_command.hpp"
 #include "model/leg_kinematics.hpp"
@@ -20,7 +21,7 @@ namespace pmg::test {
 inline constexpr const char* kRobots[] = {"config/robots/z1", "test/data/robots/biped"};
 
 inline model::RobotModel load(const std::string& robot) {
-  return model::load_robot(std::filesystem::path(PMG_SOURCE_DIR) / robot);
+  return model::load_robot(std::filesystem::path(pmg::test::project_folder()) / robot);
 }
 
 /// GoogleTest's name of the instance.

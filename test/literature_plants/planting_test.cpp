@@ -12,6 +12,7 @@
 #include <set>
 
 #include "effects/catalogue.hpp"
+#include "folders.hpp"
 #include "forms.hpp"
 #include "forms_table.hpp"
 #include "prepared_plant.hpp"
@@ -31,7 +32,7 @@ TEST(LiteratureForms, EveryEffectOfTheCatalogueHasThreeFormsAndEachFormItsSource
 }
 
 TEST(LiteratureForms, ThePageHasThemAll) {
-  std::ifstream stream(std::filesystem::path(PMG_SOURCE_DIR) / "docs/explanation/hidden-plants.md");
+  std::ifstream stream(std::filesystem::path(pmg::test::project_folder()) / "docs/explanation/hidden-plants.md");
   const std::string page((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   EXPECT_NE(page.find(forms_table()), std::string::npos) << "print it with: literature_plants forms";
 }

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "folders.hpp"
 #include "log_surgery.hpp"
 #include "logs/mcap_writer.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
@@ -54,7 +55,7 @@ class LogExport : public testing::Test {
   /// Contents by the MCAP project's own reader. Foxglove's published classes read them too, where they are there.
   nlohmann::json read_mcap(const fs::path& file) const {
     const fs::path out = folder_ / "read.json";
-    const std::string root = PMG_SOURCE_DIR;
+    const std::string root = pmg::test::project_folder();
     const std::string command = "PYTHONPATH=" + root + "/third_party/prefix/python:$(" + root +
                                 "/third_party/python-packages foxglove --cached 2>/dev/null) /usr/bin/python3 " + root +
                                 "/test/logs/read_mcap.py " + file.string() + " >" + out.string();

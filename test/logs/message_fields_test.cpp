@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "folders.hpp"
 #include "log_surgery.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/arms_input_t.hpp"
@@ -60,7 +61,7 @@ const std::set<std::string> kParts = {"seal_t", "proof_t"};  // behind other mes
 std::vector<std::string> fields_of(const std::string& type) {
   const std::set<std::string> types = {"int8_t", "int16_t", "int32_t", "int64_t",
                                        "double", "float",   "boolean", "string"};
-  std::ifstream file(fs::path(PMG_SOURCE_DIR) / "msgs" / (type + ".lcm"));
+  std::ifstream file(fs::path(pmg::test::project_folder()) / "msgs" / (type + ".lcm"));
   std::vector<std::string> names;
   std::set<std::string> lengths;
   for (std::string line; std::getline(file, line);) {
@@ -112,7 +113,7 @@ class MessageFields : public testing::Test {
 TEST_F(MessageFields, NamesAreThoseOfTheMessageFilesInTheirOrder) {
   ASSERT_EQ(known_channels().size(), kTypes.size());
   std::size_t types = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(PMG_SOURCE_DIR) / "msgs")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(pmg::test::project_folder()) / "msgs")) {
     types += entry.path().extension() == ".lcm" ? 1 : 0;
   }
   EXPECT_EQ(types, kTypes.size() + kParts.size()) << "a message type that no log tool knows";

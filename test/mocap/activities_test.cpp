@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "folders.hpp"
 #include "synthetic_gait.hpp"
 
 namespace pmg::mocap {
@@ -28,7 +29,7 @@ TEST(Activities, AWalkHasItsSpeedAndCadenceInEveryHeadingAndSize) {
       walker.period_s = 1.1 * std::sqrt(leg_m / 0.85);
       const auto activities = activities_of(test::walk(walker));
       ASSERT_EQ(activities.size(), 1U);
-      EXPECT_EQ(activities[0].kind, ActivityKind::walk_forward);
+      EXPECT_EQ(activities[0].kind, ActivityKind::kWalkForward);
       EXPECT_NEAR(activities[0].vx_m_s, test::walking_speed(walker), 1e-3);
       EXPECT_NEAR(activities[0].vy_m_s, 0.0, 1e-3);
       // The first and the last contact lie at the recording's ends, where the swing before is cut: 3 %.
@@ -71,26 +72,26 @@ bool has(const std::vector<Activity>& activities, ActivityKind kind) {
 TEST(Activities, TellPosturesApart) {
   const auto squat = activities_of(standing(0.5, 0.0, 0.0)), bend = activities_of(standing(0.0, 0.9, 0.0));
   const auto right = activities_of(standing(0.0, 0.0, 0.4)), left = activities_of(standing(0.0, 0.0, -0.4));
-  EXPECT_TRUE(has(squat, ActivityKind::squat));
-  EXPECT_FALSE(has(squat, ActivityKind::bend));
-  EXPECT_TRUE(has(bend, ActivityKind::bend));
-  EXPECT_FALSE(has(bend, ActivityKind::squat));
-  EXPECT_TRUE(has(right, ActivityKind::lean_right));
-  EXPECT_FALSE(has(right, ActivityKind::lean_left));
-  EXPECT_TRUE(has(left, ActivityKind::lean_left));
+  EXPECT_TRUE(has(squat, ActivityKind::kSquat));
+  EXPECT_FALSE(has(squat, ActivityKind::kBend));
+  EXPECT_TRUE(has(bend, ActivityKind::kBend));
+  EXPECT_FALSE(has(bend, ActivityKind::kSquat));
+  EXPECT_TRUE(has(right, ActivityKind::kLeanRight));
+  EXPECT_FALSE(has(right, ActivityKind::kLeanLeft));
+  EXPECT_TRUE(has(left, ActivityKind::kLeanLeft));
   const auto still = activities_of(standing(0.0, 0.0, 0.0));
   ASSERT_EQ(still.size(), 1U);
-  EXPECT_EQ(still[0].kind, ActivityKind::stand);
+  EXPECT_EQ(still[0].kind, ActivityKind::kStand);
   EXPECT_NEAR(still[0].duration_s(), 6.0, 1e-9);
 }
 
 TEST(Activities, PosturesBeginAtTheirThresholds) {
-  EXPECT_TRUE(has(activities_of(standing(0.30, 0.0, 0.0)), ActivityKind::squat));
-  EXPECT_FALSE(has(activities_of(standing(0.20, 0.0, 0.0)), ActivityKind::squat));
-  EXPECT_TRUE(has(activities_of(standing(0.0, 0.6, 0.0)), ActivityKind::bend));
-  EXPECT_FALSE(has(activities_of(standing(0.0, 0.4, 0.0)), ActivityKind::bend));
-  EXPECT_TRUE(has(activities_of(standing(0.0, 0.0, 0.25)), ActivityKind::lean_right));
-  EXPECT_FALSE(has(activities_of(standing(0.0, 0.0, 0.17)), ActivityKind::lean_right));
+  EXPECT_TRUE(has(activities_of(standing(0.30, 0.0, 0.0)), ActivityKind::kSquat));
+  EXPECT_FALSE(has(activities_of(standing(0.20, 0.0, 0.0)), ActivityKind::kSquat));
+  EXPECT_TRUE(has(activities_of(standing(0.0, 0.6, 0.0)), ActivityKind::kBend));
+  EXPECT_FALSE(has(activities_of(standing(0.0, 0.4, 0.0)), ActivityKind::kBend));
+  EXPECT_TRUE(has(activities_of(standing(0.0, 0.0, 0.25)), ActivityKind::kLeanRight));
+  EXPECT_FALSE(has(activities_of(standing(0.0, 0.0, 0.17)), ActivityKind::kLeanRight));
 }
 
 /// Six steps, the third after this pause, of a body that goes forward and turns at constant rates.
@@ -116,19 +117,19 @@ std::vector<Activity> stepping(double forward_m_s, double turning_rad_s, double 
     lift_s += 0.4 + (i == 2 ? pause_s : 0.15);
   }
   std::vector<Activity> walks = find_activities(recording, course, steps);
-  std::erase_if(walks, [](const Activity& a) { return a.kind == ActivityKind::stand; });
+  std::erase_if(walks, [](const Activity& a) { return a.kind == ActivityKind::kStand; });
   return walks;
 }
 
 TEST(Activities, OfSteppingBeginAtTheirThresholds) {
   const double unit_m_s = std::sqrt(9.81 * 0.85), cycle_s = 3.75 * std::sqrt(0.85 / 9.81);
-  EXPECT_EQ(stepping(0.10 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::walk_forward);
-  EXPECT_EQ(stepping(-0.10 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::walk_backward);
-  EXPECT_EQ(stepping(0.08 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::step_in_place);
-  EXPECT_EQ(stepping(0.0, 0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::turn_left);
-  EXPECT_EQ(stepping(0.0, -0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::turn_right);
-  EXPECT_EQ(stepping(0.0, 0.23 / cycle_s, 0.15).at(0).kind, ActivityKind::step_in_place);
-  EXPECT_EQ(stepping(0.4 * unit_m_s, 0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::circle_left);
+  EXPECT_EQ(stepping(0.10 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::kWalkForward);
+  EXPECT_EQ(stepping(-0.10 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::kWalkBackward);
+  EXPECT_EQ(stepping(0.08 * unit_m_s, 0.0, 0.15).at(0).kind, ActivityKind::kStepInPlace);
+  EXPECT_EQ(stepping(0.0, 0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::kTurnLeft);
+  EXPECT_EQ(stepping(0.0, -0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::kTurnRight);
+  EXPECT_EQ(stepping(0.0, 0.23 / cycle_s, 0.15).at(0).kind, ActivityKind::kStepInPlace);
+  EXPECT_EQ(stepping(0.4 * unit_m_s, 0.30 / cycle_s, 0.15).at(0).kind, ActivityKind::kCircleLeft);
   EXPECT_EQ(stepping(1.0, 0.0, 0.55 * cycle_s).size(), 1U);
   EXPECT_EQ(stepping(1.0, 0.0, 0.70 * cycle_s).size(), 2U);
 }
@@ -145,7 +146,7 @@ std::vector<std::string> expected_kinds(const std::string& primitive) {
 }
 
 TEST(Activities, OfRealRecordingsAreThoseOfTheManifest) {
-  const std::filesystem::path data = std::filesystem::path(PMG_SOURCE_DIR) / "../shared/data/mocap";
+  const std::filesystem::path data = std::filesystem::path(pmg::test::project_folder()) / "../shared/data/mocap";
   if (!std::filesystem::exists(data / "manifest.json")) GTEST_SKIP() << "no recordings at " << data;
   const NameTable names = read_name_table(default_name_table());
   for (nlohmann::json row : nlohmann::json::parse(std::ifstream(data / "manifest.json"))) {

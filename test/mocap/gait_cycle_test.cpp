@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "folders.hpp"
 #include "mocap/activities.hpp"
 #include "synthetic_gait.hpp"
 
@@ -125,7 +126,7 @@ TEST(GaitCycle, AJumpAtTheSeamIsMeasured) {
 }
 
 TEST(GaitCycle, OfRealWalksCloses) {
-  const std::filesystem::path data = std::filesystem::path(PMG_SOURCE_DIR) / "../shared/data/mocap";
+  const std::filesystem::path data = std::filesystem::path(pmg::test::project_folder()) / "../shared/data/mocap";
   if (!std::filesystem::exists(data / "manifest.json")) GTEST_SKIP() << "no recordings at " << data;
   const NameTable names = read_name_table(default_name_table());
   for (nlohmann::json row : nlohmann::json::parse(std::ifstream(data / "manifest.json"))) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "folders.hpp"
 #include "synthetic_gait.hpp"
 
 namespace pmg::mocap {
@@ -74,7 +75,7 @@ double largest_size(const std::vector<double>& errors) {
 }
 
 TEST(GaitEvents, AgreeWithForcePlates) {
-  const fs::path data = fs::path(PMG_SOURCE_DIR) / "../shared/data/mocap";
+  const fs::path data = fs::path(pmg::test::project_folder()) / "../shared/data/mocap";
   const fs::path walk = data / "motion_capture_walk.trc", plates = data / "grf_walk.mot";
   if (!fs::exists(walk) || !fs::exists(plates)) GTEST_SKIP() << "no recording with force plates at " << data;
   const Recording recording = make_recording(walk.string(), read_motion(walk), read_name_table(default_name_table()));

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 
+#include "folders.hpp"
 #include "mocap_files/small_files.hpp"
 #include "synthetic_gait.hpp"
 #include "temporary_folder.hpp"
@@ -39,9 +40,10 @@ class PmgClipsInspect : public ::testing::Test {
   }
   Outcome inspect(const std::filesystem::path& file, const std::string& options = "") {
     const auto out = folder_.file("stdout.txt"), errors = folder_.file("stderr.txt");
-    const int status = std::system(fmt::format(PMG_BIN_DIR "/pmg_clips inspect '{}' {} > '{}' 2> '{}'", file.string(),
-                                               options, out.string(), errors.string())
-                                       .c_str());
+    const int status =
+        std::system(fmt::format("{}/pmg_clips inspect '{}' {} > '{}' 2> '{}'", pmg::test::program_folder(),
+                                file.string(), options, out.string(), errors.string())
+                        .c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(errors)};
   }
   /// Refused in one line that names the file (or file and line) and has these words; nothing on standard output.
@@ -153,7 +155,7 @@ TEST_F(PmgClipsInspect, RefusesPromisesOfTooMuchBeforeItTakesTheMemory) {
   }
   expect_refused(written("rows.npz", test::zip({{"poses.npy", test::npy("<f8", "(200000, 66)", "")}}, false)), "",
                  "13200000 numbers");
-  std::string c3d = test::small_c3d(test::C3dProcessor::intel, -1.0F);
+  std::string c3d = test::small_c3d(test::C3dProcessor::kIntel, -1.0F);
   for (const std::size_t at : {2U, 3U, 8U, 9U}) c3d[at] = static_cast<char>(0xff);  // points and last frame
   expect_refused(written("many.c3d", c3d), "", "65535 points");
   EXPECT_LT(children_memory_bytes(), 400 << 20);  // of which the sanitizers take most

@@ -54,7 +54,7 @@ TEST(BadFiles, TrcNamesTheMarkerWhoseCoordinateIsNoNumber) {
 }
 
 TEST(BadFiles, C3dAndNpzNameTheByte) {
-  std::string c3d = test::small_c3d(test::C3dProcessor::intel, -1.0F);
+  std::string c3d = test::small_c3d(test::C3dProcessor::kIntel, -1.0F);
   c3d.resize(1024);
   EXPECT_EQ(refusal([&] { parse_c3d("x.c3d", c3d); }),
             "x.c3d: byte 1024: the file ends at byte 1024; expected the first frame");

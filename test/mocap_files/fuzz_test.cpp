@@ -87,10 +87,10 @@ TEST(DamagedFiles, TrcEndsInALine) {
 }
 TEST(DamagedFiles, C3dEndsInALine) {
   fuzz(
-      test::small_c3d(test::C3dProcessor::intel, -1.0F),
+      test::small_c3d(test::C3dProcessor::kIntel, -1.0F),
       [](const std::string& bytes) { return parse_c3d("x.c3d", bytes); }, 5);
   fuzz(
-      test::small_c3d(test::C3dProcessor::mips, 0.1F),
+      test::small_c3d(test::C3dProcessor::kMips, 0.1F),
       [](const std::string& bytes) { return parse_c3d("x.c3d", bytes); }, 6);
 }
 TEST(DamagedFiles, NpzEndsInALine) {

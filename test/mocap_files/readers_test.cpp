@@ -66,7 +66,7 @@ TEST(Trc, ReadsMarkersAndGaps) {
 }
 
 TEST(C3d, ReadsEveryProcessorsNumbers) {
-  for (const auto processor : {test::C3dProcessor::intel, test::C3dProcessor::dec, test::C3dProcessor::mips}) {
+  for (const auto processor : {test::C3dProcessor::kIntel, test::C3dProcessor::kDec, test::C3dProcessor::kMips}) {
     for (const float scale : {-0.1F, 0.5F}) {
       const Motion motion = parse_c3d("x.c3d", test::small_c3d(processor, scale));
       SCOPED_TRACE(fmt::format("processor {}, scale {}", static_cast<int>(processor), scale));
@@ -112,7 +112,8 @@ TEST(RobotCsv, FindsTheQuaternionsOrderWithoutAHeader) {
   const double s = std::sqrt(0.5);  // a yaw of 90 degrees
   for (const bool w_last : {true, false}) {
     const std::string q = w_last ? fmt::format("0,0,{},{}", s, s) : fmt::format("{},0,0,{}", s, s);
-    const Motion motion = parse_robot_csv("x.csv", "1,2,0.8," + q + ",0.1,0.2\n1,2,0.8," + q + ",0.1,0.2\n");
+    const std::string row = std::string("1,2,0.8,").append(q).append(",0.1,0.2\n");
+    const Motion motion = parse_robot_csv("x.csv", row + row);
     EXPECT_TRUE((motion.points[0].orientation[0] * Vector3d::UnitX()).isApprox(Vector3d::UnitY(), 1e-6))
         << motion.notes[0];
     EXPECT_EQ(motion.joints.size(), 2U);

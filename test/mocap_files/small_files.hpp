@@ -52,7 +52,7 @@ inline std::string robot_csv() {
          "8,0,0,0.7071068,0.7071068,0.3,0.4\n";
 }
 
-enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, mips = 86 };
+enum class C3dProcessor : std::uint8_t { kIntel = 84, kDec = 85, kMips = 86 };
 
 /// Bytes of a C3D file as each processor writes them.
 class C3dWriter {
@@ -60,14 +60,14 @@ class C3dWriter {
   explicit C3dWriter(C3dProcessor processor) : processor_(processor) {}
   void byte(int value) { bytes_ += static_cast<char>(value); }
   void word(int value) {
-    const bool high_first = processor_ == C3dProcessor::mips;
+    const bool high_first = processor_ == C3dProcessor::kMips;
     byte((high_first ? value >> 8 : value) & 0xff);
     byte((high_first ? value : value >> 8) & 0xff);
   }
   void real(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(processor_ == C3dProcessor::dec ? value * 4.0F : value);
+    const auto bits = std::bit_cast<std::uint32_t>(processor_ == C3dProcessor::kDec ? value * 4.0F : value);
     const int low = static_cast<int>(bits & 0xffff), high = static_cast<int>(bits >> 16);
-    const bool low_first = processor_ == C3dProcessor::intel;
+    const bool low_first = processor_ == C3dProcessor::kIntel;
     word(low_first ? low : high);
     word(low_first ? high : low);
   }
@@ -142,12 +142,12 @@ inline std::string little(std::uint32_t value, int bytes) {
 inline std::string zip(const std::vector<std::pair<std::string, std::string>>& files, bool deflated) {
   std::string bytes, directory;
   for (const auto& [name, content] : files) {
-    std::string packed = content;
+    std::string packed = content, input = content;
     if (deflated) {
       packed.resize(compressBound(static_cast<uLong>(content.size())) + 64);
       z_stream stream{};
       deflateInit2(&stream, 6, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
-      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
+      stream.next_in = reinterpret_cast<Bytef*>(input.data());
       stream.avail_in = static_cast<uInt>(content.size());
       stream.next_out = reinterpret_cast<Bytef*>(packed.data());
       stream.avail_out = static_cast<uInt>(packed.size());
@@ -161,9 +161,10 @@ inline std::string zip(const std::vector<std::pair<std::string, std::string>>& f
                                little(crc, 4) + little(static_cast<std::uint32_t>(packed.size()), 4) +
                                little(static_cast<std::uint32_t>(content.size()), 4) +
                                little(static_cast<std::uint32_t>(name.size()), 2) + little(0, 2);
-    directory += "PK\x01\x02" + little(20, 2) + common + little(0, 2) + little(0, 2) + little(0, 2) + little(0, 4) +
-                 little(static_cast<std::uint32_t>(bytes.size()), 4) + name;
-    bytes += "PK\x03\x04" + common + name + packed;
+    directory.append("PK\x01\x02").append(little(20, 2)).append(common);
+    directory.append(little(0, 2)).append(little(0, 2)).append(little(0, 2)).append(little(0, 4));
+    directory.append(little(static_cast<std::uint32_t>(bytes.size()), 4)).append(name);
+    bytes.append("PK\x03\x04").append(common).append(name).append(packed);
   }
   const auto count = static_cast<std::uint32_t>(files.size());
   return bytes + directory + "PK\x05\x06" + little(0, 4) + little(count, 2) + little(count, 2) +

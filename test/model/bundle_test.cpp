@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "files/config_error.hpp"
+#include "folders.hpp"
 
 namespace pmg::model {
 namespace {
@@ -23,7 +24,7 @@ class BundleTest : public testing::Test {
 
   /// The test's robot with a policy and a calibration.
   static void make_robot(const fs::path& directory) {
-    fs::copy(fs::path(PMG_SOURCE_DIR) / "test/data/robots/biped", directory, fs::copy_options::recursive);
+    fs::copy(fs::path(pmg::test::project_folder()) / "test/data/robots/biped", directory, fs::copy_options::recursive);
     fs::create_directories(directory / "policies");
     fs::create_directories(directory / "calibration");
     write(directory / "policies/walk.onnx", "weights");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "files/config_error.hpp"
+#include "folders.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
 #include "temporary_copy.hpp"
@@ -28,7 +29,7 @@ class CommandInverseFile : public testing::Test {
     return "nothing was thrown";
   }
 
-  const std::string biped_ = std::string(PMG_SOURCE_DIR) + "/test/data/robots/biped";
+  const std::string biped_ = pmg::test::project_folder() + "/test/data/robots/biped";
   RobotModel robot_ = load_robot(biped_);
   TemporaryCopy copy_{biped_};
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "files/config_error.hpp"
+#include "folders.hpp"
 #include "model/robot_model.hpp"
 #include "temporary_copy.hpp"
 
@@ -43,7 +44,7 @@ class RefusedRobot : public ::testing::Test {
     expect("biped.urdf", copy_.line_of("biped.urdf", element), key, what);
   }
 
-  TemporaryCopy copy_{std::string(PMG_SOURCE_DIR) + "/test/data/robots/biped"};
+  TemporaryCopy copy_{pmg::test::project_folder() + "/test/data/robots/biped"};
 };
 
 TEST_F(RefusedRobot, TheUnspoiledOneIsNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }

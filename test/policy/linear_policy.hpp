@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "folders.hpp"
 #include "model/bundle.hpp"
 #include "pmg/variant.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::test {
 
-inline const std::filesystem::path kLinearPolicy = PMG_SOURCE_DIR "/test/data/policies/linear.onnx";
+inline const std::filesystem::path kLinearPolicy = pmg::test::project_folder() + "/test/data/policies/linear.onnx";
 inline const std::string kNoClips(64, '0');  ///< the clip library named in its metadata
 
 /// A copy of the file that lives as long as this object. Replaced texts keep their length, so the surrounding protobuf

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "policy/observation.hpp"
 
 namespace pmg::policy {
@@ -16,7 +17,9 @@ constexpr float kRounding = 1e-6F;  // training computes in float; the elements 
 
 using nlohmann::json;
 
-json recorded() { return json::parse(std::ifstream(PMG_SOURCE_DIR "/test/data/training/observations.json")); }
+json recorded() {
+  return json::parse(std::ifstream(pmg::test::project_folder() + "/test/data/training/observations.json"));
+}
 
 Eigen::VectorXd vector(const json& numbers) {
   const auto values = numbers.get<std::vector<double>>();
@@ -60,7 +63,7 @@ std::vector<std::string> layout_of(const ObservationLayout& layout) {
 }
 
 TEST(TrainingObservation, EqualsTheControllersElementByElement) {
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const json training = recorded();
   ASSERT_EQ(training["joints"].get<std::vector<std::string>>(), robot.joint_index.names());
   ASSERT_EQ(vector(training["stand_rad"]), Eigen::VectorXd(robot.q_stand()));

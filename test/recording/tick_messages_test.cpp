@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "control/fixtures.hpp"
+#include "folders.hpp"
 #include "pmg_msgs/message_fields.hpp"
 
 namespace pmg::recording {
@@ -71,7 +72,7 @@ class TickMessages : public testing::Test {
     record_->drive_count = record_->request_count = record_->arms_count = 1;
     record_->result.limited.by[2] = 1;
   }
-  const model::RobotModel robot_ = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot_ = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const int joints_ = robot_.joint_index.size();
   const RunInfo run_{.robot = "z1", .files = {{"robot.yaml", "00"}}, .refused = {"memory locking"}};
   const std::unique_ptr<control::TickRecord> record_ = std::make_unique<control::TickRecord>();  // records are large

@@ -14,7 +14,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PATH = "/usr/local/sbin:/usr/sbin:/usr/bin:/sbin:/bin"  # the distribution's programs: no user's own python3
-LISTS = ("third_party/apt-packages", "third_party/apt-packages-checks")
+LISTS = ("third_party/apt-packages", "third_party/apt-packages-checks", "third_party/apt-packages-slow")
 PREFIXES = {"command", "env", "exec", "nice", "nohup", "setsid", "sudo", "time", "xargs"}  # what follows is a command, too
 NO_COMMAND = re.compile(r"[-$\d]|\w+=")  # a prefix's options, their numbers, assignments, and what only a run knows
 OUTSIDE = {"sudo": "a user without root has it or is told so"}

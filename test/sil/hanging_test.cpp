@@ -11,6 +11,7 @@
 
 #include "control/control_setup.hpp"
 #include "control/fixtures.hpp"
+#include "folders.hpp"
 #include "sil/lockstep.hpp"
 #include "sil/sil_hal.hpp"
 #include "sil/simulated_robot.hpp"
@@ -167,8 +168,8 @@ Ride ride(const Scenario& scenario, const RopeAt& rope, const RideOptions& optio
   loaded.policy = std::make_unique<CountedPolicy>(std::move(loaded.policy), calls);
   sim::WorldOptions world_options = world_with_noise(options.seed, false);
   if (options.seed > 0) {
-    static const sim::VariationRanges ranges =
-        sim::load_variation_ranges(std::filesystem::path(PMG_SOURCE_DIR) / "config/evaluation/variation.yaml");
+    static const sim::VariationRanges ranges = sim::load_variation_ranges(
+        std::filesystem::path(pmg::test::project_folder()) / "config/evaluation/variation.yaml");
     sim::vary(world_options, ranges, robot, options.seed);
   }
   sim::World world(robot, world_options);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "control/fixtures.hpp"
+#include "folders.hpp"
 #include "io/log_reader.hpp"
 #include "sil/scripted_plant.hpp"
 #include "sil/sil_hal.hpp"
@@ -233,7 +234,8 @@ TEST_F(LockstepRun, AFaultIsInTheLogAndInTheSummary) {
 }
 
 TEST_F(LockstepRun, TheTourDoesNotFallAndItsReferenceKeepsTheFeetOnTheGround) {
-  const Scenario tour = load_scenario(std::filesystem::path(PMG_SOURCE_DIR) / "config/scenarios/tour.yaml");
+  const Scenario tour =
+      load_scenario(std::filesystem::path(pmg::test::project_folder()) / "config/scenarios/tour.yaml");
   const RunOutcome outcome = simulate(test::z1(), tour, "tour.lcm", 0);
   EXPECT_FALSE(outcome.fell) << "at " << outcome.fell_at_s << " s";
   EXPECT_TRUE(outcome.faults.empty());

@@ -7,6 +7,7 @@
 
 #include "control/fixtures.hpp"
 #include "files/config_error.hpp"
+#include "folders.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::sil {
@@ -90,7 +91,7 @@ TEST_F(ScenarioFile, RefusalsNameFileLineAndKey) {
 }
 
 TEST(Scenarios, ThoseOfTheProjectLoadAndTheTourVisitsEveryChannel) {
-  const std::filesystem::path folder = std::filesystem::path(PMG_SOURCE_DIR) / "config/scenarios";
+  const std::filesystem::path folder = std::filesystem::path(pmg::test::project_folder()) / "config/scenarios";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) EXPECT_NO_THROW(load_scenario(entry.path()));
   const Scenario tour = load_scenario(folder / "tour.yaml");
   EXPECT_GE(tour.duration_s(), 90.0);

@@ -9,6 +9,7 @@
 
 #include "control/control_setup.hpp"
 #include "control/fixtures.hpp"
+#include "folders.hpp"
 #include "sil/lockstep.hpp"
 #include "sil/sil_hal.hpp"
 #include "sil/simulated_robot.hpp"
@@ -19,8 +20,8 @@ namespace pmg::test {
 /// seed 0: the nominal robot; else drawn from config/evaluation/variation.yaml.
 inline sim::WorldOptions varied_world(const model::RobotModel& robot, std::uint64_t seed) {
   sim::WorldOptions options = sil::world_with_noise(seed, false);
-  static const sim::VariationRanges ranges =
-      sim::load_variation_ranges(std::filesystem::path(PMG_SOURCE_DIR) / "config/evaluation/variation.yaml");
+  static const sim::VariationRanges ranges = sim::load_variation_ranges(
+      std::filesystem::path(pmg::test::project_folder()) / "config/evaluation/variation.yaml");
   if (seed > 0) sim::vary(options, ranges, robot, seed);
   return options;
 }

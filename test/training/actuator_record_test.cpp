@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "sim/actuator_model.hpp"
 #include "sim/motor_file.hpp"
 
@@ -25,7 +26,7 @@ constexpr double kStep_s = 0.002;
 constexpr int kSteps = 120;
 constexpr double kOtherLibm_Nm = 1e-9;
 
-const std::string kActuatorRecord = PMG_SOURCE_DIR "/test/data/training/actuators.json";
+const std::string kActuatorRecord = pmg::test::project_folder() + "/test/data/training/actuators.json";
 
 /// Each effect by itself, then with what it meets.
 const std::map<std::string, Values> kCases = {

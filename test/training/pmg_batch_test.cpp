@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "gco/ground_aware_command.hpp"
 #include "gco/motion_composition.hpp"
 #include "model/clip_library_file.hpp"
@@ -18,7 +19,7 @@
 namespace pmg::test {
 namespace {
 
-const std::string kRobot = PMG_SOURCE_DIR "/config/robots/z1";
+const std::string kRobot = pmg::test::project_folder() + "/config/robots/z1";
 constexpr float kRounding = 1e-6F;  // of doubles of order one written as float
 
 using Batch = std::unique_ptr<pmg_batch, void (*)(pmg_batch*)>;

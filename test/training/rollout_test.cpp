@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "sim/motor_file.hpp"
 #include "sim/world.hpp"
 
@@ -23,7 +24,7 @@ constexpr int kTicks = 20, kStepsPerTick = 5;
 constexpr double kTick_s = 0.01;
 constexpr double kOtherEngine_rad = 1e-4;  // of the same equations in another version of MuJoCo
 
-const std::string kRolloutRecord = PMG_SOURCE_DIR "/test/data/training/rollout.json";
+const std::string kRolloutRecord = pmg::test::project_folder() + "/test/data/training/rollout.json";
 
 /// Soft as a policy's: by kind of leg joint.
 const std::map<std::string, std::array<double, 2>> kGains = {{"hip_pitch", {120, 4.0}}, {"hip_roll", {120, 4.0}},
@@ -115,7 +116,7 @@ ordered_json rollout_now(const model::RobotModel& robot) {
 }
 
 TEST(Rollout, InTheAirIsWhatTheRecordForTrainingSays) {
-  const model::RobotModel robot = model::load_robot(PMG_SOURCE_DIR "/config/robots/z1");
+  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
   const ordered_json now = rollout_now(robot);
   if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kRolloutRecord) << now.dump() << '\n';
   const auto record = ordered_json::parse(std::ifstream(kRolloutRecord));
