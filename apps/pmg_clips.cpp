@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 
+#include "clips_build.hpp"
 #include "clips_inspect.hpp"
 #include "files/config_error.hpp"
 #include "gco/make_command_inverse.hpp"
@@ -233,7 +234,8 @@ int main(int argc, char** argv) {
   CLI::App app("Makes and shows clip libraries.", "pmg_clips");
   app.require_subcommand(1);
   app.footer(
-      "Examples: pmg_clips inspect walk.bvh; pmg_clips synth --robot z1 --out config/robots/z1/clips && pmg_clips show "
+      "Examples: pmg_clips inspect walk.bvh; pmg_clips build library.yaml --robot z1 --out clips; pmg_clips synth "
+      "--robot z1 --out config/robots/z1/clips && pmg_clips show "
       "--robot z1\n"
       "Exit codes: 0 ok, 1 a check failed, 2 bad input, 130 interrupted (nothing is written: the old clips stay "
       "whole).");
@@ -279,11 +281,16 @@ int main(int argc, char** argv) {
   walk_command->add_flag("--list", walking.list, "print every command's figures");
   apps::InspectOptions inspecting;
   CLI::App* inspect_command = apps::add_inspect(app, inspecting);
+  apps::BuildOptions building;
+  CLI::App* build_command = apps::add_build(app, building);
   return apps::run_program(app, argc, argv, [&]() -> int {
     if (inspect_command->parsed()) return apps::inspect(inspecting);
     apps::notice({SIGINT, SIGTERM}, "leaving the old clips as they were");
     try {
       if (walk_command->parsed()) return walk(walking);
+      if (build_command->parsed()) {
+        return apps::build(building, [](const auto& of, const auto& clips) { write_inverse(of, clips, "library"); });
+      }
       if (invert_command->parsed()) return invert(robot, inverse_clips, blend);
       return synth_command->parsed() ? synth(robot, out, blend) : show(options);
     } catch (const work::Interrupted&) {

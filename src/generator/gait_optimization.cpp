@@ -19,7 +19,6 @@ namespace {
 constexpr std::size_t kKnots = 24;        // even: half a cycle is a whole number of knots
 constexpr double kEdgeBeyond = 0.005;     // [cycles]; duty factors of the clips in a mixture differ by as much
 constexpr double kClearanceGrowth = 1.6;  // exponent of the gain: half the gain needs 0.5^1.6, a third of the clearance
-constexpr int kRounds = 4;                // solves; after each, the velocity targets move by the error of the means
 
 /// The knots of both legs. The right leg of a symmetric gait uses the left leg's.
 struct KnotTable {
@@ -321,12 +320,12 @@ GaitSolution optimize_gait(const RobotLegs& legs, const GaitTask& task, const wo
   std::vector<VelocityTarget> targets(task.scenarios.size());
   GaitSolution solution;
   ProgressCallback stop(progress);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < task.rounds; ++round) {
     ceres::Problem problem;
     add_residuals(legs, task, targets, table, problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = round == 0 ? 160 : 40;
+    options.max_num_iterations = round == 0 ? task.first_iterations : task.later_iterations;
     options.function_tolerance = 1e-5;
     options.num_threads = 1;  // for identical bytes every time
     options.logging_type = ceres::SILENT;

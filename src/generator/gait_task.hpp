@@ -90,6 +90,9 @@ struct GaitTask {
   std::vector<ShapeGoal> shape;    ///< of the left leg
   std::vector<Scenario> scenarios;
   GaitWeights weights;
+  /// Solves; after each, the velocity targets move by the error of the means. Iterations at most, of the first one and
+  /// of each later one, which starts from the one before.
+  int rounds = 4, first_iterations = 160, later_iterations = 40;
 };
 
 /// Phase of the foot relative to the middle of its stance, in [-0.5, 0.5). Stance lasts |s| <= duty_factor / 2.

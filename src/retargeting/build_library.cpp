@@ -1,0 +1,124 @@
+#include "retargeting/build_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "files/config_error.hpp"
+#include "generator/static_clips.hpp"
+#include "mocap/activities.hpp"
+#include "mocap/gait_events.hpp"
+#include "mocap_files/key_bodies.hpp"
+
+namespace pmg::retargeting {
+namespace {
+using mocap::ActivityKind;
+
+/// The activities that show a primitive, the best first.
+std::vector<ActivityKind> kinds_of(const ClipRecipe& recipe) {
+  const bool positive = recipe.sign > 0.0;
+  if (recipe.channel == kVx) return {positive ? ActivityKind::kWalkForward : ActivityKind::kWalkBackward};
+  if (recipe.channel == kVy) return {positive ? ActivityKind::kSideLeft : ActivityKind::kSideRight};
+  return positive ? std::vector{ActivityKind::kTurnLeft, ActivityKind::kCircleLeft}
+                  : std::vector{ActivityKind::kTurnRight, ActivityKind::kCircleRight};
+}
+
+std::optional<mocap::GaitCycle> automatic_cycle(const ClipRecipe& recipe, const mocap::Recording& recording,
+                                                const std::vector<mocap::Step>& steps) {
+  const auto activities = mocap::find_activities(recording, mocap::course_of(recording), steps);
+  for (const ActivityKind kind : kinds_of(recipe)) {
+    std::optional<mocap::GaitCycle> best;
+    for (const mocap::Activity& activity : activities) {
+      if (activity.kind != kind) continue;
+      const auto cycle = mocap::best_cycle(recording, steps, activity.from_s, activity.to_s);
+      if (cycle && (!best || cycle->loop_error_m < best->loop_error_m)) best = cycle;
+    }
+    if (best) return best;
+  }
+  return std::nullopt;
+}
+
+/// Walking in the clip's direction, with the largest part of the velocity there.
+void expect_direction(const ClipRecipe& recipe, const RetargetedClip& made) {
+  const double speed = made.human.mean_velocity[static_cast<Eigen::Index>(recipe.channel)];
+  if (speed * recipe.sign > 0.0) return;
+  files::raise(recipe.frames_place, "clips." + recipe.name + ".frames",
+               fmt::format("choose a cycle from {:.2f} to {:.2f} s whose {} is {:.2f}", made.human.cut.from_s,
+                           made.human.cut.to_s, kChannelNames[recipe.channel], speed),
+               recipe.sign > 0.0 ? "a number above 0" : "a number below 0");
+}
+
+void expect_limits(const ClipRecipe& recipe, const RetargetedClip& made) {
+  if (made.limit_margin_rad >= 0.0) return;
+  files::raise(recipe.place, "clips." + recipe.name,
+               fmt::format("takes a joint {:.3f} rad beyond its limit", -made.limit_margin_rad),
+               "a motion that the robot's joints can imitate");
+}
+
+std::string source_of(const LibraryRecipe& recipe, const ClipRecipe& clip, const RetargetedClip& made) {
+  return fmt::format(
+      "retargeted from {}{}, {:.3f} to {:.3f} s ({}); scaled by Froude's law: legs {:.3f} m for {:.3f} m, lengths "
+      "times "
+      "{:.3f}, period and speed times {:.3f}",
+      clip.recording.filename().string(), clip.mirrored ? ", mirrored" : "", made.human.cut.from_s, made.human.cut.to_s,
+      recipe.source, made.length_ratio * made.human.leg_length_m, made.human.leg_length_m, made.length_ratio,
+      made.froude_ratio);
+}
+
+}  // namespace
+
+mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording) {
+  const std::vector<mocap::Step> steps = mocap::find_steps(recording);
+  const auto cycle = recipe.frames ? mocap::best_cycle(recording, steps, recipe.frames->first / recording.rate_hz,
+                                                       recipe.frames->second / recording.rate_hz)
+                                   : automatic_cycle(recipe, recording, steps);
+  if (!cycle) {
+    files::raise(recipe.frames_place, "clips." + recipe.name + ".frames",
+                 recipe.frames ? fmt::format("[{}, {}) of {} have no gait cycle", recipe.frames->first,
+                                             recipe.frames->second, recipe.recording.filename().string())
+                               : fmt::format("no stretch of {} shows {} with a whole cycle",
+                                             recipe.recording.filename().string(), recipe.name),
+                 "three steps or more; pmg_clips inspect tells what a recording holds");
+  }
+  return *cycle;
+}
+
+BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& recipe,
+                           const work::Progress& progress) {
+  const generator::JointRoles roles = generator::find_joint_roles(robot);
+  generator::Making making{robot, roles, generator::robot_legs(robot, roles), {}};
+  BuiltLibrary built;
+  ClipLibrary& library = built.library;
+  library.q_stand = robot.q_stand();
+  library.q_lower = robot.q_lower();
+  library.q_upper = robot.q_upper();
+  library.mirror = robot.mirror;
+  making.posture = {generator::make_bend(robot, roles, making.legs), generator::make_lean(robot, roles, making.legs),
+                    generator::make_squat(robot, roles, making.legs)};
+  library.posture = making.posture;
+
+  const mocap::NameTable names = mocap::read_name_table(recipe.names ? *recipe.names : mocap::default_name_table());
+  for (const ClipRecipe& clip : recipe.clips) {
+    progress.report_or_throw(static_cast<double>(built.clips.size()) / static_cast<double>(recipe.clips.size()),
+                             "retargeting " + clip.name);
+    mocap::Recording recording = mocap::make_recording(
+        clip.recording.string(), mocap::read_motion(clip.recording, clip.read), names, clip.options);
+    if (clip.mirrored) recording = mirrored(recording);
+    const work::Progress within{
+        .report =
+            [&](double, std::string_view) {
+              if (progress.report)
+                progress.report(static_cast<double>(built.clips.size()) / static_cast<double>(recipe.clips.size()),
+                                "retargeting " + clip.name);
+            },
+        .interrupted = progress.interrupted};
+    RetargetedClip made = retarget(making, recording, chosen_cycle(clip, recording), clip.channel, within);
+    expect_direction(clip, made);
+    expect_limits(clip, made);
+    (clip.sign > 0.0 ? library.positive : library.negative)[clip.channel] = made.clip;
+    built.clips.push_back({clip, made, source_of(recipe, clip, made), recording.notes});
+  }
+  return built;
+}
+
+}  // namespace pmg::retargeting

@@ -1,0 +1,37 @@
+// A clip library from a recipe and its recordings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/robot_model.hpp"
+#include "pmg/clip.hpp"
+#include "retargeting/library_recipe.hpp"
+#include "retargeting/retargeting.hpp"
+#include "work/progress.hpp"
+
+namespace pmg::retargeting {
+
+struct BuiltClip {
+  ClipRecipe recipe;
+  RetargetedClip made;
+  std::string source;              ///< one line for the clip's YAML
+  std::vector<std::string> notes;  ///< what the reader of the recording guessed
+};
+
+struct BuiltLibrary {
+  ClipLibrary library;  ///< without inverse
+  std::vector<BuiltClip> clips;
+};
+
+/// The cycle with the least loop error of the recipe's frames; for `auto`, of the stretches that
+/// mocap::find_activities holds for this primitive. Throws files::ConfigError at the recipe's line if there is none.
+mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording);
+
+/// One clip after the other. Throws files::ConfigError for a recording that can't be read, has no cycle, moves in
+/// another direction than the clip's, or whose clip leaves the joints' limits; work::Interrupted where progress is
+/// over.
+BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& recipe,
+                           const work::Progress& progress = {});
+
+}  // namespace pmg::retargeting

@@ -1,0 +1,157 @@
+#include "retargeting/retargeting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include "generator/gait_optimization.hpp"
+#include "pmg/periodic_slopes.hpp"
+#include "retargeting/leg_imitation.hpp"
+#include "retargeting/upper_body_imitation.hpp"
+
+namespace pmg::retargeting {
+namespace {
+using generator::GaitTask;
+using generator::kClipSamples;
+using generator::LegTrajectory;
+
+/// Kept free at each limit: the generator keeps 2 degrees after it has added a posture.
+constexpr double kLimitMargin_rad = 4.0 * kRadPerDegree;
+
+/// Slopes by central differences, for measures of the curves before the optimisation.
+LegTrajectory with_slopes(const std::vector<generator::LegPose>& q) {
+  LegTrajectory legs{q, q};
+  const std::size_t n = q.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    for (const Foot foot : {kLeft, kRight})
+      legs.dq_dphi[k][foot] = 0.5 * static_cast<double>(n) * (q[(k + 1) % n][foot] - q[(k + n - 1) % n][foot]);
+  }
+  return legs;
+}
+
+GaitTask task_of(const generator::Making& making, const RetargetedClip& made) {
+  const HumanCycle& human = made.human;
+  GaitTask task;
+  task.period_s = human.period_s * made.froude_ratio;
+  task.duty_factor = human.duty_factor;
+  task.velocity = made.wanted_velocity;
+  task.symmetric = false;  // people aren't
+  task.sway_m = human.sway_m * made.length_ratio;
+  task.hike_rad = human.hike_rad;
+  task.flat_from = human.flat_from;
+  task.flat_to = human.flat_to;
+  task.reference = imitate_legs(making.legs, human.pose, kLimitMargin_rad);
+  const GaitTiming when = generator::timing(task.period_s, task.duty_factor);
+  const generator::GroundMeasure imitated =
+      generator::measure(making.legs, with_slopes(task.reference), when, generator::hiking_base(task, 1.0));
+  task.height_m = imitated.height_mean_m;
+  // What a library is accepted with (generator/clip_report.hpp), and 1 to 2 mm.
+  task.clearance_m = 0.027;
+  task.foot_gap_m = 0.03;
+  // A degree off the human's angle costs as much as 7 cm/s off the mean speed, or as 1 cm/s of slip in double support.
+  task.weights.reference << 12.0, 12.0, 6.0, 12.0, 12.0, 6.0;
+  task.weights.bias = task.weights.reference;
+  task.weights.velocity = 3.0;
+  task.weights.velocity_yaw = 1.5;
+  task.weights.height = 30.0;
+  task.weights.limit = 300.0;
+  task.weights.clearance = 300.0;
+  task.scenarios = {{1.0, 1.0, {}}};
+  task.rounds = 3;
+  task.first_iterations = 60;
+  task.later_iterations = 20;
+  return task;
+}
+
+DynamicClip whole_body(const generator::Making& making, const GaitTask& task, const LegTrajectory& legs,
+                       const HumanCycle& human, const generator::GroundMeasure& ground) {
+  DynamicClip clip;
+  clip.period_s = task.period_s;
+  const GaitTiming when = generator::timing(task.period_s, task.duty_factor);
+  clip.contact_center = when.contact_center;
+  clip.duty_factor = when.duty_factor;
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    const double phase = static_cast<double>(k) / static_cast<double>(kClipSamples);
+    JointVector q = making.robot.q_stand();
+    imitate_upper_body(making.robot, making.roles, human, k, generator::hike(task, phase).angle_rad, kLimitMargin_rad,
+                       q);
+    for (const Foot foot : {kLeft, kRight}) {
+      for (std::size_t role = 0; role < generator::kLegJoints; ++role)
+        q[making.roles.leg[foot][role]] = legs.q[k][foot][static_cast<Eigen::Index>(role)];
+    }
+    clip.q.push_back(q);
+  }
+  clip.dq_dphi = periodic_spline_slopes(clip.q);
+  for (Eigen::Index i = 0; i < 3; ++i) clip.mean_velocity[static_cast<std::size_t>(i)] = ground.mean_velocity[i];
+  return clip;
+}
+
+template <typename Angle>
+Likeness likeness(const generator::Making& making, const LegTrajectory& legs, const GaitTask& task,
+                  const HumanCycle& human, Angle angle) {
+  const std::vector<generator::BaseMotion> base = generator::hiking_base(task, 1.0);
+  Likeness worse;
+  for (const Foot foot : {kLeft, kRight}) {
+    Eigen::ArrayXd robot(kClipSamples), person(kClipSamples);
+    for (std::size_t k = 0; k < kClipSamples; ++k) {
+      SidePose pose = leg_directions(making.legs.geometry[foot], legs.q[k][foot]);
+      for (Eigen::Vector3d* d : {&pose.thigh, &pose.shank, &pose.sole}) *d = base[k].R_HB * *d;
+      robot[static_cast<Eigen::Index>(k)] = angle(pose);
+      person[static_cast<Eigen::Index>(k)] = angle(human.pose[k].side[foot]);
+    }
+    const Eigen::ArrayXd a = robot - robot.mean(), b = person - person.mean();
+    worse.rms_rad = std::max(worse.rms_rad, std::sqrt((robot - person).square().mean()));
+    worse.correlation = std::min(worse.correlation, (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum()));
+  }
+  return worse;
+}
+
+void measure_joints(const model::RobotModel& robot, RetargetedClip& made) {
+  const DynamicClip& clip = made.clip;
+  std::vector<std::vector<double>> curves(robot.joints.size());
+  made.limit_margin_rad = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const model::Joint& joint = robot.joints[j];
+      const auto i = static_cast<Eigen::Index>(j);
+      curves[j].push_back(clip.q[k][i]);
+      made.limit_margin_rad =
+          std::min({made.limit_margin_rad, clip.q[k][i] - joint.lower_rad, joint.upper_rad - clip.q[k][i]});
+      made.joint_speed_share =
+          std::max(made.joint_speed_share, std::abs(clip.dq_dphi[k][i]) / clip.period_s / joint.velocity_limit_rad_s);
+    }
+  }
+  made.seam = mocap::seam_jump(curves, clip.period_s);
+}
+
+}  // namespace
+
+RetargetedClip retarget(const generator::Making& making, const mocap::Recording& recording, const mocap::GaitCycle& cut,
+                        Channel channel, const work::Progress& progress) {
+  const auto begin = std::clock();
+  RetargetedClip made;
+  made.human = human_cycle(recording, cut);
+  made.length_ratio = leg_length_m(making.legs.geometry[kLeft]) / made.human.leg_length_m;
+  made.froude_ratio = std::sqrt(made.length_ratio);
+  const auto component = static_cast<Eigen::Index>(channel);
+  const double human_speed = made.human.mean_velocity[component];
+  // The rate of turning is 1 / time; speeds are length / time.
+  made.wanted_velocity[component] =
+      channel == kOmega ? human_speed / made.froude_ratio : human_speed * made.froude_ratio;
+
+  const GaitTask task = task_of(making, made);
+  const LegTrajectory legs = generator::optimize_gait(making.legs, task, progress).legs;
+  made.ground = generator::measure(making.legs, legs, generator::timing(task.period_s, task.duty_factor),
+                                   generator::hiking_base(task, 1.0));
+  made.clip = whole_body(making, task, legs, made.human, made.ground);
+  made.thigh = likeness(making, legs, task, made.human, thigh_pitch_rad);
+  made.knee = likeness(making, legs, task, made.human, knee_flexion_rad);
+  made.ankle = likeness(making, legs, task, made.human, ankle_flexion_rad);
+  measure_joints(making.robot, made);
+  made.solve_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  made.frames_per_s = static_cast<double>(kClipSamples) / made.solve_s;
+  return made;
+}
+
+}  // namespace pmg::retargeting

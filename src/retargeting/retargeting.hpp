@@ -1,0 +1,45 @@
+// From one gait cycle of a human to a dynamic clip of a robot (paper III-A.1).
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "generator/gait_measure.hpp"
+#include "generator/gait_parts.hpp"
+#include "pmg/clip.hpp"
+#include "retargeting/human_cycle.hpp"
+#include "work/progress.hpp"
+
+namespace pmg::retargeting {
+
+/// Robot's curve against the same human's at the same phase; the worse of both legs.
+struct Likeness {
+  double rms_rad = 0.0;  ///< with the difference of the means
+  double correlation = 1.0;
+};
+
+struct RetargetedClip {
+  DynamicClip clip;
+  HumanCycle human;
+  double length_ratio = 1.0;  ///< robot's leg over the human's
+  double froude_ratio = 1.0;  ///< sqrt(length_ratio): robot's period over the human's, and its speed over the human's
+  Eigen::Vector3d wanted_velocity = Eigen::Vector3d::Zero();  ///< of the clip's channel alone: vx, vy [m/s], omega
+  Likeness thigh, knee, ankle;
+  generator::GroundMeasure ground;
+  mocap::SeamJump seam;            ///< of the clip's joints
+  double limit_margin_rad = 0.0;   ///< smallest distance from a joint limit; negative: beyond it
+  double joint_speed_share = 0.0;  ///< of the joints' limits, largest
+  double solve_s = 0.0;            ///< CPU time of the process
+  double frames_per_s = 0.0;       ///< clip samples made a second of it
+};
+
+/// (robot, recording, cycle, channel) => (clip). Lengths scale by l = robot's leg / human's, times and speeds by
+/// sqrt(l), so that Froude's number v^2 / (g leg) stays (R. Alexander, Physiol. Rev. 69(4), 1989). Of the human's mean
+/// velocity the channel's component is kept: a primitive moves in one direction. First each pose is imitated limb by
+/// limb (leg_imitation.hpp); then generator::optimize_gait makes the feet agree with the ground near
+/// these curves, at full gain alone. Deterministic. Throws files::ConfigError, and work::Interrupted where progress is
+/// over.
+RetargetedClip retarget(const generator::Making& making, const mocap::Recording& recording, const mocap::GaitCycle& cut,
+                        Channel channel, const work::Progress& progress = {});
+
+}  // namespace pmg::retargeting
