@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "gamepad/gamepad_station.hpp"
+#include "gamepad/pad_command.hpp"
+#include "gamepad/pad_text.hpp"
 #include "gamepad/sdl_pads.hpp"
 #include "io/lcm_link.hpp"
-#include "operator/key_command.hpp"
-#include "operator/terminal_keys.hpp"
+#include "keyboard/key_command.hpp"
+#include "keyboard/terminal_keys.hpp"
+#include "operator/driving_station.hpp"
 #include "program.hpp"
 #include "raw_terminal.hpp"
 
@@ -47,8 +49,9 @@ int drive(const Arguments& arguments) {
   if (arguments.wired) mapping.still_s = std::numeric_limits<double>::infinity();
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
-  gamepad::GamepadStation station(link, mapping, arguments.robot, ops::session_number(), clock,
-                                  seal::load_operator_seal(arguments.keys, link.url()));
+  gamepad::PadCommand command(mapping);
+  ops::DrivingStation station(link, command, arguments.robot, ops::session_number(), clock,
+                              seal::load_operator_seal(arguments.keys, link.url()));
   {
     apps::RawTerminal terminal;
     apps::notice({SIGINT, SIGTERM, SIGHUP, SIGQUIT}, nullptr);
@@ -59,16 +62,17 @@ int drive(const Arguments& arguments) {
     while (!station.gone()) {
       if (apps::interrupt_requested != 0 || terminal.ended()) station.let_go();
       for (const ops::TerminalKey& key : decoder.take(terminal.read(), clock.now_ns()))
-        if (ops::key_named(key.name) == ops::Key::kDamp) station.press_stop();
+        if (ops::key_named(key.name) == ops::Key::kDamp) station.stop();
       const auto& reports = pads.poll();
-      station.take(reports);
+      command.take(reports, clock.now_ns());
       station.step(kWait_ms);
-      pads.show(station.sign());
+      pads.show(gamepad::sign(station));
       if (clock.now_ns() < picture_at_ns) continue;
       picture_at_ns = clock.now_ns() + kPicture_ns;
       std::vector<std::string> lines = station.lines();
       lines.emplace_back();
-      for (std::string& line : station.pad_lines(reports, pads.useless())) lines.push_back(std::move(line));
+      for (std::string& line : gamepad::pad_lines(command, station, reports, pads.useless()))
+        lines.push_back(std::move(line));
       lines.emplace_back();
       for (const auto& [hold, meaning] : gamepad::mapping_rows(mapping))
         lines.push_back(fmt::format("{:<34}{}", hold, meaning));

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "io/lcm_link.hpp"
-#include "operator/keyboard_station.hpp"
+#include "keyboard/key_command.hpp"
+#include "keyboard/terminal_keys.hpp"
+#include "operator/driving_station.hpp"
 #include "operator/keyboard_text.hpp"
-#include "operator/terminal_keys.hpp"
 #include "program.hpp"
 #include "raw_terminal.hpp"
 
@@ -43,9 +44,10 @@ int drive(const Arguments& arguments) {
   constexpr std::int64_t kPicture_ns = 100'000'000;
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
-  ops::KeyboardStation station(link, arguments.robot, ops::KeyReport::kPressOnly, ops::session_number(), clock,
-                               seal::load_operator_seal(arguments.keys, link.url()));
-  const std::vector<std::string> keys = ops::key_lines();
+  ops::KeyCommand keys(ops::KeyReport::kPressOnly);
+  ops::DrivingStation station(link, keys, arguments.robot, ops::session_number(), clock,
+                              seal::load_operator_seal(arguments.keys, link.url()));
+  const std::vector<std::string> meanings = ops::key_lines();
   {
     apps::RawTerminal terminal;
     apps::notice({SIGINT, SIGTERM, SIGHUP, SIGQUIT}, nullptr);
@@ -55,13 +57,13 @@ int drive(const Arguments& arguments) {
     while (!station.gone()) {
       if (apps::interrupt_requested != 0 || terminal.ended()) station.let_go();
       for (const ops::TerminalKey& key : decoder.take(terminal.read(), clock.now_ns()))
-        station.press(key.name, key.shift);
+        keys.press(key.name, key.shift, clock.now_ns());
       station.step(kWait_ms);
       if (clock.now_ns() < picture_at_ns) continue;
       picture_at_ns = clock.now_ns() + kPicture_ns;
       std::vector<std::string> lines = station.lines();
       lines.emplace_back();
-      lines.insert(lines.end(), keys.begin(), keys.end());
+      lines.insert(lines.end(), meanings.begin(), meanings.end());
       terminal.draw(lines);
     }
   }

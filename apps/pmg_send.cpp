@@ -17,7 +17,6 @@
 #include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/robot_board.hpp"
-#include "operator/taken_command.hpp"
 #include "operator/words.hpp"
 #include "program.hpp"
 #include "send_arguments.hpp"
@@ -49,8 +48,7 @@ class Session {
         seal_(load_seal(arguments, link_.url())),
         source_(link_, seal_.source_name("pmg_send"), ops::session_number(), clock_, seal_),
         board_(link_, clock_, seal_),
-        arms_(link_, clock_, seal_),
-        taken_(arguments.command) {}
+        arms_(link_, clock_, seal_) {}
 
   int run() {
     for (const apps::SendRequest& request : apps::kSendRequests) {
@@ -123,7 +121,7 @@ class Session {
                       .climb = arguments_.request == "walk" || arguments_.request == apps::kArms,
                       .timeout_s = timeout_s(apps::kDriveTimeout_s)});
     std::optional<ops::ArmsLead> lead;
-    if (arguments_.request == apps::kArms) lead.emplace(source_, arms_, robot, apps::palm_goals(arguments_));
+    if (arguments_.request == apps::kArms) lead.emplace(clock_, arms_, robot, apps::palm_goals(arguments_));
     bool led = false;
     std::string arms_text;
     ops::Progress progress = ops::Progress::kPending;
@@ -131,15 +129,15 @@ class Session {
       link_.receive(5);
       if (lead && drive.driving()) {
         lead->step();
+        drive.lead(lead->wishes());
         led = lead->reached();
         arms_text = lead->trouble().empty() ? lead->text() : lead->trouble();
         if (!lead->trouble().empty()) drive.end_early();
       }
       if (apps::interrupt_requested != 0) drive.end_early();
-      const bool driving = drive.driving();
-      progress = drive.step();
+      progress = drive.step(news_of(robot));
       say_whose_lease(robot, drive.waits_for());
-      if (driving) say_what_is_taken(robot, !drive.driving());
+      say_what_is_taken(robot, drive.limited());
       show_progress(robot, drive);
     }
     const bool drove = progress == ops::Progress::kReached;
@@ -169,12 +167,15 @@ class Session {
               << " drove and fell silent without letting go; waiting until its lease is over\n";
   }
 
-  /// Prints once that the controller cannot follow the command as asked.
-  void say_what_is_taken(const std::string& robot, bool last) {
+  /// Null: the robot has sent nothing.
+  const ops::RobotNews* news_of(const std::string& robot) const {
     const auto news = board_.robots().find(robot);
-    if (news == board_.robots().end()) return;
-    const std::string text = taken_.step(news->second, clock_.now_ns(), last);
-    if (text.empty()) return;
+    return news == board_.robots().end() ? nullptr : &news->second;
+  }
+
+  /// Prints once that the controller cannot follow the command as asked.
+  void say_what_is_taken(const std::string& robot, const std::string& text) {
+    if (text.empty() || !limited_.empty()) return;
     limited_ = text;
     std::cerr << io::plain_text(fmt::format("{}: {}", robot, text)) << '\n';
   }
@@ -238,7 +239,6 @@ class Session {
   ops::OperatorSource source_;
   ops::RobotBoard board_;
   ops::ArmsBoard arms_;
-  ops::TakenCommand taken_;
   std::string limited_;  ///< the controller's replacement of a command that it cannot follow; or empty
   bool waiting_said_ = false;
   int shown_second_ = -1;

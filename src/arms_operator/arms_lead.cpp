@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "arms_operator/arms_text.hpp"
 
 namespace pmg::ops {
 
-ArmsLead::ArmsLead(OperatorSource& source, const ArmsBoard& board, std::string robot, const PerFoot<PalmGoal>& goals)
-    : clock_(source.clock()), arms_(source), board_(board), robot_(std::move(robot)), goals_(goals) {}
+ArmsLead::ArmsLead(const io::Clock& clock, const ArmsBoard& board, std::string robot, const PerFoot<PalmGoal>& goals)
+    : clock_(clock), board_(board), robot_(std::move(robot)), goals_(goals) {}
 
 bool ArmsLead::take_goals() {
   const HeardArms* heard = board_.of(robot_);
@@ -28,14 +27,9 @@ bool ArmsLead::take_goals() {
 
 void ArmsLead::step() {
   const std::int64_t now_ns = clock_.now_ns();
-  if (!begin_ns_) begin_ns_ = send_at_ns_ = now_ns;
-  if (!wishes_ && !take_goals()) {
-    if (now_ns - *begin_ns_ > kHear_ns) trouble_ = "it says nothing of arms: the robot has none that can be led";
-    return;
-  }
-  if (now_ns < send_at_ns_) return;
-  send_at_ns_ = std::max(send_at_ns_ + kPeriod_ns, now_ns);  // after a pause: no burst
-  arms_.send(robot_, *wishes_, kLease_s);
+  if (!begin_ns_) begin_ns_ = now_ns;
+  if (!wishes_ && !take_goals() && now_ns - *begin_ns_ > kHear_ns)
+    trouble_ = "it says nothing of arms: the robot has none that can be led";
 }
 
 bool ArmsLead::reached() const {

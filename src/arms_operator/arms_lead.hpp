@@ -6,7 +6,7 @@
 #include <string>
 
 #include "arms_operator/arms_board.hpp"
-#include "arms_operator/arms_source.hpp"
+#include "operator/arms_source.hpp"
 
 namespace pmg::ops {
 
@@ -19,16 +19,16 @@ struct PalmGoal {
 
 class ArmsLead {
  public:
-  static constexpr std::int64_t kPeriod_ns = 20'000'000;
-  static constexpr double kLease_s = 0.2;  ///< ten messages may be lost
   /// A controller whose robot has arms is heard of within that time.
   static constexpr std::int64_t kHear_ns = 1'000'000'000;
 
   /// Keeps references.
-  ArmsLead(OperatorSource& source, const ArmsBoard& board, std::string robot, const PerFoot<PalmGoal>& goals);
+  ArmsLead(const io::Clock& clock, const ArmsBoard& board, std::string robot, const PerFoot<PalmGoal>& goals);
 
-  /// Call after each link.receive() while the source drives the robot in walk, at least every 20 ms.
+  /// Call after each link.receive() while the robot is driven in walk, at least every 20 ms.
   void step();
+  /// What RobotDriver sends of it (Device::palms); null: the arms' poses aren't known yet.
+  const PerFoot<PalmWish>* wishes() const noexcept { return wishes_ ? &*wishes_ : nullptr; }
 
   /// What is wrong with it; empty: nothing yet.
   const std::string& trouble() const noexcept { return trouble_; }
@@ -40,13 +40,11 @@ class ArmsLead {
   bool take_goals();
 
   const io::Clock& clock_;
-  ArmsSource arms_;
   const ArmsBoard& board_;
   std::string robot_;
   PerFoot<PalmGoal> goals_;
   std::optional<PerFoot<PalmWish>> wishes_;
   std::optional<std::int64_t> begin_ns_;
-  std::int64_t send_at_ns_ = 0;
   std::string trouble_;
 };
 

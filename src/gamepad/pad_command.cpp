@@ -1,42 +1,76 @@
 #include "gamepad/pad_command.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pmg::gamepad {
 
+namespace {
+
+ops::Request request_of(Action action) {
+  switch (action) {
+    case Action::kStand:
+      return ops::Request::kStand;
+    case Action::kReset:
+      return ops::Request::kReset;
+    case Action::kLimp:
+      return ops::Request::kLimp;
+    case Action::kLift:
+      return ops::Request::kLift;
+    default:
+      return ops::Request::kSetDown;
+  }
+}
+
+}  // namespace
+
+ops::DeviceManner PadCommand::manner() const {
+  const auto rows = mapping_rows(mapping_);
+  const std::string deadman = kButtonNames[mapping_.deadman];
+  const std::size_t first = rows.size() - mapping_.chords.size();
+  const std::string raises = rows[first][0] + " makes it stand up";
+  return {.name = "gamepad",
+          .command_raises = false,
+          .at_once = false,
+          .raises = raises,
+          .resets = rows[first + 1][0] + " resets it",
+          .drives = deadman + " and a stick drive it",
+          .starts = raises,
+          .anew = "Press " + deadman + " anew, with neutral sticks"};
+}
+
 void PadCommand::take(std::span<const PadReport> pads, std::int64_t now_ns) {
-  stop_ = false;
   for (const PadReport& pad : pads) {
-    PadHand& hand = hands_[pad.id];
+    if (pad.missing[mapping_.stop]) continue;
+    PadHand& hand = hands_.try_emplace(pad.id, pad.id).first->second;
     hand.take(pad.state, mapping_, now_ns);
-    stop_ = stop_ || hand.stop();
+    requests_.stop = requests_.stop || hand.stop();
+    if (hand.action() && !driving_) requests_.other = request_of(*hand.action());
   }
   std::erase_if(hands_, [&](const auto& entry) {
     return std::ranges::none_of(pads, [&](const PadReport& pad) { return pad.id == entry.first && !pad.gone; });
   });
-  choose();
-  const bool moved = command_ != Command{};
+}
+
+std::span<const ops::Hold> PadCommand::holds(std::int64_t /*now_ns*/) noexcept {
+  holds_.clear();
+  for (auto& [id, hand] : hands_) holds_.push_back(hand.take_hold());
+  return holds_;
+}
+
+Command PadCommand::command(std::optional<std::int32_t> armed, std::int64_t now_ns) noexcept {
+  const auto hand = armed ? hands_.find(*armed) : hands_.end();
+  driving_ = hand == hands_.end() ? std::nullopt : armed;
   if (driving_) {
-    follow(hands_.at(*driving_), static_cast<double>(now_ns - taken_ns_) * 1e-9);
+    follow(hand->second, static_cast<double>(now_ns - commanded_ns_) * 1e-9);
   } else {
     command_ = Command{};
   }
-  if (!moved && command_ != Command{}) ++presses_;
-  taken_ns_ = now_ns;
+  commanded_ns_ = now_ns;
+  return command_;
 }
 
-void PadCommand::choose() {
-  if (stop_) rest();
-  if (driving_ && (!hands_.contains(*driving_) || !hands_.at(*driving_).armed())) driving_.reset();
-  action_.reset();
-  for (auto& [id, hand] : hands_) {
-    if (hand.armed() && !driving_) driving_ = id;
-    if (hand.armed() && driving_ != id) hand.disarm();  // it must be pressed again when the other has let go
-  }
-  for (const auto& [id, hand] : hands_) {
-    if (!driving_ && !stop_ && hand.action()) action_ = hand.action();
-  }
-}
+ops::Requests PadCommand::take_requests() noexcept { return std::exchange(requests_, ops::Requests{}); }
 
 void PadCommand::follow(const PadHand& hand, double dt_s) noexcept {
   for (std::size_t i = 0; i < kChannels; ++i) {
@@ -65,7 +99,6 @@ const char* PadCommand::text(std::int32_t pad) const noexcept {
 }
 
 void PadCommand::rest() noexcept {
-  for (auto& [id, hand] : hands_) hand.disarm();
   driving_.reset();
   command_[kVx] = command_[kVy] = command_[kOmega] = 0.0;
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operator/hold_to_drive.hpp"
+
 namespace pmg::gamepad {
 
 void PadHand::take(const PadState& state, const Mapping& mapping, std::int64_t now_ns) noexcept {
   const bool first = taken_ns_ < 0;
-  const bool paused = !first && now_ns - taken_ns_ > kDeaf_ns;
+  const bool paused = !first && now_ns - taken_ns_ > ops::HoldToDrive::kDeaf_ns;
   taken_ns_ = now_ns;
   if (first || state.changed) changed_ns_ = now_ns;
   for (std::size_t s = 0; s < 2; ++s) {
@@ -18,32 +20,37 @@ void PadHand::take(const PadState& state, const Mapping& mapping, std::int64_t n
   stop_ = state.pressed[mapping.stop] || (first && state.held[mapping.stop]);
   bends_ = state.held[mapping.posture];
   upright_ = state.held[mapping.upright];
-  follow_deadman(state, mapping, now_ns, paused);
+  follow_deadman(state, mapping, now_ns);
   follow_chords(state, mapping, now_ns, paused);
   released_ |= ~state.held;
   before_ = state.held;
 }
 
-void PadHand::follow_deadman(const PadState& state, const Mapping& mapping, std::int64_t now_ns, bool paused) noexcept {
+void PadHand::follow_deadman(const PadState& state, const Mapping& mapping, std::int64_t now_ns) noexcept {
   const std::size_t deadman = mapping.deadman;
-  if (stop_ || paused || !state.held[deadman]) armed_ = false;
-  if (!state.held[deadman]) {
+  const bool pressed = state.held[deadman] && released_[deadman] && (!before_[deadman] || state.pressed[deadman]);
+  hold_.down = state.held[deadman];
+  hold_.pressed = hold_.pressed || pressed;
+  hold_.neutral = neutral();
+  hold_.heard_ns = now_ns;
+  if (!hold_.down || pressed) {
+    hold_.lost = false;
     text_ = "";
-    return;
   }
-  const bool fresh = released_[deadman] && (!before_[deadman] || state.pressed[deadman]);
-  if (fresh && !stop_ && !paused) {
-    armed_ = neutral();
-    text_ = armed_ ? "" : "a stick isn't neutral";
-  }
-  if (!armed_) return;
+  if (!hold_.down || hold_.lost) return;
   // A pad may be lost without an event: a wireless one that is out of reach keeps its last state. Neutral sticks ask
   // for no motion, so only sticks that are out need a sign of life.
   const double silent_s = neutral() ? 0.0 : static_cast<double>(now_ns - changed_ns_) * 1e-9;
-  armed_ = silent_s <= mapping.still_s;
-  text_ = !armed_                            ? "it sent nothing for long and may be lost"
+  hold_.lost = silent_s > mapping.still_s;
+  text_ = hold_.lost                         ? "it sent nothing for long and may be lost"
           : 2.0 * silent_s > mapping.still_s ? "it sends nothing: move a stick a little, or the robot stops"
                                              : "";
+}
+
+ops::Hold PadHand::take_hold() noexcept {
+  const ops::Hold hold = hold_;
+  hold_.pressed = false;
+  return hold;
 }
 
 void PadHand::follow_chords(const PadState& state, const Mapping& mapping, std::int64_t now_ns, bool paused) noexcept {

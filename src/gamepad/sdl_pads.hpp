@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "gamepad/gamepad_station.hpp"
+#include "gamepad/pad_text.hpp"
 
 struct _SDL_GameController;
 union SDL_Event;

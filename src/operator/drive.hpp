@@ -1,14 +1,12 @@
-// One stretch of driving: a command for some seconds, then zero velocity.
+// One stretch of driving by a script: a command for some seconds, then zero velocity.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "operator/climb.hpp"
 #include "operator/mode_wish.hpp"
-#include "operator/operator_source.hpp"
-#include "pmg/command.hpp"
+#include "operator/robot_driver.hpp"
 
 namespace pmg::ops {
 
@@ -19,56 +17,65 @@ struct DriveOptions {
       10;  ///< for each of the two requests, for a hoist to set the robot down, for a crashed source's lease to end
 };
 
-/// Sends at 50 Hz from construction on, because the controller needs a fresh command to enter Walk.
+/// A script as a device: one request, one hold that is held until the end, one command.
+class Script : public Device {
+ public:
+  Script(const Command& command, const DriveOptions& options) : command_(command), options_(options) {}
+  void begin() noexcept;
+  void end() noexcept { hold_.down = false; }
+  void lead(const PerFoot<PalmWish>* palms) noexcept { palms_ = palms; }
+
+  DeviceManner manner() const override;
+  void set_limits(const CommandLimits& /*limits*/) noexcept override {}  // the controller says what it doesn't follow
+  std::span<const Hold> holds(std::int64_t now_ns) noexcept override;
+  Command command(std::optional<std::int32_t> armed, std::int64_t now_ns) noexcept override;
+  Requests take_requests() noexcept override;
+  const PerFoot<PalmWish>* palms() const noexcept override { return palms_; }
+  void rest() noexcept override { end(); }
+  void upright() noexcept override {}
+
+ private:
+  Command command_;
+  DriveOptions options_;
+  Hold hold_{}, shown_{};
+  Requests requests_{};
+  const PerFoot<PalmWish>* palms_ = nullptr;
+};
+
 class Drive {
  public:
-  static constexpr std::int64_t kPeriod_ns = 20'000'000;
-  static constexpr double kLease_s = 0.5;       ///< a crashed station blocks the others for this time at most
-  static constexpr double kLastLease_s = 0.02;  ///< of the last command, so that the next source need not wait
   static constexpr std::int64_t kRelease_ns =
-      50'000'000;  ///< until that lease is over and the next line of a script may drive
-  static constexpr std::int64_t kCalm_ns =
-      600'000'000;  ///< zero velocity at the end: the generator's ramp and a margin
-  static constexpr std::int64_t kSettle_ns =
-      300'000'000;  ///< after this time the controller must show this source as driving
+      50'000'000;  ///< until the last command's lease is over and the next line of a script may drive
 
   /// Keeps a reference to source.
   Drive(OperatorSource& source, std::string robot, const Command& command, const DriveOptions& options);
 
-  /// Call after each link.receive(), at least every 20 ms.
-  Progress step();
+  /// Call after each link.receive(), at least every 20 ms. news: as in RobotDriver.
+  Progress step(const RobotNews* news = nullptr);
   /// Ends the stretch early, also with zero velocity.
-  void end_early() noexcept;
+  void end_early() noexcept { end_early_ = true; }
+  /// Leads the arms while it drives. Keeps the pointer; null: not.
+  void lead(const PerFoot<PalmWish>* palms) noexcept { script_.lead(palms); }
 
   const std::string& text() const noexcept { return text_; }  ///< why it failed, in words
-  bool driving() const noexcept { return phase_ == Phase::kDriving; }
-  double driven_s() const;
-  /// The source whose lease must end first: it drove, fell silent and did not let go. Empty: none.
-  std::string waits_for() const;
+  bool driving() const noexcept { return driver_.driving(); }
+  double driven_s() const noexcept { return driven_s_; }
+  std::string waits_for() const { return driver_.waits_for(); }              ///< as RobotDriver's
+  const std::string& limited() const noexcept { return driver_.limited(); }  ///< likewise
 
  private:
-  /// kClaiming: no climb is needed; the drive sends zero commands until the controller shows this source as driving.
-  enum class Phase { kClimbing, kClaiming, kDriving, kCalming, kDescending, kEnded };
-
-  void enter(Phase phase);
-  Progress fail(const std::string& text);
-  Progress follow_climb();
-  Progress follow_wish();
-  Progress claim();
-  /// The reason to stop; empty: none.
-  std::string trouble() const;
-  void send_if_due();
+  std::int64_t now_ns() const { return source_.clock().now_ns(); }
+  void note_driven();
+  Progress end(const std::string& text);
 
   OperatorSource& source_;
-  std::string robot_;
-  Command command_;
   DriveOptions options_;
-  Phase phase_ = Phase::kDriving;
-  std::int64_t begin_ns_, phase_since_ns_ = 0, send_at_ns_ = 0;
+  Script script_;
+  RobotDriver driver_;
+  std::int64_t begin_ns_;
+  bool begun_ = false, end_early_ = false;
+  std::optional<std::int64_t> driving_since_ns_, ended_ns_;
   double driven_s_ = 0.0;
-  bool end_early_ = false;
-  std::optional<Climb> climb_;
-  std::optional<ModeWish> wish_;
   std::string text_;
 };
 

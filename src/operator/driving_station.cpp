@@ -9,49 +9,46 @@
 
 namespace pmg::ops {
 
-DrivingStation::DrivingStation(io::LcmLink& link, std::string_view program, std::string robot, std::int64_t session,
+DrivingStation::DrivingStation(io::LcmLink& link, Device& device, std::string robot, std::int64_t session,
                                const io::Clock& clock, const seal::OperatorSeal& seal)
     : link_(link),
+      device_(device),
       clock_(clock),
-      source_(link, seal.source_name(program), session, clock, seal),
+      source_(link, seal.source_name(device.manner().name), session, clock, seal),
       board_(link, clock, seal),
-      robot_(std::move(robot)) {}
-
-void DrivingStation::begin() {
-  if (!robot_.empty()) driver_ = &make_driver(robot_);
+      robot_(std::move(robot)) {
+  if (!robot_.empty()) driver_.emplace(source_, robot_, device_);
 }
 
 void DrivingStation::stop() {
-  if (driver_ != nullptr) return driver_->stop();
-  stop_everybody_.emplace(source_, "", Goal::kStop, RobotDriver::kTimeout_s);
+  if (driver_) return driver_->stop();
+  stop_everybody_.emplace(source_, "", Goal::kStop, device_.manner().timeout_s);
 }
 
 void DrivingStation::let_go() {
   letting_go_ = true;
-  if (driver_ != nullptr) driver_->let_go();
+  if (driver_) driver_->let_go();
 }
 
 void DrivingStation::step(int wait_ms) {
+  if (driver_) {
+    driver_->heed();
+  } else {
+    device_.holds(clock_.now_ns());  // a press before a robot is known has no later effect
+    if (device_.take_requests().stop) stop();
+  }
   link_.receive(wait_ms);
   if (stop_everybody_ && stop_everybody_->step() != Progress::kPending) stop_everybody_.reset();
-  if (driver_ == nullptr && !stop_everybody_ && !letting_go_) find_robot();
-  if (driver_ == nullptr) return;
-  if (news() != nullptr && news()->info) {
-    const pmg_msgs::robot_info_t& info = *news()->info;
-    if (const auto limits = command_limits(info); limits && (!limits_known_ || limits_session_ != info.session)) {
-      driver_->set_limits(*limits);
-      limits_known_ = true;
-      limits_session_ = info.session;
-    }
-  }
-  driver_->step();
+  if (!driver_ && !stop_everybody_ && !letting_go_) find_robot();
+  if (driver_) driver_->step(news());
 }
 
 void DrivingStation::find_robot() {
   const auto& heard = source_.heard();
   if (heard.size() != 1 || clock_.now_ns() - heard.begin()->second.first_heard_ns < ModeWish::kGather_ns) return;
   robot_ = heard.begin()->first;
-  driver_ = &make_driver(robot_);
+  device_.rest();
+  driver_.emplace(source_, robot_, device_);
 }
 
 const RobotNews* DrivingStation::news() const {
@@ -60,12 +57,12 @@ const RobotNews* DrivingStation::news() const {
 }
 
 std::vector<std::string> DrivingStation::lines() const {
-  if (driver_ == nullptr) return {why_no_robot()};
+  if (!driver_) return {why_no_robot()};
   return driving_lines(*driver_, news(), news() == nullptr ? 0.0 : board_.silence_s(*news()));
 }
 
 DrivingTable DrivingStation::table() const {
-  if (driver_ == nullptr) return {why_no_robot(), ""};
+  if (!driver_) return {why_no_robot(), ""};
   return driving_table(*driver_, news(), news() == nullptr ? 0.0 : board_.silence_s(*news()));
 }
 
@@ -77,7 +74,7 @@ std::string DrivingStation::why_no_robot() const {
 }
 
 std::string DrivingStation::last_words() const {
-  const HeardRobot* heard = driver_ != nullptr ? source_.heard(robot_) : nullptr;
+  const HeardRobot* heard = driver_ ? source_.heard(robot_) : nullptr;
   if (heard == nullptr || !heard->mode()) return lines().front();
   return io::plain_text(fmt::format("{}: {}", robot_, mode_name(*heard->mode())));
 }

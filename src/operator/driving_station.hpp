@@ -1,9 +1,8 @@
-// An input on the network: its operator source, the robot that it drives, and the text about both.
+// A device on the network: its operator source, the robot that it drives, and the text about both.
 #pragma once
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "io/clock.hpp"
@@ -18,50 +17,44 @@ namespace pmg::ops {
 /// For one thread.
 class DrivingStation {
  public:
-  /// program: for the source's name. robot: the controller's name; empty: the only controller on the address. session:
-  /// as in OperatorSource.
-  DrivingStation(io::LcmLink& link, std::string_view program, std::string robot, std::int64_t session,
-                 const io::Clock& clock, const seal::OperatorSeal& seal);
-  virtual ~DrivingStation() = default;
+  /// Keeps references. robot: the controller's name; empty: the only controller on the address. session: as in
+  /// OperatorSource. seal: without keys unless given.
+  DrivingStation(io::LcmLink& link, Device& device, std::string robot, std::int64_t session, const io::Clock& clock,
+                 const seal::OperatorSeal& seal = seal::OperatorSeal());
+  ~DrivingStation() = default;
   DrivingStation(const DrivingStation&) = delete;
   DrivingStation& operator=(const DrivingStation&) = delete;
 
-  /// Receives for this time, then drives. Call repeatedly.
+  /// Acts on the device's requests, receives for this time, then drives. Call after the device's events, at least every
+  /// 10 ms.
   void step(int wait_ms);
   void let_go();
-  bool gone() const noexcept { return driver_ == nullptr ? letting_go_ : driver_->gone(); }
+  bool gone() const noexcept { return driver_ ? driver_->gone() : letting_go_; }
 
   bool heard() const noexcept { return !source_.heard().empty(); }  ///< any controller has sent a message
   std::vector<std::string> lines() const;                           ///< for a terminal
   DrivingTable table() const;                                       ///< for a window
   std::string last_words() const;                                   ///< at the end: the robot's last state
 
- protected:
-  /// Of the robot with this name; the object lives as long as the station.
-  virtual RobotDriver& make_driver(const std::string& robot) = 0;
-  /// Call once, from the constructor of the class that makes the driver.
-  void begin();
-  /// Stops the robot; before a robot is known, every robot on the address.
+  /// Stops the robot; before a robot is known, every robot on the address. A device's stop does so too.
   void stop();
 
-  OperatorSource& source() noexcept { return source_; }
-  const io::Clock& clock() const noexcept { return clock_; }
-  RobotDriver* driver() const noexcept { return driver_; }  ///< null: no robot is known
-  const RobotNews* news() const;                            ///< null: the robot has sent nothing
+  const RobotDriver* driver() const noexcept { return driver_ ? &*driver_ : nullptr; }  ///< null: no robot is known
+  const RobotNews* news() const;  ///< null: the robot has sent nothing
 
  private:
   void find_robot();
   std::string why_no_robot() const;
 
   io::LcmLink& link_;
+  Device& device_;
   const io::Clock& clock_;
   OperatorSource source_;
   RobotBoard board_;
   std::string robot_;
-  RobotDriver* driver_ = nullptr;
+  std::optional<RobotDriver> driver_;
   std::optional<ModeWish> stop_everybody_;
-  std::int64_t limits_session_ = 0;
-  bool letting_go_ = false, limits_known_ = false;
+  bool letting_go_ = false;
 };
 
 }  // namespace pmg::ops

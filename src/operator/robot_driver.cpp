@@ -1,3 +1,4 @@
+// Longer than 300 lines: one state machine.
 #include "operator/robot_driver.hpp"
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "operator/keyboard_text.hpp"
 #include "operator/words.hpp"
 
 namespace pmg::ops {
@@ -15,98 +17,146 @@ using Modes = pmg_msgs::mode_t;
 
 }  // namespace
 
-RobotDriver::RobotDriver(OperatorSource& source, std::string robot, CommandInput& input, DriverManner manner)
-    : source_(source), robot_(std::move(robot)), input_(input), manner_(std::move(manner)) {}
+RobotDriver::RobotDriver(OperatorSource& source, std::string robot, Device& device)
+    : source_(source), robot_(std::move(robot)), device_(device), manner_(device.manner()), arms_(source) {}
 
 void RobotDriver::stop() {
   errand_.reset();
-  stop_.emplace(source_, robot_, Goal::kStop, kTimeout_s);
+  stop_.emplace(source_, robot_, Goal::kStop, manner_.timeout_s);
   hold_back("stopped: " + manner_.raises);
 }
 
-void RobotDriver::stand() {
-  if (stop_ || letting_go_) return;  // the stop must be answered before anything else
-  input_.rest();
-  input_.upright();
+void RobotDriver::heed() {
+  const Requests requests = device_.take_requests();
+  if (requests.stop) {
+    stop();
+  } else if (requests.other) {
+    act(*requests.other);
+  }
+}
+
+void RobotDriver::act(Request request) {
+  if (letting_go_) return;
+  if (request == Request::kLift || request == Request::kSetDown) return hoist(request == Request::kLift);
+  if (stop_) return;  // the stop must be answered before anything else
+  switch (request) {
+    case Request::kStand:
+      rest();
+      device_.upright();
+      return rise(Goal::kStand);
+    case Request::kWalk:
+      return rise(Goal::kWalk);
+    case Request::kClaim:
+      claim_since_ns_ = now_ns();
+      return enter(Doing::kClaiming);
+    case Request::kReset:
+      return reset();
+    default:
+      return limp();
+  }
+}
+
+void RobotDriver::rise(Goal to) {
   held_back_ = false;
   errand_.reset();
-  climb(Goal::kStand);
+  climb(to);
 }
 
 void RobotDriver::reset() {
-  if (stop_ || letting_go_) return;
   hold_back("asks for a reset");
-  errand_.emplace(source_, robot_, Goal::kReset, kTimeout_s);
+  errand_.emplace(source_, robot_, Goal::kReset, manner_.timeout_s);
   errand_done_ = "reset: " + manner_.raises;
 }
 
 void RobotDriver::limp() {
-  if (stop_ || letting_go_) return;
   hold_back("asks it to go limp");
-  errand_.emplace(source_, robot_, Goal::kPassive, kTimeout_s);
+  errand_.emplace(source_, robot_, Goal::kPassive, manner_.timeout_s);
   errand_done_ = "limp: " + manner_.raises;
 }
 
 void RobotDriver::hoist(bool lift) {
-  if (letting_go_) return;
-  input_.rest();
-  hoist_.emplace(source_, robot_, lift, kTimeout_s);
+  rest();
+  hoist_.emplace(source_, robot_, lift, manner_.timeout_s);
 }
 
 void RobotDriver::let_go() {
   if (letting_go_) return;
   letting_go_ = true;
   letting_go_since_ns_ = now_ns();
-  input_.rest();
-  if (doing_ == Doing::kClimbing || doing_ == Doing::kIdle) {
-    gone_ = !stop_;
-    if (doing_ == Doing::kClimbing) idle("");
-  }
+  rest();
+  asked_[kVx] = asked_[kVy] = asked_[kOmega] = 0.0;
+  if (doing_ == Doing::kClimbing && mode_ && is_upright(*mode_)) return descend();  // it may be asked for Walk already
+  if (doing_ == Doing::kClimbing || doing_ == Doing::kClaiming) idle("");
+  gone_ = doing_ == Doing::kIdle && !stop_;
 }
 
-void RobotDriver::step() {
-  asked_ = input_.command(now_ns());
+void RobotDriver::step(const RobotNews* news) {
+  hear(news);
   watch_mode();
+  heed();
   follow_errands();
-  follow_input();
-  if (doing_ == Doing::kClimbing) {
+  follow_device();
+  if (doing_ == Doing::kClimbing || doing_ == Doing::kClaiming) {
     send_if_due();  // the command must arrive before the request for Walk
-    follow_climb();
+    if (doing_ == Doing::kClimbing) {
+      follow_climb();
+    } else {
+      follow_claim();
+    }
   }
-  if (doing_ != Doing::kIdle && doing_ != Doing::kClimbing) follow_drive();
+  if (doing_ == Doing::kDriving || doing_ == Doing::kCalming || doing_ == Doing::kDescending) follow_drive();
   send_if_due();
   const bool ended = doing_ == Doing::kIdle && !stop_;
   if (letting_go_ && (ended || now_ns() - letting_go_since_ns_ > kLetGo_ns)) {
-    if (doing_ != Doing::kIdle) idle("");
+    if (doing_ != Doing::kIdle) idle("it was let go of before it stood");
     gone_ = true;
   }
 }
 
+void RobotDriver::hear(const RobotNews* news) {
+  news_ = news;
+  if (news == nullptr || !news->info || limits_session_ == news->info->session) return;
+  if (const auto limits = command_limits(*news->info)) {
+    device_.set_limits(*limits);
+    limits_session_ = news->info->session;
+  }
+}
+
 void RobotDriver::enter(Doing doing) {
+  if (doing_ == Doing::kDriving) note_limits(true);
   doing_ = doing;
   doing_since_ns_ = now_ns();
   if (doing != Doing::kIdle) send_at_ns_ = std::min(send_at_ns_, now_ns());
   if (doing != Doing::kClimbing) climb_.reset();
   if (doing != Doing::kDescending) descent_.reset();
+  if (doing == Doing::kClimbing || doing == Doing::kClaiming) climbed_ = doing == Doing::kClimbing;
 }
 
 void RobotDriver::climb(Goal to) {
-  seen_presses_ = input_.presses();
   enter(Doing::kClimbing);
-  climb_.emplace(source_, robot_, to, kTimeout_s);
+  climb_.emplace(source_, robot_, to, manner_.timeout_s);
+}
+
+void RobotDriver::descend() {
+  enter(Doing::kDescending);
+  descent_.emplace(source_, robot_, Goal::kStand, manner_.timeout_s);
 }
 
 void RobotDriver::idle(const std::string& text) {
-  const bool drove = doing_ != Doing::kIdle;
+  const bool drove = doing_ != Doing::kIdle && source_.heard(robot_) != nullptr;
   enter(Doing::kIdle);
   if (drove) source_.send_command(robot_, Command{}, kLastLease_s);  // so that the next source need not wait
-  seen_presses_ = input_.presses();
   text_ = text;
 }
 
+void RobotDriver::rest() {
+  hold_.disarm();
+  device_.rest();
+}
+
 void RobotDriver::hold_back(const std::string& text) {
-  input_.rest();
-  input_.upright();
+  rest();
+  device_.upright();
   held_back_ = true;
   idle(text);
 }
@@ -136,6 +186,10 @@ void RobotDriver::follow_errands() {
     if (progress == Progress::kFailed) text_ = "THE STOP IS NOT ANSWERED: " + stop_->answers().front().text;
     if (progress != Progress::kPending) stop_.reset();
   }
+  if (errand_ && silent()) {
+    errand_.reset();  // nor must one for limp drives
+    text_ = silence_words();
+  }
   if (errand_) {
     const Progress progress = errand_->step();
     if (progress == Progress::kReached) text_ = errand_done_;
@@ -150,36 +204,38 @@ void RobotDriver::follow_errands() {
   }
 }
 
-void RobotDriver::follow_input() {
-  const bool fresh = input_.presses() != seen_presses_;
-  if (!fresh || letting_go_) return;
-  if (!limits_known_ && input_.held()) return;
-  if (doing_ == Doing::kDriving) {
-    seen_presses_ = input_.presses();
-  } else if (held_back_ || !wants_to_move()) {
-    seen_presses_ = input_.presses();  // earlier presses have no later effect
-    if (!held_back_) return;
-    input_.rest();
-    input_.upright();
-  } else if (doing_ == Doing::kCalming) {
-    enter(Doing::kDriving);
-  } else if (doing_ == Doing::kClimbing) {
-    return;
-  } else if (manner_.command_raises || (mode_ && is_upright(*mode_))) {
-    climb(Goal::kWalk);
-  } else {
-    seen_presses_ = input_.presses();
-    input_.rest();
-    input_.upright();
+void RobotDriver::follow_device() {
+  if (letting_go_) return;
+  const bool armed_before = hold_.armed().has_value();
+  hold_.step(device_.holds(now_ns()), now_ns());
+  if (armed_before && !hold_.armed()) device_.rest();
+  asked_ = device_.command(hold_.armed(), now_ns());
+  if (!hold_.armed()) asked_[kVx] = asked_[kVy] = asked_[kOmega] = 0.0;
+  const bool begins = wants_to_move() && (!wanted_before_ || hold_.pressed());
+  wanted_before_ = wants_to_move();
+  if (held_back_ && (begins || hold_.pressed())) {
+    rest();  // what is pressed before the robot is raised has no later effect
+    device_.upright();
+    asked_ = Command{};
+    wanted_before_ = false;
   }
+  const bool free = doing_ == Doing::kIdle || doing_ == Doing::kDescending;
+  if (held_back_ || !begins || !free) return;
+  if (mode_ && !silent() && (manner_.command_raises || is_upright(*mode_))) return climb(Goal::kWalk);
+  rest();
+  device_.upright();
 }
 
 void RobotDriver::follow_climb() {
+  // A request that an absent controller would find when it is back, seconds later, must not move it.
+  if (silent()) {
+    rest();
+    return idle(silence_words());
+  }
   const Progress progress = climb_->step();
   text_ = climb_->text();
   if (progress == Progress::kFailed) return idle(text_.empty() ? "no answer" : text_);
   if (progress == Progress::kPending) return;
-  seen_presses_ = input_.presses();
   if (source_.heard(robot_)->mode() == Modes::WALK) {
     enter(Doing::kDriving);
   } else {
@@ -187,47 +243,83 @@ void RobotDriver::follow_climb() {
   }
 }
 
+void RobotDriver::follow_claim() {
+  const HeardRobot* heard = source_.heard(robot_);
+  if (heard != nullptr && heard->status && heard->status->driving_source == source_.name())
+    return enter(Doing::kDriving);
+  if (!waits_for().empty() && static_cast<double>(now_ns() - claim_since_ns_) * 1e-9 < manner_.timeout_s) {
+    doing_since_ns_ = now_ns();  // after the end of that lease the controller has kSettle_ns to show this source
+    return;
+  }
+  if (const std::string why = trouble(); !why.empty()) idle(why);
+}
+
 void RobotDriver::follow_drive() {
   if (doing_ == Doing::kDescending) {
+    if (silent()) return idle(silence_words());
     const Progress progress = descent_->step();
     if (progress == Progress::kReached) return idle("");
     if (progress == Progress::kFailed) return idle(descent_->answers().front().text);
-  } else if (const std::string why = trouble(); !why.empty()) {
-    input_.rest();
+    return;
+  }
+  if (const std::string why = trouble(); !why.empty()) {
+    rest();
     return idle(why);
   }
-  const bool wanted = wants_to_move() || (input_.stays() && !letting_go_);
-  const bool rests = letting_go_ ? !moves() : !wanted;
+  const bool rests = letting_go_ ? !moves() : !wants_to_move() && !hold_.armed();
   if (doing_ == Doing::kDriving) {
+    note_limits(false);
     text_ = moves() ? "" : bent() ? "velocity is zero; the posture is held" : "velocity is zero";
     if (rests) enter(Doing::kCalming);
-  } else if (doing_ == Doing::kCalming) {
-    text_ = "velocity goes to zero";
-    if (!rests) {
-      enter(Doing::kDriving);
-    } else if (in_doing_ns() >= kCalm_ns) {
-      enter(Doing::kDescending);
-      descent_.emplace(source_, robot_, Goal::kStand, kTimeout_s);
-    }
+    return;
+  }
+  text_ = "velocity goes to zero";
+  if (!rests) {
+    enter(Doing::kDriving);
+  } else if (in_doing_ns() >= kCalm_ns) {
+    if (climbed_) return descend();
+    idle("");
   }
 }
 
+void RobotDriver::note_limits(bool last) {
+  if (!taken_ || news_ == nullptr) return;
+  const std::string text = taken_->step(*news_, now_ns(), last);
+  if (!text.empty()) limited_ = text;
+}
+
+std::string RobotDriver::waits_for() const {
+  if (doing_ == Doing::kClimbing) return climb_->waits_for();
+  const HeardRobot* heard = doing_ == Doing::kClaiming ? source_.heard(robot_) : nullptr;
+  return heard == nullptr ? "" : heard->silent_driver(source_.name());
+}
+
 std::string RobotDriver::trouble() const {
-  if (silent()) return "its controller is no longer heard";
+  if (silent()) return silence_words();
   if (in_doing_ns() < kSettle_ns) return "";
   const HeardRobot* heard = source_.heard(robot_);
   const pmg_msgs::status_t& status = *heard->status;
   if (status.driving_source != source_.name()) {
+    if (status.driving_source.empty() && heard->lacks_key()) return kNoKey;
     return status.driving_source.empty() ? "its commands are not taken: pmg_watch shows by what count"
                                          : "another source drives: " + status.driving_source;
   }
-  if (status.mode != Modes::WALK) return "it came to rest by itself: commands came late. " + manner_.anew;
-  return "";
+  if (status.mode == Modes::WALK) return "";
+  if (status.mode == Modes::FAULT) return "fault: " + status.fault;
+  if (status.hanging) return kHangs;
+  if (status.footing_unknown) return kFootingUnknown;
+  if (!climbed_) return fmt::format("mode is {}: commands move a robot in walk only", mode_name(status.mode));
+  return "it came to rest by itself: commands came late. " + manner_.anew;
 }
 
 bool RobotDriver::silent() const {
   const HeardRobot* heard = source_.heard(robot_);
   return heard == nullptr || now_ns() - heard->status_heard_ns > kSilent_ns;
+}
+
+std::string RobotDriver::silence_words() const {
+  if (mode_) return "the controller is no longer heard";
+  return fmt::format("no controller of this name answers on {}", source_.url());
 }
 
 bool RobotDriver::moves() const noexcept { return asked_[kVx] != 0.0 || asked_[kVy] != 0.0 || asked_[kOmega] != 0.0; }
@@ -239,21 +331,27 @@ bool RobotDriver::bent() const noexcept {
 void RobotDriver::send_if_due() {
   if (doing_ == Doing::kIdle || source_.heard(robot_) == nullptr) return;  // unheard: no command would be fresh
   Command command;
-  if (doing_ == Doing::kDriving || doing_ == Doing::kCalming) command = asked_;
+  const bool drives = doing_ == Doing::kDriving || doing_ == Doing::kCalming;
+  if (drives) command = asked_;
   const bool due = now_ns() >= send_at_ns_;
   if (!due && (!manner_.at_once || command == sent_)) return;
+  if (doing_ == Doing::kDriving && (!taken_ || command != sent_)) {
+    taken_.emplace(command);
+    limited_.clear();
+  }
   sent_ = command;
   // On a grid of times, so that a fixed rate is kept; after a pause the grid begins anew and nothing is made up for.
   const bool paused = now_ns() - send_at_ns_ >= kPeriod_ns;
   send_at_ns_ = (due && !paused ? send_at_ns_ : now_ns()) + kPeriod_ns;
   source_.send_command(robot_, command, kLease_s);
+  const PerFoot<PalmWish>* palms = device_.palms();
+  if (doing_ == Doing::kDriving && hold_.armed() && palms != nullptr) arms_.send(robot_, *palms, kArmsLease_s);
 }
 
 std::string RobotDriver::text() const { return doing_ == Doing::kIdle && text_.empty() ? idle_text() : text_; }
 
 std::string RobotDriver::idle_text() const {
-  if (!mode_) return fmt::format("no controller of this name is heard on {}", source_.url());
-  if (silent()) return "its controller is no longer heard";
+  if (silent()) return silence_words();
   const std::string& other = source_.heard(robot_)->status->driving_source;
   if (!other.empty() && other != source_.name()) return "another source drives: " + other;
   if (held_back_) return manner_.raises;

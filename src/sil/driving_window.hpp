@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "hal/backend.hpp"
-#include "operator/keyboard_thread.hpp"
+#include "keyboard/keyboard_thread.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/viewer.hpp"
 

@@ -34,6 +34,7 @@ class ArmsOperator : public testing::Test {
     for (int k = 0; k < 3000 && drive.step() == Progress::kPending; ++k) {
       if (drive.driving()) {
         arms.step();
+        drive.lead(arms.wishes());
         reached_ = arms.reached();
         text_ = arms.text();
       }
@@ -59,7 +60,7 @@ TEST_F(ArmsOperator, PalmsAreLedToTheirTargetsAndHandedBack) {
   ASSERT_NE(board_.of("z1"), nullptr) << "what the arms do is told before anybody leads them";
   PerFoot<PalmGoal> goals;
   goals[kLeft] = moved(kLeft, 0.1, 0.15);
-  ArmsLead there(source_, board_, "z1", goals);
+  ArmsLead there(network_.clock, board_, "z1", goals);
   lead(there, 2.0);
   EXPECT_TRUE(reached_) << text_;
   EXPECT_EQ(text_, "left arm: at its target");
@@ -71,7 +72,7 @@ TEST_F(ArmsOperator, PalmsAreLedToTheirTargetsAndHandedBack) {
   EXPECT_EQ(hold_text(board_.of("z1")->state), "the robot doesn't walk: arms are led in walk only");
 
   goals[kLeft] = goals[kRight] = {.wish = pmg_msgs::arms_t::HAND_BACK};
-  ArmsLead back(source_, board_, "z1", goals);
+  ArmsLead back(network_.clock, board_, "z1", goals);
   lead(back, 3.0);
   EXPECT_TRUE(reached_) << text_;
   EXPECT_EQ(board_.of("z1")->state.left, State::REFERENCE);
@@ -80,7 +81,7 @@ TEST_F(ArmsOperator, PalmsAreLedToTheirTargetsAndHandedBack) {
 TEST_F(ArmsOperator, ATargetOutOfReachIsNotReachedAndSaidSo) {
   PerFoot<PalmGoal> goals;
   goals[kRight] = {.wish = pmg_msgs::arms_t::AIM, .p_m = {2.0, -0.3, 0.3}};
-  ArmsLead far(source_, board_, "z1", goals);
+  ArmsLead far(network_.clock, board_, "z1", goals);
   lead(far, 3.0);
   EXPECT_FALSE(reached_);
   EXPECT_THAT(text_, testing::MatchesRegex("right arm: .*: 1\\.[0-9]+ m and .* from its target"));
@@ -134,7 +135,7 @@ TEST_F(ArmsOperator, InventedNamesFillNoMemory) {
 TEST_F(ArmsOperatorOfAnArmlessRobot, ARobotWithoutArmsIsSaidToHaveNone) {
   PerFoot<PalmGoal> goals;
   goals[kLeft].wish = pmg_msgs::arms_t::HAND_BACK;
-  ArmsLead lead(source_, board_, "z1", goals);
+  ArmsLead lead(network_.clock, board_, "z1", goals);
   for (int k = 0; k < 120; ++k) {
     lead.step();
     network_.advance();

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "gamepad/gamepad_station.hpp"
+#include "gamepad/pad_text.hpp"
 #include "gamepad/sdl_pads.hpp"
 #include "gamepad/virtual_pad.hpp"
 #include "operator/networked_robot.hpp"
@@ -32,7 +32,7 @@ class GamepadTest : public testing::Test {
   }
   void step() {
     network_.advance();
-    station_.take(pads_.poll());
+    command_.take(pads_.poll(), network_.clock.now_ns());
     station_.step(0);
   }
   void run(double seconds) {
@@ -61,7 +61,8 @@ class GamepadTest : public testing::Test {
   test::Network network_;
   test::NetworkedRobot& robot_ = network_.add_robot("biped");
   SdlPads pads_;
-  GamepadStation station_{network_.link, read_mapping(find_mapping("standard")), "biped", 1, network_.clock};
+  PadCommand command_{read_mapping(find_mapping("standard"))};
+  ops::DrivingStation station_{network_.link, command_, "biped", 1, network_.clock};
 };
 
 TEST_F(GamepadTest, StandsByItsChordWalksToTheEndOfTheRangeAndStandsWhenTheDeadmanIsLetGo) {
@@ -125,16 +126,17 @@ TEST_F(GamepadTest, APadWithoutTheStopButtonNeitherDrivesNorStopsAndSaysSo) {
   run(0.1);
   const auto& pads = pads_.poll();
   ASSERT_EQ(pads.size(), 1U);
-  EXPECT_THAT(station_.pad_lines(pads, {}),
+  EXPECT_THAT(pad_lines(command_, station_, pads, {}),
               testing::ElementsAre(testing::HasSubstr(": NEITHER DRIVES NOR STOPS: it has no button b, the stop")));
 }
 
 TEST_F(GamepadTest, APadsLinesSayWhetherItDrivesAndWhyNot) {
   using testing::ElementsAre, testing::EndsWith;
-  EXPECT_THAT(station_.pad_lines({}, {}), ElementsAre(testing::StartsWith("no game controller: plug one in")));
+  EXPECT_THAT(pad_lines(command_, station_, {}, {}),
+              ElementsAre(testing::StartsWith("no game controller: plug one in")));
   VirtualPad pad;
   run(0.1);
-  const auto lines = [&] { return station_.pad_lines(pads_.poll(), {}); };
+  const auto lines = [&] { return pad_lines(command_, station_, pads_.poll(), {}); };
   EXPECT_THAT(lines(), ElementsAre(EndsWith(": stops, and drives when its deadman is held")));
   pad.axis(kY, -1.0);
   pad.button(kLb, true);
@@ -147,7 +149,8 @@ TEST_F(GamepadTest, APadsLinesSayWhetherItDrivesAndWhyNot) {
   pad.button(kLb, true);
   run(0.1);
   EXPECT_THAT(lines(), ElementsAre(EndsWith(": drives")));
-  EXPECT_THAT(station_.pad_lines({}, std::vector<UselessPad>{{.name = "Foo", .guid = "03", .why = "w", .remedy = "r"}}),
+  EXPECT_THAT(pad_lines(command_, station_, {},
+                        std::vector<UselessPad>{{.name = "Foo", .guid = "03", .why = "w", .remedy = "r"}}),
               ElementsAre("Foo: NEITHER DRIVES NOR STOPS: w", "  GUID 03", "  r"));
 }
 
@@ -167,7 +170,7 @@ TEST_F(GamepadTest, OnePadDrivesAndAnyPadStopsWithinFiftyMilliseconds) {
   walk(pad);
   ops::OperatorSource flood(network_.link, "flood", 1, network_.clock);
   other.button(kB, true);
-  station_.take(pads_.poll());
+  command_.take(pads_.poll(), network_.clock.now_ns());
   other.button(kB, false);
   for (int k = 0; k < 5 && mode() != Mode::kDamping; ++k) {
     for (int m = 0; m < 300; ++m) flood.send_command("biped", Command{}, 1.0);

@@ -1,13 +1,15 @@
-// Game controllers whose states a test sets by hand, without SDL, network or robot.
+// Game controllers whose states a test sets by hand, and the rule of what is held, without SDL, network or robot.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "gamepad/pad_command.hpp"
+#include "operator/hold_to_drive.hpp"
 
 namespace pmg::gamepad {
 
@@ -30,14 +32,32 @@ class PadCommandTest : public testing::Test {
     for (PadReport& pad : pads_) pad.state.pressed = (pad.state.held & ~before_[pad.id]) | flicked_;
     flicked_.reset();
     command_.take(pads_, now_ns_);
+    follow();
     for (PadReport& pad : pads_) {
       before_[pad.id] = pad.state.held;
       pad.state.changed = lively_;
     }
-    stops_ += command_.stop() ? 1 : 0;
-    if (command_.action()) actions_.push_back(*command_.action());
     now_ns_ += static_cast<std::int64_t>(kStep_s * 1e9);
   }
+  /// As RobotDriver does it.
+  void follow() {
+    const ops::Requests requests = command_.take_requests();
+    if (requests.stop) {
+      ++stops_;
+      rest();
+    } else if (requests.other) {
+      actions_.push_back(*requests.other);
+    }
+    const bool armed = rule_.armed().has_value();
+    rule_.step(command_.holds(now_ns_), now_ns_);
+    if (armed && !rule_.armed()) command_.rest();
+    u_ = command_.command(rule_.armed(), now_ns_);
+  }
+  void rest() {
+    rule_.disarm();
+    command_.rest();
+  }
+  std::optional<std::int32_t> driving() const { return rule_.armed(); }
   PadReport& plug_in(std::int32_t id) {
     pads_.reserve(2);
     return pads_.emplace_back(PadReport{.id = id});
@@ -52,16 +72,18 @@ class PadCommandTest : public testing::Test {
   void arm(PadReport& pad) {
     let_go(pad, kLb);
     press(pad, kLb);
-    ASSERT_EQ(command_.driving(), pad.id);
+    ASSERT_EQ(driving(), pad.id);
   }
-  double u(std::size_t channel) { return command_.command(now_ns_).u[channel]; }
+  double u(std::size_t channel) const { return u_.u[channel]; }
 
   const Mapping mapping_ = read_mapping(find_mapping("standard"));
   PadCommand command_{mapping_};
   std::vector<PadReport> pads_;
   std::map<std::int32_t, Buttons> before_;
   Buttons flicked_;  ///< let go and pressed again before the next step, on every pad
-  std::vector<Action> actions_;
+  ops::HoldToDrive rule_;
+  Command u_;
+  std::vector<ops::Request> actions_;
   int stops_ = 0;
   bool lively_ = true;
   std::int64_t now_ns_ = 1'000'000'000;

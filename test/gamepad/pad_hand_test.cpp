@@ -16,11 +16,11 @@ TEST_F(PadCommandTest, TheDeadmanArmsWithNeutralSticksOnly) {
     pad.state.axes[axis] = 0.4;
     press(pad, kLb);
     run(0.2);
-    EXPECT_FALSE(command_.driving()) << axis;
-    EXPECT_STREQ(command_.text(pad.id), "a stick isn't neutral");
+    EXPECT_FALSE(driving()) << axis;
+    EXPECT_TRUE(rule_.refused(pad.id));
     pad.state.axes[axis] = 0.0;
     run(0.2);
-    EXPECT_FALSE(command_.driving()) << "neutral now, but the press is old";
+    EXPECT_FALSE(driving()) << "neutral now, but the press is old";
     arm(pad);
   }
 }
@@ -29,7 +29,7 @@ TEST_F(PadCommandTest, ADeadmanThatWasDownWhenThePadCameDoesNotArm) {
   PadReport& pad = plug_in(1);
   press(pad, kLb);
   run(0.5);
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
 }
 
 TEST_F(PadCommandTest, APauseOfTheProgramDisarms) {
@@ -38,12 +38,12 @@ TEST_F(PadCommandTest, APauseOfTheProgramDisarms) {
   arm(pad);
   now_ns_ += 280'000'000;
   step();
-  EXPECT_TRUE(command_.driving());
+  EXPECT_TRUE(driving());
   now_ns_ += 300'000'000;
   step();
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
   run(0.5);
-  EXPECT_FALSE(command_.driving()) << "the old press doesn't count again";
+  EXPECT_FALSE(driving()) << "the old press doesn't count again";
   arm(pad);
 }
 
@@ -52,14 +52,14 @@ TEST_F(PadCommandTest, TheSecondPadDrivesOnlyAfterAPressOfItsOwn) {
   step();
   arm(first);
   press(second, kLb);
-  EXPECT_EQ(command_.driving(), 1);
+  EXPECT_EQ(driving(), 1);
   second.state.axes[kLeftY] = -1.0;
   run(0.3);
   EXPECT_EQ(u(kVx), 0.0) << "the second pad's sticks mean nothing";
   second.state.axes[kLeftY] = 0.0;
   let_go(first, kLb);
   run(0.3);
-  EXPECT_FALSE(command_.driving()) << "the second one was pressed while the first drove";
+  EXPECT_FALSE(driving()) << "the second one was pressed while the first drove";
   arm(second);
 }
 
@@ -72,7 +72,7 @@ TEST_F(PadCommandTest, TheStopOfAPadThatDoesNotDriveDisarmsTheOneThatDoes) {
   ASSERT_EQ(stops_, 0);
   press(second, kB);
   EXPECT_EQ(stops_, 1);
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
   EXPECT_EQ(u(kVx), 0.0);
   run(0.5);
   EXPECT_EQ(stops_, 1) << "once for each press";
@@ -94,7 +94,7 @@ TEST_F(PadCommandTest, TheLastStateOfAPadThatIsUnpluggedStopsStillAndDrivesNoMor
   pad.gone = true;
   step();
   EXPECT_EQ(stops_, 1);
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
 }
 
 TEST_F(PadCommandTest, APadThatIsUnpluggedDrivesNoMore) {
@@ -105,7 +105,7 @@ TEST_F(PadCommandTest, APadThatIsUnpluggedDrivesNoMore) {
   run(0.3);
   pad.gone = true;
   step();
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
   EXPECT_EQ(u(kVx), 0.0);
 }
 
@@ -117,7 +117,7 @@ TEST_F(PadCommandTest, AButtonThatIsLetGoAndPressedBetweenTwoStepsIsAFreshPress)
   step();
   flicked_.set(kLb);
   step();
-  EXPECT_FALSE(command_.driving()) << "a fresh press of the deadman with a stick out";
+  EXPECT_FALSE(driving()) << "a fresh press of the deadman with a stick out";
   pad.state.axes[kLeftY] = 0.0;
   let_go(pad, kLb);
   press(pad, kRb);
@@ -148,7 +148,7 @@ TEST_F(PadCommandTest, AChordActsOnceAfterItsTimeAndNotBefore) {
   run(0.97);
   EXPECT_THAT(actions_, testing::IsEmpty());
   run(0.05);
-  EXPECT_THAT(actions_, testing::ElementsAre(Action::kStand));
+  EXPECT_THAT(actions_, testing::ElementsAre(ops::Request::kStand));
   run(3.0);
   EXPECT_EQ(actions_.size(), 1U);
 }
@@ -176,7 +176,7 @@ TEST_F(PadCommandTest, AChordThatIsBrokenBeginsAnew) {
   run(0.7);
   EXPECT_THAT(actions_, testing::IsEmpty()) << "the program paused";
   run(0.4);
-  EXPECT_THAT(actions_, testing::ElementsAre(Action::kStand));
+  EXPECT_THAT(actions_, testing::ElementsAre(ops::Request::kStand));
 }
 
 TEST_F(PadCommandTest, AChordMeansNothingWhileAPadDrivesNorIfItWasDownWhenThePadCame) {
@@ -199,7 +199,7 @@ TEST_F(PadCommandTest, OnlySticksThatAreOutNeedASignOfLife) {
   step();
   arm(pad);
   run(10.0);
-  EXPECT_TRUE(command_.driving()) << "neutral sticks may rest";
+  EXPECT_TRUE(driving()) << "neutral sticks may rest";
   pad.state.axes[kLeftY] = -1.0;
   pad.state.changed = true;
   run(1.4);
@@ -207,14 +207,14 @@ TEST_F(PadCommandTest, OnlySticksThatAreOutNeedASignOfLife) {
   run(0.2);
   EXPECT_THAT(command_.text(1), testing::HasSubstr("move a stick"));
   run(1.35);
-  EXPECT_TRUE(command_.driving());
+  EXPECT_TRUE(driving());
   run(0.1);
-  EXPECT_FALSE(command_.driving());
+  EXPECT_FALSE(driving());
   EXPECT_EQ(u(kVx), 0.0);
   EXPECT_THAT(command_.text(1), testing::HasSubstr("may be lost"));
   pad.state.changed = true;
   run(0.2);
-  EXPECT_FALSE(command_.driving()) << "a pad that comes back needs a fresh press";
+  EXPECT_FALSE(driving()) << "a pad that comes back needs a fresh press";
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class Network {
       for (NetworkedRobot& robot : robots_) {
         robot.bus_cycle.run();
         if (bus_cycle == 0 && control_alive) robot.control();
-        robot.comms.step(0);
+        if (comms_alive) robot.comms.step(0);
       }
     }
   }
@@ -89,6 +89,7 @@ class Network {
   io::SimulationClock clock;
   io::LcmLink link{"memq://"};
   bool control_alive = true;
+  bool comms_alive = true;  ///< false: the controllers hear, but nothing is heard of them
 
  private:
   std::deque<NetworkedRobot> robots_;

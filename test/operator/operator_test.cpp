@@ -292,7 +292,7 @@ TEST_F(OperatorTest, AWalkThatSomebodyStoppedIsNotBegunAgain) {
   Progress progress = Progress::kPending;
   while (progress == Progress::kPending) progress = step(drive);
   EXPECT_EQ(progress, Progress::kFailed);
-  EXPECT_EQ(drive.text(), "walk was ended by another request: mode is damping");
+  EXPECT_EQ(drive.text(), "somebody stopped it, mode is damping: pmg_send stand makes it stand up");
   for (int k = 0; k < 100; ++k) {
     step(drive);
     ASSERT_EQ(robot_.result().mode, Mode::kDamping);

@@ -1,9 +1,11 @@
 // The command of the pressed keys, and its end: keys released, lost, or left alone.
-#include "operator/key_command.hpp"
+#include "keyboard/key_command.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "operator/hold_to_drive.hpp"
 
 namespace pmg::ops {
 namespace {
@@ -12,7 +14,7 @@ constexpr std::int64_t kMs = 1'000'000;
 const CommandLimits kLimits{.lower = {-0.5, -0.35, -0.8, -0.15, -0.25, -0.2},
                             .upper = {0.8, 0.35, 0.8, 0.5, 0.25, 0.02}};
 
-/// Keys, and a clock that only the test moves.
+/// Keys, the rule of what is held, and a clock that only the test moves.
 struct Keyboard {
   explicit Keyboard(KeyReport report) : keys(report) { keys.set_limits(kLimits); }
   void press(Key key, bool fast = false) { keys.press(key, fast, now_ns); }
@@ -20,8 +22,16 @@ struct Keyboard {
     for (; ms > 0; ms -= 10) {
       now_ns += 10 * kMs;
       keys.listen(now_ns);
-      keys.command(now_ns);
+      command();
     }
+  }
+  Command command() {
+    const bool armed = rule.armed().has_value();
+    rule.step(keys.holds(now_ns), now_ns);
+    if (armed && !rule.armed()) keys.rest();
+    Command command = keys.command(rule.armed(), now_ns);
+    if (!rule.armed()) command[kVx] = command[kVy] = command[kOmega] = 0.0;
+    return command;
   }
   void hold(Key key, std::int64_t ms) {
     for (; ms > 0; ms -= 30) {
@@ -29,10 +39,11 @@ struct Keyboard {
       keys.repeat(key, false, now_ns);
     }
   }
-  double operator[](Channel channel) { return keys.command(now_ns)[channel]; }
+  double operator[](Channel channel) { return command()[channel]; }
 
   std::int64_t now_ns = 1'000'000'000'000;
   KeyCommand keys;
+  HoldToDrive rule;
 };
 
 struct Window : Keyboard {
@@ -91,7 +102,7 @@ TEST(KeyCommand, AWindowThatLosesTheKeyboardHoldsNoKey) {
 TEST(KeyCommand, AWindowThatStandsStillHoldsNoKey) {
   Window window;
   window.press(Key::kForwards);
-  window.now_ns += KeyCommand::kDeaf_ns + kMs;
+  window.now_ns += HoldToDrive::kDeaf_ns + kMs;
   EXPECT_EQ(window[kVx], 0.0);
   window.keys.listen(window.now_ns);
   EXPECT_EQ(window[kVx], 0.0) << "when it is back, the key must be pressed anew";
@@ -99,10 +110,13 @@ TEST(KeyCommand, AWindowThatStandsStillHoldsNoKey) {
 
 TEST(KeyCommand, APressThatAWindowFindsWhenItPollsForTheFirstTimeInALongWhileCounts) {
   Window window;
-  window.now_ns += KeyCommand::kDeaf_ns + kMs;
+  for (int k = 0; k < 40; ++k) {  // the program goes on, the window doesn't
+    window.now_ns += 10 * kMs;
+    window.command();
+  }
   window.press(Key::kForwards);
   EXPECT_DOUBLE_EQ(window[kVx], 0.4) << "before the poll has returned";
-  window.now_ns += KeyCommand::kDeaf_ns + kMs;
+  window.now_ns += HoldToDrive::kDeaf_ns + kMs;
   EXPECT_EQ(window[kVx], 0.0) << "it polls no more";
 }
 
@@ -213,7 +227,7 @@ TEST(KeyCommand, PosturesEndWhereTheRobotsRangesDo) {
 TEST(KeyCommand, BeforeTheRangesAreKnownNothingIsAskedFor) {
   KeyCommand keys(KeyReport::kPressOnly);
   for (std::size_t k = 0; k < kKeys; ++k) keys.press(static_cast<Key>(k), true, 1);
-  EXPECT_EQ(keys.command(1), Command{});
+  EXPECT_EQ(keys.command(0, 1), Command{});
 }
 
 }  // namespace

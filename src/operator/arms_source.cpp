@@ -1,4 +1,4 @@
-#include "arms_operator/arms_source.hpp"
+#include "operator/arms_source.hpp"
 
 #include <algorithm>
 #include <array>

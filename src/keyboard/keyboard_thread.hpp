@@ -9,7 +9,8 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "operator/keyboard_station.hpp"
+#include "keyboard/key_command.hpp"
+#include "operator/driving_station.hpp"
 
 namespace pmg::ops {
 
@@ -34,13 +35,14 @@ class KeyboardThread {
   bool gone() const;
 
  private:
-  using Errand = std::function<void(KeyboardStation&)>;
+  using Errand = std::function<void(KeyCommand&, DrivingStation&)>;
   void tell(Errand errand);
   void run(const std::stop_token& stop);
 
   io::WallClock clock_;
   io::LcmLink link_;
-  KeyboardStation station_;  // used by the thread only
+  KeyCommand keys_{KeyReport::kPressAndRelease};  // used by the thread only, as the station is
+  DrivingStation station_;
   mutable std::mutex mutex_;
   std::vector<Errand> errands_;
   DrivingTable table_;

@@ -1,5 +1,5 @@
-// (pressed keys) => a command: velocities with a deadman switch, postures that stay. Independent of terminals and
-// windows.
+// The mapping of keys: (pressed keys) => velocities while they are held, postures that stay, requests. Independent of
+// terminals and windows.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "operator/command_input.hpp"
+#include "operator/device.hpp"
 
 namespace pmg::ops {
 
@@ -43,7 +43,7 @@ enum class KeyReport {
   kPressOnly,  ///< a terminal: each press changes the velocity by a step; after a second without a press it is zero
 };
 
-class KeyCommand : public CommandInput {
+class KeyCommand : public Device {
  public:
   static constexpr double kShare = 0.5;           ///< of the robot's range; with Shift the whole range
   static constexpr double kVelocityStep = 0.125;  ///< share of the range's larger end, for each press in a terminal
@@ -55,12 +55,15 @@ class KeyCommand : public CommandInput {
   /// Only the last key repeats. A key without proof that it is still held counts as released this long after the last
   /// event of any key.
   static constexpr std::int64_t kUnconfirmed_ns = 10'000'000'000;
-  static constexpr std::int64_t kDeaf_ns =
-      300'000'000;  ///< a window that has not polled its keys for this time is not listening
 
   explicit KeyCommand(KeyReport report) : report_(report) {}
 
   void set_limits(const CommandLimits& limits) noexcept override { limits_ = limits; }
+
+  /// Keys by the names of key_named(). Others have no meaning, but keep a held key from repeating.
+  void press(std::string_view name, bool fast, std::int64_t now_ns) noexcept;
+  void repeat(std::string_view name, bool fast, std::int64_t now_ns) noexcept;
+  void release(std::string_view name, std::int64_t now_ns) noexcept;
 
   void press(Key key, bool fast, std::int64_t now_ns) noexcept;
   void repeat(Key key, bool fast, std::int64_t now_ns) noexcept;  ///< of a held key
@@ -71,13 +74,11 @@ class KeyCommand : public CommandInput {
   void rest() noexcept override;
   void upright() noexcept override;
 
-  /// Releases keys whose time is over (kSilence_ns and the times below it).
-  const Command& command(std::int64_t now_ns) noexcept override;
-  bool held() const noexcept override;
-  /// After a press in a terminal nobody knows whether the key is still held: the robot stays ready for the next one.
-  bool stays() const noexcept override { return report_ == KeyReport::kPressOnly; }
-  /// Of keys with a command, without repetitions.
-  std::int64_t presses() const noexcept override { return presses_; }
+  DeviceManner manner() const override;
+  /// Releases keys whose time is over (kRepeatLost_ns, kUnconfirmed_ns).
+  std::span<const Hold> holds(std::int64_t now_ns) noexcept override;
+  Command command(std::optional<std::int32_t> armed, std::int64_t now_ns) noexcept override;
+  Requests take_requests() noexcept override;
 
  private:
   struct Held {
@@ -90,12 +91,19 @@ class KeyCommand : public CommandInput {
   void forget_lost(std::int64_t now_ns) noexcept;
   double end_of_range(Channel channel, double direction, bool fast) const noexcept;
 
+  bool held() const noexcept;
+  void zero() noexcept;
+
   KeyReport report_;
   CommandLimits limits_;  // zero until they are known: then every command is zero
   std::array<Held, kKeys> held_{};
   std::optional<Key> newest_;
   Command command_;
-  std::int64_t presses_ = 0, pressed_ns_ = 0, stepped_ns_ = 0, listened_ns_ = 0, sign_ns_ = 0;
+  Hold
+      hold_;  // all keys together; in a terminal a press holds it until rest(), since nobody knows when a key is let go
+  Hold shown_;  // hold_ as the last look saw it
+  Requests requests_;
+  std::int64_t pressed_ns_ = 0, stepped_ns_ = 0, listened_ns_ = 0, sign_ns_ = 0;
 };
 
 }  // namespace pmg::ops

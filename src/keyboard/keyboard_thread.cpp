@@ -1,4 +1,4 @@
-#include "operator/keyboard_thread.hpp"
+#include "keyboard/keyboard_thread.hpp"
 
 #include <utility>
 
@@ -12,33 +12,33 @@ constexpr int kWait_ms = 5;
 
 KeyboardThread::KeyboardThread(const std::string& url, const std::string& robot)
     : link_(url),
-      station_(link_, robot, KeyReport::kPressAndRelease, session_number(), clock_, seal::load_operator_seal("", url)),
+      station_(link_, keys_, robot, session_number(), clock_, seal::load_operator_seal("", url)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 KeyboardThread::~KeyboardThread() = default;
 
 void KeyboardThread::press(const std::string& key, bool shift) {
-  tell([key, shift](KeyboardStation& station) { station.press(key, shift); });
+  tell([this, key, shift](KeyCommand& keys, DrivingStation&) { keys.press(key, shift, clock_.now_ns()); });
 }
 
 void KeyboardThread::repeat(const std::string& key, bool shift) {
-  tell([key, shift](KeyboardStation& station) { station.repeat(key, shift); });
+  tell([this, key, shift](KeyCommand& keys, DrivingStation&) { keys.repeat(key, shift, clock_.now_ns()); });
 }
 
 void KeyboardThread::release(const std::string& key) {
-  tell([key](KeyboardStation& station) { station.release(key); });
+  tell([this, key](KeyCommand& keys, DrivingStation&) { keys.release(key, clock_.now_ns()); });
 }
 
 void KeyboardThread::release_all() {
-  tell([](KeyboardStation& station) { station.release_all(); });
+  tell([](KeyCommand& keys, DrivingStation&) { keys.release_all(); });
 }
 
 void KeyboardThread::listen() {
-  tell([](KeyboardStation& station) { station.listen(); });
+  tell([this](KeyCommand& keys, DrivingStation&) { keys.listen(clock_.now_ns()); });
 }
 
 void KeyboardThread::let_go() {
-  tell([](KeyboardStation& station) { station.let_go(); });
+  tell([](KeyCommand&, DrivingStation& station) { station.let_go(); });
 }
 
 DrivingTable KeyboardThread::table() const {
@@ -64,7 +64,7 @@ void KeyboardThread::run(const std::stop_token& stop) {
       const std::lock_guard lock(mutex_);
       errands.swap(errands_);
     }
-    for (const Errand& errand : errands) errand(station_);
+    for (const Errand& errand : errands) errand(keys_, station_);
     station_.step(kWait_ms);
     DrivingTable table = station_.table();
     const std::lock_guard lock(mutex_);

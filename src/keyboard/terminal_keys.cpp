@@ -1,4 +1,4 @@
-#include "operator/terminal_keys.hpp"
+#include "keyboard/terminal_keys.hpp"
 
 namespace pmg::ops {
 

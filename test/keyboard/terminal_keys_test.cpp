@@ -1,5 +1,5 @@
 // The keys in a terminal's bytes; above all, which bytes are Escape.
-#include "operator/terminal_keys.hpp"
+#include "keyboard/terminal_keys.hpp"
 
 #include <gtest/gtest.h>
 

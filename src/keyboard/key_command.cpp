@@ -1,4 +1,4 @@
-#include "operator/key_command.hpp"
+#include "keyboard/key_command.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +41,21 @@ constexpr Push push_of(Key key) {
   return kPushes[static_cast<std::size_t>(key)];
 }
 
+constexpr std::optional<Request> request_of(Key key) {
+  switch (key) {
+    case Key::kStand:
+      return Request::kStand;
+    case Key::kReset:
+      return Request::kReset;
+    case Key::kLift:
+      return Request::kLift;
+    case Key::kSetDown:
+      return Request::kSetDown;
+    default:
+      return std::nullopt;
+  }
+}
+
 constexpr bool moves(Key key) { return key <= Key::kStepRight; }
 constexpr bool bends(Key key) { return key > Key::kStepRight && key < Key::kUpright; }
 
@@ -52,13 +67,43 @@ std::optional<Key> key_named(std::string_view name) noexcept {
   return found->second;
 }
 
+DeviceManner KeyCommand::manner() const {
+  return {.name = "keyboard",
+          .command_raises = true,
+          .at_once = true,
+          .raises = "Enter makes it stand up",
+          .resets = "R resets it",
+          .drives = "a key drives it",
+          .starts = "a key makes it stand up and walk",
+          .anew = "Press a key anew"};
+}
+
+void KeyCommand::press(std::string_view name, bool fast, std::int64_t now_ns) noexcept {
+  if (const auto key = key_named(name)) {
+    press(*key, fast, now_ns);
+  } else {
+    press_other();
+  }
+}
+
+void KeyCommand::repeat(std::string_view name, bool fast, std::int64_t now_ns) noexcept {
+  if (const auto key = key_named(name)) repeat(*key, fast, now_ns);
+}
+
+void KeyCommand::release(std::string_view name, std::int64_t now_ns) noexcept {
+  if (const auto key = key_named(name)) release(*key, now_ns);
+}
+
 void KeyCommand::press(Key key, bool fast, std::int64_t now_ns) noexcept {
   pressed_ns_ = sign_ns_ = listened_ns_ = now_ns;  // a key that arrives shows that the window polls
   newest_ = key;
-  if (key == Key::kRest) rest();
+  if (key == Key::kRest) zero();
   if (key == Key::kUpright) upright();
+  if (key == Key::kDamp) requests_.stop = true;
+  if (const auto request = request_of(key)) requests_.other = request;
   if (!moves(key) && !bends(key)) return;
-  ++presses_;
+  hold_.pressed = true;
+  if (report_ == KeyReport::kPressOnly) hold_.down = true;
   held_[static_cast<std::size_t>(key)] = {.down = true, .fast = fast, .repeats = false, .seen_ns = now_ns};
   stepped_ns_ = now_ns;
   if (bends(key)) bend(key);
@@ -88,18 +133,36 @@ void KeyCommand::release_all() noexcept {
 bool KeyCommand::held() const noexcept { return std::ranges::any_of(held_, &Held::down); }
 
 void KeyCommand::rest() noexcept {
+  zero();
+  hold_.down = false;
+}
+
+void KeyCommand::zero() noexcept {
   release_all();
   command_[kVx] = command_[kVy] = command_[kOmega] = 0.0;
 }
 
 void KeyCommand::upright() noexcept { command_[kPitch] = command_[kRoll] = command_[kHeight] = 0.0; }
 
-const Command& KeyCommand::command(std::int64_t now_ns) noexcept {
+std::span<const Hold> KeyCommand::holds(std::int64_t now_ns) noexcept {
+  const bool pressed = std::exchange(hold_.pressed, false);
+  if (report_ == KeyReport::kPressAndRelease) {
+    forget_lost(now_ns);
+    hold_.down = held();
+  }
+  shown_ = hold_;
+  shown_.pressed = pressed;
+  shown_.heard_ns = report_ == KeyReport::kPressOnly ? now_ns : listened_ns_;
+  return {&shown_, 1};
+}
+
+Requests KeyCommand::take_requests() noexcept { return std::exchange(requests_, Requests{}); }
+
+Command KeyCommand::command(std::optional<std::int32_t> /*armed*/, std::int64_t now_ns) noexcept {
   if (report_ == KeyReport::kPressOnly) {
-    if (now_ns - pressed_ns_ >= kSilence_ns) rest();
+    if (now_ns - pressed_ns_ >= kSilence_ns) zero();
     return command_;
   }
-  forget_lost(now_ns);
   command_[kVx] = command_[kVy] = command_[kOmega] = 0.0;
   for (std::size_t k = 0; k < kKeys; ++k) {
     const Key key = static_cast<Key>(k);
@@ -111,7 +174,6 @@ const Command& KeyCommand::command(std::int64_t now_ns) noexcept {
 }
 
 void KeyCommand::forget_lost(std::int64_t now_ns) noexcept {
-  if (now_ns - listened_ns_ > kDeaf_ns) release_all();
   for (std::size_t k = 0; k < kKeys; ++k) {
     Held& held = held_[k];
     const bool repeater = held.repeats && newest_ == static_cast<Key>(k);

@@ -1,15 +1,15 @@
 // A robot driven by keys over the network: from limp to walking and to rest, and the things that must never happen.
 // Longer than 300 lines: the tests share one keyboard and one controller.
-#include "operator/keyboard_driver.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "networked_robot.hpp"
+#include "keyboard/key_command.hpp"
 #include "operator/drive.hpp"
-#include "operator/keyboard_station.hpp"
+#include "operator/driving_station.hpp"
+#include "operator/networked_robot.hpp"
+#include "operator/robot_driver.hpp"
 
 namespace pmg::ops {
 namespace {
@@ -20,9 +20,34 @@ using testing::HasSubstr;
 
 constexpr double kStep_s = 0.01;
 
+/// Keys and the machine that they drive by.
+struct DrivenKeyboard {
+  DrivenKeyboard(OperatorSource& source, KeyReport report)
+      : clock(source.clock()), keys(report), driver(source, "biped", keys) {}
+  void press(Key key, bool fast) {
+    keys.press(key, fast, clock.now_ns());
+    driver.heed();
+  }
+  void repeat(Key key, bool fast) { keys.repeat(key, fast, clock.now_ns()); }
+  void release(Key key) { keys.release(key, clock.now_ns()); }
+  void release_all() { keys.release_all(); }
+  void step() {
+    keys.listen(clock.now_ns());
+    driver.step();
+  }
+  void set_limits(const CommandLimits& limits) { driver.set_limits(limits); }
+  void let_go() { driver.let_go(); }
+  bool gone() const { return driver.gone(); }
+  std::string text() const { return driver.text(); }
+
+  const io::Clock& clock;
+  KeyCommand keys;
+  RobotDriver driver;
+};
+
 class KeyboardTest : public testing::Test {
  protected:
-  explicit KeyboardTest(KeyReport report = KeyReport::kPressAndRelease) : driver_(mine_, "biped", report) {
+  explicit KeyboardTest(KeyReport report = KeyReport::kPressAndRelease) : driver_(mine_, report) {
     network_.link.subscribe("MODE", [this](io::Bytes bytes) {
       const auto request = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
       if (request) requests_.push_back(request->message);
@@ -32,7 +57,6 @@ class KeyboardTest : public testing::Test {
   }
   void step() {
     network_.advance();
-    driver_.listen();
     driver_.step();
   }
   void run(double seconds) {
@@ -70,7 +94,7 @@ class KeyboardTest : public testing::Test {
   test::NetworkedRobot& robot_ = network_.add_robot("biped");
   OperatorSource mine_{network_.link, "keyboard.1", 1, network_.clock};
   OperatorSource other_{network_.link, "pmg_send.2", 1, network_.clock};
-  KeyboardDriver driver_;
+  DrivenKeyboard driver_;
   std::vector<pmg_msgs::mode_t> requests_;
 };
 
@@ -88,11 +112,10 @@ TEST_F(KeyboardTest, OneHeldKeyTakesALimpRobotToWalking) {
 
 TEST_F(KeyboardTest, AKeyPressedBeforeTheRobotsLimitsAreKnownTakesEffectThenIfItIsStillHeld) {
   for (const bool held : {false, true}) {
-    KeyboardDriver early(other_, "biped", KeyReport::kPressAndRelease);
+    DrivenKeyboard early(other_, KeyReport::kPressAndRelease);
     const auto run_early = [&](double seconds) {
       for (; seconds > 1e-9; seconds -= kStep_s) {
         step();
-        early.listen();
         early.step();
       }
     };
@@ -188,11 +211,10 @@ TEST_F(KeyboardTest, ARobotThatWasFoundBrakingIsLeftSo) {
   const ModeWish stop(other_, "biped", Goal::kDamping, 2.0);
   for (int k = 0; k < 10; ++k) network_.advance();
   OperatorSource fresh(network_.link, "keyboard.3", 1, network_.clock);
-  KeyboardDriver newcomer(fresh, "biped", KeyReport::kPressAndRelease);
+  DrivenKeyboard newcomer(fresh, KeyReport::kPressAndRelease);
   newcomer.set_limits(robot_.robot.command_limits);
   for (int k = 0; k < 300; ++k) {
     network_.advance();
-    newcomer.listen();
     if (k == 50) newcomer.press(Key::kForwards, false);
     newcomer.step();
     ASSERT_EQ(mode(), Mode::kDamping) << newcomer.text();
@@ -329,9 +351,10 @@ TEST_F(TerminalKeyboardTest, ANewControllerOfTheSameNameIsNotRaisedByAKeyThatRep
   EXPECT_THAT(driver_.text(), HasSubstr("started anew"));
 }
 
-TEST(KeyboardStation, WithoutAControllerThatIsSaidAndEscapeStopsWhoeverComes) {
+TEST(DrivingStation, WithoutAControllerThatIsSaidAndEscapeStopsWhoeverComes) {
   test::Network network;
-  KeyboardStation station(network.link, "", KeyReport::kPressOnly, 1, network.clock);
+  KeyCommand keys(KeyReport::kPressOnly);
+  DrivingStation station(network.link, keys, "", 1, network.clock);
   station.step(0);
   EXPECT_THAT(station.lines().front(), HasSubstr("no controller is heard on memq://"));
   test::NetworkedRobot& robot = network.add_robot("biped");
@@ -339,16 +362,18 @@ TEST(KeyboardStation, WithoutAControllerThatIsSaidAndEscapeStopsWhoeverComes) {
   for (int k = 0; k < 5; ++k) network.advance();
   ModeWish stand(other, "biped", Goal::kStand, 5.0);
   ASSERT_EQ(network.finish(stand), Progress::kReached);
-  station.press("escape", false);
+  keys.press("escape", false, network.clock.now_ns());
+  station.step(0);
   for (int k = 0; k < 3; ++k) network.advance();
   EXPECT_EQ(robot.result().mode, Mode::kDamping);
 }
 
-TEST(KeyboardStation, OfSeveralRobotsItDrivesNoneThatIsNotNamed) {
+TEST(DrivingStation, OfSeveralRobotsItDrivesNoneThatIsNotNamed) {
   test::Network network;
   network.add_robot("first");
   network.add_robot("second");
-  KeyboardStation station(network.link, "", KeyReport::kPressOnly, 1, network.clock);
+  KeyCommand keys(KeyReport::kPressOnly);
+  DrivingStation station(network.link, keys, "", 1, network.clock);
   for (int k = 0; k < 50; ++k) {
     network.advance();
     station.step(0);
