@@ -154,6 +154,18 @@ TEST_F(DeviceTest, ItsStopGoesOutBeforeAnyoneWaitsAndOnlyStandRaisesTheRobotAgai
   expect_walks();
 }
 
+TEST_F(DeviceTest, ASqueezeAtTheSameMomentAsAStopDoesNotDrive) {
+  stand();
+  lever_.press_stop();
+  lever_.squeeze();
+  step();
+  EXPECT_FALSE(driver_.hold().armed());
+  lever_.press_stand();
+  lever_.squeeze();
+  step();
+  EXPECT_FALSE(driver_.hold().armed()) << "nor at the same moment as a request to stand";
+}
+
 TEST_F(DeviceTest, ALeverThatIsNoLongerHeardStopsAndNeedsAFreshSqueezeWhenItIsBack) {
   stand();
   squeeze_and_push();
