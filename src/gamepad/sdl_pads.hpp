@@ -6,7 +6,7 @@
 
 #include "gamepad/pad_text.hpp"
 
-struct _SDL_GameController;
+struct _SDL_GameController;  // NOLINT(bugprone-reserved-identifier): SDL's own name
 union SDL_Event;
 
 namespace pmg::gamepad {
