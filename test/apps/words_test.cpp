@@ -119,10 +119,12 @@ TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
   expect_line("pmg_log inof out", "pmg_log: inof: unknown command; did you mean info?");
   expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
   expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
-  expect_line("pmg_clips fly", "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk, inspect");
-  expect_line("pmg_clips",
-              "pmg_clips: a command is missing; expected one of synth, show, invert, walk, inspect (pmg_clips --help "
-              "shows an example)");
+  expect_line("pmg_clips fly",
+              "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk, inspect, build");
+  expect_line(
+      "pmg_clips",
+      "pmg_clips: a command is missing; expected one of synth, show, invert, walk, inspect, build (pmg_clips --help "
+      "shows an example)");
 }
 
 TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
