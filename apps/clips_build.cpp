@@ -141,8 +141,6 @@ int build(const BuildOptions& options,
   const std::vector<generator::ClipReport> reports =
       generator::report(robot, model::load_clip_library(unfinished.folder(), robot));
   if (!options.no_inverse) add_inverse(robot, unfinished.folder());
-  // An inverse of the old clips would not belong to the new ones.
-  if (options.no_inverse) fs::remove(options.out / "inverse.csv");
   unfinished.finish();
   if (options.json) {
     nlohmann::json out;

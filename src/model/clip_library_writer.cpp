@@ -10,6 +10,7 @@
 #include "files/config_error.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/clip_table.hpp"
+#include "model/command_inverse_file.hpp"
 
 namespace pmg::model {
 namespace {
@@ -105,6 +106,7 @@ UnfinishedLibrary::~UnfinishedLibrary() {
 }
 
 void UnfinishedLibrary::finish() const {
+  if (!fs::exists(command_inverse_file(folder_))) fs::remove(command_inverse_file(library_));
   for (const fs::path& file : clip_library_files(folder_)) fs::rename(file, library_ / file.filename());
 }
 

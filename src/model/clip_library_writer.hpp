@@ -36,6 +36,7 @@ class UnfinishedLibrary {
   UnfinishedLibrary& operator=(const UnfinishedLibrary&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
+  /// Moves the new files to their places. An old inverse without a new one goes: it doesn't belong to these clips.
   void finish() const;
 
  private:

@@ -1,9 +1,7 @@
 // pmg_sil, used as by its users: exit codes, messages, and files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sched.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -217,24 +215,11 @@ TEST_F(PmgSil, InterruptKeepsWhatWasDone) {
   // Ten minutes of standing, long enough to be interrupted on any machine; the signal follows the log's first bytes.
   const fs::path file = scenario("name: long\nsteps:\n  - {for_s: 600.0, text: stand, mode: stand}\n");
   const fs::path log = fs::path(out_folder()) / "log.lcm";
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    const std::string program = pmg::test::program_folder() + "/pmg_sil";
-    execl(program.c_str(), "pmg_sil", "--scenario", file.c_str(), "--out", out_folder().c_str(),
-          static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  int status = 0;
+  test::RunningProgram sil("pmg_sil", {"--scenario", file.string(), "--out", out_folder()}, folder_);
   std::error_code ignored;
-  while (!fs::exists(log) || fs::file_size(log, ignored) == 0) {
-    ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended by itself";
-    sched_yield();
-  }
-  kill(child, SIGINT);
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  ASSERT_TRUE(sil.until([&] { return fs::exists(log) && fs::file_size(log, ignored) > 0; })) << sil.err();
+  sil.send(SIGINT);
+  EXPECT_EQ(sil.wait(), 130);
   const auto summary = nlohmann::json::parse(test::text_of(fs::path(out_folder()) / "summary.json"));
   EXPECT_EQ(summary["interrupted"], true);
   EXPECT_LT(summary["duration_s"], 600.0);

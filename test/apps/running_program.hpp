@@ -1,7 +1,6 @@
 // One of the executables, run as by a user: with arguments, files for its output, signals and an exit code.
 #pragma once
 
-#include <sched.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "folders.hpp"
@@ -67,7 +67,8 @@ class RunningProgram {
     const int exit_code = wait();
     return {exit_code, out(), err()};
   }
-  /// True if the condition holds while the program runs.
+  /// True if the condition holds while the program runs. It looks every 2 ms: spinning would take the program's
+  /// processor.
   bool until(const std::function<bool()>& condition, double deadline_s = 60.0) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline_s);
     while (!condition()) {
@@ -76,7 +77,7 @@ class RunningProgram {
         return false;
       }
       if (std::chrono::steady_clock::now() > end) return false;
-      sched_yield();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return true;
   }

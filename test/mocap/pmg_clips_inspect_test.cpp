@@ -2,17 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
-#include "folders.hpp"
+#include "apps/running_program.hpp"
 #include "mocap_files/small_files.hpp"
 #include "synthetic_gait.hpp"
 #include "temporary_folder.hpp"
@@ -21,59 +18,43 @@
 namespace pmg::mocap {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output, errors;
-};
-
-std::string content(const std::filesystem::path& file) {
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 class PmgClipsInspect : public ::testing::Test {
  protected:
   std::filesystem::path written(const std::string& name, const std::string& text) {
     std::ofstream(folder_.file(name), std::ios::binary) << text;
     return folder_.file(name);
   }
-  Outcome inspect(const std::filesystem::path& file, const std::string& options = "") {
-    const auto out = folder_.file("stdout.txt"), errors = folder_.file("stderr.txt");
-    const int status =
-        std::system(fmt::format("{}/pmg_clips inspect '{}' {} > '{}' 2> '{}'", pmg::test::program_folder(),
-                                file.string(), options, out.string(), errors.string())
-                        .c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(errors)};
+  pmg::test::Finished inspect(const std::filesystem::path& file, const std::string& options = "") {
+    return pmg::test::run_in_shell(fmt::format("pmg_clips inspect '{}' {}", file.string(), options), folder_.path());
   }
   /// Refused in one line that names the file (or file and line) and has these words; nothing on standard output.
   void expect_refused(const std::filesystem::path& file, const std::string& place, const std::string& words,
                       const std::string& options = "") {
-    const Outcome outcome = inspect(file, options);
+    const pmg::test::Finished outcome = inspect(file, options);
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_EQ(outcome.output, "");
-    EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
-    EXPECT_NE(outcome.errors.find(file.filename().string() + place + ": "), std::string::npos) << outcome.errors;
-    EXPECT_NE(outcome.errors.find(words), std::string::npos) << outcome.errors;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(file.filename().string() + place + ": "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   }
   pmg::test::TemporaryFolder folder_;
 };
 
 TEST_F(PmgClipsInspect, TellsTheFormatTheUnitTheWalkAndItsCycle) {
-  const Outcome outcome = inspect(written("walk.bvh", test::bvh_of(test::walk({}))));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_EQ(outcome.errors, "");
+  const pmg::test::Finished outcome = inspect(written("walk.bvh", test::bvh_of(test::walk({}))));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
   for (const char* part : {"walk.bvh: BVH, 10 joints, 550 frames at 100 Hz (the file), 5.50 s", "unit 0.01 m", "up +y",
                            "legs 0.850 m", "walk_forward", "left foot lands: ", "cycle "}) {
-    EXPECT_NE(outcome.output.find(part), std::string::npos) << part << "\n" << outcome.output;
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
   }
 }
 
 TEST_F(PmgClipsInspect, GivesMachinesTheSameAsJson) {
   const test::Walker walker;
-  const Outcome outcome = inspect(written("walk.bvh", test::bvh_of(test::walk(walker))), "--json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-  const nlohmann::json out = nlohmann::json::parse(outcome.output);
+  const pmg::test::Finished outcome = inspect(written("walk.bvh", test::bvh_of(test::walk(walker))), "--json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json out = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(out["format"], "BVH");
   EXPECT_EQ(out["frames"], 550);
   EXPECT_DOUBLE_EQ(out["unit_m"], 0.01);
@@ -99,7 +80,7 @@ TEST_F(PmgClipsInspect, GivesMachinesTheSameAsJson) {
 
 TEST_F(PmgClipsInspect, TakesWhatTheUserKnowsBetter) {
   const auto file = written("walk.bvh", test::bvh_of(test::walk({})));
-  const auto out = nlohmann::json::parse(inspect(file, "--json --rate 50 --unit 0.02 --up=+y").output);
+  const auto out = nlohmann::json::parse(inspect(file, "--json --rate 50 --unit 0.02 --up=+y").out);
   EXPECT_DOUBLE_EQ(out["rate_hz"], 50.0);
   EXPECT_EQ(out["rate_from"], "given");
   EXPECT_NEAR(out["leg_length_m"], 1.7, 1e-3);
@@ -114,11 +95,10 @@ TEST_F(PmgClipsInspect, RefusesACutFileWithItsLine) {
   const std::string cut = whole.substr(0, whole.size() / 2);
   const auto lines = std::ranges::count(cut, '\n') + 1;
   const auto file = written("cut.bvh", cut);
-  const Outcome outcome = inspect(file);
+  const pmg::test::Finished outcome = inspect(file);
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
-  EXPECT_NE(outcome.errors.find(fmt::format("cut.bvh:{}: the file ends here", lines)), std::string::npos)
-      << outcome.errors;
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(fmt::format("cut.bvh:{}: the file ends here", lines)), std::string::npos) << outcome.err;
 }
 
 TEST_F(PmgClipsInspect, RefusesAMissingFileAnUnknownKindAndAFolder) {
@@ -168,9 +148,9 @@ TEST_F(PmgClipsInspect, AFrameOfTenSecondsTakesNoMemoryAndIsSaid) {
   const std::string all = slow.substr(rows);
   std::string text = slow.substr(0, motion) + "MOTION\nFrames: 22000\nFrame Time: 10\n";
   for (int i = 0; i < 40; ++i) text += all;
-  const Outcome outcome = inspect(written("slow.bvh", text));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_NE(outcome.output.find("is the rate right?"), std::string::npos) << outcome.output;
+  const pmg::test::Finished outcome = inspect(written("slow.bvh", text));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("is the rate right?"), std::string::npos) << outcome.out;
   EXPECT_LT(children_memory_bytes(), 400 << 20);
 }
 

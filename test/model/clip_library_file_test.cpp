@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <random>
 
@@ -52,6 +54,19 @@ TEST(ClipLibrary, IsReadAsWritten) {
   expect_same(*again.positive[kOmega], *library.positive[kOmega]);
   EXPECT_EQ(again.posture[2].command, library.posture[2].command);
   EXPECT_EQ(again.posture[2].q, library.posture[2].q);
+}
+
+/// The correction of other clips would be believed in silence.
+TEST(UnfinishedLibrary, TakesAnInverseOfTheOldClipsAwayOnlyWhenTheNewOnesAreInPlace) {
+  const TemporaryCopy copy(kBipedFolder);
+  const std::filesystem::path clips = copy.file("clips"), inverse = clips / "inverse.csv";
+  std::ofstream(inverse) << "old";
+  { const UnfinishedLibrary given_up(clips); }
+  EXPECT_TRUE(std::filesystem::exists(inverse));
+  const UnfinishedLibrary finished(clips);
+  std::filesystem::copy(clips / "forward.csv", finished.folder());
+  finished.finish();
+  EXPECT_FALSE(std::filesystem::exists(inverse));
 }
 
 TEST(ClipLibrary, CarriesTheRobotsPostureLimitsAndMirror) {

@@ -1,33 +1,19 @@
 // The promises of `pmg_clips build` to its callers in a shell.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
-#include "folders.hpp"
+#include "apps/running_program.hpp"
 #include "mocap/synthetic_gait.hpp"
 #include "mocap/written_bvh.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::retargeting {
 namespace {
-
-struct Outcome {
-  int exit_code = -1;
-  std::string output, errors;
-};
-
-std::string content(const std::filesystem::path& file) {
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 class PmgClipsBuild : public ::testing::Test {
  protected:
@@ -41,19 +27,16 @@ class PmgClipsBuild : public ::testing::Test {
         "  lateral: {{recording: walk.bvh, frames: {}}}\n  turn: {{recording: walk.bvh, frames: auto}}\n",
         forward_frames, lateral_frames);
   }
-  Outcome build(const std::string& options = "") {
-    const auto out = folder_.file("stdout.txt"), errors = folder_.file("stderr.txt");
-    const int status = std::system(fmt::format("{}/pmg_clips build '{}' --no-inverse --out '{}' {} > '{}' 2> '{}'",
-                                               pmg::test::program_folder(), folder_.file("library.yaml").string(),
-                                               out_.string(), options, out.string(), errors.string())
-                                       .c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(errors)};
+  pmg::test::Finished build(const std::string& options = "") {
+    return pmg::test::run_in_shell(fmt::format("pmg_clips build '{}' --no-inverse --out '{}' {}",
+                                               folder_.file("library.yaml").string(), out_.string(), options),
+                                   folder_.path());
   }
   void expect_refused(const std::string& words) {
-    const Outcome outcome = build();
+    const pmg::test::Finished outcome = build();
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_EQ(outcome.output, "");
-    EXPECT_NE(outcome.errors.find(words), std::string::npos) << outcome.errors;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   }
   pmg::test::TemporaryFolder folder_;
   std::filesystem::path out_ = folder_.file("clips");
@@ -77,7 +60,7 @@ TEST_F(PmgClipsBuild, LeavesTheOldClipsWhereALaterClipCantBeMade) {
   std::ofstream(out_ / "forward.yaml") << "old";
   write_recipe("auto", "[0, 3]");
   expect_refused("library.yaml:5:");
-  EXPECT_EQ(content(out_ / "forward.yaml"), "old");
+  EXPECT_EQ(pmg::test::text_of(out_ / "forward.yaml"), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out_), std::filesystem::directory_iterator()), 1);
 }
 
@@ -85,13 +68,13 @@ TEST_F(PmgClipsBuild, RefusesAFolderWithClipsOfAnotherLibrary) {
   std::filesystem::create_directory(out_);
   std::ofstream(out_ / "backward.yaml") << "another's";
   expect_refused("backward.yaml: is no part of this library");
-  EXPECT_EQ(content(out_ / "backward.yaml"), "another's");
+  EXPECT_EQ(pmg::test::text_of(out_ / "backward.yaml"), "another's");
 }
 
 TEST_F(PmgClipsBuild, RefusesAnOutputThatIsNoDirectoryBeforeItWorks) {
   std::ofstream(out_) << "mine";
   expect_refused("clips");
-  EXPECT_EQ(content(out_), "mine");
+  EXPECT_EQ(pmg::test::text_of(out_), "mine");
 }
 
 }  // namespace
