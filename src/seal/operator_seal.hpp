@@ -47,6 +47,14 @@ class OperatorSeal {
     return buffer_;
   }
 
+  /// Of the message alone, as seal() encodes it: what its answer names.
+  template <typename Message>
+  Digest digest(const Message& message) {
+    buffer_.clear();
+    append(buffer_, message);
+    return digest_of(buffer_);
+  }
+
  private:
   void append_seal(std::string_view channel, const Peer& peer);
 

@@ -193,6 +193,14 @@ TEST(Authentication, CodesAreHmacSha256) {
   EXPECT_EQ(code[31], 0x6a);
 }
 
+/// FIPS 180-4's example of one block.
+TEST(Authentication, DigestsAreSha256) {
+  const std::string text = "abc";
+  const Digest digest = digest_of(Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  EXPECT_EQ(digest[0], 0xba);
+  EXPECT_EQ(digest[31], 0xad);
+}
+
 /// RFC 8032, section 7.1, test 1.
 TEST(Authentication, SignaturesAreEd25519) {
   constexpr PrivateKey kKey = {0x9d, 0x61, 0xb1, 0x9d, 0xef, 0xfd, 0x5a, 0x60, 0xba, 0x84, 0x4a,
