@@ -67,11 +67,17 @@ class OperatorSource {
   /// Whether the hoist has answered this request or a later one.
   bool hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept;
 
-  /// Message and seal, for the robot of this name.
+  /// Message and seal, for the robot of this name; without a name once for each robot that was heard, so that each
+  /// finds its own seal.
   template <typename Message>
   void send(const char* channel, const Message& message) {
-    const HeardRobot* robot = heard(message.robot);
-    link_.send(channel, seal_.seal(channel, message, robot != nullptr && robot->peer ? &*robot->peer : nullptr));
+    bool sealed = false;
+    for (const auto& [name, robot] : heard_) {
+      if (!robot.peer || (!message.robot.empty() && message.robot != name)) continue;
+      link_.send(channel, seal_.seal(channel, message, &*robot.peer));
+      sealed = true;
+    }
+    if (!sealed) link_.send(channel, seal_.seal(channel, message, nullptr));
   }
 
   /// Whether this source drives the robot: this process, not an earlier one of its name.

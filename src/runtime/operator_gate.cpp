@@ -71,13 +71,20 @@ void OperatorGate::take_arms(io::Bytes bytes) {
 }
 
 void OperatorGate::take_mode(io::Bytes bytes) {
-  const auto sealed = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
+  auto sealed = seal::decode_sealed<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);
+  const bool whole = sealed.has_value();
+  if (!whole)
+    sealed = seal::decode_front<pmg_msgs::mode_t, pmg_msgs::seal_t>(bytes);  // a stop stops, whatever follows it
   if (!sealed || !presentable(sealed->message.source)) {
     ++counts_.malformed;
     return;
   }
   const pmg_msgs::mode_t& message = sealed->message;
   control::ModeRequest request = recording::mode_request(message, clock_.now_ns());
+  if (!whole && !request.stops()) {
+    ++counts_.malformed;
+    return;
+  }
   if (message.mode < pmg_msgs::mode_t::PASSIVE || message.mode > pmg_msgs::mode_t::WALK) {
     request.mode = control::Mode::kFault;  // answered with NO_MODE
   }

@@ -96,13 +96,16 @@ std::array<std::uint8_t, 32> bytes_of(const fs::path& path, const std::map<std::
   return *bytes;
 }
 
+/// Never half a file under this name: a running controller may read it at any time.
 void write_new(const fs::path& path, const std::string& text) {
-  const File file(path, O_WRONLY | O_CREAT | O_EXCL);
-  if (::write(file.fd(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(file.fd()) != 0) {
-    const int error = errno;
-    ::unlink(path.c_str());
-    fail(path, std::strerror(error));
-  }
+  const std::string growing = fmt::format("{}.{}", path.string(), ::getpid());
+  const File file(growing, O_WRONLY | O_CREAT | O_EXCL);
+  const bool written =
+      ::write(file.fd(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(file.fd()) == 0;
+  const bool named = written && ::link(growing.c_str(), path.c_str()) == 0;
+  const int error = errno;
+  ::unlink(growing.c_str());
+  if (!named) fail(path, std::strerror(error));
 }
 
 void make_folder(const fs::path& folder) {

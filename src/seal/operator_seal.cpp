@@ -54,7 +54,7 @@ OperatorSeal load_operator_seal(const std::string& folder, const std::string& lc
   if (keys.empty() && !folder.empty()) {
     throw std::runtime_error(fmt::format("keys {}: expected a folder with an operator's *.key (pmg_key new)", folder));
   }
-  const bool believes_unsigned = keys.empty() || !io::leaves_this_computer(lcm_url);
+  const bool believes_unsigned = keys.empty() || (folder.empty() && !io::leaves_this_computer(lcm_url));
   return {std::move(keys), believes_unsigned};
 }
 

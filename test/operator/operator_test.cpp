@@ -383,6 +383,30 @@ TEST_F(FloodTest, AStopIsObeyedAndAcknowledged) {
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
 }
 
+TEST_F(OperatorTest, AStopForEveryRobotIsAcknowledgedBesideAFloodOfStrangersStops) {
+  NetworkedRobot& second = network_.add_robot("second");
+  network_.advance();
+  pmg_msgs::mode_t strangers{};
+  strangers.version = pmg_msgs::mode_t::VERSION;
+  strangers.source = "stranger";
+  strangers.mode = pmg_msgs::mode_t::DAMPING;
+  const auto flood = [&] {
+    for (int k = 0; k < 10; ++k) network_.link.publish("MODE", strangers);  // 1,000 a second
+    network_.advance();
+  };
+  for (int k = 0; k < 100; ++k) flood();
+  ModeWish stop(mine_, "", Goal::kStop, 2.0);
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    flood();
+    progress = stop.step();
+  }
+  EXPECT_EQ(progress, Progress::kReached);
+  EXPECT_EQ(stop.answers().size(), 2u);
+  EXPECT_LE(stop.elapsed_s(), 0.22) << "as long as it listens for other robots";
+  EXPECT_EQ(second.result().mode, Mode::kDamping);
+}
+
 /// A robot with keys, and an operator that has one of them.
 class KeyedTest : public testing::Test {
  protected:

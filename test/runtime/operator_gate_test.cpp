@@ -211,6 +211,22 @@ TEST_F(OperatorGateTest, AStopOfAnotherVersionStopsToo) {
   for (const control::ModeRequest& request : take_requests()) EXPECT_FALSE(request.sealed);
 }
 
+TEST_F(OperatorGateTest, AStopStopsWhateverFollowsIt) {
+  mode_.mode = Modes::DAMPING;
+  std::vector<std::uint8_t> later_seal = sealed(mode_), trailing = sealed(mode_), garbage = encoded(mode_);
+  later_seal[encoded(mode_).size()] ^= 1;  // another type's hash
+  trailing.push_back(0);
+  garbage.insert(garbage.end(), 1000, 0x5a);
+  for (const auto& bytes : {later_seal, trailing, garbage}) gate_.take_mode(bytes);
+  EXPECT_EQ(stop_line_.pulls(), 3u);
+  for (const control::ModeRequest& request : take_requests()) EXPECT_FALSE(request.sealed);
+  mode_.mode = Modes::STAND;
+  trailing = sealed(mode_);
+  trailing.push_back(0);
+  gate_.take_mode(trailing);
+  EXPECT_EQ(gate_.counts(), (GateCounts{.malformed = 1})) << "any other request must be whole";
+}
+
 TEST_F(OperatorGateTest, StopsWithoutASealTakeNobodysPlaceOrAllowance) {
   mode_.mode = Modes::DAMPING;
   for (int k = 0; k < 100; ++k) {
