@@ -88,6 +88,7 @@ enum class Verdict : std::uint8_t {
   kOutOfOrder = 2,
   kLate = 3,
   kNoMode = 4,
+  kNoKey = 5,  ///< no tick's answer: its gate's
 };
 
 /// The tick's answer to one request.

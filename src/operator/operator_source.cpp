@@ -5,6 +5,12 @@
 
 namespace pmg::ops {
 
+namespace {
+
+std::int64_t boot_of(const std::optional<pmg_msgs::proof_t>& proof) noexcept { return proof ? proof->boot : 0; }
+
+}  // namespace
+
 std::optional<std::int8_t> HeardRobot::mode() const {
   if (ack && (!status || status->stamp_ns < ack->stamp_ns)) return ack->mode;
   if (status) return status->mode;
@@ -88,21 +94,27 @@ const HeardRobot* OperatorSource::heard(const std::string& robot) const {
 
 void OperatorSource::hear_status(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
-  auto peer = heard ? seal_.believe("STATUS", heard->message_bytes, heard->seal) : std::nullopt;
-  HeardRobot* robot = peer ? place_of(heard->message.robot) : nullptr;
-  if (robot == nullptr || !robot->order.take(peer->boot, heard->message.stamp_ns, clock_.now_ns())) return;
+  if (!heard) return;
+  const pmg_msgs::status_t& status = heard->message;
+  const std::int64_t now_ns = clock_.now_ns();
+  const auto known = heard_.find(status.robot);
+  // A recording costs no look at its signature.
+  if (known != heard_.end() && !known->second.order.news(boot_of(heard->seal), status.stamp_ns, now_ns)) return;
+  auto peer = seal_.believe("STATUS", heard->message_bytes, heard->seal, now_ns);
+  HeardRobot* robot = peer ? place_of(status.robot) : nullptr;
+  if (robot == nullptr || !robot->order.take(peer->boot, status.stamp_ns, now_ns)) return;
   if (robot->peer && robot->peer->boot != peer->boot) robot->hoist.reset();  // an earlier start's
-  peer->heard_ns = heard->message.stamp_ns;
+  peer->heard_ns = status.stamp_ns;
   robot->peer = peer;
-  robot->status = heard->message;
-  robot->status_heard_ns = clock_.now_ns();
+  robot->status = status;
+  robot->status_heard_ns = now_ns;
 }
 
 void OperatorSource::hear_ack(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::ack_t, pmg_msgs::proof_t>(bytes);
   if (!heard) return;
   const pmg_msgs::ack_t& ack = heard->message;
-  if (!asked_.answered_by(ack) || !seal_.believe("ACK", heard->message_bytes, heard->seal)) return;
+  if (!asked_.answered_by(ack) || !seal_.believe("ACK", heard->message_bytes, heard->seal, clock_.now_ns())) return;
   if (HeardRobot* robot = place_of(ack.robot)) robot->ack = ack;
 }
 
@@ -111,9 +123,9 @@ void OperatorSource::hear_hoist(io::Bytes bytes) {
   const auto known = heard ? heard_.find(heard->message.robot) : heard_.end();  // without STATUS it is no controller's
   if (known == heard_.end() || !known->second.peer) return;
   HeardRobot& robot = known->second;
-  if (robot.hoist && heard->message.stamp_ns < robot.hoist->stamp_ns) return;  // recorded
-  const auto peer = seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal);
-  if (!peer || peer->boot != robot.peer->boot) return;
+  const bool recorded =
+      boot_of(heard->seal) != robot.peer->boot || (robot.hoist && heard->message.stamp_ns < robot.hoist->stamp_ns);
+  if (recorded || !seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal, clock_.now_ns())) return;
   robot.hoist = heard->message;
   robot.hoist_heard_ns = clock_.now_ns();
 }

@@ -15,18 +15,22 @@ std::int64_t difference_ns(std::int64_t a, std::int64_t b) noexcept {
 
 }  // namespace
 
+std::int64_t StatusOrder::grown_offset_ns(std::int64_t now_ns) const noexcept {
+  return smallest_offset_ns_ + (now_ns - heard_ns_) / kDrift;
+}
+
+bool StatusOrder::news(std::int64_t boot, std::int64_t stamp_ns, std::int64_t now_ns) const noexcept {
+  if (!any_) return true;
+  if (boot != start_.boot) return now_ns - heard_ns_ > kSpeaks_ns && !is_earlier(boot, stamp_ns);
+  return stamp_ns > start_.newest_ns && difference_ns(now_ns, stamp_ns) <= grown_offset_ns(now_ns) + kLate_ns;
+}
+
 bool StatusOrder::take(std::int64_t boot, std::int64_t stamp_ns, std::int64_t now_ns) noexcept {
-  const std::int64_t offset_ns = difference_ns(now_ns, stamp_ns), silent_ns = now_ns - heard_ns_;
+  if (!news(boot, stamp_ns, now_ns)) return false;
+  const std::int64_t offset_ns = difference_ns(now_ns, stamp_ns);
   const bool same = any_ && boot == start_.boot;
-  if (same) {
-    const std::int64_t grown_ns = smallest_offset_ns_ + silent_ns / kDrift;
-    if (stamp_ns <= start_.newest_ns || offset_ns > grown_ns + kLate_ns) return false;
-    smallest_offset_ns_ = std::min(grown_ns, offset_ns);
-  } else {
-    if ((any_ && silent_ns <= kSpeaks_ns) || is_earlier(boot, stamp_ns)) return false;
-    if (any_) earlier_[earlier_count_++ % kEarlierStarts] = start_;
-    smallest_offset_ns_ = offset_ns;
-  }
+  if (any_ && !same) earlier_[earlier_count_++ % kEarlierStarts] = start_;
+  smallest_offset_ns_ = same ? std::min(grown_offset_ns(now_ns), offset_ns) : offset_ns;
   any_ = true;
   start_ = {.boot = boot, .newest_ns = stamp_ns};
   heard_ns_ = now_ns;

@@ -19,12 +19,15 @@ class StatusOrder {
   static constexpr std::size_t kEarlierStarts = 8;
 
   /// boot: the start's number. stamp_ns: by the controller's clock.
+  bool news(std::int64_t boot, std::int64_t stamp_ns, std::int64_t now_ns) const noexcept;
+  /// Takes news into account; false: it is none.
   bool take(std::int64_t boot, std::int64_t stamp_ns, std::int64_t now_ns) noexcept;
 
  private:
   struct Start {
     std::int64_t boot = 0, newest_ns = 0;
   };
+  std::int64_t grown_offset_ns(std::int64_t now_ns) const noexcept;
   bool is_earlier(std::int64_t boot, std::int64_t stamp_ns) const noexcept;
 
   bool any_ = false;

@@ -65,15 +65,22 @@ void Comms::hear_status(io::Bytes bytes) {
     if (listening_ && !known && others_.size() < kMostOthers && presentable(status.robot)) {
       others_.push_back(status.robot);
     }
-  } else if ((!heard->seal || heard->seal->boot != seal_.boot()) && may_verify()) {
-    if (!seal_.ours("STATUS", heard->message_bytes, heard->seal)) {
+    return;
+  }
+  const bool own_number = heard->seal && heard->seal->boot == seal_.boot();
+  if (own_number && said(bytes)) return;
+  if (may_verify()) {
+    if (!seal_.ours("STATUS", heard->message_bytes, heard->seal) || (own_number && !seal_.has_keys())) {
       ++forgeries_heard_;
-    } else if (contest_.holds() && clock_.now_ns() >= ask_at_ns_) {  // another controller's, or a recording: ask
+    } else if (!own_number && contest_.holds() &&
+               clock_.now_ns() >= ask_at_ns_) {  // another controller's, or a recording: ask
       ask_at_ns_ = clock_.now_ns() + kSecond_ns;
       claim(pmg_msgs::claim_t::NOBODY);
     }
   }
 }
+
+bool Comms::said(io::Bytes status) const { return std::ranges::find(said_, seal::digest_of(status)) != said_.end(); }
 
 void Comms::hear_claim(io::Bytes bytes) {
   using Reaction = NameContest::Reaction;
@@ -163,9 +170,13 @@ void Comms::warn() {
         impostor_session_, run_.robot, link_.url());
   });
   once(Warning::kForgery, forgeries_heard_ > 0, [&] {
-    return fmt::format(
-        "somebody without this controller's key speaks as robot \"{}\" on {}; nobody with keys believes it", run_.robot,
-        link_.url());
+    return seal_.has_keys()
+               ? fmt::format(
+                     "somebody without this controller's key speaks as robot \"{}\" on {}; nobody with keys believes "
+                     "it",
+                     run_.robot, link_.url())
+               : fmt::format("somebody else speaks as robot \"{}\" on {}, and there are no keys to tell them apart",
+                             run_.robot, link_.url());
   });
   once(Warning::kMalformed, counts.malformed > 0,
        [] { return std::string("malformed operators' messages are ignored; LINK counts them"); });
@@ -181,10 +192,15 @@ void Comms::warn() {
 }
 
 void Comms::publish_acks() {
-  outbox_.acks.consume_all([&](const control::ModeAck& ack) {
+  const auto send = [&](const control::ModeAck& ack) {
     recording::fill(ack, run_, clock_.now_ns(), ack_);
     link_.send("ACK", seal_.prove("ACK", ack_));
-  });
+  };
+  outbox_.acks.consume_all(send);
+  for (control::ModeAck& refusal : gate_.take_refusals()) {
+    refusal.mode = newest_.result.mode;
+    send(refusal);
+  }
 }
 
 void Comms::publish_newest() {
@@ -192,7 +208,9 @@ void Comms::publish_newest() {
   hoist_gate_.see(newest_.result);
   const int joint_count = robot_.joint_index.size();
   recording::fill(newest_, run_, robot_, status_);
-  link_.send("STATUS", seal_.prove("STATUS", status_));
+  const io::Bytes status = seal_.prove("STATUS", status_);
+  said_[said_count_++ % said_.size()] = seal::digest_of(status);
+  link_.send("STATUS", status);
   recording::fill(newest_, joint_count, state_);
   link_.publish("STATE", state_);
   recording::fill(newest_, joint_count, reference_);

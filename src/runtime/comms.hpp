@@ -77,6 +77,8 @@ class Comms {
   enum class Warning { kImpostor, kForgery, kMalformed, kVersion, kKey, kFlood, kNetwork };
 
   void hear_status(io::Bytes message);
+  /// Of our own STATUS, which we hear, too.
+  bool said(io::Bytes status) const;
   void hear_claim(io::Bytes message);
   /// Whether there is time to look at another signature.
   bool may_verify();
@@ -97,6 +99,8 @@ class Comms {
   const io::Clock& clock_;
   seal::ControllerSeal seal_;
   NameContest contest_;
+  std::array<seal::Digest, 256> said_{};  // a ring: STATUS of the last seconds
+  std::size_t said_count_ = 0;
   DatagramOrder order_;
   OperatorGate gate_;
   HoistGate hoist_gate_;

@@ -106,6 +106,11 @@ void OperatorGate::take_mode(io::Bytes bytes) {
     request.digest = seal::digest_of(sealed->message_bytes);
     request.heard_ns = sealed->seal->heard_ns;
     let_through(request, Stream::kRequest, MessageKind::kRequest);
+  } else if (judgement == seal::ControllerSeal::Judgement::kNoKey && rates_.admit_stranger(request.received_ns)) {
+    refusals_.push_back({.source = request.source,
+                         .sequence = request.sequence,
+                         .verdict = control::Verdict::kNoKey,
+                         .digest = seal::digest_of(sealed->message_bytes)});
   }
 }
 

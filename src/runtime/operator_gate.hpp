@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "control/operator_inbox.hpp"
 #include "io/clock.hpp"
@@ -61,6 +63,10 @@ class OperatorGate {
 
   const GateCounts& counts() const noexcept { return counts_; }
 
+  /// Answers to requests without a good key, which no tick sees: no more than strangers' rate allows. The mode is not
+  /// set.
+  std::vector<control::ModeAck> take_refusals() { return std::exchange(refusals_, {}); }
+
  private:
   void take_stop(control::ModeRequest request, io::Bytes message);
   /// A whole message with a good seal goes to the inbox if it is new and within its operator's rate.
@@ -74,6 +80,7 @@ class OperatorGate {
   DatagramOrder& order_;
   SourceRates rates_;
   GateCounts counts_;
+  std::vector<control::ModeAck> refusals_;
 };
 
 }  // namespace pmg::runtime

@@ -466,6 +466,16 @@ TEST_F(KeyedTest, NobodyDrivesUnderAnothersName) {
   EXPECT_EQ(network_.finish(stop), Progress::kReached) << "a stop is everybody's";
 }
 
+TEST_F(KeyedTest, WhoseKeyWasRevokedIsToldSo) {
+  OperatorSource former(network_.link, "bob.1", 1, network_.clock,
+                        seal::OperatorSeal({{"bob", key_.controller, seal::random_secret()}}, false));
+  for (int k = 0; k < 3; ++k) network_.advance();
+  ModeWish stand(former, "biped", Goal::kStand, 5.0);
+  EXPECT_EQ(network_.finish(stand), Progress::kFailed);
+  EXPECT_EQ(stand.answers().front().text, kNoKey);
+  EXPECT_LT(stand.elapsed_s(), 0.1) << "at once";
+}
+
 TEST_F(KeyedTest, AForgedAcknowledgementOfAStopIsNotBelieved) {
   network_.control_alive = false;
   forge_acks();

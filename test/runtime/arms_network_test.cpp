@@ -37,7 +37,7 @@ class ArmsNetwork : public testing::Test {
     status.robot = "z1";
     const io::Bytes told = controller_.prove("STATUS", status);
     const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(told);
-    peer_ = anna_.believe("STATUS", heard->message_bytes, heard->seal);
+    peer_ = anna_.believe("STATUS", heard->message_bytes, heard->seal, 0);
     ASSERT_TRUE(peer_);
     ticks(10);  // both feet stand
     ask_for_walk();

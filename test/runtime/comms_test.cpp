@@ -285,6 +285,41 @@ TEST_F(CommsTest, OperatorsAreNotHeardBeforeTheControllerRuns) {
   EXPECT_EQ(stop_line_.pulls(), 0u);
 }
 
+TEST_F(CommsTest, AStatusThatForgesOurBootNumberIsSaidOnce) {
+  for (const auto& keys : {std::optional<seal::ControllerKeys>(),
+                           std::optional(seal::ControllerKeys{.own = seal::random_secret(), .operators = {}})}) {
+    OtherController robot(link_, clock_, 17, keys);
+    std::vector<std::string> warnings;
+    robot.comms.on_warning = [&](const std::string& text) { warnings.push_back(text); };
+    std::vector<std::uint8_t> said;
+    const auto step = [&] {
+      clock_.advance_to(clock_.now_ns() + kTick_ns);
+      record_.now_ns = clock_.now_ns();
+      robot.outbox.newest.put(record_);
+      robot.comms.step(0);
+      link_.receive(0);
+    };
+    bool records = true;
+    link_.subscribe("STATUS", [&said, &records](io::Bytes bytes) {
+      if (records) said.assign(bytes.begin(), bytes.end());
+    });
+    for (int k = 0; k < 5; ++k) step();
+    records = false;
+    EXPECT_THAT(warnings, IsEmpty()) << "its own";
+    const auto proven = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(said).value();
+    pmg_msgs::status_t forged = proven.message;
+    forged.mode = pmg_msgs::mode_t::WALK;
+    std::vector<std::uint8_t> bytes;
+    seal::append(bytes, forged);
+    seal::append(bytes, *proven.seal);
+    for (int k = 0; k < 3; ++k) {
+      link_.send("STATUS", bytes);
+      step();
+    }
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("speaks as robot \"biped\"")));
+  }
+}
+
 TEST_F(CommsTest, AnotherControllerOfOurNameThatComesLaterIsSaidOnce) {
   tick();
   OtherController later(link_, clock_, 18);

@@ -365,6 +365,23 @@ TEST_F(OperatorGateTest, ARequestCarriesItsDigestAndWhatItsSenderHadHeard) {
   EXPECT_EQ(take_requests().at(0).digest, seal::digest_of(encoded(mode_))) << "a stranger's stop too";
 }
 
+TEST_F(OperatorGateTest, WhoHasNoKeyAnyMoreIsToldSoAtABoundedRate) {
+  const seal::Secret secret = seal::random_secret();
+  const seal::ControllerSeal keyed(seal::ControllerKeys{.own = seal::random_secret(), .operators = {}});
+  OperatorGate gate(inbox_, "z1", clock_, keyed, order_);
+  seal::OperatorSeal revoked({{"anna", {}, secret}}, true);
+  const seal::Peer peer{.boot = keyed.boot(), .heard_ns = 0, .key = 0};
+  mode_.source = "anna.1";
+  for (int k = 0; k < 100; ++k) gate.take_mode(revoked.seal("MODE", mode_, &peer));
+  const auto refusals = gate.take_refusals();
+  ASSERT_EQ(refusals.size(), 4u);
+  EXPECT_EQ(refusals[0].verdict, control::Verdict::kNoKey);
+  EXPECT_EQ(refusals[0].digest, seal::digest_of(encoded(mode_)));
+  EXPECT_TRUE(gate.take_refusals().empty());
+  EXPECT_TRUE(take_requests().empty());
+  EXPECT_EQ(gate.counts().no_key, 100);
+}
+
 TEST_F(OperatorGateTest, MessagesThatADelayBunchedAreAllTaken) {
   pass_ms(1000);
   for (int k = 0; k < 8; ++k) send_command("gamepad");  // 160 ms of a 50 Hz source at once

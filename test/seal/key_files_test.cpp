@@ -128,7 +128,7 @@ TEST_F(KeyFiles, WithKeysThatWereAskedForNothingUnsignedIsBelieved) {
   fs::create_directories(operator_);
   write_operator_key(operator_ / "z1.key", make_operator_key(controller_, "anna"));
   const auto believes_unsigned = [](const std::string& folder, const char* url) {
-    return load_operator_seal(folder, url).believe("STATUS", {}, std::nullopt).has_value();
+    return load_operator_seal(folder, url).believe("STATUS", {}, std::nullopt, 0).has_value();
   };
   for (const char* url : {"udpm://239.255.76.67:7667?ttl=0", "udpm://239.255.76.67:7667?ttl=1"}) {
     EXPECT_FALSE(believes_unsigned(operator_.string(), url)) << url;
