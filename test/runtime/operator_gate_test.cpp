@@ -13,6 +13,7 @@
 #include "pmg_msgs/arms_t.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
+#include "seal/operator_seal.hpp"
 
 namespace pmg::runtime {
 namespace {

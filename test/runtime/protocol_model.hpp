@@ -124,6 +124,7 @@ class World {
   std::string violation;  ///< what should never be; empty: all is well
   std::map<std::string, int> commands, requests;
   std::map<seal::Digest, std::int64_t> made_ns;
+  std::map<seal::Digest, int> judged;
   std::map<std::pair<std::string, std::int64_t>, Fate> fates;
   std::int64_t stopped_ns = -1;
   std::uint32_t pulls = 0;
@@ -135,6 +136,7 @@ class World {
     const auto judgement = intake.judge(message, now_ns);
     const bool taken = judgement.verdict == control::Verdict::kTaken;
     if (!message.stops()) {
+      if (judged[message.digest]++ > 0) violation = "a datagram is looked at twice";
       Fate& fate = fates[{name, message.sequence}];
       if (judgement.fresh && fate.refused) violation = "what was refused is carried out later";
       if (judgement.fresh && fate.carried_out++ > 0) violation = "a request is carried out twice";

@@ -100,20 +100,23 @@ class Allowances {
                                           "anna lifts the robot",
                                           "carl sets it down",
                                           "the hoist's first request is played back",
-                                          "anna repeats her request to the hoist"};
+                                          "anna repeats her request to the hoist",
+                                          "anna is silent while bob sends commands under twelve names"};
 
   Allowances() { world_.anna.mode.mode = Modes::STAND; }
 
   void act(std::size_t action) {
-    for (int k = 0; k < 5; ++k) {
+    const bool silent = action == 11;
+    for (int k = 0; k < (silent ? 30 : 5); ++k) {
       world_.pass_ms(20);
       for (Sender* sender : {&world_.anna, &carl_}) world_.hear_status(*sender);
-      world_.gate->take_command(command_ = world_.drive(world_.anna));
-      if (k % 2 == 0) world_.gate->take_mode(request_ = world_.request(world_.anna));
-      if (action < 7) interfere(action);
+      if (!silent) world_.gate->take_command(command_ = world_.drive(world_.anna));
+      if (!silent && k % 2 == 0) world_.gate->take_mode(request_ = world_.request(world_.anna));
+      interfere(silent ? 3 : action);
       world_.tick();
     }
-    if (action >= 7) hoist(action);
+    if (silent) return;
+    hoist(action);
     const int commands = world_.commands["anna.1"], requests = world_.requests["anna.1"];
     if (commands != 5 * (1 + steps_)) violation_ = "another takes room from a driver's commands";
     if (requests != 3 * (1 + steps_)) violation_ = "another takes room from an operator's requests";

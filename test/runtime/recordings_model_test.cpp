@@ -91,7 +91,7 @@ class Knowledge {
                                           "its first STATUS is played back",
                                           "its STATUS are played back in order",
                                           "the operator's program is started anew",
-                                          "0.2 s pass"};
+                                          "0.6 s pass"};
 
   void act(std::size_t action) {
     pass_ms(10);
@@ -122,7 +122,7 @@ class Knowledge {
         drives_ns_ = kNever;
         break;
       default:
-        pass_ms(200);
+        pass_ms(600);
     }
     const bool drives = now_ns_ - drives_ns_ < kBelieved_ns;
     if (drives && now_ns_ - spoke_ns_ > kBelieved_ns + ops::StatusOrder::kLate_ns) violation_ = "a dead robot drives";

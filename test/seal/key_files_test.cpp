@@ -78,6 +78,15 @@ TEST_F(KeyFiles, OnlyTheOwnerReadsThem) {
               AllOf(HasSubstr("anna.key"), HasSubstr("chmod 600"), Not(HasSubstr("\n"))));
 }
 
+TEST_F(KeyFiles, AFileThatCannotBeWrittenIsNamedAndLeavesNothingBehind) {
+  const OperatorKey anna = make_operator_key(controller_, "anna");
+  EXPECT_THAT(error_of([&] { write_operator_key(folder_ / "nowhere/z1.key", anna); }), HasSubstr("nowhere/z1.key: No"));
+  write_operator_key(folder_ / "z1.key", anna);
+  EXPECT_THAT(error_of([&] { write_operator_key(folder_ / "z1.key", anna); }), HasSubstr("z1.key: File exists"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2)
+      << "z1.key, and the controller's";
+}
+
 TEST_F(KeyFiles, AFolderThatIsThereKeepsItsRights) {
   fs::create_directories(controller_);
   ::chmod(controller_.c_str(), 0755);
