@@ -17,7 +17,7 @@ const HeardArms* ArmsBoard::of(const std::string& robot) const {
 
 void ArmsBoard::hear(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::arms_state_t, pmg_msgs::proof_t>(bytes);
-  if (!heard || !seal_.believe("ARMS_STATE", heard->message_bytes, heard->seal)) return;
+  if (!heard || !seal_.believe("ARMS_STATE", heard->message_bytes, heard->seal, clock_.now_ns())) return;
   const std::string& robot = heard->message.robot;
   if (robots_.size() >= kMostRobots && !robots_.contains(robot)) return;
   robots_[robot] = {.state = heard->message, .heard_ns = clock_.now_ns()};

@@ -36,22 +36,29 @@ bool reachable(const ArmTarget& target) noexcept {
 
 }  // namespace
 
-const SourceRecord* CommandIntake::record_of(const Source& source, std::int64_t received_ns) const noexcept {
-  const SourceRecord* record = sources_.find(source);
-  if (record == nullptr || source.session >= record->source.session) return record;
-  return received_ns - record->heard_ns > SourceMemory::kSessionHolds_ns ? nullptr : record;
-}
-
 bool CommandIntake::uses_drivers_name(const Source& source, std::int64_t now_ns) const noexcept {
   return leased(now_ns) && source.name == last_.source.name && source != last_.source;
 }
 
+template <typename Message>
+CommandIntake::DriveVerdict CommandIntake::take_number(const Message& message, std::int64_t SourceRecord::*last,
+                                                       std::int64_t received_ns, std::int64_t now_ns,
+                                                       SourceRecord*& record) noexcept {
+  if (sources_.ended(message.source, received_ns)) return DriveVerdict::kOutOfOrder;
+  record = sources_.hear(message.source, driving(now_ns), received_ns);
+  if (record == nullptr || message.sequence <= record->*last) return DriveVerdict::kOutOfOrder;
+  record->*last = message.sequence;
+  return SourceMemory::late(*record, message.stamp_ns, received_ns) ? DriveVerdict::kLate : DriveVerdict::kAccepted;
+}
+
 CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, std::int64_t now_ns) noexcept {
   const std::int64_t received_ns = receipt_ns(message.received_ns, now_ns);
-  const DriveVerdict verdict = check(message, received_ns, now_ns);
+  SourceRecord* record = nullptr;
+  DriveVerdict verdict = take_number(message, &SourceRecord::last_command, received_ns, now_ns, record);
+  if (verdict == DriveVerdict::kAccepted) verdict = check(message, now_ns);
   ++(ignored_.*kDriveCounters[static_cast<std::size_t>(verdict)]);
   if (verdict != DriveVerdict::kAccepted) return verdict;
-  sources_.adopt(message.source, driving(now_ns), message.stamp_ns, received_ns).last_command = message.sequence;
+  SourceMemory::take(*record, message.stamp_ns, received_ns);
   if (!leased(now_ns) || message.source != last_.source || asks_for_motion(message.command, last_.command)) {
     moved_ns_ = received_ns;
   }
@@ -62,51 +69,35 @@ CommandIntake::DriveVerdict CommandIntake::accept(const DriveMessage& message, s
   return verdict;
 }
 
-CommandIntake::DriveVerdict CommandIntake::check(const DriveMessage& message, std::int64_t received_ns,
-                                                 std::int64_t now_ns) noexcept {
+CommandIntake::DriveVerdict CommandIntake::check(const DriveMessage& message, std::int64_t now_ns) const noexcept {
   if (!std::ranges::all_of(message.command.u, [](double value) { return std::isfinite(value); })) {
     return DriveVerdict::kNotFinite;
   }
   if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
-  const DriveVerdict order = check_order(message, &SourceRecord::last_command, received_ns);
-  if (order != DriveVerdict::kAccepted) return order;
   return leased(now_ns) && message.source != last_.source ? DriveVerdict::kOtherSourceDrives : DriveVerdict::kAccepted;
-}
-
-template <typename Message>
-CommandIntake::DriveVerdict CommandIntake::check_order(const Message& message, std::int64_t SourceRecord::*last,
-                                                       std::int64_t received_ns) const noexcept {
-  const SourceRecord* record = record_of(message.source, received_ns);
-  if (record != nullptr && message.source.session < record->source.session) return DriveVerdict::kOutOfOrder;
-  if (record != nullptr && message.source == record->source) {
-    if (message.sequence <= record->*last) return DriveVerdict::kOutOfOrder;
-    if (SourceMemory::late(*record, message.stamp_ns, received_ns)) return DriveVerdict::kLate;
-  }
-  return DriveVerdict::kAccepted;
 }
 
 CommandIntake::DriveVerdict CommandIntake::accept(const ArmsMessage& message, std::int64_t now_ns) noexcept {
   const std::int64_t received_ns = receipt_ns(message.received_ns, now_ns);
-  const DriveVerdict verdict = check(message, received_ns, now_ns);
+  SourceRecord* record = nullptr;
+  DriveVerdict verdict = take_number(message, &SourceRecord::last_arms, received_ns, now_ns, record);
+  if (verdict == DriveVerdict::kAccepted) verdict = check(message, now_ns);
   ++(ignored_.*kDriveCounters[static_cast<std::size_t>(verdict)]);
   if (verdict != DriveVerdict::kAccepted) {
     ++arms_refused_;
     arms_refusal_ = verdict;
     return verdict;
   }
-  sources_.adopt(message.source, driving(now_ns), message.stamp_ns, received_ns).last_arms = message.sequence;
+  SourceMemory::take(*record, message.stamp_ns, received_ns);
   if (message.arm != arms_.arm) moved_ns_ = received_ns;
   arms_ = message;
   arms_end_ns_ = received_ns + io::nanoseconds(std::min(message.lease_s, kLongestArmsLease_s));
   return verdict;
 }
 
-CommandIntake::DriveVerdict CommandIntake::check(const ArmsMessage& message, std::int64_t received_ns,
-                                                 std::int64_t now_ns) noexcept {
+CommandIntake::DriveVerdict CommandIntake::check(const ArmsMessage& message, std::int64_t now_ns) const noexcept {
   if (!std::ranges::all_of(message.arm, reachable)) return DriveVerdict::kNotFinite;
   if (!(message.lease_s > 0.0)) return DriveVerdict::kNoLease;
-  const DriveVerdict order = check_order(message, &SourceRecord::last_arms, received_ns);
-  if (order != DriveVerdict::kAccepted) return order;
   return leased(now_ns) && message.source == last_.source ? DriveVerdict::kAccepted : DriveVerdict::kOtherSourceDrives;
 }
 
@@ -115,41 +106,66 @@ ArmsOrder CommandIntake::arms_order(std::int64_t now_ns) const noexcept {
   return now_ns < arms_end_ns_ ? ArmsOrder::kInForce : ArmsOrder::kLeaseOver;
 }
 
+CommandIntake::Standing CommandIntake::standing(const ModeRequest& request, std::int64_t received_ns,
+                                                std::int64_t now_ns) const noexcept {
+  if (!request.sealed || (request.stops() && uses_drivers_name(request.source, now_ns))) return Standing::kNobodys;
+  if (sources_.ended(request.source, received_ns)) return Standing::kOverdue;
+  const SourceRecord* record = sources_.find(request.source);
+  if (record == nullptr || request.sequence > record->last_request) return Standing::kNew;
+  const bool same_wish = request.mode == record->asked_mode && request.reset_fault == record->asked_reset;
+  return request.sequence == record->last_request && same_wish ? Standing::kRepeated : Standing::kOverdue;
+}
+
 CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::int64_t now_ns) noexcept {
   const std::int64_t received_ns = receipt_ns(request.received_ns, now_ns);
-  const Judgement judgement = check(request, received_ns, now_ns);
+  Judgement judgement;
+  switch (standing(request, received_ns, now_ns)) {
+    case Standing::kNew:
+      judgement = judge_new(request, received_ns, now_ns);
+      break;
+    case Standing::kRepeated:
+      judgement.verdict = sources_.hear(request.source, driving(now_ns), received_ns)->verdict;
+      break;
+    case Standing::kOverdue:
+      judgement.verdict = Verdict::kOutOfOrder;
+      break;
+    case Standing::kNobodys:
+      judgement.verdict = before_stop(request, received_ns) ? Verdict::kLate : Verdict::kNotYours;
+      break;
+  }
+  if (request.stops()) judgement.verdict = Verdict::kTaken;
   // One that names no mode is told so and counted by whoever decodes messages.
   if (judgement.verdict != Verdict::kNoMode) {
     ++(ignored_.*kRequestCounters[static_cast<std::size_t>(judgement.verdict)]);
   }
-  if (request.stops() && judgement.verdict == Verdict::kTaken) stop(received_ns);
-  if (judgement.fresh) {
-    sources_.adopt(request.source, driving(now_ns), request.stamp_ns, received_ns).last_request = request.sequence;
-    if (!request.stops() && leased(now_ns) && request.source != last_.source) {  // it takes over
-      last_.source = request.source;
-      moved_ns_ = received_ns;
-      lease_end_ns_ = received_ns + io::nanoseconds(kTakeOverLease_s);
-    }
+  if (request.stops()) stop(received_ns);
+  return judgement;
+}
+
+CommandIntake::Judgement CommandIntake::judge_new(const ModeRequest& request, std::int64_t received_ns,
+                                                  std::int64_t now_ns) noexcept {
+  SourceRecord* record = sources_.hear(request.source, driving(now_ns), received_ns);
+  if (record == nullptr) return {.verdict = Verdict::kNotYours};
+  const Judgement judgement = decide(request, *record, received_ns, now_ns);
+  record->last_request = request.sequence;
+  record->asked_mode = request.mode;
+  record->asked_reset = request.reset_fault;
+  record->verdict = judgement.verdict;
+  if (!judgement.fresh) return judgement;
+  SourceMemory::take(*record, request.stamp_ns, received_ns);
+  if (!request.stops() && leased(now_ns) && request.source != last_.source) {  // it takes over
+    last_.source = request.source;
+    moved_ns_ = received_ns;
+    lease_end_ns_ = received_ns + io::nanoseconds(kTakeOverLease_s);
   }
   return judgement;
 }
 
-CommandIntake::Judgement CommandIntake::check(const ModeRequest& request, std::int64_t received_ns,
-                                              std::int64_t now_ns) noexcept {
+CommandIntake::Judgement CommandIntake::decide(const ModeRequest& request, const SourceRecord& record,
+                                               std::int64_t received_ns, std::int64_t now_ns) const noexcept {
   if (request.mode >= Mode::kFault) return {.verdict = Verdict::kNoMode};
-  if (!request.stops() && received_ns <= stopped_ns_) return {.verdict = Verdict::kLate};
-  const auto unless_stop = [&](Verdict verdict) {
-    return Judgement{.verdict = request.stops() ? Verdict::kTaken : verdict};
-  };
-  if (!request.sealed || (request.stops() && uses_drivers_name(request.source, now_ns))) {
-    return {.verdict = request.stops() ? Verdict::kTaken : Verdict::kNotYours};
-  }
-  const SourceRecord* record = record_of(request.source, received_ns);
-  if (record != nullptr && request.source.session < record->source.session) return unless_stop(Verdict::kOutOfOrder);
-  if (record != nullptr && request.source == record->source) {
-    if (request.sequence == record->last_request) return {.verdict = Verdict::kTaken};
-    if (request.sequence < record->last_request) return unless_stop(Verdict::kOutOfOrder);
-    if (SourceMemory::late(*record, request.stamp_ns, received_ns)) return unless_stop(Verdict::kLate);
+  if (before_stop(request, received_ns) || SourceMemory::late(record, request.stamp_ns, received_ns)) {
+    return {.verdict = Verdict::kLate};
   }
   const bool takes_over = received_ns - moved_ns_ >= kAtRest_ns;
   const bool mine = !leased(now_ns) || request.source == last_.source || takes_over;

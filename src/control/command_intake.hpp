@@ -36,8 +36,9 @@ class CommandIntake {
   /// The answer to a request.
   struct Judgement {
     Verdict verdict = Verdict::kTaken;
-    /// To be carried out. False for the repetition of a request that was carried out: it is only acknowledged again. A
-    /// stop that isn't fresh (repeated, overtaken, late) still stops, but doesn't ask for limp drives a second time.
+    /// To be carried out. False for what is refused, and for the repetition of a request: it only gets the same answer
+    /// again. A stop that isn't fresh (repeated, overtaken, late) still stops, but doesn't ask for limp drives a second
+    /// time.
     bool fresh = false;
   };
 
@@ -56,13 +57,15 @@ class CommandIntake {
   /// A target's quaternion differs no more from length 1: single precision and rounded text do by less.
   static constexpr double kUnitQuaternion = 1e-3;
 
-  /// (command message, time) => (verdict). An accepted one becomes command().
+  /// (command message, time) => (verdict). An accepted one becomes command(). Whatever the verdict is, its number is
+  /// used up.
   DriveVerdict accept(const DriveMessage& message, std::int64_t now_ns) noexcept;
   /// The same for arms: only the source that drives leads them.
   DriveVerdict accept(const ArmsMessage& message, std::int64_t now_ns) noexcept;
   void ignore_arms() noexcept { ++ignored_.no_arms; }  ///< a message to a robot without arms
 
-  /// (mode request, time) => (verdict). Anyone may stop at any time. Only the driving source may climb or reset; anyone
+  /// (mode request, time) => (verdict). A request is judged once; repetitions get the same verdict. Anyone may stop at
+  /// any time. Only the driving source may climb or reset; anyone
   /// may when none drives, or when the driver only renews its lease: then the request takes over.
   Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
 
@@ -88,17 +91,32 @@ class CommandIntake {
 
  private:
   bool leased(std::int64_t now_ns) const noexcept { return any_ && now_ns < lease_end_ns_; }
-  /// The record that this source's messages are compared with; null: none, or of a session that no longer counts.
-  const SourceRecord* record_of(const Source& source, std::int64_t received_ns) const noexcept;
+  /// What a request is to its source's earlier ones.
+  enum class Standing {
+    kNew,
+    kRepeated,
+    kOverdue,  ///< of an ended session, overtaken, or the number of a request that asked for something else
+    kNobodys,  ///< a stop that anybody may have sent
+  };
+
   /// The driver's own name with another session: of a successor that must wait, or of a stranger.
   bool uses_drivers_name(const Source& source, std::int64_t now_ns) const noexcept;
-  DriveVerdict check(const DriveMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
-  DriveVerdict check(const ArmsMessage& message, std::int64_t received_ns, std::int64_t now_ns) noexcept;
-  /// kOutOfOrder, kLate or kAccepted. last: of this kind of messages.
+  /// Judges the message's number and remembers it: kOutOfOrder, kLate or kAccepted. last: of this kind of messages.
+  /// record: the source's; null: kOutOfOrder.
   template <typename Message>
-  DriveVerdict check_order(const Message& message, std::int64_t SourceRecord::*last,
-                           std::int64_t received_ns) const noexcept;
-  Judgement check(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  DriveVerdict take_number(const Message& message, std::int64_t SourceRecord::*last, std::int64_t received_ns,
+                           std::int64_t now_ns, SourceRecord*& record) noexcept;
+  DriveVerdict check(const DriveMessage& message, std::int64_t now_ns) const noexcept;
+  DriveVerdict check(const ArmsMessage& message, std::int64_t now_ns) const noexcept;
+  Standing standing(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) const noexcept;
+  /// Of a new request. record: its source's.
+  Judgement decide(const ModeRequest& request, const SourceRecord& record, std::int64_t received_ns,
+                   std::int64_t now_ns) const noexcept;
+  Judgement judge_new(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+  /// Its sender didn't know of the last stop, or it was received before it.
+  bool before_stop(const ModeRequest& request, std::int64_t received_ns) const noexcept {
+    return !request.stops() && (received_ns <= stopped_ns_ || request.heard_ns < stopped_ns_);
+  }
 
   SourceMemory sources_;
   std::int64_t stopped_ns_ = -1;

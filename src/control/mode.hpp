@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "pmg/command.hpp"
@@ -40,7 +41,16 @@ struct Source {
     return source;
   }
   friend bool operator==(const Source&, const Source&) = default;
+
+  /// Whose source this is: the name up to its first point, which with keys is the name of the key that sealed it.
+  constexpr std::string_view operator_name() const {
+    const std::string_view text(name.data());
+    return text.substr(0, text.find('.'));
+  }
 };
+
+/// SHA-256.
+using Digest = std::array<std::uint8_t, 32>;
 
 /// The six-channel command of one source (pmg_msgs::command_t).
 struct DriveMessage {
@@ -58,10 +68,14 @@ struct ModeRequest {
   std::int64_t sequence = 0;
   std::int64_t stamp_ns = 0;
   std::int64_t received_ns = 0;
+  /// Stamp of the newest STATUS that the sender had heard, by the receiver's clock: what it could know. At most
+  /// received_ns; without a network everything is known.
+  std::int64_t heard_ns = std::numeric_limits<std::int64_t>::max();
   Mode mode = Mode::kDamping;
   bool reset_fault = false;
   /// False: a stop that anybody may have sent, in any name. It stops, and changes nothing that is remembered.
   bool sealed = true;
+  Digest digest{};  ///< of the message as it was sent; the answer repeats it
 
   /// What anyone may ask for at any time.
   bool stops() const noexcept { return !reset_fault && (mode == Mode::kPassive || mode == Mode::kDamping); }
@@ -74,6 +88,7 @@ enum class Verdict : std::uint8_t {
   kOutOfOrder = 2,
   kLate = 3,
   kNoMode = 4,
+  kNoKey = 5,  ///< no tick's answer: its gate's
 };
 
 /// The tick's answer to one request.
@@ -82,6 +97,7 @@ struct ModeAck {
   std::int64_t sequence = 0;
   Verdict verdict = Verdict::kTaken;
   Mode mode = Mode::kPassive;  ///< after the tick that took it
+  Digest digest{};             ///< the request's
 };
 
 }  // namespace pmg::control

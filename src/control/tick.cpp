@@ -161,7 +161,8 @@ void Tick::take_messages(const TickInput& input) noexcept {
     }
     result_.acks[result_.ack_count++] = {.source = request.source,
                                          .sequence = request.sequence,
-                                         .verdict = refused ? Verdict::kNoMode : judgement.verdict};
+                                         .verdict = refused ? Verdict::kNoMode : judgement.verdict,
+                                         .digest = request.digest};
   }
   result_.ignored = intake_.ignored();
   result_.command_age_s = intake_.age_s(input.now_ns);

@@ -70,6 +70,10 @@ std::optional<LcmMessage> LcmAssembler::take_fragment(std::uint64_t sender, Byte
     return std::nullopt;
   }
   Place* place = place_of(sender);
+  if (place != nullptr && place->number == number && index < place->next && repeats(*place, offset, index, part)) {
+    ++counts_.unwanted;
+    return std::nullopt;
+  }
   if (index == 0) {
     if (place != nullptr) drop(*place);  // the sender has begun its next message
     const auto name = name_at_front(part);
@@ -109,6 +113,16 @@ std::optional<LcmMessage> LcmAssembler::take_fragment(std::uint64_t sender, Byte
   --counts_.fragments;
   ++counts_.messages;
   return LcmMessage{place->channel, Bytes(place->bytes).first(place->size)};
+}
+
+bool LcmAssembler::repeats(const Place& place, std::size_t offset, std::uint16_t index, Bytes part) noexcept {
+  if (index == 0) {
+    const auto name = name_at_front(part);
+    if (!name) return false;
+    part = part.subspan(name->size() + 1);
+  }
+  if (offset > place.filled || part.size() > place.filled - offset) return false;
+  return std::ranges::equal(part, Bytes(place.bytes).subspan(offset, part.size()));
 }
 
 std::optional<std::size_t> LcmAssembler::find_channel(std::string_view name) const noexcept {

@@ -40,7 +40,7 @@ class LcmAssembler {
   struct Counts {
     std::int64_t messages = 0;   ///< completed a message of a wanted channel
     std::int64_t fragments = 0;  ///< taken, message not complete yet
-    std::int64_t unwanted = 0;   ///< of another channel, or of a message whose beginning was not taken
+    std::int64_t unwanted = 0;   ///< of another channel, duplicated, or of a message whose beginning was not taken
     std::int64_t malformed = 0;  ///< not LCM, cut short, or numbers that contradict each other
     std::int64_t incomplete =
         0;  ///< messages that were begun and dropped, because a fragment is missing or is malformed
@@ -71,6 +71,8 @@ class LcmAssembler {
   std::optional<LcmMessage> take_short(Bytes rest) noexcept;
   std::optional<LcmMessage> take_fragment(std::uint64_t sender, Bytes datagram) noexcept;
   std::optional<std::size_t> find_channel(std::string_view name) const noexcept;
+  /// A fragment that the network has duplicated.
+  static bool repeats(const Place& place, std::size_t offset, std::uint16_t index, Bytes part) noexcept;
   Place* place_of(std::uint64_t sender) noexcept;
   Place& begin(std::uint64_t sender) noexcept;
   void drop(Place& place) noexcept;

@@ -129,8 +129,10 @@ int LcmLink::receive(int timeout_ms, int max_messages) {
 int LcmLink::receive_multicast(int timeout_ms, int max_messages) {
   using std::chrono::steady_clock;
   const auto end = steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+  const auto last = end + std::chrono::milliseconds(kHandling_ms);
   int handled = 0;
   for (int datagrams = 0; handled < max_messages && datagrams < max_messages * kDatagramsPerMessage; ++datagrams) {
+    if (datagrams > 0 && steady_clock::now() >= last) break;
     std::optional<LcmMessage> message;
     const std::int64_t errors = receiver_->errors();
     if (!receiver_->take(message)) {

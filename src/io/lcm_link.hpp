@@ -37,7 +37,7 @@ std::optional<Message> decode_message(Bytes bytes) {
 class LcmLink {
  public:
   using Handler = std::function<void(Bytes)>;
-  static constexpr int kDatagramsPerMessage = 4;
+  static constexpr int kDatagramsPerMessage = 4, kHandling_ms = 10;
 
   /// Throws as checked_lcm_url() does, and std::runtime_error if liblcm still fails to open the address.
   explicit LcmLink(const std::string& url);
@@ -62,8 +62,8 @@ class LcmLink {
   bool send(const std::string& channel, Bytes bytes) noexcept;
 
   /// Waits up to timeout_ms for a message, then handles the waiting ones, at most max_messages, and no more than
-  /// kDatagramsPerMessage times as many datagrams, so that a flood can't hold the caller. Returns the number of
-  /// messages.
+  /// kDatagramsPerMessage times as many datagrams; on udpm:// for no longer than timeout_ms and kHandling_ms. So a
+  /// flood can't hold the caller, whatever its handlers cost. Returns the number of messages.
   int receive(int timeout_ms, int max_messages = 500);
 
   const std::string& url() const noexcept { return url_; }  ///< the constructor's argument

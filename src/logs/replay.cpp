@@ -181,6 +181,7 @@ class Replay {
     record_.request_count = requests_.size();
     for (std::size_t i = 0; i < requests_.size(); ++i) {
       record_.requests[i] = recording::mode_request(requests_[i], input.request_received_ns[i]);
+      record_.requests[i].heard_ns = input.request_heard_ns[i];
     }
     record_.arms_count = arms_.size();
     for (std::size_t i = 0; i < arms_.size(); ++i) {

@@ -43,9 +43,9 @@ std::string fault_words(const HeardRobot& heard) {
 
 bool refused(const HeardRobot& heard) { return heard.ack && heard.ack->verdict == pmg_msgs::ack_t::NOT_YOURS; }
 
-bool lease_is_over(const HeardRobot& heard, const std::string& me) {
+bool lease_is_over(const HeardRobot& heard, const OperatorSource& me) {
   return heard.status && heard.status->stamp_ns >= heard.ack->stamp_ns &&
-         (heard.status->driving_source.empty() || heard.status->driving_source == me);
+         (heard.status->driving_source.empty() || me.drives(*heard.status));
 }
 
 }  // namespace
@@ -64,12 +64,12 @@ double ModeWish::elapsed_s() const { return static_cast<double>(source_.clock().
 
 std::string ModeWish::waits_for() const {
   const HeardRobot* heard = robot_.empty() ? nullptr : source_.heard(robot_);
-  return heard != nullptr && refused(*heard) ? heard->silent_driver(source_.name()) : "";
+  return heard != nullptr && refused(*heard) ? source_.silent_driver(*heard) : "";
 }
 
 bool ModeWish::final(const HeardRobot& heard) const {
   if (!refused(heard) || !heard.status || stopped_meanwhile(heard)) return true;
-  if (lease_is_over(heard, source_.name()) || !heard.silent_driver(source_.name()).empty()) return false;
+  if (lease_is_over(heard, source_) || !source_.silent_driver(heard).empty()) return false;
   return refused_ns_ >= 0 && source_.clock().now_ns() - refused_ns_ >= kDoubt_ns;
 }
 
@@ -85,7 +85,7 @@ void ModeWish::ask_again_after_lease() {
     refused_ns_ = now_ns;
     upright_when_refused_ = heard->status && is_upright(heard->status->mode);
   }
-  if (final(*heard) || !lease_is_over(*heard, source_.name()) || now_ns < repeat_at_ns_) return;
+  if (final(*heard) || !lease_is_over(*heard, source_) || now_ns < repeat_at_ns_) return;
   repeat_at_ns_ = now_ns + kRepeat_ns;
   source_.request(robot_, requested_mode(goal_), goal_ == Goal::kReset);
 }

@@ -38,7 +38,7 @@ class ModeWish {
   static constexpr std::int64_t kRepeat_ns = 50'000'000;
   /// Controllers send 100 times a second. After this time without a message there is no controller.
   static constexpr std::int64_t kGather_ns = 200'000'000;
-  /// After a refusal: in this time a living driver sends again (HeardRobot::silent_driver).
+  /// After a refusal: in this time a living driver sends again (OperatorSource::silent_driver).
   static constexpr std::int64_t kDoubt_ns = 300'000'000;
 
   /// Keeps a reference and sends the first request. robot: empty means every robot on this address, only for kStop.

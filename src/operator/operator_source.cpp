@@ -5,16 +5,22 @@
 
 namespace pmg::ops {
 
+namespace {
+
+std::int64_t boot_of(const std::optional<pmg_msgs::proof_t>& proof) noexcept { return proof ? proof->boot : 0; }
+
+}  // namespace
+
 std::optional<std::int8_t> HeardRobot::mode() const {
   if (ack && (!status || status->stamp_ns < ack->stamp_ns)) return ack->mode;
   if (status) return status->mode;
   return std::nullopt;
 }
 
-std::string HeardRobot::silent_driver(const std::string& me) const {
+std::string OperatorSource::silent_driver(const HeardRobot& robot) const {
   constexpr double kSilent_s = 0.2;  // a driving source sends more often: older commands are stale for the controller
-  const bool another = status && !status->driving_source.empty() && status->driving_source != me;
-  return another && status->command_age_s > kSilent_s ? status->driving_source : "";
+  const bool another = robot.status && !robot.status->driving_source.empty() && !drives(*robot.status);
+  return another && robot.status->command_age_s > kSilent_s ? robot.status->driving_source : "";
 }
 
 std::int64_t session_number() {
@@ -55,11 +61,13 @@ void OperatorSource::request(const std::string& robot, std::int8_t mode, bool re
   ++mode_.sequence;
   mode_.mode = mode;
   mode_.reset_fault = reset_fault ? 1 : 0;
+  asked_.begin();
   repeat_request();
 }
 
 void OperatorSource::repeat_request() {
   mode_.stamp_ns = clock_.now_ns();
+  asked_.sent(seal_.digest(mode_));
   send("MODE", mode_);
 }
 
@@ -84,38 +92,42 @@ const HeardRobot* OperatorSource::heard(const std::string& robot) const {
   return found == heard_.end() ? nullptr : &found->second;
 }
 
-bool OperatorSource::outdated(const HeardRobot& robot, const pmg_msgs::status_t& status, const seal::Peer& peer) const {
-  if (!robot.status || !robot.peer) return false;
-  if (robot.peer->boot == peer.boot) return peer.boot != 0 && status.stamp_ns < robot.status->stamp_ns;
-  return status.session < robot.status->session && clock_.now_ns() - robot.status_heard_ns < kSessionHolds_ns;
-}
-
 void OperatorSource::hear_status(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
-  auto peer = heard ? seal_.believe("STATUS", heard->message_bytes, heard->seal) : std::nullopt;
-  HeardRobot* robot = peer ? place_of(heard->message.robot) : nullptr;
-  if (robot == nullptr || outdated(*robot, heard->message, *peer)) return;
-  peer->heard_ns = heard->message.stamp_ns;
+  if (!heard) return;
+  const pmg_msgs::status_t& status = heard->message;
+  const std::int64_t now_ns = clock_.now_ns();
+  const auto known = heard_.find(status.robot);
+  // A recording costs no look at its signature.
+  if (known != heard_.end() && !known->second.order.news(boot_of(heard->seal), status.stamp_ns, now_ns)) return;
+  auto peer = seal_.believe("STATUS", heard->message_bytes, heard->seal, now_ns);
+  HeardRobot* robot = peer ? place_of(status.robot) : nullptr;
+  if (robot == nullptr || !robot->order.take(peer->boot, status.stamp_ns, now_ns)) return;
+  if (robot->peer && robot->peer->boot != peer->boot) robot->hoist.reset();  // an earlier start's
+  peer->heard_ns = status.stamp_ns;
   robot->peer = peer;
-  robot->status = heard->message;
-  robot->status_heard_ns = clock_.now_ns();
+  robot->status = status;
+  robot->status_heard_ns = now_ns;
 }
 
 void OperatorSource::hear_ack(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::ack_t, pmg_msgs::proof_t>(bytes);
   if (!heard) return;
   const pmg_msgs::ack_t& ack = heard->message;
-  const bool mine = ack.source == mode_.source && ack.session == mode_.session && ack.sequence == mode_.sequence;
-  if (!mine || !seal_.believe("ACK", heard->message_bytes, heard->seal)) return;
+  if (!asked_.answered_by(ack) || !seal_.believe("ACK", heard->message_bytes, heard->seal, clock_.now_ns())) return;
   if (HeardRobot* robot = place_of(ack.robot)) robot->ack = ack;
 }
 
 void OperatorSource::hear_hoist(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::hoist_state_t, pmg_msgs::proof_t>(bytes);
   const auto known = heard ? heard_.find(heard->message.robot) : heard_.end();  // without STATUS it is no controller's
-  if (known == heard_.end() || !seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal)) return;
-  known->second.hoist = heard->message;
-  known->second.hoist_heard_ns = clock_.now_ns();
+  if (known == heard_.end() || !known->second.peer) return;
+  HeardRobot& robot = known->second;
+  const bool recorded =
+      boot_of(heard->seal) != robot.peer->boot || (robot.hoist && heard->message.stamp_ns < robot.hoist->stamp_ns);
+  if (recorded || !seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal, clock_.now_ns())) return;
+  robot.hoist = heard->message;
+  robot.hoist_heard_ns = clock_.now_ns();
 }
 
 HeardRobot* OperatorSource::place_of(const std::string& robot) {

@@ -8,6 +8,8 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
+#include "operator/asked_request.hpp"
+#include "operator/status_order.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
@@ -22,6 +24,7 @@ namespace pmg::ops {
 /// The newest messages of one controller.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
+  StatusOrder order{};                             ///< of its STATUS
   std::int64_t status_heard_ns = 0;                ///< by the source's clock
   std::int64_t first_heard_ns = 0;                 ///< likewise
   std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
@@ -33,9 +36,6 @@ struct HeardRobot {
   bool lacks_key() const noexcept { return peer && peer->wants_key && !peer->key; }
   /// The newest known mode; nothing before the controller's first status.
   std::optional<std::int8_t> mode() const;
-  /// Another source that drives but is silent: it has probably crashed without letting go, and its lease ends soon.
-  /// Empty: there is none.
-  std::string silent_driver(const std::string& me) const;
 };
 
 /// A source's session: larger after each start, unless this computer's clock is set back.
@@ -45,10 +45,6 @@ std::int64_t session_number();
 class OperatorSource {
  public:
   static constexpr std::size_t kMostRobots = 64;  ///< limit for a flood of invented names
-
-  /// While a newer session of a controller speaks, messages of an older one are recordings. After so long without one,
-  /// its clock may have been set back.
-  static constexpr std::int64_t kSessionHolds_ns = 1'000'000'000;
 
   /// Keeps references. name: at most 23 characters. session: larger after each start of a source with this name. seal:
   /// without keys unless given.
@@ -71,12 +67,26 @@ class OperatorSource {
   /// Whether the hoist has answered this request or a later one.
   bool hoist_answer(const pmg_msgs::hoist_state_t& hoist) const noexcept;
 
-  /// Message and seal, for the robot of this name.
+  /// Message and seal, for the robot of this name; without a name once for each robot that was heard, so that each
+  /// finds its own seal.
   template <typename Message>
   void send(const char* channel, const Message& message) {
-    const HeardRobot* robot = heard(message.robot);
-    link_.send(channel, seal_.seal(channel, message, robot != nullptr && robot->peer ? &*robot->peer : nullptr));
+    bool sealed = false;
+    for (const auto& [name, robot] : heard_) {
+      if (!robot.peer || (!message.robot.empty() && message.robot != name)) continue;
+      link_.send(channel, seal_.seal(channel, message, &*robot.peer));
+      sealed = true;
+    }
+    if (!sealed) link_.send(channel, seal_.seal(channel, message, nullptr));
   }
+
+  /// Whether this source drives the robot: this process, not an earlier one of its name.
+  bool drives(const pmg_msgs::status_t& status) const noexcept {
+    return status.driving_source == name() && status.driving_session == session();
+  }
+  /// Another source that drives but is silent: it has probably crashed without letting go, and its lease ends soon.
+  /// Empty: there is none.
+  std::string silent_driver(const HeardRobot& robot) const;
 
   const std::map<std::string, HeardRobot>& heard() const noexcept { return heard_; }  ///< by the controllers' names
   const HeardRobot* heard(const std::string& robot) const;                            ///< null: not yet
@@ -90,7 +100,6 @@ class OperatorSource {
   void hear_ack(io::Bytes message);
   void hear_hoist(io::Bytes message);
   HeardRobot* place_of(const std::string& robot);  // null: too many robots
-  bool outdated(const HeardRobot& robot, const pmg_msgs::status_t& status, const seal::Peer& peer) const;
 
   io::LcmLink& link_;
   const io::Clock& clock_;
@@ -98,6 +107,7 @@ class OperatorSource {
   std::map<std::string, HeardRobot> heard_;
   pmg_msgs::command_t command_{};
   pmg_msgs::mode_t mode_{};
+  AskedRequest asked_;
   pmg_msgs::hoist_t hoist_{};
 };
 

@@ -59,13 +59,20 @@ double RobotBoard::silence_s(const RobotNews& news) const noexcept {
 
 void RobotBoard::hear_status(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
-  if (!heard || !seal_.believe("STATUS", heard->message_bytes, heard->seal)) return;
-  const pmg_msgs::status_t* status = &heard->message;
-  if (robots_.size() >= kMostRobots && !robots_.contains(status->robot)) return;
-  RobotNews& news = robots_[status->robot];
-  if (news.heard_ns != 0 && news.status.session != status->session) ++news.sessions;
-  news.status = *status;
-  news.heard_ns = clock_.now_ns();
+  if (!heard) return;
+  const pmg_msgs::status_t& status = heard->message;
+  const std::int64_t now_ns = clock_.now_ns(), boot = heard->seal ? heard->seal->boot : 0;
+  const auto known = robots_.find(status.robot);
+  if (known == robots_.end() ? robots_.size() >= kMostRobots
+                             : !known->second.order.news(boot, status.stamp_ns, now_ns)) {
+    return;
+  }
+  if (!seal_.believe("STATUS", heard->message_bytes, heard->seal, now_ns)) return;
+  RobotNews& news = robots_[status.robot];
+  if (news.heard_ns != 0 && news.status.session != status.session) ++news.sessions;
+  news.order.take(boot, status.stamp_ns, now_ns);
+  news.status = status;
+  news.heard_ns = now_ns;
 }
 
 }  // namespace pmg::ops

@@ -9,6 +9,7 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
+#include "operator/status_order.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
@@ -35,6 +36,7 @@ class RecentValues {
 
 struct RobotNews {
   pmg_msgs::status_t status{};
+  StatusOrder order{};        ///< of its STATUS
   std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
   std::optional<pmg_msgs::link_t> link{};

@@ -245,8 +245,7 @@ void RobotDriver::follow_climb() {
 
 void RobotDriver::follow_claim() {
   const HeardRobot* heard = source_.heard(robot_);
-  if (heard != nullptr && heard->status && heard->status->driving_source == source_.name())
-    return enter(Doing::kDriving);
+  if (heard != nullptr && heard->status && source_.drives(*heard->status)) return enter(Doing::kDriving);
   if (!waits_for().empty() && static_cast<double>(now_ns() - claim_since_ns_) * 1e-9 < manner_.timeout_s) {
     doing_since_ns_ = now_ns();  // after the end of that lease the controller has kSettle_ns to show this source
     return;
@@ -291,7 +290,7 @@ void RobotDriver::note_limits(bool last) {
 std::string RobotDriver::waits_for() const {
   if (doing_ == Doing::kClimbing) return climb_->waits_for();
   const HeardRobot* heard = doing_ == Doing::kClaiming ? source_.heard(robot_) : nullptr;
-  return heard == nullptr ? "" : heard->silent_driver(source_.name());
+  return heard == nullptr ? "" : source_.silent_driver(*heard);
 }
 
 std::string RobotDriver::trouble() const {
@@ -299,7 +298,7 @@ std::string RobotDriver::trouble() const {
   if (in_doing_ns() < kSettle_ns) return "";
   const HeardRobot* heard = source_.heard(robot_);
   const pmg_msgs::status_t& status = *heard->status;
-  if (status.driving_source != source_.name()) {
+  if (!source_.drives(status)) {
     if (status.driving_source.empty() && heard->lacks_key()) return kNoKey;
     return status.driving_source.empty() ? "its commands are not taken: pmg_watch shows by what count"
                                          : "another source drives: " + status.driving_source;
@@ -352,8 +351,10 @@ std::string RobotDriver::text() const { return doing_ == Doing::kIdle && text_.e
 
 std::string RobotDriver::idle_text() const {
   if (silent()) return silence_words();
-  const std::string& other = source_.heard(robot_)->status->driving_source;
-  if (!other.empty() && other != source_.name()) return "another source drives: " + other;
+  const pmg_msgs::status_t& status = *source_.heard(robot_)->status;
+  if (!status.driving_source.empty() && !source_.drives(status)) {
+    return "another source drives: " + status.driving_source;
+  }
   if (held_back_) return manner_.raises;
   return is_upright(*mode_) ? "stands; " + manner_.drives : manner_.starts;
 }

@@ -36,6 +36,8 @@ const char* verdict_words(std::int8_t verdict) noexcept {
       return "too long on the way";
     case pmg_msgs::ack_t::NO_MODE:
       return "no mode that can be asked for";
+    case pmg_msgs::ack_t::NO_KEY:
+      return kNoKey;
     default:
       return "unknown answer";
   }

@@ -1,6 +1,7 @@
 // Longer than 300 lines: every message of a tick, and the way back beside it.
 #include "recording/tick_messages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "recording/message_copy.hpp"
@@ -155,7 +156,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
   } else {
     message.fault = (result.sitting ? "sitting down; " : "") + describe(result.fault, robot);
   }
-  message.driving_source = result.driving.name.data();
+  copy(result.driving, message.driving_source, message.driving_session);
   message.command_age_s = std::isfinite(result.command_age_s) ? result.command_age_s : -1.0;
   message.limited_position = result.limited.position;
   message.limited_rate = result.limited.rate;
@@ -196,7 +197,11 @@ void fill(const control::TickRecord& record, pmg_msgs::tick_input_t& message) {
   for (const control::DriveMessage& drive : input.drives) message.command_received_ns.push_back(drive.received_ns);
   message.request_count = static_cast<std::int32_t>(input.requests.size());
   message.request_received_ns.clear();
-  for (const control::ModeRequest& request : input.requests) message.request_received_ns.push_back(request.received_ns);
+  message.request_heard_ns.clear();
+  for (const control::ModeRequest& request : input.requests) {
+    message.request_received_ns.push_back(request.received_ns);
+    message.request_heard_ns.push_back(request.heard_ns);
+  }
 }
 
 void fill(const control::TickRecord& record, pmg_msgs::arms_input_t& message) {
@@ -289,6 +294,7 @@ void fill(const control::ModeAck& ack, const RunInfo& run, std::int64_t stamp_ns
   message.sequence = ack.sequence;
   const ToMessage copy;
   copy(ack.source, message.source, message.session);
+  std::ranges::copy(ack.digest, message.digest);
   copy(ack.verdict, message.verdict);
   copy(ack.mode, message.mode);
 }

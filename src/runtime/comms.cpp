@@ -16,7 +16,9 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kHoistPeriod_ns = 100'000'000, kArmsPeriod_ns = 100'000'000;
 constexpr std::int64_t kVerifyPeriod_ns =
-    10'000'000;                          // a signature takes 0.1 ms: a flood of forged ones must delay no stop
+    10'000'000;  // a signature takes 0.1 ms: a flood of forged ones must delay no stop
+constexpr std::int64_t kAnswerPeriod_ns = 2'000'000;  // a flood of questions must delay no stop, either
+constexpr int kAsk_ms = 20;
 constexpr std::size_t kMostOthers = 16;  // names that are told at start: a flood of invented ones ends here
 
 }  // namespace
@@ -31,8 +33,9 @@ Comms::Comms(io::LcmLink& link, control::OperatorInbox& inbox, control::Controll
       control_rate_Hz_(control_rate_Hz),
       clock_(clock),
       seal_(std::move(seal)),
-      gate_(inbox, run.robot, clock, seal_),
-      hoist_gate_(run.robot, clock, seal_),
+      contest_(seal_.boot()),
+      gate_(inbox, run.robot, clock, seal_, order_),
+      hoist_gate_(run.robot, clock, seal_, order_),
       next_second_ns_(clock.now_ns()),
       next_hoist_ns_(clock.now_ns()),
       next_arms_ns_(clock.now_ns()) {
@@ -62,16 +65,39 @@ void Comms::hear_status(io::Bytes bytes) {
     if (listening_ && !known && others_.size() < kMostOthers && presentable(status.robot)) {
       others_.push_back(status.robot);
     }
-  } else if ((!heard->seal || heard->seal->boot != seal_.boot()) && may_verify()) {
-    meet(seal_.ours("STATUS", heard->message_bytes, heard->seal), status.session);
+    return;
+  }
+  const bool own_number = heard->seal && heard->seal->boot == seal_.boot();
+  if (own_number && said(bytes)) return;
+  if (may_verify()) {
+    if (!seal_.ours("STATUS", heard->message_bytes, heard->seal) || (own_number && !seal_.has_keys())) {
+      ++forgeries_heard_;
+    } else if (!own_number && contest_.holds() &&
+               clock_.now_ns() >= ask_at_ns_) {  // another controller's, or a recording: ask
+      ask_at_ns_ = clock_.now_ns() + kSecond_ns;
+      claim(pmg_msgs::claim_t::NOBODY);
+    }
   }
 }
 
+bool Comms::said(io::Bytes status) const { return std::ranges::find(said_, seal::digest_of(status)) != said_.end(); }
+
 void Comms::hear_claim(io::Bytes bytes) {
+  using Reaction = NameContest::Reaction;
   const auto heard = seal::decode_sealed<pmg_msgs::claim_t, pmg_msgs::proof_t>(bytes);
-  if (!heard || !heard->seal || heard->message.robot != run_.robot || heard->seal->boot == seal_.boot()) return;
-  const bool goes_first = heard->message.held != 0 || heard->seal->boot < seal_.boot();
-  if (listening_ && goes_first) meet(seal_.ours("CLAIM", heard->message_bytes, heard->seal), heard->message.session);
+  if (!heard || !heard->seal || heard->message.robot != run_.robot) return;
+  const Reaction reaction = contest_.hear(heard->message, heard->seal->boot);
+  if (reaction == Reaction::kNone || (reaction == Reaction::kAnswer && clock_.now_ns() < answer_at_ns_)) return;
+  if (!may_verify()) return;
+  if (!seal_.ours("CLAIM", heard->message_bytes, heard->seal)) {
+    ++forgeries_heard_;
+  } else if (reaction == Reaction::kAnswer) {
+    answer_at_ns_ = clock_.now_ns() + kAnswerPeriod_ns;
+    claim(heard->seal->boot);
+  } else {
+    ++impostors_heard_;
+    impostor_session_ = heard->message.session;
+  }
 }
 
 bool Comms::may_verify() {
@@ -81,38 +107,32 @@ bool Comms::may_verify() {
   return true;
 }
 
-void Comms::meet(bool ours, std::int64_t session) {
-  if (!ours) {
-    ++forgeries_heard_;
-    return;
-  }
-  ++impostors_heard_;
-  impostor_session_ = session;
+void Comms::claim(std::int64_t answers) {
+  const pmg_msgs::claim_t message{.stamp_ns = clock_.now_ns(),
+                                  .robot = run_.robot,
+                                  .session = run_.session,
+                                  .held = contest_.holds(),
+                                  .answers = answers};
+  link_.send("CLAIM", seal_.prove("CLAIM", message));
 }
 
-std::vector<std::uint8_t> Comms::claim(bool held) {
-  const pmg_msgs::claim_t message{
-      .stamp_ns = clock_.now_ns(), .robot = run_.robot, .session = run_.session, .held = held};
-  const io::Bytes bytes = seal_.prove("CLAIM", message);
-  return {bytes.begin(), bytes.end()};
+HeldClaim Comms::hold_name() {
+  contest_.hold();
+  return HeldClaim([this] { link_.receive(HeldClaim::kWait_ms); });
 }
-
-HeldClaim Comms::hold_name() { return {link_, claim(true)}; }
 
 std::vector<std::string> Comms::listen_for_others(double seconds, const std::function<bool()>& interrupted) {
   using std::chrono::steady_clock;
   listening_ = true;
-  const std::vector<std::uint8_t> wish = claim(false);
   const auto end = steady_clock::now() + std::chrono::duration<double>(seconds);
   auto claim_at = steady_clock::now();
   do {
     if (steady_clock::now() >= claim_at) {
-      link_.send("CLAIM", wish);
-      claim_at = steady_clock::now() + std::chrono::milliseconds(HeldClaim::kPeriod_ms);
+      claim(pmg_msgs::claim_t::NOBODY);
+      claim_at = steady_clock::now() + std::chrono::milliseconds(kAsk_ms);
     }
     link_.receive(10);
   } while (impostors_heard_ == 0 && steady_clock::now() < end && !(interrupted && interrupted()));
-  listening_ = false;
   if (impostors_heard_ > 0) {
     throw std::runtime_error(
         fmt::format("robot \"{}\" is already run by another controller (session {}) on {}: end that one, or start this "
@@ -123,6 +143,8 @@ std::vector<std::string> Comms::listen_for_others(double seconds, const std::fun
 }
 
 void Comms::step(int timeout_ms) {
+  listening_ = false;
+  contest_.hold();
   link_.receive(timeout_ms);
   publish_acks();
   publish_newest();
@@ -148,9 +170,13 @@ void Comms::warn() {
         impostor_session_, run_.robot, link_.url());
   });
   once(Warning::kForgery, forgeries_heard_ > 0, [&] {
-    return fmt::format(
-        "somebody without this controller's key speaks as robot \"{}\" on {}; nobody with keys believes it", run_.robot,
-        link_.url());
+    return seal_.has_keys()
+               ? fmt::format(
+                     "somebody without this controller's key speaks as robot \"{}\" on {}; nobody with keys believes "
+                     "it",
+                     run_.robot, link_.url())
+               : fmt::format("somebody else speaks as robot \"{}\" on {}, and there are no keys to tell them apart",
+                             run_.robot, link_.url());
   });
   once(Warning::kMalformed, counts.malformed > 0,
        [] { return std::string("malformed operators' messages are ignored; LINK counts them"); });
@@ -166,10 +192,15 @@ void Comms::warn() {
 }
 
 void Comms::publish_acks() {
-  outbox_.acks.consume_all([&](const control::ModeAck& ack) {
+  const auto send = [&](const control::ModeAck& ack) {
     recording::fill(ack, run_, clock_.now_ns(), ack_);
     link_.send("ACK", seal_.prove("ACK", ack_));
-  });
+  };
+  outbox_.acks.consume_all(send);
+  for (control::ModeAck& refusal : gate_.take_refusals()) {
+    refusal.mode = newest_.result.mode;
+    send(refusal);
+  }
 }
 
 void Comms::publish_newest() {
@@ -177,7 +208,9 @@ void Comms::publish_newest() {
   hoist_gate_.see(newest_.result);
   const int joint_count = robot_.joint_index.size();
   recording::fill(newest_, run_, robot_, status_);
-  link_.send("STATUS", seal_.prove("STATUS", status_));
+  const io::Bytes status = seal_.prove("STATUS", status_);
+  said_[said_count_++ % said_.size()] = seal::digest_of(status);
+  link_.send("STATUS", status);
   recording::fill(newest_, joint_count, state_);
   link_.publish("STATE", state_);
   recording::fill(newest_, joint_count, reference_);
@@ -235,7 +268,7 @@ void Comms::publish_each_second() {
   counts_.no_key = gate.no_key;
   counts_.flooded = gate.flooded;
   counts_.other_source = intake.other_source;
-  counts_.out_of_order = intake.out_of_order;
+  counts_.out_of_order = intake.out_of_order + gate.out_of_order;
   counts_.late = intake.late;
   counts_.not_finite = intake.not_finite;
   counts_.no_lease = intake.no_lease;

@@ -27,6 +27,7 @@
 #include "recording/run_info.hpp"
 #include "runtime/hoist_gate.hpp"
 #include "runtime/name_claim.hpp"
+#include "runtime/name_contest.hpp"
 #include "runtime/operator_gate.hpp"
 #include "seal/controller_seal.hpp"
 
@@ -56,10 +57,11 @@ class Comms {
   /// other robots' names after that many seconds of wall time, or as soon as interrupted says so. Throws
   /// std::runtime_error when the name belongs to another controller: one that runs, or the one with the smallest boot
   /// number of those that start at this time. The error is one line with name, session, address and what to do.
-  /// Operators' messages of this time are not taken. With keys, only a controller with the same key has a say.
+  /// Operators' messages of this time are not taken. With keys, only a controller with the same key has a say. Only
+  /// answers to this start's question count: no recording prevents a start.
   std::vector<std::string> listen_for_others(double seconds, const std::function<bool()>& interrupted = {});
 
-  /// After listen_for_others(): keeps the name claimed until it is destroyed, which must be before the first step().
+  /// After listen_for_others(): answers for the name until it is destroyed, which must be before the first step().
   HeldClaim hold_name();
 
   /// Waits up to timeout_ms for operators and takes a bounded number of their messages. Then publishes ACK for each
@@ -68,19 +70,20 @@ class Comms {
   void step(int timeout_ms);
 
   const GateCounts& gate_counts() const noexcept { return gate_.counts(); }
-  std::int64_t impostors_heard() const noexcept { return impostors_heard_; }  ///< messages of another one of our name
+  std::int64_t impostors_heard() const noexcept { return impostors_heard_; }  ///< answers of another one of our name
   std::int64_t forgeries_heard() const noexcept { return forgeries_heard_; }  ///< in our name, without our key
 
  private:
   enum class Warning { kImpostor, kForgery, kMalformed, kVersion, kKey, kFlood, kNetwork };
 
   void hear_status(io::Bytes message);
+  /// Of our own STATUS, which we hear, too.
+  bool said(io::Bytes status) const;
   void hear_claim(io::Bytes message);
   /// Whether there is time to look at another signature.
   bool may_verify();
-  /// A message in our name that another controller sent.
-  void meet(bool ours, std::int64_t session);
-  std::vector<std::uint8_t> claim(bool held);
+  /// On CLAIM: a question, or the answer to the one of this boot number.
+  void claim(std::int64_t answers);
   void publish_acks();
   void publish_newest();
   void publish_hoist();
@@ -95,6 +98,10 @@ class Comms {
   double control_rate_Hz_;
   const io::Clock& clock_;
   seal::ControllerSeal seal_;
+  NameContest contest_;
+  std::array<seal::Digest, 256> said_{};  // a ring: STATUS of the last seconds
+  std::size_t said_count_ = 0;
+  DatagramOrder order_;
   OperatorGate gate_;
   HoistGate hoist_gate_;
   bool listening_ = false;
@@ -102,6 +109,7 @@ class Comms {
   std::int64_t impostors_heard_ = 0, impostor_session_ = 0, forgeries_heard_ = 0;
   std::array<bool, 7> warned_{};  // by Warning
   std::int64_t next_second_ns_, next_hoist_ns_, next_arms_ns_, verify_at_ns_ = 0;
+  std::int64_t answer_at_ns_ = 0, ask_at_ns_ = 0;
 
   control::TickRecord newest_;
   faults::Fault published_fault_;

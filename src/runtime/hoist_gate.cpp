@@ -1,7 +1,5 @@
 #include "runtime/hoist_gate.hpp"
 
-#include "pmg_msgs/hoist_t.hpp"
-
 namespace pmg::runtime {
 
 void HoistGate::take(io::Bytes bytes) {
@@ -19,17 +17,27 @@ void HoistGate::take(io::Bytes bytes) {
     ++counts_.no_hoist;
   } else if (counts_.good(
                  seal_.judge("HOIST", sealed->message.source, sealed->message_bytes, sealed->seal, clock_.now_ns()))) {
-    answer_ = true;
-    if (overtaken(message->source, message->session, message->sequence)) return;
-    source_ = message->source;
-    session_ = message->session;
-    sequence_ = message->sequence;
-    line_->ask(message->request == hoist_t::LIFT);
+    answer(*message);
   }
 }
 
-bool HoistGate::overtaken(const std::string& source, std::int64_t session, std::int64_t sequence) const {
-  return source == source_ && (session < session_ || (session == session_ && sequence <= sequence_));
+void HoistGate::answer(const pmg_msgs::hoist_t& message) {
+  using Place = DatagramOrder::Place;
+  const auto source = control::Source::make(message.source, message.session);
+  const Place place = order_.take(source, Stream::kHoist, message.sequence, message.stamp_ns, clock_.now_ns());
+  if (place == Place::kNoRoom) {
+    ++counts_.flooded;
+    return;
+  }
+  answer_ = true;
+  if (place == Place::kOld) return;
+  const bool ended = source.name == taken_.name && source.session < taken_.session;
+  if (place == Place::kNew && !ended) {
+    taken_ = source;
+    line_->ask(message.request == pmg_msgs::hoist_t::LIFT);
+  }
+  answered_ = source;
+  answered_sequence_ = message.sequence;
 }
 
 bool HoistGate::fill(pmg_msgs::hoist_state_t& message) {
@@ -41,9 +49,9 @@ bool HoistGate::fill(pmg_msgs::hoist_state_t& message) {
   message.robot = robot_;
   message.state = state;
   message.stays_up = stays_up;
-  message.source = source_;
-  message.session = session_;
-  message.sequence = sequence_;
+  message.source = answered_.name.data();
+  message.session = answered_.session;
+  message.sequence = answered_sequence_;
   return news;
 }
 

@@ -8,6 +8,8 @@
 #include "hal/hoist_line.hpp"
 #include "io/lcm_link.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
+#include "pmg_msgs/hoist_t.hpp"
+#include "runtime/datagram_order.hpp"
 #include "runtime/operator_gate.hpp"
 
 namespace pmg::runtime {
@@ -15,9 +17,9 @@ namespace pmg::runtime {
 /// For the thread that hears operators. A request only sets a flag, so a flood of them costs no more than hearing it.
 class HoistGate {
  public:
-  /// Keeps references. robot: the controller's name.
-  HoistGate(std::string robot, const io::Clock& clock, const seal::ControllerSeal& seal)
-      : robot_(std::move(robot)), clock_(clock), seal_(seal) {}
+  /// Keeps references. robot: the controller's name. order: of all operators' messages.
+  HoistGate(std::string robot, const io::Clock& clock, const seal::ControllerSeal& seal, DatagramOrder& order)
+      : robot_(std::move(robot)), clock_(clock), seal_(seal), order_(order) {}
 
   void work(hal::HoistLine* line) noexcept { line_ = line; }  ///< keeps the pointer; null: there is no hoist
   bool there() const noexcept { return line_ != nullptr; }
@@ -34,15 +36,18 @@ class HoistGate {
   const GateCounts& counts() const noexcept { return counts_; }
 
  private:
-  bool overtaken(const std::string& source, std::int64_t session, std::int64_t sequence) const;
+  /// A message with a good seal.
+  void answer(const pmg_msgs::hoist_t& message);
 
   std::string robot_;
   const io::Clock& clock_;
   const seal::ControllerSeal& seal_;
+  DatagramOrder& order_;
   hal::HoistLine* line_ = nullptr;
   GateCounts counts_;
-  std::string source_;  // of the last request that was taken
-  std::int64_t session_ = 0, sequence_ = 0;
+  control::Source taken_;     // of the last request that moved the hoist
+  control::Source answered_;  // of the last one that was answered: it, or a repetition of an earlier one
+  std::int64_t answered_sequence_ = 0;
   bool answer_ = false;
 };
 

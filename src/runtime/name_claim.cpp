@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
@@ -62,12 +62,9 @@ NameLock::NameLock(const std::string& name, const std::string& lcm_url) {
 
 NameLock::~NameLock() { ::close(fd_); }
 
-HeldClaim::HeldClaim(io::LcmLink& link, std::vector<std::uint8_t> claim)
-    : thread_([&link, claim = std::move(claim)](const std::stop_token& stop) {
-        while (!stop.stop_requested()) {
-          link.send("CLAIM", claim);
-          std::this_thread::sleep_for(std::chrono::milliseconds(kPeriod_ms));
-        }
+HeldClaim::HeldClaim(std::function<void()> answer)
+    : thread_([answer = std::move(answer)](const std::stop_token& stop) {
+        while (!stop.stop_requested()) answer();
       }) {}
 
 }  // namespace pmg::runtime

@@ -1,12 +1,9 @@
 // One controller of a name: a lock on this computer, and a claim on the network.
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <string>
 #include <thread>
-#include <vector>
-
-#include "io/lcm_link.hpp"
 
 namespace pmg::runtime {
 
@@ -24,12 +21,12 @@ class NameLock {
   int fd_ = -1;
 };
 
-/// Repeats a message on CLAIM, from a thread of its own, until it is destroyed: between the end of
-/// Comms::listen_for_others() and the first STATUS the name must not look free.
+/// Calls answer() again and again, from a thread of its own, until it is destroyed: between the end of
+/// Comms::listen_for_others() and the first step the name must not look free.
 class HeldClaim {
  public:
-  static constexpr int kPeriod_ms = 20;
-  HeldClaim(io::LcmLink& link, std::vector<std::uint8_t> claim);
+  static constexpr int kWait_ms = 5;  ///< for which answer() waits at most
+  explicit HeldClaim(std::function<void()> answer);
 
  private:
   std::jthread thread_;

@@ -42,6 +42,12 @@ Code code_of(const Secret& secret, Bytes text) {
   return code;
 }
 
+Digest digest_of(Bytes text) {
+  Digest digest{};
+  expect(EVP_Digest(text.data(), text.size(), digest.data(), nullptr, EVP_sha256(), nullptr) == 1, "no SHA-256");
+  return digest;
+}
+
 bool equal(Bytes a, Bytes b) noexcept {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }

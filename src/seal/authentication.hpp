@@ -23,6 +23,8 @@ Secret random_secret();
 std::int64_t random_number();
 
 Code code_of(const Secret& secret, Bytes text);
+using Digest = std::array<std::uint8_t, 32>;  ///< SHA-256 (FIPS 180-4)
+Digest digest_of(Bytes text);
 /// In a time that does not depend on where the codes differ.
 bool equal(Bytes a, Bytes b) noexcept;
 

@@ -21,20 +21,20 @@ void ControllerSeal::set_operators(std::map<std::string, Secret> operators) {
 
 std::string ControllerSeal::refresh() {
   if (!keys_ || folder_.empty()) return "";
-  std::error_code error;
-  const auto changed_at = std::filesystem::last_write_time(folder_ / "operators", error);
-  if (!error && changed_at == read_at_) return "";
-  const bool first = std::exchange(read_at_, changed_at) == std::filesystem::file_time_type{};
+  std::map<std::string, Secret> operators;
+  std::string trouble;
   try {
-    const auto keys = read_controller_keys(folder_);
-    if (error || !keys) throw std::runtime_error(fmt::format("keys {}: they are gone", folder_.string()));
-    set_operators(keys->operators);
-    return first ? "" : fmt::format("operators with a key: {}", keys_->operators.size());
+    auto keys = read_controller_keys(folder_);
+    if (!keys) throw std::runtime_error(fmt::format("keys {}: they are gone", folder_.string()));
+    operators = std::move(keys->operators);
   } catch (const std::exception& failure) {
-    if (keys_->operators.empty()) return "";
-    set_operators({});
-    return fmt::format("{}; from now on nobody has a key", failure.what());
+    trouble = failure.what();
   }
+  if (operators == keys_->operators && trouble == trouble_) return "";
+  trouble_ = trouble;
+  set_operators(std::move(operators));
+  return trouble.empty() ? fmt::format("operators with a key: {}", keys_->operators.size())
+                         : fmt::format("{}; from now on nobody has a key", trouble);
 }
 
 ControllerSeal::Judgement ControllerSeal::judge(std::string_view channel, std::string_view source, io::Bytes message,

@@ -39,8 +39,8 @@ class ControllerSeal {
   bool has_keys() const noexcept { return keys_.has_value(); }
   /// Operators' keys that are in force from now on.
   void set_operators(std::map<std::string, Secret> operators);
-  /// Reads the operators' keys again if their folder has changed: keys that were made or revoked. If they can't be
-  /// read, none is in force. Returns a line that says so, once for each change.
+  /// Reads the operators' keys again: keys that were made or revoked, files that were damaged or that others may read.
+  /// If they can't be read, none is in force. Returns a line that says so, once for each change.
   std::string refresh();
 
   /// source: the message's.
@@ -64,7 +64,7 @@ class ControllerSeal {
 
   std::optional<ControllerKeys> keys_;
   std::filesystem::path folder_;
-  std::filesystem::file_time_type read_at_{};
+  std::string trouble_;  // that was told last
   std::optional<Signer> signer_;
   PublicKey public_key_{};
   std::int64_t boot_;

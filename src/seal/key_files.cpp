@@ -47,8 +47,10 @@ std::optional<std::array<std::uint8_t, 32>> from_hex(std::string_view text) {
 
 class File {
  public:
-  File(const fs::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600)) {
-    if (fd_ < 0) fail(path, std::strerror(errno));
+  /// shown: the file that an error names.
+  File(const fs::path& path, int flags, const fs::path& shown)
+      : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600)) {
+    if (fd_ < 0) fail(shown, std::strerror(errno));
   }
   ~File() { ::close(fd_); }
   File(const File&) = delete;
@@ -61,7 +63,7 @@ class File {
 
 /// "word: value" by word; the first line is the title.
 std::map<std::string, std::string> read_lines(const fs::path& path, const std::string& title) {
-  const File file(path, O_RDONLY);
+  const File file(path, O_RDONLY, path);
   struct stat status {};
   if (::fstat(file.fd(), &status) != 0 || !S_ISREG(status.st_mode)) fail(path, "expected a file");
   if (status.st_uid != ::geteuid()) fail(path, "belongs to another user");
@@ -96,13 +98,16 @@ std::array<std::uint8_t, 32> bytes_of(const fs::path& path, const std::map<std::
   return *bytes;
 }
 
+/// Never half a file under this name: a running controller may read it at any time.
 void write_new(const fs::path& path, const std::string& text) {
-  const File file(path, O_WRONLY | O_CREAT | O_EXCL);
-  if (::write(file.fd(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(file.fd()) != 0) {
-    const int error = errno;
-    ::unlink(path.c_str());
-    fail(path, std::strerror(error));
-  }
+  const std::string growing = fmt::format("{}.{}", path.string(), ::getpid());
+  const File file(growing, O_WRONLY | O_CREAT | O_EXCL, path);
+  const bool written =
+      ::write(file.fd(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(file.fd()) == 0;
+  const bool named = written && ::link(growing.c_str(), path.c_str()) == 0;
+  const int error = errno;
+  ::unlink(growing.c_str());
+  if (!named) fail(path, std::strerror(error));
 }
 
 void make_folder(const fs::path& folder) {

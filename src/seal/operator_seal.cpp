@@ -9,14 +9,15 @@
 namespace pmg::seal {
 
 OperatorSeal::OperatorSeal(std::vector<OperatorKey> keys, bool believes_unsigned)
-    : keys_(std::move(keys)), believes_unsigned_(believes_unsigned) {}
+    : verifier_(std::make_shared<Verifier>(std::move(keys))), believes_unsigned_(believes_unsigned) {}
 
 std::string OperatorSeal::source_name(std::string_view program) const {
-  return fmt::format("{}.{}", keys_.empty() ? program : std::string_view(keys_.front().name), ::getpid());
+  const auto& keys = verifier_->keys();
+  return fmt::format("{}.{}", keys.empty() ? program : std::string_view(keys.front().name), ::getpid());
 }
 
 std::optional<Peer> OperatorSeal::believe(std::string_view channel, io::Bytes message,
-                                          const std::optional<pmg_msgs::proof_t>& proof) const {
+                                          const std::optional<pmg_msgs::proof_t>& proof, std::int64_t now_ns) const {
   Peer peer;
   if (proof) {
     peer.boot = proof->boot;
@@ -24,9 +25,8 @@ std::optional<Peer> OperatorSeal::believe(std::string_view channel, io::Bytes me
     pmg_msgs::proof_t bare = *proof;
     bare.signature_size = 0;
     bare.signature.clear();
-    const auto text = authenticated_bytes(channel, message, bare);
-    for (std::size_t i = 0; i < keys_.size() && peer.wants_key && !peer.key; ++i) {
-      if (verified(keys_[i].controller, text, proof->signature)) peer.key = i;
+    if (peer.wants_key && !verifier_->keys().empty()) {
+      peer.key = verifier_->signer(proof->boot, authenticated_bytes(channel, message, bare), proof->signature, now_ns);
     }
   }
   if (!peer.key && !believes_unsigned_) return std::nullopt;
@@ -39,7 +39,7 @@ void OperatorSeal::append_seal(std::string_view channel, const Peer& peer) {
   seal.boot = peer.boot;
   seal.heard_ns = peer.heard_ns;
   if (peer.key) {
-    const OperatorKey& key = keys_[*peer.key];
+    const OperatorKey& key = verifier_->keys()[*peer.key];
     seal.key = key.name;
     const Code code = code_of(key.secret, authenticated_bytes(channel, buffer_, seal));
     seal.code.assign(code.begin(), code.end());
@@ -54,7 +54,7 @@ OperatorSeal load_operator_seal(const std::string& folder, const std::string& lc
   if (keys.empty() && !folder.empty()) {
     throw std::runtime_error(fmt::format("keys {}: expected a folder with an operator's *.key (pmg_key new)", folder));
   }
-  const bool believes_unsigned = keys.empty() || !io::leaves_this_computer(lcm_url);
+  const bool believes_unsigned = keys.empty() || (folder.empty() && !io::leaves_this_computer(lcm_url));
   return {std::move(keys), believes_unsigned};
 }
 

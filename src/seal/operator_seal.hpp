@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "pmg_msgs/seal_t.hpp"
 #include "seal/key_files.hpp"
 #include "seal/sealed_message.hpp"
+#include "seal/verifier.hpp"
 
 namespace pmg::seal {
 
@@ -23,10 +25,10 @@ struct Peer {
   bool wants_key = false;          ///< the controller signs, so it has keys
 };
 
-/// For one thread.
+/// For one thread; its copies share their keys and what they have verified.
 class OperatorSeal {
  public:
-  OperatorSeal() = default;
+  OperatorSeal() : OperatorSeal({}, true) {}
   /// believes_unsigned: take a controller's word without a signature, too.
   OperatorSeal(std::vector<OperatorKey> keys, bool believes_unsigned);
 
@@ -34,9 +36,13 @@ class OperatorSeal {
   /// PROGRAM.PROCESS.
   std::string source_name(std::string_view program) const;
 
-  /// (STATUS, ACK or another message of a controller) => its sender; nothing: not believed. stamp_ns is not set.
+  /// (STATUS, ACK or another message of a controller) => its sender; nothing: not believed. heard_ns is not set. Look
+  /// at what costs less first: this takes 0.1 ms, and has a budget.
   std::optional<Peer> believe(std::string_view channel, io::Bytes message,
-                              const std::optional<pmg_msgs::proof_t>& proof) const;
+                              const std::optional<pmg_msgs::proof_t>& proof, std::int64_t now_ns) const;
+
+  /// Signatures that this seal and its copies have looked at.
+  std::int64_t signatures_checked() const noexcept { return verifier_->checked(); }
 
   /// (message) => message and seal, for LcmLink::send(). Valid until the next call. peer: null: without a seal.
   template <typename Message>
@@ -47,11 +53,19 @@ class OperatorSeal {
     return buffer_;
   }
 
+  /// Of the message alone, as seal() encodes it: what its answer names.
+  template <typename Message>
+  Digest digest(const Message& message) {
+    buffer_.clear();
+    append(buffer_, message);
+    return digest_of(buffer_);
+  }
+
  private:
   void append_seal(std::string_view channel, const Peer& peer);
 
-  std::vector<OperatorKey> keys_;
-  bool believes_unsigned_ = true;
+  std::shared_ptr<Verifier> verifier_;
+  bool believes_unsigned_;
   std::vector<std::uint8_t> buffer_;
 };
 

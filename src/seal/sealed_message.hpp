@@ -28,24 +28,32 @@ void append(std::vector<std::uint8_t>& bytes, const Message& message) {
   message.encode(bytes.data() + before, 0, size);
 }
 
+/// (message, anything) => the message alone; nothing if it is of another type or cut short. Safe for foreign bytes.
+template <typename Message, typename Seal>
+std::optional<Sealed<Message, Seal>> decode_front(io::Bytes bytes) {
+  Sealed<Message, Seal> front;
+  try {
+    const int used = front.message.decode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    if (used <= 0) return std::nullopt;
+    front.message_bytes = bytes.first(static_cast<std::size_t>(used));
+  } catch (const std::exception&) {  // as in io::decode_message
+    return std::nullopt;
+  }
+  return front;
+}
+
 /// (message, seal or nothing) => both; nothing if either is of another type, cut short or too long, or if the seal's
 /// bytes are not those that encoding it gives. Safe for foreign bytes.
 template <typename Message, typename Seal>
 std::optional<Sealed<Message, Seal>> decode_sealed(io::Bytes bytes) {
-  Sealed<Message, Seal> sealed;
-  try {
-    const int used = sealed.message.decode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    if (used <= 0) return std::nullopt;
-    sealed.message_bytes = bytes.first(static_cast<std::size_t>(used));
-  } catch (const std::exception&) {  // as in io::decode_message
-    return std::nullopt;
-  }
-  const io::Bytes rest = bytes.subspan(sealed.message_bytes.size());
+  std::optional<Sealed<Message, Seal>> sealed = decode_front<Message, Seal>(bytes);
+  if (!sealed) return std::nullopt;
+  const io::Bytes rest = bytes.subspan(sealed->message_bytes.size());
   if (rest.empty()) return sealed;
-  sealed.seal = io::decode_message<Seal>(rest);
-  if (!sealed.seal) return std::nullopt;
+  sealed->seal = io::decode_message<Seal>(rest);
+  if (!sealed->seal) return std::nullopt;
   std::vector<std::uint8_t> again;
-  append(again, *sealed.seal);
+  append(again, *sealed->seal);
   if (!std::ranges::equal(again, rest)) return std::nullopt;
   return sealed;
 }

@@ -47,13 +47,14 @@ class ArmsIntake : public testing::Test {
 TEST_F(ArmsIntake, OnlyTheDrivingSourceLeadsAndEverybodyElseIsCounted) {
   EXPECT_EQ(arms("vr", 1, 0), ArmsVerdict::kOtherSourceDrives) << "nobody drives";
   drive("vr", 0);
-  EXPECT_EQ(arms("vr", 1, 1), ArmsVerdict::kAccepted);
+  EXPECT_EQ(arms("vr", 1, 1), ArmsVerdict::kOutOfOrder) << "what was refused isn't taken later";
+  EXPECT_EQ(arms("vr", 2, 1), ArmsVerdict::kAccepted);
   EXPECT_EQ(arms("page", 1, 2), ArmsVerdict::kOtherSourceDrives);
   ArmsMessage successor = message("vr", 2, 3);
   successor.source.session = 2;
   EXPECT_EQ(intake_.accept(successor, 3), ArmsVerdict::kOtherSourceDrives) << "the same name is not the same operator";
   EXPECT_EQ(intake_.ignored().other_source, 3);
-  EXPECT_EQ(intake_.arms_refused(), 3);
+  EXPECT_EQ(intake_.arms_refused(), 4);
   EXPECT_EQ(intake_.arms_refusal(), ArmsVerdict::kOtherSourceDrives);
   EXPECT_EQ(intake_.arms_order(3), ArmsOrder::kInForce);
   EXPECT_EQ(intake_.arms().source, Source::make("vr", 1));
@@ -89,15 +90,16 @@ TEST_F(ArmsIntake, RepeatedOvertakenAndLateTargetsAreRefused) {
   late.stamp_ns -= 210'000'000;
   EXPECT_EQ(intake_.accept(late, kOneSecond_ns / 2), ArmsVerdict::kLate);
   EXPECT_EQ(intake_.arms_order(kOneSecond_ns / 2), ArmsOrder::kLeaseOver) << "none of them is a sign of life";
-  EXPECT_EQ(arms("vr", 6, kOneSecond_ns / 2), ArmsVerdict::kAccepted);
+  EXPECT_EQ(arms("vr", 7, kOneSecond_ns / 2), ArmsVerdict::kAccepted);
   EXPECT_EQ(drive("vr", kOneSecond_ns / 2), ArmsVerdict::kAccepted) << "commands have numbers of their own";
 }
 
 TEST_F(ArmsIntake, WhatIsNoPoseOfAPalmIsRefused) {
   drive("vr", 0);
+  std::int64_t number = 0;
   const auto spoilt = [&](const char* what, const std::function<void(ArmTarget&)>& spoil) {
     for (const Foot arm : {kLeft, kRight}) {
-      ArmsMessage one = message("vr", 1, 0);
+      ArmsMessage one = message("vr", ++number, 0);
       one.arm[kRight] = one.arm[kLeft];
       spoil(one.arm[arm]);
       EXPECT_EQ(intake_.accept(one, 0), ArmsVerdict::kNotFinite) << what;
@@ -114,10 +116,10 @@ TEST_F(ArmsIntake, WhatIsNoPoseOfAPalmIsRefused) {
   EXPECT_EQ(intake_.arms_order(0), ArmsOrder::kNoneCame);
   EXPECT_EQ(intake_.ignored().not_finite, intake_.arms_refused());
 
-  ArmsMessage rounded = message("vr", 1, 0);
+  ArmsMessage rounded = message("vr", ++number, 0);
   rounded.arm[kLeft].palm.R.coeffs() *= 1.0 + 1e-4;  // four decimals, as a person types them
   EXPECT_EQ(intake_.accept(rounded, 0), ArmsVerdict::kAccepted);
-  ArmsMessage held = message("vr", 2, 0);
+  ArmsMessage held = message("vr", ++number, 0);
   held.arm[kLeft] = {.wish = ArmWish::kHold, .palm = {.p_m = {kNoNumber, kNoNumber, kNoNumber}}};
   EXPECT_EQ(intake_.accept(held, 0), ArmsVerdict::kAccepted) << "a pose that isn't asked for doesn't count";
 }

@@ -54,7 +54,7 @@ TEST_F(Intake, OneSourceDrivesUntilItsLeaseEnds) {
   EXPECT_EQ(drive("gamepad", 1, 1, 0), DriveVerdict::kAccepted);
   EXPECT_EQ(drive("vr", 1, 1, kSecond_ns / 2 - 1), DriveVerdict::kOtherSourceDrives);
   EXPECT_EQ(intake_.driving(0), Source::make("gamepad", 1));
-  EXPECT_EQ(drive("vr", 1, 1, kSecond_ns / 2), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("vr", 1, 2, kSecond_ns / 2), DriveVerdict::kAccepted);
   EXPECT_EQ(drive("gamepad", 1, 2, kSecond_ns / 2 + 1), DriveVerdict::kOtherSourceDrives);
   EXPECT_EQ(intake_.driving(2 * kSecond_ns), Source{});
 }
@@ -142,10 +142,10 @@ TEST_F(Intake, CommandsThatAreNotFiniteAreRefused) {
 
 TEST_F(Intake, LeasesArePositiveAndAtMostTwoSeconds) {
   EXPECT_EQ(drive("gamepad", 1, 1, 0, 0.0), DriveVerdict::kNoLease);
-  EXPECT_EQ(drive("gamepad", 1, 1, 0, std::nan("")), DriveVerdict::kNoLease);
-  EXPECT_EQ(drive("gamepad", 1, 1, 0, 1e9), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("gamepad", 1, 2, 0, std::nan("")), DriveVerdict::kNoLease);
+  EXPECT_EQ(drive("gamepad", 1, 3, 0, 1e9), DriveVerdict::kAccepted);
   EXPECT_EQ(drive("vr", 1, 1, 2 * kSecond_ns - 1), DriveVerdict::kOtherSourceDrives);
-  EXPECT_EQ(drive("vr", 1, 1, 2 * kSecond_ns), DriveVerdict::kAccepted);
+  EXPECT_EQ(drive("vr", 1, 2, 2 * kSecond_ns), DriveVerdict::kAccepted);
 }
 
 TEST_F(Intake, AgeIsInfiniteBeforeTheFirstCommand) { EXPECT_TRUE(std::isinf(intake_.age_s(kSecond_ns))); }
@@ -188,16 +188,61 @@ TEST_F(Intake, ARepeatedRequestIsAcknowledgedAgainButCarriedOutOnce) {
   EXPECT_TRUE(request("vr", 1, 6, Mode::kStand, kSecond_ns).fresh);
 }
 
-TEST_F(Intake, ARequestThatWasRefusedMayBeRepeatedUntilItIsTaken) {
+TEST_F(Intake, ARequestThatWasRefusedStaysRefused) {
   drive("gamepad", 1, 1, 0);
-  EXPECT_EQ(request("vr", 1, 1, Mode::kWalk, 1).verdict, Verdict::kNotYours);
-  EXPECT_TRUE(request("vr", 1, 1, Mode::kWalk, kSecond_ns).fresh);
+  request("pendant", 1, 1, Mode::kDamping, 1);
+  EXPECT_EQ(request("vr", 1, 1, Mode::kWalk, 2).verdict, Verdict::kNotYours);
+  EXPECT_EQ(request("gamepad", 1, 1, Mode::kStand, 1).verdict, Verdict::kLate);
+  for (int k = 1; k < 4; ++k) {  // nobody drives any more, and nobody stops it
+    const std::int64_t now_ns = k * kSecond_ns;
+    const auto not_yours = request("vr", 1, 1, Mode::kWalk, now_ns);
+    EXPECT_EQ(not_yours.verdict, Verdict::kNotYours) << "as its sender was told";
+    EXPECT_FALSE(not_yours.fresh);
+    const auto late = request("gamepad", 1, 1, Mode::kStand, now_ns);
+    EXPECT_EQ(late.verdict, Verdict::kLate);
+    EXPECT_FALSE(late.fresh);
+  }
+  EXPECT_TRUE(request("vr", 1, 2, Mode::kWalk, 4 * kSecond_ns).fresh) << "asked anew";
+}
+
+TEST_F(Intake, ARequestWhoseSenderCouldNotKnowOfTheLastStopIsLate) {
+  request("pendant", 1, 1, Mode::kDamping, kSecond_ns);
+  std::int64_t number = 0;
+  const auto asked = [&](std::int64_t heard_ns, bool reset) {
+    return intake_.judge({.source = Source::make("vr", 1),
+                          .sequence = ++number,
+                          .stamp_ns = 2 * kSecond_ns,
+                          .received_ns = 2 * kSecond_ns,
+                          .heard_ns = heard_ns,
+                          .mode = reset ? Mode::kDamping : Mode::kStand,
+                          .reset_fault = reset},
+                         2 * kSecond_ns);
+  };
+  for (const bool reset : {false, true}) {
+    EXPECT_EQ(asked(kSecond_ns - 1, reset).verdict, Verdict::kLate);
+    EXPECT_TRUE(asked(kSecond_ns, reset).fresh) << "it heard the tick that took the stop";
+  }
+}
+
+TEST_F(Intake, ANumberStandsForOneRequest) {
+  EXPECT_TRUE(request("vr", 1, 5, Mode::kStand, 0).fresh);
+  EXPECT_EQ(request("vr", 1, 5, Mode::kWalk, 1).verdict, Verdict::kOutOfOrder) << "Stand was taken, not this";
+  EXPECT_EQ(request("vr", 1, 5, Mode::kStand, 1, true).verdict, Verdict::kOutOfOrder);
+  EXPECT_EQ(request("vr", 1, 5, Mode::kStand, 2).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, ACommandThatWasRefusedIsNotTakenLater) {
+  drive("gamepad", 1, 1, 0);
+  EXPECT_EQ(drive("vr", 1, 1, 1), DriveVerdict::kOtherSourceDrives);
+  EXPECT_EQ(drive("vr", 1, 1, kSecond_ns), DriveVerdict::kOutOfOrder);
+  EXPECT_EQ(drive("vr", 1, 2, kSecond_ns), DriveVerdict::kAccepted);
 }
 
 TEST_F(Intake, LateRequestsAreRefused) {
   EXPECT_TRUE(request_sent(0, "vr", 1, 1, Mode::kStand, kSecond_ns).fresh);
   EXPECT_EQ(request_sent(kSecond_ns, "vr", 1, 2, Mode::kWalk, 2 * kSecond_ns + 210'000'000).verdict, Verdict::kLate);
-  EXPECT_EQ(request_sent(2 * kSecond_ns, "vr", 1, 2, Mode::kWalk, 3 * kSecond_ns).verdict, Verdict::kTaken);
+  EXPECT_EQ(request_sent(3 * kSecond_ns, "vr", 1, 2, Mode::kWalk, 3 * kSecond_ns).verdict, Verdict::kLate) << "as told";
+  EXPECT_EQ(request_sent(3 * kSecond_ns, "vr", 1, 3, Mode::kWalk, 4 * kSecond_ns).verdict, Verdict::kTaken);
 }
 
 TEST_F(Intake, AStopIsTakenHoweverOldRepeatedOrForeignItIs) {
@@ -218,28 +263,47 @@ TEST_F(Intake, AStopIsTakenHoweverOldRepeatedOrForeignItIs) {
 TEST_F(Intake, WhatWasAskedBeforeAStopIsOvertakenByIt) {
   request("vr", 1, 1, Mode::kDamping, kSecond_ns);
   EXPECT_EQ(request("gamepad", 1, 1, Mode::kStand, kSecond_ns).verdict, Verdict::kLate);
-  EXPECT_TRUE(request("gamepad", 1, 1, Mode::kStand, kSecond_ns + 1).fresh);
+  EXPECT_TRUE(request("gamepad", 1, 2, Mode::kStand, kSecond_ns + 1).fresh);
   intake_.stop(2 * kSecond_ns);
-  EXPECT_EQ(request("gamepad", 1, 2, Mode::kWalk, 2 * kSecond_ns).verdict, Verdict::kLate);
-  EXPECT_EQ(request("gamepad", 1, 2, Mode::kDamping, 2 * kSecond_ns, true).verdict, Verdict::kLate);
-  EXPECT_EQ(request("gamepad", 1, 3, Mode::kPassive, 2 * kSecond_ns).verdict, Verdict::kTaken);
+  EXPECT_EQ(request("gamepad", 1, 3, Mode::kWalk, 2 * kSecond_ns).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 4, Mode::kDamping, 2 * kSecond_ns, true).verdict, Verdict::kLate);
+  EXPECT_EQ(request("gamepad", 1, 5, Mode::kPassive, 2 * kSecond_ns).verdict, Verdict::kTaken);
 }
 
 TEST_F(Intake, WhatIsNoModeIsRefused) {
   EXPECT_EQ(request("vr", 1, 1, Mode::kFault, 0).verdict, Verdict::kNoMode);
-  EXPECT_EQ(request("vr", 1, 1, static_cast<Mode>(77), 0).verdict, Verdict::kNoMode);
+  EXPECT_EQ(request("vr", 1, 2, static_cast<Mode>(77), 0).verdict, Verdict::kNoMode);
 }
 
-TEST_F(Intake, TheSourceThatWasSilentLongestMakesRoomButNeverTheDrivingOne) {
+using Table = SourceTable<SourceRecord>;
+
+TEST_F(Intake, NoNewNameDisplacesWhoSpokeInTheLastSecond) {
+  EXPECT_TRUE(request("anna.1", 1, 1, Mode::kStand, 0).fresh);
+  for (int k = 0; k < 1000; ++k) {  // another operator's, who stops, each name for the first time
+    const std::string name = "bob." + std::to_string(k);
+    const auto stop = request(name.c_str(), 1, 1, Mode::kPassive, 1 + k);
+    EXPECT_EQ(stop.verdict, Verdict::kTaken) << "it stops all the same";
+    EXPECT_EQ(stop.fresh, k < static_cast<int>(Table::kOfOneOperator)) << "but is no wish for limp drives";
+  }
+  EXPECT_EQ(drive("bob.d", 1, 1, 1001), DriveVerdict::kOutOfOrder) << "no room";
+  for (std::size_t k = 0; k < Table::kSources; ++k) {  // and other operators'
+    request(("c" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, 2000);
+  }
+  const auto again = request("anna.1", 1, 1, Mode::kStand, kSecond_ns);
+  EXPECT_EQ(again.verdict, Verdict::kTaken);
+  EXPECT_FALSE(again.fresh) << "carried out once";
+}
+
+TEST_F(Intake, WhoIsSilentForASecondMakesRoomButNeverTheDriver) {
   drive("driver", 1, 10, 0, 2.0);
-  for (int k = 0; k < 20; ++k) {  // strange sources that stop, each for the first time
-    request(("stranger" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, 1 + k);
+  request("anna", 1, 1, Mode::kDamping, 1);
+  const std::int64_t later_ns = kSecond_ns + 2;
+  for (std::size_t k = 0; k + 1 < Table::kSources; ++k) {
+    EXPECT_TRUE(request(("c" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, later_ns).fresh) << k;
   }
-  EXPECT_EQ(drive("driver", 1, 10, 100), DriveVerdict::kOutOfOrder) << "still remembered";
-  for (int k = 19; k >= 4; --k) {  // with the driver 17 sources
-    EXPECT_FALSE(request(("stranger" + std::to_string(k)).c_str(), 1, 1, Mode::kDamping, 100).fresh) << k;
-  }
-  EXPECT_TRUE(request("stranger3", 1, 1, Mode::kDamping, 100).fresh) << "forgotten";
+  EXPECT_EQ(drive("driver", 1, 10, later_ns), DriveVerdict::kOutOfOrder) << "still remembered";
+  EXPECT_FALSE(request("anna", 1, 1, Mode::kDamping, later_ns).fresh) << "there is no room";
+  EXPECT_TRUE(request("anna", 1, 1, Mode::kDamping, later_ns + kSecond_ns + 1).fresh) << "forgotten";
 }
 
 TEST_F(Intake, AStopInTheDriversNameWithTheLargestSessionLocksNobodyOut) {

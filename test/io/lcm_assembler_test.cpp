@@ -127,11 +127,25 @@ TEST_F(Assembler, AFragmentThatReachesBehindTheMessagesMemoryIsMalformed) {
   EXPECT_EQ(assembler_.counts().malformed, 1);
 }
 
-TEST_F(Assembler, AFragmentThatComesTwiceOrWithoutItsBeginningCompletesNothing) {
+TEST_F(Assembler, AFragmentThatTheNetworkDuplicatesLosesNothing) {
+  const std::vector<Datagram> parts = {fragment({.size = 9, .count = 3, .rest = kChannel + "abc"}),
+                                       fragment({.size = 9, .offset = 3, .index = 1, .count = 3, .rest = "def"}),
+                                       fragment({.size = 9, .offset = 6, .index = 2, .count = 3, .rest = "ghi"})};
+  for (const auto& order : {std::vector{0, 0, 1, 0, 1, 2}, std::vector{0, 1, 1, 0, 2}}) {
+    std::string got = "-";
+    for (const int part : order) got = take(parts[static_cast<std::size_t>(part)]);
+    EXPECT_EQ(got, "abcdefghi");
+    EXPECT_EQ(take(parts[2]), "-") << "once";
+  }
+  EXPECT_EQ(assembler_.counts().messages, 2);
+  EXPECT_EQ(assembler_.counts().malformed, 0);
+}
+
+TEST_F(Assembler, AFragmentThatContradictsAnEarlierOneOrLacksItsBeginningCompletesNothing) {
   EXPECT_EQ(take(fragment({.offset = 4, .index = 1, .rest = "ef"})), "-");
   take(fragment({.size = 9, .count = 3, .rest = kChannel + "abc"}));
   take(fragment({.size = 9, .offset = 3, .index = 1, .count = 3, .rest = "def"}));
-  EXPECT_EQ(take(fragment({.size = 9, .offset = 3, .index = 1, .count = 3, .rest = "def"})), "-");
+  EXPECT_EQ(take(fragment({.size = 9, .offset = 3, .index = 1, .count = 3, .rest = "dEf"})), "-");
   EXPECT_EQ(take(fragment({.size = 9, .offset = 6, .index = 2, .count = 3, .rest = "ghi"})), "-");
   EXPECT_EQ(take(fragment({.index = 2, .count = 2, .rest = "ghi"})), "-");
   EXPECT_EQ(take(fragment({.count = 0, .rest = kChannel + "abcdef"})), "-");

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -288,6 +289,22 @@ TEST(LcmLink, AFloodOfForeignDatagramsDoesNotKeepTheCaller) {
     for (int k = 0; k < 50; ++k) send_datagrams({"noise..."});
     EXPECT_EQ(receiver.receive(60'000, 10), 0) << "it returned although it might have waited for a minute";
     EXPECT_EQ(receiver.receiver()->counts().malformed, 10 * LcmLink::kDatagramsPerMessage);
+  });
+}
+
+TEST(LcmLink, AFloodWhoseHandlersAreSlowDoesNotKeepTheCaller) {
+  PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [] {
+    using std::chrono::steady_clock;
+    LcmLink sender(kDefaultLcmUrl), receiver(kDefaultLcmUrl);
+    receiver.subscribe("COMMAND", [](Bytes) {
+      const auto end = steady_clock::now() + std::chrono::milliseconds(2);
+      while (steady_clock::now() < end) continue;
+    });
+    for (int k = 0; k < 100; ++k) sender.publish("COMMAND", command(0.1));
+    int handled = receiver.receive(0);
+    EXPECT_GE(handled, 1);
+    EXPECT_LE(handled, LcmLink::kHandling_ms / 2) << "of 100 that wait";
+    while (handled < 100) handled += receiver.receive(5000);
   });
 }
 

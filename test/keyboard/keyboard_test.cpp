@@ -341,6 +341,8 @@ TEST_F(TerminalKeyboardTest, AHeldKeyThatRepeatsLikePressesDoesNotRaiseAStoppedR
 TEST_F(TerminalKeyboardTest, ANewControllerOfTheSameNameIsNotRaisedByAKeyThatRepeats) {
   driver_.press(Key::kForwards, false);
   until([&] { return mode() == Mode::kWalk; });
+  network_.control_alive = false;
+  for (int k = 0; k < 31; ++k) network_.advance();  // a start takes longer
   pmg_msgs::status_t status{};
   status.robot = "biped";
   status.session = 99;  // limp, as after its start

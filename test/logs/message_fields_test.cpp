@@ -59,7 +59,7 @@ const std::set<std::string> kParts = {"seal_t", "proof_t"};  // behind other mes
 /// Names of a type's fields, except lengths of others. Read word by word, because GCC 12 gives false warnings on
 /// std::regex under sanitizers.
 std::vector<std::string> fields_of(const std::string& type) {
-  const std::set<std::string> types = {"int8_t", "int16_t", "int32_t", "int64_t",
+  const std::set<std::string> types = {"int8_t", "int16_t", "int32_t", "int64_t", "byte",
                                        "double", "float",   "boolean", "string"};
   std::ifstream file(fs::path(pmg::test::project_folder()) / "msgs" / (type + ".lcm"));
   std::vector<std::string> names;

@@ -383,6 +383,30 @@ TEST_F(FloodTest, AStopIsObeyedAndAcknowledged) {
   EXPECT_EQ(robot_.result().mode, Mode::kDamping);
 }
 
+TEST_F(OperatorTest, AStopForEveryRobotIsAcknowledgedBesideAFloodOfStrangersStops) {
+  NetworkedRobot& second = network_.add_robot("second");
+  network_.advance();
+  pmg_msgs::mode_t strangers{};
+  strangers.version = pmg_msgs::mode_t::VERSION;
+  strangers.source = "stranger";
+  strangers.mode = pmg_msgs::mode_t::DAMPING;
+  const auto flood = [&] {
+    for (int k = 0; k < 10; ++k) network_.link.publish("MODE", strangers);  // 1,000 a second
+    network_.advance();
+  };
+  for (int k = 0; k < 100; ++k) flood();
+  ModeWish stop(mine_, "", Goal::kStop, 2.0);
+  Progress progress = Progress::kPending;
+  while (progress == Progress::kPending) {
+    flood();
+    progress = stop.step();
+  }
+  EXPECT_EQ(progress, Progress::kReached);
+  EXPECT_EQ(stop.answers().size(), 2u);
+  EXPECT_LE(stop.elapsed_s(), 0.22) << "as long as it listens for other robots";
+  EXPECT_EQ(second.result().mode, Mode::kDamping);
+}
+
 /// A robot with keys, and an operator that has one of them.
 class KeyedTest : public testing::Test {
  protected:
@@ -442,6 +466,16 @@ TEST_F(KeyedTest, NobodyDrivesUnderAnothersName) {
   EXPECT_EQ(network_.finish(stop), Progress::kReached) << "a stop is everybody's";
 }
 
+TEST_F(KeyedTest, WhoseKeyWasRevokedIsToldSo) {
+  OperatorSource former(network_.link, "bob.1", 1, network_.clock,
+                        seal::OperatorSeal({{"bob", key_.controller, seal::random_secret()}}, false));
+  for (int k = 0; k < 3; ++k) network_.advance();
+  ModeWish stand(former, "biped", Goal::kStand, 5.0);
+  EXPECT_EQ(network_.finish(stand), Progress::kFailed);
+  EXPECT_EQ(stand.answers().front().text, kNoKey);
+  EXPECT_LT(stand.elapsed_s(), 0.1) << "at once";
+}
+
 TEST_F(KeyedTest, AForgedAcknowledgementOfAStopIsNotBelieved) {
   network_.control_alive = false;
   forge_acks();
@@ -463,20 +497,77 @@ TEST_F(KeyedTest, AForgedStatusNeitherShowsAModeNorMisleadsASeal) {
   EXPECT_EQ(network_.finish(stand), Progress::kReached);
 }
 
-TEST_F(OperatorTest, ARecordedStatusOfAnEarlierStartIsIgnoredWhileTheControllerSpeaks) {
-  const auto say = [&](std::int64_t session, std::int8_t mode) {
+/// What the controller says while it is recorded.
+class RecordedTest : public OperatorTest {
+ protected:
+  RecordedTest() {
+    network_.link.subscribe("STATUS", [this](io::Bytes bytes) {
+      if (records_) statuses_.emplace_back(bytes.begin(), bytes.end());
+    });
+  }
+  void say(std::int64_t session, std::int8_t mode, std::int64_t stamp_ns) {
     pmg_msgs::status_t status{};
     status.robot = "biped";
     status.session = session;
-    status.stamp_ns = network_.clock.now_ns() - 1;
+    status.stamp_ns = stamp_ns;
     status.mode = mode;
     network_.link.publish("STATUS", status);
     network_.link.receive(0);
-  };
-  say(0, pmg_msgs::mode_t::WALK);
-  EXPECT_EQ(mine_.heard("biped")->mode(), pmg_msgs::mode_t::PASSIVE);
-  say(2, pmg_msgs::mode_t::DAMPING);
-  EXPECT_EQ(mine_.heard("biped")->mode(), pmg_msgs::mode_t::DAMPING) << "restarted";
+  }
+
+  bool records_ = false;
+  std::vector<std::vector<std::uint8_t>> statuses_;
+};
+
+TEST_F(RecordedTest, AStatusOfAnotherStartIsIgnoredWhileTheControllerSpeaks) {
+  const auto mode = [&] { return mine_.heard("biped")->mode(); };
+  for (const std::int64_t session : {0, 2}) {  // a clock that was set back makes no difference
+    say(session, pmg_msgs::mode_t::WALK, 1'000'000);
+    EXPECT_EQ(mode(), pmg_msgs::mode_t::PASSIVE);
+  }
+  network_.control_alive = false;
+  for (int k = 0; k < 31; ++k) network_.advance();
+  say(0, pmg_msgs::mode_t::DAMPING, 2'000'000);
+  EXPECT_EQ(mode(), pmg_msgs::mode_t::DAMPING) << "started anew";
+}
+
+TEST_F(RecordedTest, NoRecordingDrivesADeadRobot) {
+  Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0, .climb = true});
+  while (!drive.driving()) step(drive);
+  records_ = true;
+  for (int k = 0; k < 300; ++k) step(drive);
+  records_ = false;
+  network_.control_alive = false;
+  for (int k = 0; k < 100; ++k) network_.advance();
+  for (const bool whole : {false, true}) {
+    // As in a container: the same process number, so the same name, as that of the recorded driver.
+    OperatorSource again(network_.link, mine_.name(), mine_.session() + 1, network_.clock);
+    Drive dead(again, "biped", forward(0.3), {.duration_s = 1.0, .timeout_s = 2.0});
+    Progress progress = Progress::kPending;
+    for (std::size_t k = 0; progress == Progress::kPending && k < 1000; ++k) {
+      network_.link.send("STATUS", statuses_.at(whole ? k % statuses_.size() : 0));
+      network_.advance();
+      progress = dead.step();
+    }
+    EXPECT_EQ(progress, Progress::kFailed);
+    EXPECT_EQ(dead.driven_s(), 0.0);
+  }
+}
+
+TEST_F(KeyedTest, AnAcknowledgementIsOfTheVeryRequestOrOfNone) {
+  OperatorSource lender(network_.link, anna_.name(), anna_.session(), network_.clock);
+  network_.advance();
+  lender.request("biped", pmg_msgs::mode_t::DAMPING,
+                 false);  // a stop with the source, session and number of what follows
+  network_.link.receive(0);
+  robot_.control();
+  robot_.comms.step(0);
+  ASSERT_FALSE(lender.heard("biped")->ack);
+  anna_.request("biped", pmg_msgs::mode_t::STAND, false);
+  network_.link.receive(0);
+  ASSERT_TRUE(lender.heard("biped")->ack);
+  EXPECT_EQ(lender.heard("biped")->ack->verdict, pmg_msgs::ack_t::TAKEN);
+  EXPECT_FALSE(anna_.heard("biped")->ack) << "the stop was taken, not this request";
 }
 
 }  // namespace

@@ -94,6 +94,11 @@ TEST_F(RobotBoardTest, ASilentControllerAndAFaultAreSaid) {
   status.fault = "tilt: 1.20 rad, limit 1.00 rad";
   network_.link.publish("STATUS", status);
   network_.link.receive(0);
+  EXPECT_EQ(news("biped").status.fault, "") << "of another start, while this one speaks";
+  network_.control_alive = false;
+  for (int k = 0; k < 31; ++k) network_.advance();
+  network_.link.publish("STATUS", status);
+  network_.link.receive(0);
   EXPECT_THAT(one_line(news("biped"), 5.0), AllOf(HasSubstr("FAULT tilt: 1.20 rad"), HasSubstr("NOT HEARD for 5 s")));
   EXPECT_THAT(screen(news("biped"), 5.0), Contains(AllOf(HasSubstr("mode"), HasSubstr("NOT HEARD for 5 s"))));
 }

@@ -37,7 +37,7 @@ class ArmsNetwork : public testing::Test {
     status.robot = "z1";
     const io::Bytes told = controller_.prove("STATUS", status);
     const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(told);
-    peer_ = anna_.believe("STATUS", heard->message_bytes, heard->seal);
+    peer_ = anna_.believe("STATUS", heard->message_bytes, heard->seal, 0);
     ASSERT_TRUE(peer_);
     ticks(10);  // both feet stand
     ask_for_walk();
@@ -91,7 +91,8 @@ class ArmsNetwork : public testing::Test {
   seal::OperatorSeal forger_{{{"anna", seal::Signer(keys_.own).public_key(), seal::random_secret()}}, false};
   std::optional<seal::Peer> peer_;
   test::ControlRig rig_{test::z1()};
-  OperatorGate gate_{rig_.inbox, "z1", rig_.clock, controller_};
+  DatagramOrder order_;
+  OperatorGate gate_{rig_.inbox, "z1", rig_.clock, controller_, order_};
   pmg_msgs::command_t command_{};
   pmg_msgs::mode_t mode_{};
   pmg_msgs::arms_t arms_{};
@@ -116,7 +117,7 @@ TEST_F(ArmsNetwork, TheDriversKeyLeadsAndForgedReplayedAndMisdirectedTargetsDoNo
   EXPECT_EQ(state().arm[kLeft].activity, ArmActivity::kFollowing);
   gate_.take_arms(recorded);
   ticks(1);
-  EXPECT_EQ(state().refusal, control::CommandIntake::DriveVerdict::kOutOfOrder) << "played again at once";
+  EXPECT_EQ(gate_.counts().out_of_order, 1) << "played again at once";
   ticks(110);
   EXPECT_EQ(state().arm[kLeft].activity, ArmActivity::kHeld);
   const arms::PalmPose held = state().arm[kLeft].palm;

@@ -50,7 +50,7 @@ struct NetworkOperator {
     drive.vx_m_s = 0.3;
     link.subscribe("STATUS", [this](io::Bytes bytes) {
       const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
-      controller = operators.believe("STATUS", heard.value().message_bytes, heard->seal);
+      controller = operators.believe("STATUS", heard.value().message_bytes, heard->seal, 0);
       controller->heard_ns = heard->message.stamp_ns;
     });
   }

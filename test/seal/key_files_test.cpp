@@ -6,13 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <string>
 
 #include "seal/controller_seal.hpp"
+#include "seal/operator_seal.hpp"
 
 namespace pmg::seal {
 namespace {
@@ -78,6 +78,15 @@ TEST_F(KeyFiles, OnlyTheOwnerReadsThem) {
               AllOf(HasSubstr("anna.key"), HasSubstr("chmod 600"), Not(HasSubstr("\n"))));
 }
 
+TEST_F(KeyFiles, AFileThatCannotBeWrittenIsNamedAndLeavesNothingBehind) {
+  const OperatorKey anna = make_operator_key(controller_, "anna");
+  EXPECT_THAT(error_of([&] { write_operator_key(folder_ / "nowhere/z1.key", anna); }), HasSubstr("nowhere/z1.key: No"));
+  write_operator_key(folder_ / "z1.key", anna);
+  EXPECT_THAT(error_of([&] { write_operator_key(folder_ / "z1.key", anna); }), HasSubstr("z1.key: File exists"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2)
+      << "z1.key, and the controller's";
+}
+
 TEST_F(KeyFiles, AFolderThatIsThereKeepsItsRights) {
   fs::create_directories(controller_);
   ::chmod(controller_.c_str(), 0755);
@@ -98,18 +107,48 @@ TEST_F(KeyFiles, ARevokedKeyIsGoneAndASecondOneIsNew) {
 TEST_F(KeyFiles, AControllerThatLooksAgainTakesKeysThatWereMadeOrRevokedIntoAccount) {
   make_operator_key(controller_, "anna");
   ControllerSeal seal = load_controller_seal(controller_.string(), "memq://", false);
-  int seconds = 100;
-  const auto news_after = [&](const std::function<void()>& change) {
-    change();  // its time is set, because file systems count in coarse steps
-    fs::last_write_time(controller_ / "operators", fs::file_time_type::clock::now() - std::chrono::seconds(--seconds));
-    return seal.refresh();
-  };
-  EXPECT_EQ(news_after([] {}), "") << "what it began with";
+  EXPECT_EQ(seal.refresh(), "") << "what it began with";
+  make_operator_key(controller_, "bert");
+  EXPECT_EQ(seal.refresh(), "operators with a key: 2");
   EXPECT_EQ(seal.refresh(), "");
-  EXPECT_EQ(news_after([&] { make_operator_key(controller_, "bert"); }), "operators with a key: 2");
-  EXPECT_EQ(news_after([&] { revoke_operator_key(controller_, "anna"); }), "operators with a key: 1");
+  revoke_operator_key(controller_, "anna");
+  EXPECT_EQ(seal.refresh(), "operators with a key: 1");
   ::chmod((controller_ / "controller.key").c_str(), 0644);
-  EXPECT_THAT(news_after([] {}), HasSubstr("from now on nobody has a key"));
+  EXPECT_THAT(seal.refresh(), HasSubstr("from now on nobody has a key"));
+}
+
+TEST_F(KeyFiles, AControllerSeesAtOnceThatAKeyFileIsDamagedOrReadByOthers) {
+  make_operator_key(controller_, "anna");
+  ControllerSeal seal = load_controller_seal(controller_.string(), "memq://", false);
+  const fs::path file = controller_ / "operators/anna.key";
+  const auto folder_time = fs::last_write_time(controller_ / "operators");
+  const auto size = fs::file_size(file);
+  ::chmod(file.c_str(), 0640);
+  EXPECT_THAT(seal.refresh(), AllOf(HasSubstr("chmod 600"), HasSubstr("from now on nobody has a key")));
+  EXPECT_EQ(seal.refresh(), "") << "said once";
+  ::chmod(file.c_str(), 0600);
+  EXPECT_EQ(seal.refresh(), "operators with a key: 1");
+  fs::resize_file(file, size - 10);
+  EXPECT_THAT(seal.refresh(), AllOf(HasSubstr("anna.key"), HasSubstr("from now on nobody has a key")));
+  EXPECT_EQ(fs::last_write_time(controller_ / "operators"), folder_time) << "the folder shows nothing of all this";
+}
+
+TEST_F(KeyFiles, WithKeysThatWereAskedForNothingUnsignedIsBelieved) {
+  fs::create_directories(operator_);
+  write_operator_key(operator_ / "z1.key", make_operator_key(controller_, "anna"));
+  const auto believes_unsigned = [](const std::string& folder, const char* url) {
+    return load_operator_seal(folder, url).believe("STATUS", {}, std::nullopt, 0).has_value();
+  };
+  for (const char* url : {"udpm://239.255.76.67:7667?ttl=0", "udpm://239.255.76.67:7667?ttl=1"}) {
+    EXPECT_FALSE(believes_unsigned(operator_.string(), url)) << url;
+  }
+  ::setenv("XDG_CONFIG_HOME", folder_.c_str(), 1);
+  EXPECT_TRUE(believes_unsigned("", "udpm://239.255.76.67:7667?ttl=1")) << "who has no keys";
+  fs::create_directories(folder_ / "pmg");
+  fs::rename(operator_, folder_ / "pmg" / "operator-keys");
+  EXPECT_TRUE(believes_unsigned("", "udpm://239.255.76.67:7667?ttl=0")) << "keys that are only there, on this computer";
+  EXPECT_FALSE(believes_unsigned("", "udpm://239.255.76.67:7667?ttl=1"));
+  ::unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST_F(KeyFiles, NamesStayInTheFolder) {

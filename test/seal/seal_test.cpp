@@ -41,7 +41,7 @@ class Seal : public testing::Test {
     status.robot = "z1";
     const io::Bytes bytes = controller.prove("STATUS", status);
     const auto proven = decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
-    auto peer = driver.believe("STATUS", proven->message_bytes, proven->seal);
+    auto peer = driver.believe("STATUS", proven->message_bytes, proven->seal, 0);
     if (peer) peer->heard_ns = heard_ns;
     return peer;
   }
@@ -142,19 +142,82 @@ TEST_F(Seal, AnOperatorWithKeysBelievesItsControllerAlone) {
   EXPECT_TRUE(heard(other, here, 0)->wants_key);
 }
 
+/// An operator of four robots, and a stranger who writes STATUS as one of them.
+class ForgedStatus : public Seal {
+ protected:
+  ForgedStatus() {
+    for (int k = 0; k < 3; ++k)
+      keys_of_anna_.push_back({"anna", Signer(random_secret()).public_key(), random_secret()});
+    keys_of_anna_.push_back({"anna", Signer(keys_.own).public_key(), secret_});
+    operator_.emplace(keys_of_anna_, false);
+  }
+  /// (STATUS of this time) => believed.
+  bool hear(std::int64_t now_ns) {
+    pmg_msgs::status_t status{};
+    status.stamp_ns = now_ns;
+    const io::Bytes bytes = keyed_.prove("STATUS", status);
+    const auto proven = decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+    return operator_->believe("STATUS", proven->message_bytes, proven->seal, now_ns).has_value();
+  }
+  void forge(std::int64_t boot, std::int64_t now_ns) {
+    pmg_msgs::proof_t proof{.version = 1, .boot = boot, .signature_size = 64, .signature = {}};
+    proof.signature.assign(64, static_cast<std::uint8_t>(++forged_));
+    const Bytestring message(100, static_cast<std::uint8_t>(forged_ / 251));
+    EXPECT_FALSE(operator_->believe("STATUS", message, proof, now_ns));
+  }
+
+  std::vector<OperatorKey> keys_of_anna_;
+  std::optional<OperatorSeal> operator_;
+  int forged_ = 0;
+};
+
+TEST_F(ForgedStatus, AThousandASecondInAKnownStartsNameDeafenNobodyAndCostOneLookEach) {
+  int heard = 0;
+  for (int ms = 0; ms < 2000; ++ms) {
+    const std::int64_t now_ns = ms * 1'000'000;
+    if (ms % 10 == 0) heard += hear(now_ns) ? 1 : 0;
+    forge(keyed_.boot(), now_ns);
+  }
+  EXPECT_GE(heard, 100) << "half of 100 a second at least";
+  EXPECT_LE(operator_->signatures_checked(), 2000 + 100 + 4);
+}
+
+TEST_F(ForgedStatus, InventedStartsTakeNothingFromAKnownOne) {
+  EXPECT_TRUE(hear(0));
+  int heard = 0;
+  for (int ms = 1; ms <= 1000; ++ms) {
+    const std::int64_t now_ns = ms * 1'000'000;
+    for (int k = 0; k < 80; ++k) forge(random_number(), now_ns);
+    if (ms % 10 == 0) heard += hear(now_ns) ? 1 : 0;
+  }
+  EXPECT_EQ(heard, 100);
+  EXPECT_LE(operator_->signatures_checked(), 101 + 40 + 100 + 4) << "of 80,000 forged ones";
+}
+
+TEST_F(ForgedStatus, WhatSeveralPartsOfAProgramLookAtIsCheckedOnce) {
+  const OperatorSeal board = *operator_;
+  pmg_msgs::status_t status{};
+  const io::Bytes bytes = keyed_.prove("STATUS", status);
+  const auto proven = decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
+  EXPECT_EQ(operator_->believe("STATUS", proven->message_bytes, proven->seal, 0)->key, 3u);
+  EXPECT_EQ(board.believe("STATUS", proven->message_bytes, proven->seal, 0)->key, 3u);
+  EXPECT_EQ(board.signatures_checked(), 4) << "once by each key";
+  EXPECT_FALSE(board.believe("ACK", proven->message_bytes, proven->seal, 0)) << "on another channel it is another one";
+}
+
 TEST_F(Seal, ASignatureOfAnotherMessageOrChannelIsNone) {
   pmg_msgs::ack_t ack{};
   ack.robot = "z1";
   const io::Bytes bytes = keyed_.prove("ACK", ack);
   const auto proven = decode_sealed<pmg_msgs::ack_t, pmg_msgs::proof_t>(bytes);
-  EXPECT_TRUE(anna_.believe("ACK", proven->message_bytes, proven->seal));
-  EXPECT_FALSE(anna_.believe("STATUS", proven->message_bytes, proven->seal));
+  EXPECT_TRUE(anna_.believe("ACK", proven->message_bytes, proven->seal, 0));
+  EXPECT_FALSE(anna_.believe("STATUS", proven->message_bytes, proven->seal, 0));
   Bytestring changed(proven->message_bytes.begin(), proven->message_bytes.end());
   changed.back() = static_cast<std::uint8_t>(changed.back() ^ 1u);
-  EXPECT_FALSE(anna_.believe("ACK", changed, proven->seal));
+  EXPECT_FALSE(anna_.believe("ACK", changed, proven->seal, 0));
   auto boot = *proven->seal;
   ++boot.boot;
-  EXPECT_FALSE(anna_.believe("ACK", proven->message_bytes, boot));
+  EXPECT_FALSE(anna_.believe("ACK", proven->message_bytes, boot, 0));
 }
 
 TEST_F(Seal, AControllerKnowsItsOwnKey) {
@@ -191,6 +254,14 @@ TEST(Authentication, CodesAreHmacSha256) {
   const Code code = code_of(secret, Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
   EXPECT_EQ(code[0], 0x9);
   EXPECT_EQ(code[31], 0x6a);
+}
+
+/// FIPS 180-4's example of one block.
+TEST(Authentication, DigestsAreSha256) {
+  const std::string text = "abc";
+  const Digest digest = digest_of(Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  EXPECT_EQ(digest[0], 0xba);
+  EXPECT_EQ(digest[31], 0xad);
 }
 
 /// RFC 8032, section 7.1, test 1.

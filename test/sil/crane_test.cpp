@@ -141,7 +141,8 @@ class HoistGateTest : public testing::Test {
   hal::HoistLine line_;
   io::SimulationClock clock_;
   seal::ControllerSeal seal_;
-  runtime::HoistGate gate_{"biped", clock_, seal_};
+  runtime::DatagramOrder order_;
+  runtime::HoistGate gate_{"biped", clock_, seal_, order_};
 };
 
 TEST_F(HoistGateTest, AControllerWithoutAHoistCountsAndIgnores) {
@@ -166,6 +167,25 @@ TEST_F(HoistGateTest, TheNewestRequestCountsHoweverOftenAndLateItComes) {
   EXPECT_FALSE(line_.stays_up());
   EXPECT_TRUE(gate_.fill(state)) << "answered all the same";
   EXPECT_EQ(state.sequence, 3);
+}
+
+TEST_F(HoistGateTest, ARepetitionIsAnsweredAndNotCarriedOutAfterAnothersRequest) {
+  gate_.work(&line_);
+  hoist_t mine = lift(1), others = lift(1, false);
+  others.source = "keyboard.2";
+  send(mine);
+  send(others);
+  send(mine);  // played back
+  EXPECT_FALSE(line_.stays_up());
+  pmg_msgs::hoist_state_t state{};
+  gate_.fill(state);
+  EXPECT_EQ(state.source, "keyboard.2");
+  mine.stamp_ns = 50'000'000;  // its sender repeats it, because it hasn't heard the answer
+  send(mine);
+  EXPECT_FALSE(line_.stays_up());
+  EXPECT_TRUE(gate_.fill(state));
+  EXPECT_EQ(state.source, "pmg_send.1") << "it is told, and sees that the hoist does something else";
+  EXPECT_FALSE(state.stays_up);
 }
 
 TEST_F(HoistGateTest, WhatIsNotMeantForItIsCountedAndIgnored) {

@@ -1,8 +1,8 @@
-#include "control/source_rates.hpp"
+#include "runtime/source_rates.hpp"
 
 #include <algorithm>
 
-namespace pmg::control {
+namespace pmg::runtime {
 
 namespace {
 
@@ -12,14 +12,14 @@ struct Allowance {
   std::int64_t burst;
 };
 
-/// By MessageKind. Commands: five times what a 50 Hz source sends. Requests are repeated every 50 ms; eight sources at
+/// By MessageKind. Commands: five programs of 50 Hz. Requests are repeated every 50 ms; eight operators at
 /// 40 Hz, with stops beside, stay below the 800 a second that the control cycle takes from its inbox.
-/// Arms: a headset's 120 Hz; eight such sources stay below the 1,200 a second that it takes of them.
+/// Arms: a headset's 120 Hz; eight such operators stay below the 1,200 a second that it takes of them.
 constexpr std::array<Allowance, 4> kAllowances = {{{4'000'000, 8}, {25'000'000, 4}, {25'000'000, 4}, {8'000'000, 4}}};
 
 }  // namespace
 
-bool SourceRates::admit(const Source& source, MessageKind kind, std::int64_t now_ns) noexcept {
+bool SourceRates::admit(const control::Source& source, MessageKind kind, std::int64_t now_ns) noexcept {
   Place* place = place_of(source, now_ns);
   if (place == nullptr) {
     if (kind != MessageKind::kStop) return false;
@@ -38,9 +38,11 @@ bool SourceRates::admit(Place& place, MessageKind kind, std::int64_t now_ns) noe
   return true;
 }
 
-SourceRates::Place* SourceRates::place_of(const Source& source, std::int64_t now_ns) noexcept {
-  const auto has_name = [&](const Place& place) { return place.source.name == source.name; };
-  if (const auto found = std::ranges::find_if(places_, has_name); found != places_.end()) return &*found;
+SourceRates::Place* SourceRates::place_of(const control::Source& source, std::int64_t now_ns) noexcept {
+  const auto of_operator = [&](const Place& place) {
+    return place.source.name[0] != '\0' && place.source.operator_name() == source.operator_name();
+  };
+  if (const auto found = std::ranges::find_if(places_, of_operator); found != places_.end()) return &*found;
   const auto vacant = [&](const Place& place) {
     return place.source.name[0] == '\0' || now_ns - place.heard_ns > kSilent_ns;
   };
@@ -50,4 +52,4 @@ SourceRates::Place* SourceRates::place_of(const Source& source, std::int64_t now
   return &*found;
 }
 
-}  // namespace pmg::control
+}  // namespace pmg::runtime
