@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/arm_setup.hpp"
 #include "arms_operator/arms_board.hpp"
 #include "io/lcm_link.hpp"
 #include "io/plain_text.hpp"
@@ -92,24 +94,47 @@ int revoke(const Arguments& arguments) {
   return kNone;
 }
 
-/// What the robot does, once its model is known: the controller names it, and this computer must have its files.
-class Measurement {
+/// From palm to palm with arms stretched sideways [m]; 0: it has no arms that can be led.
+double arm_span_m(const model::RobotModel& robot) {
+  const auto setup = arms::read_arm_setup(robot);
+  if (!setup) return 0.0;
+  double span_m = 0.0;
+  for (const arms::PalmSetup& palm : setup->palm) {
+    bool past_shoulder = false;
+    for (const KDL::Segment& segment : palm.chain.segments) {
+      const KDL::Vector p = segment.getFrameToTip().p;
+      span_m += past_shoulder ? p.Norm()
+                              : std::abs(p.y());  // the shoulder is beside the middle, the arm as long as its parts
+      past_shoulder = past_shoulder || segment.getJoint().getType() != KDL::Joint::None;
+    }
+    span_m += palm.T_LP.translation().norm();
+  }
+  return span_m;
+}
+
+/// What is known of the robot once the controller names its model: this computer must have its files.
+class KnownRobot {
  public:
-  const live_page::MeasuredMotion* of(const ops::RobotNews* news) {
+  /// Null: nothing is measured.
+  const live_page::MeasuredMotion* motion(const ops::RobotNews* news) {
     if (news == nullptr || !news->info) return nullptr;
     if (session_ != news->info->session) begin(*news->info);
     if (motion_) motion_->take(*news);
     return motion_ ? &*motion_ : nullptr;
   }
 
+  double arm_span() const { return span_m_; }
+
  private:
   void begin(const pmg_msgs::robot_info_t& info) {
     session_ = info.session;
     motion_.reset();
+    span_m_ = 0.0;
     try {
       const model::RobotModel robot = model::load_robot(model::find_robot(info.model));
       if (robot.joint_index.names() != info.joint_names) throw std::runtime_error("its joints are others");
       motion_.emplace(robot);
+      span_m_ = arm_span_m(robot);
     } catch (const std::exception& error) {
       std::cerr << fmt::format("pmg_web: no measured motion is shown: model {}: {}\n", io::plain_text(info.model),
                                io::plain_text(error.what()));
@@ -118,6 +143,7 @@ class Measurement {
 
   std::optional<std::int64_t> session_;
   std::optional<live_page::MeasuredMotion> motion_;
+  double span_m_ = 0.0;
 };
 
 /// Closes the pages of names that are no longer paired.
@@ -132,10 +158,10 @@ int serve(const Arguments& arguments) {
   const io::WallClock clock;
   io::LcmLink link(io::choose_lcm_url(arguments.lcm_url));
   const seal::OperatorSeal seal = seal::load_operator_seal(arguments.keys, link.url());
-  live_page::PageHands hands;
-  ops::DrivingStation station(link, hands, arguments.robot, ops::session_number(), clock, seal);
+  live_page::PageDevices devices;
+  ops::DrivingStation station(link, devices.device(), arguments.robot, ops::session_number(), clock, seal);
   ops::ArmsBoard arms(link, clock, seal);
-  Measurement measurement;
+  KnownRobot known;
   const web::Pairings pairings(folder_of(arguments) / "pairings");
   const std::vector<std::string> names = names_of(arguments);
   const web::Certificate certificate = web::load_certificate(folder_of(arguments), names, std::time(nullptr));
@@ -155,10 +181,12 @@ int serve(const Arguments& arguments) {
   while (!station.gone()) {
     if (apps::interrupt_requested != 0) station.let_go();
     const std::vector<web::Page> pages = server.pages();
-    hands.look(pages);
-    for (const web::Said& said : server.take()) hands.take(said, clock.now_ns());
+    devices.look(pages, clock.now_ns());
+    devices.learn(arms.of(station.driver() == nullptr ? "" : station.driver()->robot()));
+    for (const web::Said& said : server.take()) devices.take(said, clock.now_ns());
     station.step(kWait_ms);
-    const live_page::MeasuredMotion* measured = measurement.of(station.news());
+    const live_page::MeasuredMotion* measured = known.motion(station.news());
+    devices.set_robot_span(known.arm_span());
     const std::int64_t now_ns = clock.now_ns();
     if (now_ns >= look_at_ns) {
       look_at_ns = now_ns + kLook_ns;
@@ -166,8 +194,8 @@ int serve(const Arguments& arguments) {
     }
     if (now_ns < show_at_ns || pages.empty()) continue;
     show_at_ns = now_ns + kPicture_ns;
-    const std::string shared = live_page::shared_state(station, hands, arms, measured, now_ns);
-    for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, hands, station));
+    const std::string shared = live_page::shared_state(station, devices, arms, measured, now_ns);
+    for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, devices, station));
   }
   std::cout << station.last_words() << '\n';
   return kOk;

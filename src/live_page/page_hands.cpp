@@ -36,6 +36,7 @@ void PageHands::ask(PageHand& hand, ops::Request request) {
                                                    : driver->name() + " drives the robot: it must let go first");
     return;
   }
+  if (!other_.empty()) return hand.note(other_ + " drives the robot: it must let go first");
   hand.note("");
   requests_.other = request;
 }

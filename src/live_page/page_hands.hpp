@@ -18,6 +18,8 @@ class PageHands : public ops::Device {
  public:
   /// The pages that are open: the hands of others are gone.
   void look(std::span<const web::Page> open);
+  /// Something else of this program drives the robot: its name; empty: nothing does. Meanwhile pages ask for nothing.
+  void let_other_drive(std::string name) { other_ = std::move(name); }
   /// What a page said. A stop counts though its page is gone.
   void take(const web::Said& said, std::int64_t now_ns);
 
@@ -42,6 +44,7 @@ class PageHands : public ops::Device {
   std::vector<ops::Hold> holds_;
   std::optional<std::int32_t> driving_;
   ops::Requests requests_;
+  std::string other_;
   std::uint64_t malformed_ = 0;
 };
 

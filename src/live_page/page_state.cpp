@@ -14,23 +14,9 @@ using Json = nlohmann::ordered_json;
 /// Pure ASCII; broken UTF-8 of another program becomes U+FFFD.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
-/// Why a finger on this page's stick doesn't drive; empty: it does, or there is none.
-std::string note_of(const web::Page& page, const PageHands& hands, const ops::DrivingStation& station) {
-  const PageHand* hand = hands.hand(page.id);
-  if (hand == nullptr) return "";
-  if (hand->late()) return "this page's messages come late: it can't drive";
-  if (!hand->note().empty()) return hand->note();
-  const auto driving = hands.driving();
-  const PageHand* driver = driving && *driving != page.id ? hands.hand(*driving) : nullptr;
-  if (driver != nullptr) return driver->name() + " drives the robot";
-  if (station.driver() != nullptr && station.driver()->hold().refused(page.id))
-    return "let go of the stick and touch it anew";
-  return "";
-}
-
 }  // namespace
 
-std::string shared_state(const ops::DrivingStation& station, const PageHands& hands, const ops::ArmsBoard& arms,
+std::string shared_state(const ops::DrivingStation& station, const PageDevices& devices, const ops::ArmsBoard& arms,
                          const MeasuredMotion* measured, std::int64_t now_ns) {
   const ops::RobotDriver* driver = station.driver();
   const ops::RobotNews* news = station.news();
@@ -41,8 +27,8 @@ std::string shared_state(const ops::DrivingStation& station, const PageHands& ha
   json["heard"] = news != nullptr && silence_s <= ops::kGone_s;
   if (driver != nullptr) {
     json["asked"] = driver->asked().u;
-    json["lower"] = hands.limits().lower;
-    json["upper"] = hands.limits().upper;
+    json["lower"] = devices.hands().limits().lower;
+    json["upper"] = devices.hands().limits().upper;
     json["limited"] = driver->limited();
     json["driving"] = driver->driving();
   }
@@ -57,10 +43,11 @@ std::string shared_state(const ops::DrivingStation& station, const PageHands& ha
   return text;
 }
 
-std::string page_state(const std::string& shared, const web::Page& page, const PageHands& hands,
+std::string page_state(const std::string& shared, const web::Page& page, const PageDevices& devices,
                        const ops::DrivingStation& station) {
-  const Json you = {
-      {"paired", page.paired_as}, {"drives", hands.driving() == page.id}, {"note", note_of(page, hands, station)}};
+  const Json you = {{"paired", page.paired_as},
+                    {"drives", devices.drives(page.id)},
+                    {"note", devices.note(page, station.driver() == nullptr ? nullptr : &station.driver()->hold())}};
   return shared + ",\"you\":" + text_of(you) + "}";
 }
 

@@ -23,11 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <auto Free>
+template <auto kFree>
 struct Freed {
   template <typename T>
   void operator()(T* object) const {
-    Free(object);
+    kFree(object);
   }
 };
 using Key = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;

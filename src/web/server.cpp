@@ -37,7 +37,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
-using tcp = asio::ip::tcp;
+using Tcp = asio::ip::tcp;
 using Stream = beast::ssl_stream<beast::tcp_stream>;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
@@ -262,7 +262,7 @@ class OpenPage : public std::enable_shared_from_this<OpenPage> {
 /// A connection until it is a page's WebSocket: requests one after another.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket&& socket, asio::ssl::context& context, Desk& desk, asio::ip::address from)
+  Connection(Tcp::socket&& socket, asio::ssl::context& context, Desk& desk, asio::ip::address from)
       : stream_(std::move(socket), context), desk_(desk), from_(std::move(from)) {}
 
   const asio::ip::address& from() const { return from_; }
@@ -393,7 +393,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Response response_;
 };
 
-tcp::endpoint endpoint_of(const ServerSettings& settings) {
+Tcp::endpoint endpoint_of(const ServerSettings& settings) {
   error_code error;
   const asio::ip::address address = asio::ip::make_address(settings.address, error);
   if (error) throw std::runtime_error(fmt::format("address \"{}\": expected an IP address", settings.address));
@@ -407,11 +407,13 @@ class Server::Thread {
   explicit Thread(ServerSettings settings) : settings_(std::move(settings)) {
     context_.set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_sslv2 |
                          asio::ssl::context::no_sslv3 | asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1);
-    error_code error;
     const auto pem = asio::buffer(settings_.certificate.pem);
-    context_.use_certificate_chain(pem, error);
-    if (!error) context_.use_private_key(pem, asio::ssl::context::pem, error);
-    if (error) throw std::runtime_error("the server's certificate can't be used: " + error.message());
+    try {
+      context_.use_certificate_chain(pem);
+      context_.use_private_key(pem, asio::ssl::context::pem);
+    } catch (const boost::system::system_error& error) {
+      throw std::runtime_error("the server's certificate can't be used: " + error.code().message());
+    }
     listen();
     accept();
     sweep();
@@ -435,19 +437,21 @@ class Server::Thread {
 
  private:
   void listen() {
-    const tcp::endpoint endpoint = endpoint_of(settings_);
-    error_code error;
-    acceptor_.open(endpoint.protocol(), error);
-    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) acceptor_.bind(endpoint, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    if (error)
-      throw std::runtime_error(fmt::format("{} port {}: {}", settings_.address, settings_.port, error.message()));
+    const Tcp::endpoint endpoint = endpoint_of(settings_);
+    try {
+      acceptor_.open(endpoint.protocol());
+      acceptor_.set_option(asio::socket_base::reuse_address(true));
+      acceptor_.bind(endpoint);
+      acceptor_.listen();
+    } catch (const boost::system::system_error& error) {
+      throw std::runtime_error(
+          fmt::format("{} port {}: {}", settings_.address, settings_.port, error.code().message()));
+    }
     port_ = acceptor_.local_endpoint().port();
   }
 
   void accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    acceptor_.async_accept([this](error_code error, Tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
       if (!error) take(std::move(socket));
       if (!error) return accept();
@@ -467,12 +471,15 @@ class Server::Thread {
     sweep_.async_wait([this](error_code) { sweep(); });
   }
 
-  void take(tcp::socket&& socket) {
+  void take(Tcp::socket&& socket) {
     board_.count(&Counts::connections);
-    error_code error;
-    const tcp::endpoint from = socket.remote_endpoint(error);
-    if (error) return;
-    socket.set_option(tcp::no_delay(true), error);
+    Tcp::endpoint from;
+    try {
+      from = socket.remote_endpoint();
+      socket.set_option(Tcp::no_delay(true));
+    } catch (const boost::system::system_error&) {
+      return;  // it is gone already
+    }
     make_room();
     const auto connection = std::make_shared<Connection>(std::move(socket), context_, desk_, from.address());
     desk_.waiting.push_back(connection);
@@ -507,7 +514,7 @@ class Server::Thread {
   Desk desk_{settings_, board_};
   asio::ssl::context context_{asio::ssl::context::tls_server};
   asio::io_context io_{1};
-  tcp::acceptor acceptor_{io_};
+  Tcp::acceptor acceptor_{io_};
   asio::steady_timer retry_{io_}, sweep_{io_};
   std::uint16_t port_ = 0;
   std::jthread thread_;

@@ -1,4 +1,4 @@
-// Keyboards, game controllers and pages obey the same rules: each row is a device, each test a rule.
+// Keyboards, game controllers, pages and headsets obey the same rules: each row is a device, each test a rule.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -196,7 +196,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Row{"keyboard", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Keys>(clock); }},
         Row{"gamepad", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Pad>(clock); }},
-        Row{"page", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Finger>(clock); }}),
+        Row{"page", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Finger>(clock); }},
+        Row{"headset", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Head>(clock); }}),
     [](const auto& row) { return row.param.name; });
 
 }  // namespace

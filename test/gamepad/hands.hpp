@@ -1,8 +1,9 @@
-// Devices in hands: what a person does with a keyboard, a game controller or a page, in one vocabulary.
+// Devices in hands: what a person does with a keyboard, a game controller, a page or a headset, in one vocabulary.
 #pragma once
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +12,9 @@
 #include "io/clock.hpp"
 #include "keyboard/key_command.hpp"
 #include "live_page/page_hands.hpp"
+#include "operator/joined_devices.hpp"
+#include "vr/headset.hpp"
+#include "vr/vr_command.hpp"
 
 namespace pmg::gamepad {
 
@@ -138,6 +142,48 @@ class Finger : public Hand {
   std::int32_t page_ = 1;
   std::int64_t number_ = 0, presses_ = 0;
   bool held_ = false, pushed_ = false, there_ = true;
+};
+
+/// A headset beside a page, as a program has them.
+class Head : public Finger {
+ public:
+  explicit Head(const io::Clock& clock) : Finger(clock), joined_({&Finger::device(), &vr_}, vr_.manner()) {}
+  ops::Device& device() override { return joined_; }
+  void poll() override {
+    Finger::poll();
+    if (!there_) return;
+    vr_.take(headset_.next(clock_.now_ns()), clock_.now_ns());
+    const double step_m = std::clamp((squeezed_ ? vr::kReach_m : 0.0) - forward_m_, -0.04, 0.04);  // as a person moves
+    headset_.step(step_m, 0.0);
+    forward_m_ += step_m;
+  }
+  void go(bool held) override {
+    squeezed_ = held;
+    if (held) headset_.squeeze();
+    if (!held) headset_.let_go();
+  }
+  void leave() override {
+    there_ = false;
+    vr_.end(clock_.now_ns());
+    Finger::leave();
+  }
+  void come_back() override {
+    there_ = true;
+    vr_.begin(clock_.now_ns());
+    forward_m_ = 0.0;  // it is centred anew, where it is
+    Finger::come_back();
+  }
+
+ private:
+  vr::VrCommand vr_ = [this] {
+    vr::VrCommand vr(-1);
+    vr.begin(clock_.now_ns());
+    return vr;
+  }();
+  test::Headset headset_;
+  double forward_m_ = 0.0;
+  ops::JoinedDevices joined_;
+  bool squeezed_ = false, there_ = true;
 };
 
 }  // namespace pmg::gamepad

@@ -40,8 +40,8 @@ class PageSocket : public testing::Test {
     turn();
   }
   void turn() {
-    hands_.look(server_.pages());
-    for (const web::Said& said : server_.take()) hands_.take(said, network_.clock.now_ns());
+    devices_.look(server_.pages(), network_.clock.now_ns());
+    for (const web::Said& said : server_.take()) devices_.take(said, network_.clock.now_ns());
     station_.step(0);
   }
   void run(double seconds) {
@@ -96,8 +96,8 @@ class PageSocket : public testing::Test {
                        }}};
   test::Network network_;
   test::NetworkedRobot& robot_ = network_.add_robot("biped");
-  PageHands hands_;
-  ops::DrivingStation station_{network_.link, hands_, "biped", 1, network_.clock};
+  PageDevices devices_;
+  ops::DrivingStation station_{network_.link, devices_.device(), "biped", 1, network_.clock};
   ops::ArmsBoard arms_{network_.link, network_.clock};
   std::int64_t number_ = 0;
 };
@@ -133,8 +133,8 @@ TEST_F(PageSocket, AStopDampsWithinFiftyMillisecondsAlsoWhileEverythingElseFlood
 TEST_F(PageSocket, APageSeesWhatTheRobotDoes) {
   const auto viewer = page();
   run(0.5);
-  const std::string shared = shared_state(station_, hands_, arms_, nullptr, network_.clock.now_ns());
-  for (const web::Page& one : server_.pages()) server_.show(one.id, page_state(shared, one, hands_, station_));
+  const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
+  for (const web::Page& one : server_.pages()) server_.show(one.id, page_state(shared, one, devices_, station_));
   const auto heard = viewer->hear();
   ASSERT_TRUE(heard);
   const nlohmann::json json = nlohmann::json::parse(*heard);

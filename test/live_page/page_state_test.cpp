@@ -23,13 +23,13 @@ class PageStateTest : public testing::Test {
     }
   }
   nlohmann::json state(const web::Page& page) {
-    const std::string shared = shared_state(station_, hands_, arms_, nullptr, network_.clock.now_ns());
-    return nlohmann::json::parse(page_state(shared, page, hands_, station_));
+    const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
+    return nlohmann::json::parse(page_state(shared, page, devices_, station_));
   }
   const web::Page phone_{1, "phone"}, reader_{2, ""};
   test::Network network_;
-  PageHands hands_;
-  ops::DrivingStation station_{network_.link, hands_, "", 1, network_.clock};
+  PageDevices devices_;
+  ops::DrivingStation station_{network_.link, devices_.device(), "", 1, network_.clock};
   ops::ArmsBoard arms_{network_.link, network_.clock};
 };
 
@@ -43,7 +43,7 @@ TEST_F(PageStateTest, BeforeARobotIsHeardItSaysSo) {
 
 TEST_F(PageStateTest, HasWhatThePageReadsAndTellsEachPageWhoItIs) {
   network_.add_robot("biped");
-  hands_.look(std::array{phone_, reader_});
+  devices_.look(std::array{phone_, reader_}, network_.clock.now_ns());
   run(1.5);
   const nlohmann::json json = state(phone_), other = state(reader_);
   EXPECT_EQ(json["robot"], "biped");
@@ -60,7 +60,7 @@ TEST_F(PageStateTest, HasWhatThePageReadsAndTellsEachPageWhoItIs) {
 TEST_F(PageStateTest, ForeignTextIsNoMarkupAndBreaksNothing) {
   network_.add_robot("<img src=x>\xff\x1b[2J");
   run(1.5);
-  const std::string shared = shared_state(station_, hands_, arms_, nullptr, network_.clock.now_ns());
+  const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
   for (const char c : shared) EXPECT_TRUE(c >= ' ' && c < 127) << static_cast<int>(c);
   EXPECT_FALSE(state(phone_).is_discarded());
 }
