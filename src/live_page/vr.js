@@ -126,6 +126,7 @@ if (navigator.xr) {
 
 // ---- what is seen: a panel ahead with mode, reason and measured motion ----------------------------------------------
 const panel = $('panel').getContext('2d');
+let painted = true;
 function show() {
   const lost = !open() || performance.now() - heardAt > GONE_MS, news = state && state.news;
   const mode = !news ? 'not heard' : !state.heard ? 'no longer heard' : news.mode;
@@ -155,6 +156,7 @@ function show() {
   for (const line of (state && state.arms) || []) lines.push([line, '#b0d4f1', 30]);
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';
   panel.fillRect(0, 0, 1024, 512);
+  painted = true;
   let y = 20;
   for (const [text, colour, size] of lines) {
     panel.fillStyle = colour;
@@ -191,7 +193,8 @@ function paint(frame) {
   if (!viewer) return;
   gl.useProgram(program);
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, $('panel'));
+  if (painted) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, $('panel'));
+  painted = false;
   for (const [name, size, offset] of [['at', 3, 0], ['uv', 2, 12]]) {
     const place = gl.getAttribLocation(program, name);
     gl.enableVertexAttribArray(place);
