@@ -10,6 +10,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arms/arm_setup.hpp"
@@ -18,6 +19,7 @@
 #include "io/plain_text.hpp"
 #include "live_page/assets.hpp"
 #include "live_page/page_state.hpp"
+#include "live_page/robot_shape.hpp"
 #include "operator/driving_station.hpp"
 #include "program.hpp"
 #include "seal/private_file.hpp"
@@ -124,6 +126,8 @@ class KnownRobot {
   }
 
   double arm_span() const { return span_m_; }
+  /// What a page draws of it, once after it has become known; empty: nothing new.
+  std::string take_shape() { return std::exchange(shape_, {}); }
 
  private:
   void begin(const pmg_msgs::robot_info_t& info) {
@@ -135,6 +139,7 @@ class KnownRobot {
       if (robot.joint_index.names() != info.joint_names) throw std::runtime_error("its joints are others");
       motion_.emplace(robot);
       span_m_ = arm_span_m(robot);
+      shape_ = live_page::robot_shape(robot);
     } catch (const std::exception& error) {
       std::cerr << fmt::format("pmg_web: no measured motion is shown: model {}: {}\n", io::plain_text(info.model),
                                io::plain_text(error.what()));
@@ -144,6 +149,7 @@ class KnownRobot {
   std::optional<std::int64_t> session_;
   std::optional<live_page::MeasuredMotion> motion_;
   double span_m_ = 0.0;
+  std::string shape_;
 };
 
 /// Closes the pages of names that are no longer paired.
@@ -173,7 +179,8 @@ int serve(const Arguments& arguments) {
                       .paired = [&pairings](std::string_view token) { return pairings.find(token); }});
   apps::notice({SIGINT, SIGTERM}, nullptr);
   const bool here = arguments.listen == "127.0.0.1" || arguments.listen == "::1";
-  for (const std::string& one : links(arguments, server.port(), here)) std::cout << one << '\n';
+  for (const std::string& one : links(arguments, server.port(), here))
+    if (!here || (one.find("[::1]") == std::string::npos) == (arguments.listen != "::1")) std::cout << one << '\n';
   std::cout << "fingerprint of the certificate (SHA-256): " << certificate.fingerprint << '\n';
   if (pairings.names().empty()) std::cout << "nothing is paired: pmg_web pair NAME\n";
   std::cout << std::flush;
@@ -187,6 +194,8 @@ int serve(const Arguments& arguments) {
     station.step(kWait_ms);
     const live_page::MeasuredMotion* measured = known.motion(station.news());
     devices.set_robot_span(known.arm_span());
+    if (std::string shape = known.take_shape(); !shape.empty())
+      server.give_out({"/robot.json", "application/json", std::move(shape)});
     const std::int64_t now_ns = clock.now_ns();
     if (now_ns >= look_at_ns) {
       look_at_ns = now_ns + kLook_ns;
@@ -195,7 +204,7 @@ int serve(const Arguments& arguments) {
     if (now_ns < show_at_ns || pages.empty()) continue;
     show_at_ns = now_ns + kPicture_ns;
     const std::string shared = live_page::shared_state(station, devices, arms, measured, now_ns);
-    for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, devices, station));
+    for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, devices));
   }
   std::cout << station.last_words() << '\n';
   return kOk;

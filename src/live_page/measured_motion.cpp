@@ -47,17 +47,26 @@ void MeasuredMotion::take(const ops::RobotNews& news) noexcept {
                      finite(state.gyro_rad_s, 3) && std::abs(R_WI.norm() - 1.0) < 1e-3;
   const double dt_s = static_cast<double>(state.stamp_ns - stamp_ns_) * 1e-9;
   stamp_ns_ = state.stamp_ns;
-  const auto stance = stance_of(news.status);
-  if (!whole || !stance) {
+  if (!whole) {
+    tilt_.reset();
     smooth_.reset();
     return;
   }
   q_ = Eigen::Map<const Eigen::VectorXd>(state.q_rad.data(), q_.size());
   dq_ = Eigen::Map<const Eigen::VectorXd>(state.dq_rad_s.data(), q_.size());
-  omega_I_ = Eigen::Map<const Eigen::Vector3d>(state.gyro_rad_s);
-  up_I_ = R_WI.conjugate() * Eigen::Vector3d::UnitZ();
-  feet_ = legs_.compute(q_, dq_);
   base_to_imu_.compute(q_);
+  R_BI_ = base_to_imu_.R() * R_LI_;
+  up_B_ = R_BI_ * (R_WI.conjugate() * Eigen::Vector3d::UnitZ());
+  omega_B_ = R_BI_ * Eigen::Map<const Eigen::Vector3d>(state.gyro_rad_s);
+  const auto [base_pitch, base_roll] = pitch_roll(up_B_);
+  tilt_ =
+      Eigen::AngleAxisd(base_pitch, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(base_roll, Eigen::Vector3d::UnitX());
+  const auto stance = stance_of(news.status);
+  if (!stance) {
+    smooth_.reset();
+    return;
+  }
+  feet_ = legs_.compute(q_, dq_);
   base_to_torso_.compute(q_);
   const std::array<double, kChannels> now = measure(*stance);
   if (!smooth_ || dt_s < 0.0 || dt_s > kPause_s) {
@@ -69,22 +78,17 @@ void MeasuredMotion::take(const ops::RobotNews& news) noexcept {
 }
 
 std::array<double, kChannels> MeasuredMotion::measure(Foot stance) const noexcept {
-  const Eigen::Matrix3d R_BI = base_to_imu_.R() * R_LI_;
-  const Eigen::Vector3d up_B = R_BI * up_I_, omega_B = R_BI * omega_I_;
-  const auto [base_pitch, base_roll] = pitch_roll(up_B);
-  const Eigen::Matrix3d R_HB =
-      (Eigen::AngleAxisd(base_pitch, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(base_roll, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d R_HB = tilt_->toRotationMatrix();
   const model::FootKinematics& foot = feet_[stance];
   Eigen::Vector3d sole_B = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : foot.sole_B) sole_B += 0.25 * corner;
   const Eigen::Vector3d v_sole_B = foot.v_BF + foot.omega_BF.cross(sole_B - foot.p_BF);
-  const Eigen::Vector3d v_H = -(R_HB * (v_sole_B + omega_B.cross(sole_B)));
-  const auto [pitch, roll] = pitch_roll(base_to_torso_.R().transpose() * up_B);
+  const Eigen::Vector3d v_H = -(R_HB * (v_sole_B + omega_B_.cross(sole_B)));
+  const auto [pitch, roll] = pitch_roll(base_to_torso_.R().transpose() * up_B_);
   std::array<double, kChannels> u{};
   u[kVx] = v_H.x();
   u[kVy] = v_H.y();
-  u[kOmega] = (R_HB * omega_B).z();
+  u[kOmega] = (R_HB * omega_B_).z();
   u[kPitch] = pitch;
   u[kRoll] = roll;
   u[kHeight] = -(R_HB * sole_B).z() - standing_height_m_;

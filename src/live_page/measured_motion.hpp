@@ -31,6 +31,9 @@ class MeasuredMotion {
   /// As Command has them. Nothing: no STATE came yet, or neither foot carries the robot.
   const std::optional<std::array<double, kChannels>>& channels() const noexcept { return smooth_; }
 
+  /// Of the base without its yaw: R_HB. Nothing: no STATE came yet that is whole.
+  const std::optional<Eigen::Quaterniond>& tilt() const noexcept { return tilt_; }
+
  private:
   std::array<double, kChannels> measure(Foot stance) const noexcept;
 
@@ -40,9 +43,11 @@ class MeasuredMotion {
   double standing_height_m_;
   JointVector q_, dq_;
   PerFoot<model::FootKinematics> feet_;
-  Eigen::Vector3d up_I_ = Eigen::Vector3d::UnitZ(), omega_I_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_BI_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d up_B_ = Eigen::Vector3d::UnitZ(), omega_B_ = Eigen::Vector3d::Zero();
   std::int64_t stamp_ns_ = 0;
   std::optional<std::array<double, kChannels>> smooth_;
+  std::optional<Eigen::Quaterniond> tilt_;
 };
 
 }  // namespace pmg::live_page

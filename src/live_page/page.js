@@ -169,6 +169,7 @@ function alarm() {
 }
 setInterval(alarm, 200);
 
+let drawnBundle = null, drawnSession = null;
 function show(next) {
   const first = !state || state.you.paired !== next.you.paired;
   state = next;
@@ -191,6 +192,12 @@ function show(next) {
   sticks[1].element.classList.toggle('drives', state.you.drives);
   showChannels();
   showFacts();
+  if (news && news.info && (news.info.bundle !== drawnBundle || news.session !== drawnSession)) {
+    drawnBundle = news.info.bundle;
+    drawnSession = news.session;
+    robotView.load().catch(() => {});
+  }
+  robotView.show(state.joints, state.tilt);
   alarm();
 }
 function showChannels() {

@@ -41,7 +41,7 @@ bool PageDevices::drives(std::int32_t page) const noexcept {
   return hands_.driving() == page || (headset_.driving() && headset_page_.id == page);
 }
 
-std::string PageDevices::note(const web::Page& page, const ops::HoldToDrive* hold) const {
+std::string PageDevices::note(const web::Page& page) const {
   const PageHand* hand = hands_.hand(page.id);
   if (hand == nullptr || drives(page.id)) return "";
   if (hand->late()) return "this page's messages come late: it can't drive";
@@ -50,8 +50,7 @@ std::string PageDevices::note(const web::Page& page, const ops::HoldToDrive* hol
   if (driver != nullptr) return driver->name() + " drives the robot";
   if (headset_.driving()) return headset_page_.paired_as + " drives the robot";
   if (headset_page_.id == page.id) return headset_.note();
-  if (hold != nullptr && hold->refused(page.id)) return "let go of the stick and touch it anew";
-  return "";
+  return hand->held() ? "let go of the stick and touch it anew" : "";
 }
 
 }  // namespace pmg::live_page

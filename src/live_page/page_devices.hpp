@@ -7,7 +7,6 @@
 
 #include "arms_operator/arms_board.hpp"
 #include "live_page/page_hands.hpp"
-#include "operator/hold_to_drive.hpp"
 #include "operator/joined_devices.hpp"
 #include "vr/vr_command.hpp"
 
@@ -31,8 +30,8 @@ class PageDevices {
   ops::Device& device() noexcept { return joined_; }
   const PageHands& hands() const noexcept { return hands_; }
   bool drives(std::int32_t page) const noexcept;
-  /// Why nothing that this page holds drives; empty: it does, or it holds nothing. hold: the machine's.
-  std::string note(const web::Page& page, const ops::HoldToDrive* hold) const;
+  /// Why nothing that this page holds drives; empty: it does, or it holds nothing.
+  std::string note(const web::Page& page) const;
 
  private:
   static constexpr std::int32_t kHeadset = -1;  // its hold; pages count from 1

@@ -26,6 +26,7 @@ class PageHand {
   double left() const noexcept { return side_; }
 
   const std::string& name() const noexcept { return name_; }
+  bool held() const noexcept { return hold_.down; }
   bool late() const noexcept { return late_; }  ///< the newest message was
   void note(std::string text) { note_ = std::move(text); }
   const std::string& note() const noexcept { return note_; }  ///< why its last request was refused; may be empty

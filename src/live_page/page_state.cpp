@@ -1,5 +1,6 @@
 #include "live_page/page_state.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "arms_operator/arms_text.hpp"
@@ -13,6 +14,9 @@ using Json = nlohmann::ordered_json;
 
 /// Pure ASCII; broken UTF-8 of another program becomes U+FFFD.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
+
+/// Three digits are more than a picture shows.
+double milli(double value) { return std::round(value * 1e3) / 1e3; }
 
 }  // namespace
 
@@ -38,16 +42,18 @@ std::string shared_state(const ops::DrivingStation& station, const PageDevices& 
     if (const ops::HeardArms* heard = arms.of(news->status.robot)) json["arms"] = ops::arms_lines(heard->state);
   }
   if (measured != nullptr && measured->channels()) json["measured"] = *measured->channels();
+  if (measured != nullptr && measured->tilt() && news != nullptr && news->state) {
+    const Eigen::Quaterniond& tilt = *measured->tilt();
+    json["tilt"] = {milli(tilt.w()), milli(tilt.x()), milli(tilt.y()), milli(tilt.z())};
+    for (const double q : news->state->q_rad) json["joints"].push_back(milli(q));
+  }
   std::string text = text_of(json);
   text.pop_back();
   return text;
 }
 
-std::string page_state(const std::string& shared, const web::Page& page, const PageDevices& devices,
-                       const ops::DrivingStation& station) {
-  const Json you = {{"paired", page.paired_as},
-                    {"drives", devices.drives(page.id)},
-                    {"note", devices.note(page, station.driver() == nullptr ? nullptr : &station.driver()->hold())}};
+std::string page_state(const std::string& shared, const web::Page& page, const PageDevices& devices) {
+  const Json you = {{"paired", page.paired_as}, {"drives", devices.drives(page.id)}, {"note", devices.note(page)}};
   return shared + ",\"you\":" + text_of(you) + "}";
 }
 

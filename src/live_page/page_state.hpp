@@ -15,7 +15,6 @@ std::string shared_state(const ops::DrivingStation& station, const PageDevices& 
                          const MeasuredMotion* measured, std::int64_t now_ns);
 
 /// (shared_state()) => the text for one page, with what concerns it alone.
-std::string page_state(const std::string& shared, const web::Page& page, const PageDevices& devices,
-                       const ops::DrivingStation& station);
+std::string page_state(const std::string& shared, const web::Page& page, const PageDevices& devices);
 
 }  // namespace pmg::live_page

@@ -69,8 +69,9 @@ struct Board {
   };
 
   mutable std::mutex mutex;
-  std::map<std::int32_t, Entry> pages;  // by id, so the oldest first
-  std::set<std::int32_t> stops;         // of these pages, which may have gone since
+  std::map<std::int32_t, Entry> pages;               // by id, so the oldest first
+  std::set<std::int32_t> stops;                      // of these pages, which may have gone since
+  std::map<std::string, Asset, std::less<>> assets;  // by path
   Counts counts;
   std::int32_t last_id = 0;
 
@@ -302,9 +303,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (websocket::is_upgrade(request)) return open_page(request, host);
     if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, &Counts::method);
     const std::string_view path = view(request.target());
-    const auto asset = std::ranges::find_if(desk_.settings.assets, [&](const Asset& one) { return one.path == path; });
-    if (asset == desk_.settings.assets.end()) return refuse(http::status::not_found, &Counts::path);
+    const auto asset = asset_at(path);
+    if (!asset) return refuse(http::status::not_found, &Counts::path);
     respond(http::status::ok, asset->type, asset->text, request.keep_alive());
+  }
+
+  std::optional<Asset> asset_at(std::string_view path) const {
+    const std::lock_guard lock(desk_.board.mutex);
+    const auto found = desk_.board.assets.find(path);
+    return found == desk_.board.assets.end() ? std::nullopt : std::optional(found->second);
   }
 
   void open_page(const Request& request, std::string_view host) {
@@ -414,6 +421,7 @@ class Server::Thread {
     } catch (const boost::system::system_error& error) {
       throw std::runtime_error("the server's certificate can't be used: " + error.code().message());
     }
+    for (const Asset& asset : settings_.assets) board_.assets[asset.path] = asset;
     listen();
     accept();
     sweep();
@@ -524,6 +532,11 @@ Server::Server(ServerSettings settings) : thread_(std::make_unique<Thread>(std::
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return thread_->port(); }
+
+void Server::give_out(Asset asset) {
+  const std::lock_guard lock(thread_->board().mutex);
+  thread_->board().assets[asset.path] = std::move(asset);
+}
 
 std::vector<Said> Server::take() {
   std::vector<Said> said;

@@ -76,6 +76,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   std::uint16_t port() const;
+  /// From now on gives out this file, too, or in place of the one with its path.
+  void give_out(Asset asset);
   /// What paired pages said since the last call; of each page in its order, stops first.
   std::vector<Said> take();
   std::vector<Page> pages() const;

@@ -86,11 +86,11 @@ class PageDevicesTest : public testing::Test {
 TEST_F(PageDevicesTest, AHeadsetsPageDrivesAndPhonesStopAndAreToldWhoDrives) {
   walk(first_);
   EXPECT_TRUE(devices_.drives(2));
-  EXPECT_EQ(devices_.note(phone_, &driver_.hold()), "quest drives the robot");
+  EXPECT_EQ(devices_.note(phone_), "quest drives the robot");
   ask(phone_, "limp");
   run(0.3);
   EXPECT_EQ(mode(), Mode::kWalk);
-  EXPECT_THAT(devices_.note(phone_, &driver_.hold()), HasSubstr("quest drives the robot: it must let go first"));
+  EXPECT_THAT(devices_.note(phone_), HasSubstr("quest drives the robot: it must let go first"));
   devices_.take({1, "stop"}, now_ns());
   for (int k = 0; k < 3 && mode() != Mode::kDamping; ++k) step();
   EXPECT_EQ(mode(), Mode::kDamping);
@@ -111,6 +111,19 @@ TEST_F(PageDevicesTest, ASecondHeadsetIsNotHeardUntilTheFirstIsGone) {
   run(0.1);
   walk(second_);
   EXPECT_TRUE(devices_.drives(3));
+}
+
+TEST_F(PageDevicesTest, AStickThatIsHeldAndDoesNotDriveIsToldSo) {
+  const auto finger = [&](int number, bool held) {
+    devices_.take({1, fmt::format(R"({{"n":{},"t":{},"held":{},"press":1,"forwards":0,"turn":0,"left":0}})", number,
+                                  static_cast<double>(now_ns()) * 1e-6, held)},
+                  now_ns());
+    step();
+  };
+  finger(1, true);
+  EXPECT_EQ(devices_.note(phone_), "let go of the stick and touch it anew") << "the page came with the finger down";
+  finger(2, false);
+  EXPECT_EQ(devices_.note(phone_), "");
 }
 
 TEST_F(PageDevicesTest, APageThatIsNotPairedHasNoHeadset) {

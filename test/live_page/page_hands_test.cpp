@@ -166,6 +166,13 @@ TEST_F(PageHandsTest, APageThatIsClosedOrReloadedUnderTheFingerStopsAndNeedsAFre
   phone_.number = 0;
   run(2.0);
   EXPECT_EQ(mode(), Mode::kStand) << "it came with the finger down";
+  phone_.page = 4;
+  phone_.number = 0;
+  phone_.forwards = 0.0;
+  run(0.1);
+  phone_.forwards = 1.0;
+  run(2.0);
+  EXPECT_EQ(mode(), Mode::kStand) << "nor at the stick's centre";
   phone_.lift();
   run(0.1);
   drive(phone_);
@@ -203,6 +210,15 @@ TEST_F(PageHandsTest, RepeatedAndOlderMessagesChangeNothing) {
   stand();
   drive(phone_);
   const std::string driving = phone_.text(network_.clock.now_ns());
+  phone_.forwards = 0.0;
+  run(1.0);
+  ASSERT_EQ(u(kVx), 0.0);
+  for (int k = 0; k < 20; ++k) {
+    hands_.take({phone_.page, driving}, network_.clock.now_ns());
+    driver_.step();
+    EXPECT_EQ(driver_.asked()[kVx], 0.0);
+    step();
+  }
   phone_.lift();
   run(3.0);
   talks_ = false;

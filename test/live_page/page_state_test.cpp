@@ -24,7 +24,7 @@ class PageStateTest : public testing::Test {
   }
   nlohmann::json state(const web::Page& page) {
     const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
-    return nlohmann::json::parse(page_state(shared, page, devices_, station_));
+    return nlohmann::json::parse(page_state(shared, page, devices_));
   }
   const web::Page phone_{1, "phone"}, reader_{2, ""};
   test::Network network_;

@@ -24,6 +24,14 @@ TEST_F(ServerTest, GivesOutItsAssetsAndNothingElse) {
     EXPECT_EQ(status_of(get("/", "localhost", method)), 405) << method;
 }
 
+TEST_F(ServerTest, GivesOutWhatItIsGivenLater) {
+  EXPECT_EQ(status_of(get("/robot.json")), 404);
+  for (const char* text : {"[1]", "[2]"}) {
+    server_.give_out({"/robot.json", "application/json", text});
+    EXPECT_THAT(get("/robot.json"), HasSubstr(text));
+  }
+}
+
 TEST_F(ServerTest, OneConnectionAsksForSeveralAssets) {
   Browser browser(server_.port());
   for (int k = 0; k < 3; ++k)
