@@ -31,7 +31,8 @@ find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter) # its standard library
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(Ceres REQUIRED)
-find_package(Boost REQUIRED) # headers: wait-free queues between threads
+find_package(Boost REQUIRED) # headers: wait-free queues between threads, and Beast
+find_package(OpenSSL REQUIRED COMPONENTS Crypto SSL) # with TLS, for web pages
 find_package(spdlog REQUIRED)
 find_package(ZLIB REQUIRED) # npz files of motion capture
 pkg_check_modules(SDL2 REQUIRED IMPORTED_TARGET sdl2>=2.26) # game controllers

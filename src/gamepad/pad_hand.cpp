@@ -13,7 +13,7 @@ void PadHand::take(const PadState& state, const Mapping& mapping, std::int64_t n
   taken_ns_ = now_ns;
   if (first || state.changed) changed_ns_ = now_ns;
   for (std::size_t s = 0; s < 2; ++s) {
-    const auto [x, y] = shaped(mapping.sticks[s], state.axes[2 * s], state.axes[2 * s + 1]);
+    const auto [x, y] = ops::shaped(mapping.sticks[s], state.axes[2 * s], state.axes[2 * s + 1]);
     sticks_[2 * s] = x;
     sticks_[2 * s + 1] = y;
   }

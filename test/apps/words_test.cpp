@@ -64,7 +64,8 @@ const std::vector<std::string> kPrograms = {"pmg_bus",
                                             "pmg_report",
                                             "pmg_send",
                                             "pmg_sil",
-                                            "pmg_watch"};
+                                            "pmg_watch",
+                                            "pmg_web"};
 
 TEST_F(Words, EveryProgramTellsItsVersionAndRevision) {
   for (const std::string& program : kPrograms) {

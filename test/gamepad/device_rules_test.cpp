@@ -1,4 +1,4 @@
-// Keyboards and game controllers obey the same rules: each row is a device, each test a rule.
+// Keyboards, game controllers, pages and headsets obey the same rules: each row is a device, each test a rule.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,8 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "gamepad/pad_command.hpp"
-#include "keyboard/key_command.hpp"
+#include "gamepad/hands.hpp"
 #include "operator/drive.hpp"
 #include "operator/networked_robot.hpp"
 #include "operator/robot_driver.hpp"
@@ -17,93 +16,6 @@ namespace {
 
 using control::Mode;
 using testing::HasSubstr;
-
-/// A device in a hand: what the hand does, and the machine that it drives by.
-class Hand {
- public:
-  explicit Hand(const io::Clock& clock) : clock_(clock) {}
-  virtual ~Hand() = default;
-  Hand(const Hand&) = delete;
-  Hand& operator=(const Hand&) = delete;
-  virtual ops::Device& device() = 0;
-  virtual void poll() = 0;         ///< the program looks at the device
-  virtual void go(bool held) = 0;  ///< begins or ends to hold what drives forwards
-  virtual void press_stop() = 0;
-  virtual void ask_stand(bool held) = 0;  ///< begins or ends
-  virtual void ask_reset(bool held) = 0;
-  virtual void leave() = 0;      ///< unplugged, or its window is closed
-  virtual void come_back() = 0;  ///< with what was held still held
-
- protected:
-  const io::Clock& clock_;
-};
-
-class Keys : public Hand {
- public:
-  using Hand::Hand;
-  ops::Device& device() override { return keys_; }
-  void poll() override {
-    if (!there_) return;
-    keys_.listen(clock_.now_ns());
-    if (held_) keys_.repeat("w", true, clock_.now_ns());
-  }
-  void go(bool held) override {
-    held_ = held;
-    if (held) keys_.press("w", true, clock_.now_ns());
-    if (!held) keys_.release("w", clock_.now_ns());
-  }
-  void press_stop() override { keys_.press("escape", false, clock_.now_ns()); }
-  void ask_stand(bool held) override {
-    if (held) keys_.press("enter", false, clock_.now_ns());
-  }
-  void ask_reset(bool held) override {
-    if (held) keys_.press("r", false, clock_.now_ns());
-  }
-  void leave() override { there_ = false; }
-  void come_back() override { there_ = true; }
-
- private:
-  ops::KeyCommand keys_{ops::KeyReport::kPressAndRelease};
-  bool held_ = false, there_ = true;
-};
-
-class Pad : public Hand {
- public:
-  using Hand::Hand;
-  ops::Device& device() override { return command_; }
-  void poll() override {
-    pad_.state.pressed = pad_.state.held & ~before_;
-    before_ = pad_.state.held;
-    if (there_) {
-      command_.take({&pad_, 1}, clock_.now_ns());
-    } else {
-      command_.take({}, clock_.now_ns());
-    }
-    pad_.state.changed = true;
-    if (pad_.state.held[kLb] && wants_) pad_.state.axes[1] = -1.0;  // the stick follows the deadman
-    pad_.state.held[kB] = false;
-  }
-  void go(bool held) override {
-    wants_ = held;
-    pad_.state.held[kLb] = held;
-    pad_.state.axes[1] = 0.0;
-  }
-  void press_stop() override { pad_.state.held[kB] = true; }
-  void ask_stand(bool held) override { pad_.state.held[kRb] = pad_.state.held[kA] = held; }
-  void ask_reset(bool held) override { pad_.state.held[kRb] = pad_.state.held[kX] = held; }
-  void leave() override { there_ = false; }
-  void come_back() override {
-    there_ = true;
-    ++pad_.id;
-  }
-
- private:
-  static constexpr std::size_t kA = 0, kB = 1, kX = 2, kLb = 9, kRb = 10;
-  PadCommand command_{read_mapping(find_mapping("standard"))};
-  PadReport pad_{.id = 1};
-  Buttons before_;
-  bool wants_ = false, there_ = true;
-};
 
 struct Row {
   const char* name;
@@ -283,7 +195,9 @@ INSTANTIATE_TEST_SUITE_P(
     Devices, DeviceRules,
     testing::Values(
         Row{"keyboard", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Keys>(clock); }},
-        Row{"gamepad", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Pad>(clock); }}),
+        Row{"gamepad", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Pad>(clock); }},
+        Row{"page", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Finger>(clock); }},
+        Row{"headset", [](const io::Clock& clock) -> std::unique_ptr<Hand> { return std::make_unique<Head>(clock); }}),
     [](const auto& row) { return row.param.name; });
 
 }  // namespace

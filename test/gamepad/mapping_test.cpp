@@ -91,7 +91,7 @@ TEST(Mapping, TheDeadZoneIsRoundAndTheEndIsReachedInEveryDirection) {
   const StickShape shape{.dead_zone = 0.2, .full_at = 0.9, .expo = 0.5};
   for (double angle = 0.0; angle < 6.2; angle += 0.1) {
     const auto at = [&](double r) {
-      const auto [x, y] = shaped(shape, r * std::cos(angle), r * std::sin(angle));
+      const auto [x, y] = ops::shaped(shape, r * std::cos(angle), r * std::sin(angle));
       return std::hypot(x, y);
     };
     EXPECT_EQ(at(0.199), 0.0);

@@ -40,7 +40,8 @@ class RobotBuild(unittest.TestCase):
             rules = (pathlib.Path(folder) / "build.ninja").read_text()
         programs = set(re.findall(r"^build bin/(\w+):", rules, re.M))
         self.assertEqual(
-            programs, {"pmg_bus", "pmg_clips", "pmg_controller", "pmg_doctor", "pmg_gamepad", "pmg_key", "pmg_keyboard", "pmg_send", "pmg_watch"}
+            programs,
+            {"pmg_bus", "pmg_clips", "pmg_controller", "pmg_doctor", "pmg_gamepad", "pmg_key", "pmg_keyboard", "pmg_send", "pmg_watch", "pmg_web"},
         )
         self.assertEqual(simulation_in(rules), [])
 

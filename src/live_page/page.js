@@ -1,0 +1,280 @@
+// The live page: shows what the server says of the robot, and says what fingers do. It decides nothing: the server and
+// the robot's controller judge every message.
+'use strict';
+
+const $ = (id) => document.getElementById(id);
+const CHANNELS = [
+  ['vx_m_s', 'forwards', 'm/s'], ['vy_m_s', 'left', 'm/s'], ['omega_rad_s', 'turn', 'rad/s'],
+  ['pitch_rad', 'bend', 'rad'], ['roll_rad', 'lean', 'rad'], ['height_m', 'height', 'm']];
+const HELD_MS = 33, IDLE_MS = 200;        // between messages
+const GONE_MS = 1000;                     // without a state from the server
+const STOP_KEPT_MS = 10000;               // a stop that couldn't be sent is sent if the connection is back by then
+const HOLD_MS = 1000;                     // of a button that moves the robot
+
+// ---- who this page is -----------------------------------------------------------------------------------------------
+let token = '';
+try {
+  const given = location.hash.slice(1);
+  if (given) localStorage.setItem('pmg.token', given);
+  token = localStorage.getItem('pmg.token') || '';
+} catch { token = location.hash.slice(1); }
+history.replaceState(null, '', location.pathname);   // so that it isn't seen, nor sent to anybody with the address
+
+// ---- the connection -------------------------------------------------------------------------------------------------
+let socket = null, heardAt = 0, refused = 0, state = null, number = 0, presses = 0, stopAt = 0;
+
+function connect() {
+  const withToken = token && refused < 2;            // after two refusals: look, without it
+  const opening = new WebSocket(`wss://${location.host}/socket`, withToken ? ['pmg', 'pmg.token.' + token] : ['pmg']);
+  let opened = false;
+  socket = opening;
+  opening.onopen = () => { opened = true; if (stopAt && Date.now() - stopAt < STOP_KEPT_MS) stop(); };
+  opening.onmessage = (event) => { heardAt = performance.now(); show(JSON.parse(event.data)); };
+  opening.onclose = () => {
+    if (opening !== socket) return;                  // a newer one has taken its place
+    release();
+    if (withToken && opened) refused = 0;
+    // A browser doesn't say why a socket wasn't opened: a server that gives out pages but no socket has refused the token.
+    const asked = withToken && !opened ? fetch('/page.css', {cache: 'no-store'}).then((answer) => { if (answer.ok) refused += 1; }) : Promise.resolve();
+    asked.catch(() => {}).finally(() => setTimeout(connect, 500));
+  };
+}
+function say(text) {
+  if (!socket || socket.readyState !== WebSocket.OPEN) return false;
+  socket.send(text);
+  return true;
+}
+// A phone that slept has a clock that stood still, and a connection that may be dead: begin anew.
+document.addEventListener('visibilitychange', () => {
+  release();
+  if (!document.hidden && socket) { const old = socket; connect(); old.close(); }
+});
+window.addEventListener('blur', release);
+window.addEventListener('pagehide', release);
+
+// ---- the stop -------------------------------------------------------------------------------------------------------
+function stop() {
+  stopAt = say('stop') ? 0 : stopAt || Date.now();
+  release();
+  $('stop').classList.add('sent');
+  setTimeout(() => $('stop').classList.remove('sent'), 400);
+  alarm();
+}
+$('stop').addEventListener('pointerdown', (event) => { event.preventDefault(); stop(); });
+$('stop').addEventListener('keydown', (event) => { if (event.key === 'Enter' || event.key === ' ') stop(); });
+document.addEventListener('keydown', (event) => { if (event.key === 'Escape') stop(); });
+
+// ---- sticks: hold to drive ------------------------------------------------------------------------------------------
+const sticks = [
+  {element: $('main-stick'), pointer: null, x: 0, y: 0, flat: false},
+  {element: $('side-stick'), pointer: null, x: 0, y: 0, flat: true}];
+
+function draw(stick) {
+  const reach = stick.element.clientWidth / 2 - 30;
+  stick.element.querySelector('.knob').style.transform = `translate(${stick.x * reach}px, ${stick.y * reach}px)`;
+}
+function release() {
+  for (const stick of sticks) {
+    stick.pointer = null;
+    stick.x = stick.y = 0;
+    draw(stick);
+  }
+  tell();
+}
+function push(stick, event) {
+  const reach = stick.element.clientWidth / 2;
+  let x = (event.clientX - stick.fromX) / reach, y = stick.flat ? 0 : (event.clientY - stick.fromY) / reach;
+  const r = Math.hypot(x, y);
+  if (r > 1) { x /= r; y /= r; }
+  stick.x = x;
+  stick.y = y;
+  draw(stick);
+}
+for (const stick of sticks) {
+  const {element} = stick;
+  element.addEventListener('pointerdown', (event) => {
+    event.preventDefault();
+    if (stick.pointer !== null) return;
+    const first = sticks.every((one) => one.pointer === null);
+    stick.pointer = event.pointerId;
+    stick.fromX = event.clientX;
+    stick.fromY = event.clientY;
+    element.setPointerCapture(event.pointerId);
+    if (first) presses += 1;
+    tell();
+  });
+  element.addEventListener('pointermove', (event) => { if (event.pointerId === stick.pointer) push(stick, event); });
+  const end = (event) => {
+    if (event.pointerId !== stick.pointer) return;
+    stick.pointer = null;
+    stick.x = stick.y = 0;
+    draw(stick);
+    tell();
+  };
+  for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) element.addEventListener(name, end);
+  element.addEventListener('contextmenu', (event) => event.preventDefault());
+}
+let toldAt = 0;
+function tell() {
+  toldAt = performance.now();
+  if (!state || !state.you.paired) return;
+  const unit = (value) => Math.max(-1, Math.min(1, value)) || 0;
+  say(JSON.stringify({
+    n: ++number, t: performance.now(), held: sticks.some((stick) => stick.pointer !== null), press: presses,
+    forwards: unit(-sticks[0].y), turn: unit(-sticks[0].x), left: unit(-sticks[1].x)}));
+}
+setInterval(() => {
+  const held = sticks.some((stick) => stick.pointer !== null);
+  if (performance.now() - toldAt >= (held ? 0 : IDLE_MS)) tell();
+}, HELD_MS);
+
+// ---- buttons that are held ------------------------------------------------------------------------------------------
+for (const button of document.querySelectorAll('button.hold')) {
+  let timer = 0;
+  const end = () => { clearTimeout(timer); timer = 0; button.classList.remove('pressed'); };
+  const begin = () => {
+    if (timer) return;
+    button.classList.add('pressed');
+    timer = setTimeout(() => { end(); say(JSON.stringify({request: button.dataset.request})); }, HOLD_MS);
+  };
+  button.addEventListener('pointerdown', (event) => { event.preventDefault(); begin(); });
+  for (const name of ['pointerup', 'pointercancel', 'pointerleave', 'blur']) button.addEventListener(name, end);
+  button.addEventListener('keydown', (event) => { if ((event.key === 'Enter' || event.key === ' ') && !event.repeat) begin(); });
+  button.addEventListener('keyup', end);
+  button.addEventListener('contextmenu', (event) => event.preventDefault());
+}
+
+// ---- what is shown --------------------------------------------------------------------------------------------------
+function row(body, cells) {
+  const line = document.createElement('tr');
+  cells.forEach((text, i) => {
+    const cell = document.createElement(i === 0 ? 'th' : 'td');
+    cell.textContent = text;
+    line.append(cell);
+  });
+  body.append(line);
+}
+const fixed = (value, digits = 2) => typeof value === 'number' ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(digits) : '–';
+
+function alarm() {
+  const silent = performance.now() - heardAt > GONE_MS;
+  const lost = silent || !socket || socket.readyState !== WebSocket.OPEN;
+  const text = stopAt ? 'THE STOP IS NOT SENT: no connection. Use the emergency stop.'
+    : lost ? 'No connection to the server: what is shown is old, and nothing here has an effect.'
+    : state && !state.heard ? 'The robot is not heard. Its own controller brings the velocity to zero without commands.' : '';
+  $('alarm').textContent = text;
+  $('alarm').hidden = !text;
+  document.body.classList.toggle('stale', lost);
+  if (lost) $('link').textContent = 'no connection';
+}
+setInterval(alarm, 200);
+
+let drawnBundle = null, drawnSession = null;
+function show(next) {
+  const first = !state || state.you.paired !== next.you.paired;
+  state = next;
+  const news = state.news, paired = state.you.paired;
+  if (first && paired) tell();
+  $('robot').textContent = state.robot || 'no robot';
+  const mode = !news ? 'not heard' : !state.heard ? 'no longer heard' : news.mode + (news.hanging ? ', hanging' : '');
+  $('mode').textContent = mode;
+  $('mode').className = 'badge ' + (news && state.heard ? news.mode : 'gone');
+  $('link').textContent = paired ? `paired as ${paired}` : token && refused >= 2
+    ? 'this token is not taken (revoked, or too many pages): you may look, and do nothing; reload to try again' : 'not paired: you may look, and do nothing (pmg_web pair NAME)';
+  document.body.classList.toggle('reader', !paired);
+  $('stop').disabled = !paired;
+  $('text').textContent = (state.text || (state.you.drives ? 'you drive' : 'it is driven')) + (state.limited ? '; ' + state.limited : '');
+  $('note').textContent = state.you.note;
+  $('note').hidden = !state.you.note;
+  $('fault').textContent = news ? news.fault : '';
+  $('fault').hidden = !news || !news.fault;
+  sticks[0].element.classList.toggle('drives', state.you.drives);
+  sticks[1].element.classList.toggle('drives', state.you.drives);
+  showChannels();
+  showFacts();
+  if (news && news.info && (news.info.bundle !== drawnBundle || news.session !== drawnSession)) {
+    drawnBundle = news.info.bundle;
+    drawnSession = news.session;
+    robotView.load().catch(() => {});
+  }
+  robotView.show(state.joints, state.tilt);
+  alarm();
+}
+function showChannels() {
+  const body = $('channels');
+  body.textContent = '';
+  CHANNELS.forEach(([name, label, unit], i) => {
+    const of = (group) => state.news && state.news[group] ? state.news[group][name] : undefined;
+    row(body, [`${label} ${unit}`, fixed(state.asked ? state.asked[i] : undefined), fixed(of('command')), fixed(of('optimised')),
+      fixed(state.measured ? state.measured[i] : undefined)]);
+  });
+  keep(state.asked ? state.asked[0] : undefined, state.news && state.news.command ? state.news.command.vx_m_s : undefined,
+    state.measured ? state.measured[0] : undefined);
+}
+function showFacts() {
+  const body = $('facts'), news = state.news;
+  body.textContent = '';
+  if (!news) return;
+  const age = news.command_age_s < 0 ? 'no command yet' : `last command ${news.command_age_s.toFixed(2)} s ago`;
+  row(body, ['driven by', `${news.driving_source || 'nobody'}, ${age}`]);
+  row(body, ['fault', news.fault || 'none']);
+  row(body, ['limited', state.limits]);
+  if (news.foot_load) row(body, ['feet carry', `left ${(100 * news.foot_load[0]).toFixed(0)} %, right ${(100 * news.foot_load[1]).toFixed(0)} %`]);
+  if (news.hottest) row(body, ['hottest', `${news.hottest.temperature_degC.toFixed(0)} °C at ${news.hottest.joint}`]);
+  for (const line of state.arms || []) row(body, [line.slice(0, 14).trim(), line.slice(14)]);
+  if (news.timing) {
+    const t = news.timing;
+    row(body, ['tick', `p50 ${t.tick_p50_us.toFixed(0)} µs, p99 ${t.tick_p99_us.toFixed(0)} µs; ${t.missed_ticks} missed`]);
+    row(body, ['wake-up', `p50 ${t.wake_p50_us.toFixed(0)} µs, p99 ${t.wake_p99_us.toFixed(0)} µs`]);
+  }
+  row(body, ['real-time', news.realtime ? 'granted' : 'NOT granted']);
+  if (news.messages) {
+    const ignored = Object.entries(news.messages).filter(([name, count]) => name !== 'accepted' && count > 0)
+      .map(([name, count]) => `${count} ${name.replaceAll('_', ' ')}`);
+    row(body, ['messages', [`${news.messages.accepted} accepted`, ...ignored].join(', ')]);
+  }
+  if (news.info) {
+    row(body, ['policy', `${news.info.policy}, backend ${news.info.backend}`]);
+    row(body, ['software', `${news.info.software}, bundle ${news.info.bundle.slice(0, 12)}`]);
+    for (const text of news.info.refused) row(body, ['refused', text]);
+  }
+}
+
+// ---- the last seconds of the forward velocity -----------------------------------------------------------------------
+const KEPT_S = 20, past = [];
+function keep(asked, taken, measured) {
+  const now = performance.now() / 1000;
+  past.push([now, asked, taken, measured]);
+  while (past.length && past[0][0] < now - KEPT_S) past.shift();
+  const canvas = $('tracking'), ink = canvas.getContext('2d'), {width, height} = canvas;
+  const values = past.flatMap(([, ...rest]) => rest).filter((value) => typeof value === 'number');
+  const top = Math.max(0.5, ...values), bottom = Math.min(-0.2, ...values);
+  const y = (value) => height - 6 - (height - 12) * (value - bottom) / (top - bottom);
+  ink.clearRect(0, 0, width, height);
+  ink.strokeStyle = '#d5dae1';
+  ink.lineWidth = 1;
+  ink.beginPath();
+  ink.moveTo(0, y(0));
+  ink.lineTo(width, y(0));
+  ink.stroke();
+  ink.fillStyle = '#55606c';
+  ink.font = '12px system-ui, sans-serif';
+  ink.fillText(top.toFixed(1), 3, 13);
+  ink.fillText(bottom.toFixed(1), 3, height - 4);
+  ink.lineWidth = 2;
+  ['#7d8894', '#00558a', '#d55e00'].forEach((colour, k) => {
+    ink.strokeStyle = colour;
+    ink.beginPath();
+    let down = false;
+    for (const point of past) {
+      const value = point[k + 1];
+      if (typeof value !== 'number') { down = false; continue; }
+      const x = width * (1 - (now - point[0]) / KEPT_S);
+      if (down) ink.lineTo(x, y(value)); else ink.moveTo(x, y(value));
+      down = true;
+    }
+    ink.stroke();
+  });
+}
+
+connect();

@@ -1,0 +1,206 @@
+// A phone, a laptop and an emulated Quest 3 (IWER) in headless Chromium drive a simulated robot through pmg_controller and pmg_web.
+// Usage: node browser_test.mjs FOLDER_OF_PROGRAMS FOLDER_OF_PACKAGES; exit codes: 0 passed, 1 not, 77 no Chromium
+import assert from 'node:assert/strict';
+import {spawn, spawnSync} from 'node:child_process';
+import fs from 'node:fs';
+import {createRequire} from 'node:module';
+import os from 'node:os';
+import path from 'node:path';
+
+const [programs, packages] = process.argv.slice(2);
+const chromium = '/usr/bin/chromium';
+if (!fs.existsSync(chromium)) { console.error('no chromium: scripts/setup --slow'); process.exit(77); }
+const {chromium: launcher} = createRequire(path.join(packages, 'package.json'))('playwright-core');
+const iwer = fs.readFileSync(path.join(packages, 'node_modules/iwer/build/iwer.min.js'), 'utf8');
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'pmg_browser_test_'));
+const port = 20000 + process.pid % 20000, url = `udpm://239.255.76.67:${port}?ttl=0`;
+const children = [];
+const program = (name) => path.join(programs, name);
+const common = ['--folder', path.join(folder, 'web')];
+function start(name, ...args) {
+  const child = spawn(program(name), args, {cwd: folder, stdio: 'ignore'});
+  children.push(child);
+  return child;
+}
+let tellMore = async () => '';
+async function until(what, condition, seconds = 60) {
+  const end = Date.now() + 1000 * seconds;
+  while (Date.now() < end) {
+    if (await condition()) return;
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  console.error(await tellMore());
+  assert.fail(`after ${seconds} s not: ${what}`);
+}
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const step = (text) => console.log(`- ${text}`);
+
+async function run(browser, token) {
+  const link = `https://localhost:${port}`;
+  const open = async (options, place) => {
+    const context = await browser.newContext({ignoreHTTPSErrors: true, ...options});
+    const page = await context.newPage();
+    page.on('pageerror', (error) => { console.error(error); process.exitCode = 1; });
+    if (place.startsWith('/vr')) await page.addInitScript(iwer);
+    if (place.startsWith('/vr')) {
+      await page.addInitScript(() => {
+        window.quest = new IWER.XRDevice(IWER.metaQuest3);
+        quest.installRuntime({forceInstall: true});
+        window.tracked = () => {  // IWER calls every place of a controller guessed, as a lost one's is
+          for (const source of session.inputSources)
+            for (const key of Object.getOwnPropertySymbols(source.gripSpace))
+              if (source.gripSpace[key] && 'emulated' in source.gripSpace[key]) source.gripSpace[key].emulated = false;
+        };
+      });
+    }
+    await page.goto(link + place);
+    pages.push(page);
+    return page;
+  };
+  const mode = (page) => page.textContent('#mode');
+  const is = (page, wanted) => until(`mode ${wanted}`, async () => (await mode(page)) === wanted);
+  const pages = [];
+  tellMore = async () => JSON.stringify(await Promise.all(pages.map((page) => page.evaluate(() => ({mode: state.news.mode, text: state.text, you: state.you, asked: state.asked, arms: state.arms})))), null, 1);
+  const asked = (page, i) => page.evaluate((k) => state.asked[k], i);
+
+  step('a page without a token shows the robot, and nothing to press');
+  const reader = await open({viewport: {width: 1366, height: 768}}, '/');
+  await is(reader, 'passive');
+  assert.equal(await reader.isVisible('#main-stick'), false);
+  assert.equal(await reader.isDisabled('#stop'), true);
+
+  step('a phone stands the robot up and walks it by a finger on the stick');
+  const phone = await open({viewport: {width: 390, height: 844}, hasTouch: true, isMobile: true}, '/#' + token);
+  await until('paired', async () => (await phone.textContent('#link')) === 'paired as phone');
+  assert.equal(new URL(phone.url()).hash, '', 'the token is not left in the address');
+  const press = async (page, selector) => { await page.hover(selector); await page.mouse.down(); await pause(1200); await page.mouse.up(); };
+  const stand = async () => {
+    await press(phone, 'button[data-request=stand]');
+    await until('stands', async () => (await phone.textContent('#text')).startsWith('stands;'));
+  };
+  await stand();
+  const box = await phone.locator('#main-stick').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await phone.mouse.move(x, y);
+  await phone.mouse.down();
+  await pause(200);
+  await phone.mouse.move(x, y - 90, {steps: 5});
+  await is(phone, 'walk');
+  await until('it walks', () => phone.evaluate(() => state.measured && state.measured[0] > 0.3));
+
+  step('a second page is told who drives, and stops the robot');
+  const laptop = await open({viewport: {width: 1366, height: 768}}, '/#' + token);
+  await until('the note', async () => (await laptop.textContent('#note')) === 'phone drives the robot');
+  await laptop.keyboard.press('Escape');
+  await is(phone, 'damping');
+  await phone.mouse.up();
+
+  step('a page that is hidden lets go');
+  await press(phone, 'button[data-request=lift]');  // a damped robot lies down
+  await until('the hoist lifts', async () => (await phone.textContent('#text')).includes('hoist'));
+  await until('it is lifted', async () => !(await phone.textContent('#text')).includes('hoist'));
+  await stand();
+  await phone.mouse.move(x, y);
+  await phone.mouse.down();
+  await pause(200);
+  await phone.mouse.move(x, y - 90, {steps: 5});
+  await is(phone, 'walk');
+  await phone.evaluate(() => window.dispatchEvent(new Event('blur')));
+  await until('velocity zero', async () => (await asked(phone, 0)) === 0);
+  await phone.mouse.up();
+  await is(phone, 'stand');
+
+  step('a headset drives by a step, and leads a palm by a trigger');
+  const vr = await open({viewport: {width: 320, height: 240}}, '/vr#' + token);
+  await until('paired', async () => (await vr.textContent('#link')) === 'paired as phone');
+  await vr.click('#enter');
+  await until('a session', () => vr.evaluate(() => Boolean(session) && head !== null));
+  await vr.evaluate(() => { tracked(); quest.controllers.right.position.set(0.25, 1.2, -0.4); });
+  const button = (name, value) => vr.evaluate(([n, v]) => quest.controllers.right.updateButtonValue(n, v), [name, value]);
+  const move = async (from, to) => {
+    for (let i = 1; i <= 25; ++i) {
+      await vr.evaluate((z) => { quest.controllers.right.position.z += z - quest.position.z; quest.position.z = z; }, from + (to - from) * i / 25);
+      await pause(20);
+    }
+  };
+  const rightArm = () => vr.evaluate(() => state.arms[1]);
+  await button('squeeze', 1);
+  await pause(300);
+  await move(0, -0.25);
+  await is(vr, 'walk');
+  assert.ok((await asked(vr, 0)) > 0.1);
+  await button('trigger', 1);
+  await pause(500);
+  for (let i = 0; i < 15; ++i) { await vr.evaluate(() => { quest.controllers.right.position.y += 0.01; }); await pause(20); }
+  await until('the palm is led', async () => /at its target|on the way/.test(await rightArm()));
+
+  step('a lost controller holds its palm and nothing else');
+  await vr.evaluate(() => { quest.controllers.right.connected = false; });
+  await until('the palm stays', async () => /stays where it is/.test(await rightArm()));
+  await vr.evaluate(() => { quest.controllers.right.connected = true; });
+  await button('squeeze', 0);
+  await button('trigger', 0);
+  await is(vr, 'stand');
+  await move(-0.25, 0);
+
+  const drive = async () => {
+    await vr.evaluate(() => tracked());
+    await button('squeeze', 0);
+    await button('thumbstick', 1);  // centred: a new connection has its centre where the head was
+    await pause(200);
+    await button('thumbstick', 0);
+    await pause(200);
+    await button('squeeze', 1);
+    await pause(300);
+    await move(0, -0.25);
+    await is(vr, 'walk');
+    await until('it drives', async () => (await asked(vr, 0)) > 0.1);
+  };
+  const stays = async (why) => {
+    await is(vr, 'stand');
+    await pause(1000);
+    assert.equal(await mode(vr), 'stand', `${why}: what is still squeezed doesn't count`);
+    assert.equal(await asked(vr, 0), 0, why);
+    await move(-0.25, 0);
+  };
+  step('blur holds');
+  await drive();
+  await vr.evaluate(() => quest.updateVisibilityState('visible-blurred'));
+  await until('velocity zero', async () => (await asked(vr, 0)) === 0);
+  await vr.evaluate(() => quest.updateVisibilityState('visible'));
+  await stays('blur');
+
+  step('a socket that drops and comes back holds');
+  await drive();
+  await vr.evaluate(() => socket.close());
+  await until('the socket is back', () => vr.evaluate(() => open()));
+  await stays('socket');
+
+  step('the stop button in the hand stops');
+  await drive();
+  await button('b-button', 1);
+  await is(vr, 'damping');
+
+  step('a pairing that is revoked ends at once');
+  spawnSync(program('pmg_web'), ['revoke', 'phone', ...common]);
+  await until('not paired', async () => (await phone.textContent('#link')).includes('you may look, and do nothing'), 20);
+}
+
+let failed = null;
+try {
+  const paired = spawnSync(program('pmg_web'), ['pair', 'phone', '--port', String(port), ...common], {encoding: 'utf8'});
+  const token = /localhost:\d+\/#(\w+)/.exec(paired.stdout)[1];
+  start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
+  start('pmg_web', '--port', String(port), '--lcm-url', url, ...common);
+  const browser = await launcher.launch({executablePath: chromium, args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
+    '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+  try { await run(browser, token); } finally { await browser.close(); }
+} catch (error) {
+  failed = error;
+} finally {
+  for (const child of children) child.kill('SIGTERM');
+  for (const child of children) await new Promise((resolve) => child.exitCode === null && child.signalCode === null ? child.once('exit', resolve) : resolve());
+  fs.rmSync(folder, {recursive: true, force: true});
+}
+if (failed) { console.error(failed); process.exitCode = 1; }
