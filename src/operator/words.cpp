@@ -33,7 +33,7 @@ const char* verdict_words(std::int8_t verdict) noexcept {
     case pmg_msgs::ack_t::OUT_OF_ORDER:
       return "out of order";
     case pmg_msgs::ack_t::LATE:
-      return "too long on the way";
+      return "late: too long on its way, or somebody stopped the robot before this was known here";
     case pmg_msgs::ack_t::NO_MODE:
       return "no mode that can be asked for";
     case pmg_msgs::ack_t::NO_KEY:

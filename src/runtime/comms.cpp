@@ -146,8 +146,8 @@ void Comms::step(int timeout_ms) {
   listening_ = false;
   contest_.hold();
   link_.receive(timeout_ms);
+  publish_newest();  // who is told that a stop was taken knows of it
   publish_acks();
-  publish_newest();
   publish_hoist();
   if (clock_.now_ns() >= next_second_ns_) {
     next_second_ns_ = clock_.now_ns() + kSecond_ns;
