@@ -140,14 +140,15 @@ function show() {
   $('stop').disabled = !paired;
   $('alarm').textContent = alarm;
   $('alarm').hidden = !alarm;
-  $('text').textContent = state ? state.text || 'it is driven' : '';
+  const doing = state ? state.text || (state.you.drives ? 'you drive' : 'it is driven') : '';
+  $('text').textContent = doing;
   const note = state ? state.you.note : '';
   $('note').textContent = note;
   $('note').hidden = !note;
   const lines = [[`${(state && state.robot) || 'no robot'}: ${mode}`, '#ffffff', 64]];
   if (alarm) lines.push([alarm, '#ff8a65', 36]);
   if (news && news.fault) lines.push([`fault: ${news.fault}`, '#ff8a65', 36]);
-  if (state) lines.push([state.text || 'it is driven', '#ffffff', 36]);
+  if (state) lines.push([doing, '#ffffff', 36]);
   if (note) lines.push([note, '#ffcc80', 36]);
   if (state && state.asked) {
     const of = (values, i) => values ? values[i].toFixed(2) : '–';
@@ -156,16 +157,31 @@ function show() {
   for (const line of (state && state.arms) || []) lines.push([line, '#b0d4f1', 30]);
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';
   panel.fillRect(0, 0, 1024, 512);
+  panel.drawImage($('robot-view'), 624, 112, 400, 400);
   painted = true;
   let y = 20;
   for (const [text, colour, size] of lines) {
     panel.fillStyle = colour;
     panel.font = `${size}px system-ui, sans-serif`;
-    y += size * 1.25;
-    panel.fillText(text, 30, y, 964);
+    let rest = text.split(' ');
+    while (rest.length && y < 470) {                        // as many words as fit into a line
+      y += size * 1.25;
+      let count = rest.length;
+      while (count > 1 && panel.measureText(rest.slice(0, count).join(' ')).width > (y < 130 ? 964 : 590)) count -= 1;
+      panel.fillText(rest.slice(0, count).join(' '), 30, y, y < 130 ? 964 : 590);
+      rest = rest.slice(count);
+    }
   }
 }
-setInterval(show, 200);
+let drawnBundle = null;
+setInterval(() => {                                        // drawing the robot takes a good part of a frame: five times a second
+  if (state && state.joints && state.news.info && state.news.info.bundle !== drawnBundle) {
+    drawnBundle = state.news.info.bundle;
+    robotView.load().catch(() => {});
+  }
+  if (state) robotView.show(state.joints, state.tilt);
+  show();
+}, 200);
 
 const QUAD_M = {width: 1.6, height: 0.8, ahead: 1.8, up: 1.35};
 function prepare() {

@@ -124,14 +124,33 @@ TEST_F(VrCommandTest, ATriggerLeadsAPalmWhileTheGripIsHeldAndNothingElseDoes) {
   EXPECT_EQ((*vr_.palms())[kRight].wish, Arms::HOLD) << "the trigger was pulled before";
 }
 
+TEST_F(VrCommandTest, AnotherDeviceThatTakesOverHoldsThePalms) {
+  headset_.squeeze();
+  run(0.1);
+  headset_.pull(kRight);
+  run(0.1);
+  ASSERT_EQ((*vr_.palms())[kRight].wish, Arms::AIM);
+  vr_.command(7, now_ns_);
+  EXPECT_EQ((*vr_.palms())[kRight].wish, Arms::HOLD);
+  EXPECT_FALSE(vr_.driving());
+}
+
 TEST_F(VrCommandTest, TheSpanOfTheArmsScalesAndEndsLeads) {
   headset_.squeeze();
   run(0.1);
   headset_.pull(kRight);
   run(0.1);
-  headset_.news.hands[kLeft].pose->p_m = headset_.news.head->p_m + test::turned(0.5) * Eigen::Vector3d(0.0, 0.75, -0.2);
-  headset_.news.hands[kRight].pose->p_m =
-      headset_.news.head->p_m + test::turned(0.5) * Eigen::Vector3d(0.0, -0.75, -0.2);
+  const auto spread = [&](Foot side, double left_m) {  // as a person does: over a second
+    const Eigen::Vector3d from = headset_.news.hands[side].pose->p_m;
+    const Eigen::Vector3d to = headset_.news.head->p_m + test::turned(0.5) * Eigen::Vector3d(0.0, left_m, -0.2);
+    for (int k = 1; k <= 100; ++k) {
+      headset_.news.hands[side].pose->p_m = from + (to - from) * k / 100;
+      step();
+    }
+  };
+  spread(kLeft, 0.75);
+  spread(kRight, -0.75);
+  ASSERT_EQ((*vr_.palms())[kRight].wish, Arms::AIM);
   ++headset_.news.spans_shown;
   step();
   EXPECT_DOUBLE_EQ(vr_.scale(), 0.8);

@@ -116,7 +116,10 @@ TEST_F(VrLoss, WhateverLosesTheHeadsetHoldsThePalms) {
     if (how == 1) headset_.news.shown = false;
     if (how == 2) headset_.news.hands[kLeft].pose.reset();
     if (how == 3) ++headset_.news.recentres;
-    if (how == 4) vr_.end(now_ns_);
+    if (how == 4) {
+      vr_.end(now_ns_);
+      EXPECT_EQ((*vr_.palms())[kLeft].wish, Arms::HOLD) << "before anybody looks";
+    }
     step();
     EXPECT_EQ((*vr_.palms())[kLeft].wish, Arms::HOLD) << how;
     if (how != 2) continue;
