@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstdint>
 #include <iostream>
+#include <span>
+#include <thread>
 #include <variant>
 
+#include "can/bus_ids.hpp"
 #include "can/bus_load.hpp"
+#include "can/bus_motor.hpp"
 #include "can/socket_link.hpp"
 #include "pmg/types.hpp"
 #include "program.hpp"
@@ -28,10 +34,12 @@ std::string row(const drives::MotorSetup& motor, const drives::BusSetup& bus, co
 
 }  // namespace
 
-Buses::Buses(const std::string& robot_name)
+Buses::Buses(const std::string& robot_name, Use use)
     : robot(model::load_robot(model::find_robot(robot_name))), setup(drives::load_drives(robot)) {
   can::check_load(setup);
+  can::check_ids(setup);
   for (const drives::BusSetup& bus : setup.buses) {
+    if (use == Use::kDrive) claims.emplace_back(bus.name);
     links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
   }
 }
@@ -50,6 +58,55 @@ std::vector<std::string> ask(Buses& buses, const TakeAnswer& take) {
     all.insert(all.end(), found.begin(), found.end());
   }
   return all;
+}
+
+Overhearing::Overhearing(Buses& buses) : buses_(buses) {
+  for (const drives::BusSetup& bus : buses.setup.buses) {
+    auto& motors = heard_.emplace_back();
+    for (const drives::MotorSetup& motor : bus.motors)
+      motors.push_back({.motor = can::BusMotor(motor, bus), .answer = {.node = motor.node, .count = 1}});
+  }
+}
+
+void Overhearing::listen() {
+  for (std::size_t b = 0; b < heard_.size(); ++b) {
+    std::array<can::Frame, 64> frames;
+    while (const std::size_t count = buses_.links[b]->receive(frames)) {
+      for (const can::Frame& frame : std::span(frames).first(count)) {
+        for (Heard& heard : heard_[b]) {
+          const can::BusMotor::Heard said = heard.motor.overhear(frame);
+          if (said.what != can::BusMotor::Heard::What::kReading) continue;
+          heard.answer.reading = said.reading;
+          heard.at = std::chrono::steady_clock::now();
+        }
+      }
+    }
+  }
+}
+
+std::size_t Overhearing::show() {
+  constexpr std::chrono::milliseconds kWindow(200), kKept(2000), kNap(1);
+  const auto begin = std::chrono::steady_clock::now();
+  while (interrupt_requested == 0 && std::chrono::steady_clock::now() < begin + kWindow) {
+    listen();
+    std::this_thread::sleep_for(kNap);
+  }
+  std::vector<std::string> all;
+  for (std::size_t b = 0; b < heard_.size(); ++b) {
+    const drives::BusSetup& bus = buses_.setup.buses[b];
+    std::vector<can::Answer> answers;
+    for (const Heard& heard : heard_[b]) {
+      const bool known =
+          heard.at.time_since_epoch().count() != 0 && std::chrono::steady_clock::now() < heard.at + kKept;
+      std::cout << row(heard.motor.setup(), bus, known ? &heard.answer : nullptr) << '\n';
+      if (known) answers.push_back(heard.answer);
+    }
+    const std::vector<std::string> found = can::problems(bus, answers);
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  for (const std::string& problem : all) std::cout << problem << '\n';
+  std::cout << std::flush;
+  return all.size();
 }
 
 std::size_t show(Buses& buses) {

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -36,7 +37,8 @@ constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 
 constexpr const char* kFooter = R"(
 For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan and watch switch every drive off and
-only listen. zero, enable and wiggle touch one motor. Nothing else may drive the robot meanwhile: pmg_controller must not run.
+only listen. zero, enable and wiggle touch one motor. One program drives a bus: while pmg_controller runs, they refuse, and watch
+listens without asking, as dump always does.
 
 Example:
   pmg_bus scan --robot z1
@@ -65,15 +67,29 @@ int scan(const Arguments& arguments) {
   return apps::show(buses) == 0 ? kOk : kProblems;
 }
 
+/// Asks; where another program drives the buses, it listens to what that program's drives say.
 int watch(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  std::optional<Buses> buses;
+  std::optional<apps::Overhearing> overhearing;
+  std::string driven;
+  try {
+    buses.emplace(arguments.robot);
+  } catch (const can::BusIsDriven& taken) {
+    driven = taken.what();
+    overhearing.emplace(buses.emplace(arguments.robot, Buses::Use::kListen));
+  }
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
   std::size_t problems = 0;
   while (!interrupted() && std::chrono::steady_clock::now() < end) {
     std::cout << "\x1b[H\x1b[2J";
-    problems = apps::show(buses);
-    std::this_thread::sleep_for(milliseconds(200));
+    if (overhearing) {
+      std::cout << driven << ". Only listening:\n";
+      problems = overhearing->show();
+    } else {
+      problems = apps::show(*buses);
+      std::this_thread::sleep_for(milliseconds(200));
+    }
   }
   return problems == 0 ? kOk : kProblems;
 }
@@ -186,7 +202,7 @@ int wiggle(const Arguments& arguments) {
 }
 
 int dump(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  Buses buses(arguments.robot, Buses::Use::kListen);
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
   while (!interrupted() && std::chrono::steady_clock::now() < end) {

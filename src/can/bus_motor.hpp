@@ -13,20 +13,34 @@
 
 namespace pmg::can {
 
-/// No heap, no lock. A cycle: begin(), answers into hear(), targets().
+/// No heap, no lock. A cycle: begin(), ask() or ask_off(), answers into hear(), targets().
 class BusMotor {
  public:
-  /// Keeps a reference to setup. fd: an MIT drive's frames are CAN FD's.
-  BusMotor(const drives::MotorSetup& setup, bool fd) noexcept;
+  /// Keeps a reference to setup, one motor of the bus.
+  BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus) noexcept;
 
-  /// A cycle begins. wanted: at the joint, or at the crank. stiff: some motor of the robot is told a gain or a torque;
-  /// no drive is switched on in such a cycle. An MIT drive gets this frame and answers it. A CANopen drive answers the
-  /// bus's SYNC; one that is silent is started anew now and then: it may have left the state "operational".
-  std::optional<Frame> begin(const drives::MotorCommand& wanted, bool stiff) noexcept;
-  /// A cycle begins in which the drive is switched off and answers.
-  std::optional<Frame> begin_off() noexcept;
+  /// A cycle begins.
+  void begin() noexcept { monitor_.begin(); }
+  /// The bus is to have no SYNC in this cycle: what a CANopen drive sends all the same is late.
+  bool pauses_sync() const noexcept { return std::holds_alternative<Canopen>(drive_) && monitor_.pauses(); }
+  /// wanted: at the joint, or at the crank. stiff: some motor of the robot is told a gain or a torque; no drive is
+  /// switched on in such a cycle. synced: SYNC goes out. An MIT drive gets this frame and answers it; none in a pause
+  /// of its monitor unless the gains change, so that no stop waits. A CANopen drive answers the bus's SYNC; one that is
+  /// silent is started anew now and then: it may have left the state "operational".
+  std::optional<Frame> ask(const drives::MotorCommand& wanted, bool stiff, bool synced) noexcept;
+  /// The drive is switched off and answers.
+  std::optional<Frame> ask_off(bool synced) noexcept;
+  /// What asked it, the frame or SYNC, never left this computer.
+  void not_asked() noexcept;
   /// False: not this motor's.
   bool hear(const Frame& frame) noexcept;
+  /// What a frame says, whoever asked for it: of a drive that this program doesn't drive. A CANopen drive's frames come
+  /// in pairs, and the second one is a reading.
+  struct Heard {
+    enum class What : std::uint8_t { kForeign, kNoted, kReading, kPart, kBootUp } what = What::kForeign;
+    drives::MotorReading reading{};  ///< of kReading
+  };
+  Heard overhear(const Frame& frame) noexcept;
   /// The command of a CANopen drive, computed from the newest reading.
   std::optional<Frame> targets() noexcept;
 
@@ -43,18 +57,21 @@ class BusMotor {
     drives::MitProtocol protocol;
     std::uint32_t reply_id;
     bool fd;
-    double left_Nm = 0.0;  // of the last command's torque, for the next one
+    double left_Nm = 0.0;                               // of the last command's torque, for the next one
+    double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;  // of the last command
+    bool asked = false;                                 // in this cycle
   };
   struct Canopen {
     drives::Cia402Axis axis;
     drives::Cia402Inputs inputs{};
     drives::MotorCommand wanted{};  // at the motor
     bool stiff = false, off = false;
-    bool half = false;  // TPDO1 came, its TPDO2 not yet
+    bool asked = false;  // in this cycle
+    bool half = false;   // TPDO1 came, its TPDO2 not yet
     std::uint16_t emergency = 0;
     int since_start = 0;  // cycles
   };
-  bool hear(Canopen& drive, const Frame& frame) noexcept;
+  Heard overhear(Canopen& drive, const Frame& frame) const noexcept;
   drives::Freshness freshness() const noexcept;
 
   const drives::MotorSetup* setup_;
@@ -65,11 +82,9 @@ class BusMotor {
 /// The identifiers with which the drives of a bus, and its IMU, send to this computer: a receive filter. Allocates.
 std::vector<std::uint32_t> awaited_ids(const drives::BusSetup& bus);
 
-/// The node that sent this frame, if it is one of the cycle's messages.
-std::optional<int> sender(const Frame& frame) noexcept;
-
-/// What a bus with CANopen drives carries in each cycle besides: SYNC, then a heartbeat where it is due. Returns how
-/// many.
-std::size_t network_frames(int cycle, std::span<Frame, 2> frames) noexcept;
+/// The node of a drive that the bus isn't to have, if it sent this frame: a reply with an identifier of the bus's MIT
+/// drives, or one of a CANopen drive's messages of the cycle.
+std::optional<int> stranger(const drives::BusSetup& bus, const Frame& frame) noexcept;
+std::optional<int> mit_stranger(const drives::BusSetup& bus, const Frame& frame) noexcept;
 
 }  // namespace pmg::can

@@ -21,8 +21,9 @@ struct LinkCounts {
 class Link {
  public:
   virtual ~Link() = default;
-  /// Frames in the order in which they go out; as many as there is room for, the others are counted and dropped.
-  virtual void send(std::span<const Frame> frames) noexcept = 0;
+  /// Frames in the order in which they go out => how many of them there was room for; the others are counted and
+  /// dropped.
+  virtual std::size_t send(std::span<const Frame> frames) noexcept = 0;
   /// What has arrived, at most as many as there is room for; 0: nothing more.
   virtual std::size_t receive(std::span<Frame> frames) noexcept = 0;
   virtual BusHealth health() const noexcept = 0;

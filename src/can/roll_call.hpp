@@ -16,9 +16,9 @@ namespace pmg::can {
 /// say.
 struct Answer {
   int node = 0;
-  int count = 0;                 ///< answers a request, over several; 2: two drives have this node
-  drives::MotorReading reading;  ///< at the drive's output shaft; zero for a node without a known kind of drive
-  std::string problem{};         ///< of a CANopen drive: why it isn't the one of robot.yaml; empty: it is
+  int count = 0;                   ///< answers a request, over several; 2: two drives have this node
+  drives::MotorReading reading{};  ///< at the drive's output shaft; zero for a node without a known kind of drive
+  std::string problem{};           ///< of a CANopen drive: why it isn't the one of robot.yaml; empty: it is
 };
 
 /// Asks every motor of the bus a few times, for some 0.1 s, 0.3 s if one is silent, and reads the CANopen drives that

@@ -104,7 +104,8 @@ void SocketLink::open(const std::string& interface, const std::vector<std::uint3
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) refuse(interface, "bind");
 }
 
-void SocketLink::send(std::span<const Frame> frames) noexcept {
+std::size_t SocketLink::send(std::span<const Frame> frames) noexcept {
+  const std::size_t all = frames.size();
   while (!frames.empty()) {
     const std::size_t count = std::min(frames.size(), kBatch);
     for (std::size_t i = 0; i < count; ++i) {
@@ -125,8 +126,9 @@ void SocketLink::send(std::span<const Frame> frames) noexcept {
     if (errno == EINTR) continue;
     if (errno == ENETDOWN || errno == ENODEV || errno == ENXIO) health_ = BusHealth::kOff;
     counts_.not_sent += frames.size();  // full queue: newer commands follow in 2 ms
-    return;
+    break;
   }
+  return all - frames.size();
 }
 
 std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {

@@ -24,7 +24,7 @@ class SocketLink final : public Link {
   SocketLink(const SocketLink&) = delete;
   SocketLink& operator=(const SocketLink&) = delete;
 
-  void send(std::span<const Frame> frames) noexcept override;
+  std::size_t send(std::span<const Frame> frames) noexcept override;
   std::size_t receive(std::span<Frame> frames) noexcept override;
   BusHealth health() const noexcept override { return health_; }
   const LinkCounts& counts() const noexcept override { return counts_; }

@@ -22,7 +22,7 @@ class DriveLink final : public can::Link {
   /// In the order of the slaves.
   explicit DriveLink(std::vector<int> nodes);
 
-  void send(std::span<const can::Frame> frames) noexcept override;
+  std::size_t send(std::span<const can::Frame> frames) noexcept override;
   std::size_t receive(std::span<can::Frame> frames) noexcept override;
   can::BusHealth health() const noexcept override { return can::BusHealth::kGood; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }

@@ -403,7 +403,8 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   const Eigen::Vector2d q(-0.2, 0.1), dq(0.8, -0.5), torque(12.0, -3.0);
   Eigen::Vector2d theta = *ankle.motor_angles(q);
   const Eigen::Matrix2d J = ankle.jacobian(theta, q);
-  const Eigen::Vector2d dtheta = J * dq, crank_torque = J.transpose().inverse() * torque;
+  Eigen::Vector2d dtheta = J * dq;
+  const Eigen::Vector2d crank_torque = J.transpose().inverse() * torque;
   const auto answer = [&] {
     std::array<Frame, 32> got;
     const std::size_t count = far->receive(got);
@@ -450,6 +451,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   BusStatus status = BusStatus::kOk;
   for (int k = 0; k < 40 && status == BusStatus::kOk; ++k) {
     theta += Eigen::Vector2d(0.1, -0.1);
+    dtheta = Eigen::Vector2d(20.0, -20.0);
     hal.send(limp());
     answer();
     status = hal.receive(state_);
