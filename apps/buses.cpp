@@ -15,6 +15,7 @@
 #include "can/bus_load.hpp"
 #include "can/bus_motor.hpp"
 #include "can/socket_link.hpp"
+#include "doctor/can_link.hpp"
 #include "pmg/types.hpp"
 #include "program.hpp"
 
@@ -30,6 +31,23 @@ std::string row(const drives::MotorSetup& motor, const drives::BusSetup& bus, co
   return who + fmt::format("{:8.2f} deg {:8.2f} Nm {:>4} degC  {}", joint.q_rad / kRadPerDegree, joint.torque_Nm,
                            knows_temperature ? fmt::format("{:.0f}", joint.temperature_degC) : "-",
                            drives::to_string(joint.fault));
+}
+
+/// What the interface's controller has, where that isn't robot.yaml's; empty: the same, or the kernel doesn't tell.
+std::string interface_rate(const drives::BusSetup& bus) {
+  int error = 0;
+  const auto link = doctor::ask_can_link(bus.name, error);
+  if (!link) return {};
+  const auto differs = [](std::uint32_t is, int expected) {
+    return is != 0 && is != static_cast<std::uint32_t>(expected);
+  };
+  if (!differs(link->arbitration.bitrate, bus.bitrate) &&
+      (bus.data_bitrate == 0 || !differs(link->data.bitrate, bus.data_bitrate)))
+    return {};
+  return fmt::format("{}: the interface has {} bit/s{}; expected {}{} as in robot.yaml", bus.name,
+                     link->arbitration.bitrate,
+                     link->data.bitrate != 0 ? fmt::format(" and {}", link->data.bitrate) : "", bus.bitrate,
+                     bus.data_bitrate != 0 ? fmt::format(" and {}", bus.data_bitrate) : "");
 }
 
 }  // namespace
@@ -48,14 +66,21 @@ std::vector<std::string> ask(Buses& buses, const TakeAnswer& take) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
     const drives::BusSetup& bus = buses.setup.buses[b];
-    const std::vector<can::Answer> answers =
-        can::ask_bus(bus, *buses.links[b], can::sleeping(), [] { return interrupt_requested != 0; });
+    can::OtherFrames others;
+    const std::vector<can::Answer> answers = can::ask_bus(
+        bus, *buses.links[b], can::sleeping(), [] { return interrupt_requested != 0; }, &others);
     for (const drives::MotorSetup& motor : bus.motors) {
       const auto answer = std::ranges::find(answers, motor.node, &can::Answer::node);
       take(bus, motor, answer == answers.end() ? nullptr : &*answer);
     }
     const std::vector<std::string> found = can::problems(bus, answers);
     all.insert(all.end(), found.begin(), found.end());
+    if (found.empty()) continue;  // what else is on the bus does no harm
+    for (const std::string& line : others.lines(bus)) all.push_back(line);
+    const std::string controller = can::controller_line(bus, *buses.links[b]);
+    if (!controller.empty()) all.push_back(controller);
+    const std::string rate = interface_rate(bus);
+    if (!rate.empty()) all.push_back(rate);
   }
   return all;
 }

@@ -31,7 +31,7 @@ using namespace pmg;
 using apps::Buses;
 using std::chrono::milliseconds;
 
-enum ExitCode { kOk = 0, kProblems = 1 };
+enum ExitCode { kOk = 0, kProblems = 1, kNotTold = 3 };
 
 constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 
@@ -46,12 +46,12 @@ Example:
   pmg_bus wiggle left_knee --robot z1
   pmg_bus dump --robot z1 >first.log
 
-Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened. docs/how-to/hal.md has the order of a
-bring-up.)";
+Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened, 3 wiggle could not tell direction or gear.
+docs/how-to/hal.md has the order of a bring-up.)";
 
 struct Arguments {
   std::string robot = "z1", joint;
-  double by_deg = 3.0, for_s = 0.0, gain_share = 0.3;
+  double by_deg = 0.0, for_s = 0.0, gain_share = 0.3;
   bool yes = false;
 };
 
@@ -187,18 +187,20 @@ int wiggle(const Arguments& arguments) {
     std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
                              silent.size(), silent.front());
   }
-  const double by_rad = arguments.by_deg * kRadPerDegree;
+  const double by_rad =
+      arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree : can::telling_way_rad(buses.robot, q, arguments.joint);
   std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
-                           arguments.by_deg, can::way_of(buses.robot, q, arguments.joint, by_rad))
+                           by_rad / kRadPerDegree, can::way_of(buses.robot, q, arguments.joint, by_rad))
             << std::flush;
   const std::function<void()> tick = bus_tick();
   const can::Wiggle result = can::wiggle(buses.robot, q, one.bus, one.motor, one.link,
                                          {.by_rad = by_rad, .gain_share = arguments.gain_share}, tick, interrupted);
-  const std::string verdict = can::verdict(result);
+  const can::Verdict verdict = can::verdict(result);
   std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
                            result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
-                           result.model_Nm, verdict);
-  return verdict.starts_with("direction and gear") || verdict.starts_with("its load") ? kOk : kProblems;
+                           result.model_Nm, verdict.text);
+  using Tells = can::Verdict::Tells;
+  return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
 }
 
 int dump(const Arguments& arguments) {
@@ -256,7 +258,8 @@ int main(int argc, char** argv) {
   zeroing->add_flag("--yes", arguments.yes, "the joint stands at its zero position");
   CLI::App* wiggling = command("wiggle", "move one joint by a few degrees and compare with the model", wiggle);
   joint(wiggling);
-  wiggling->add_option("--by", arguments.by_deg, "degrees")->check(apps::in_range(0.5, 10.0))->capture_default_str();
+  wiggling->add_option("--by", arguments.by_deg, "degrees; not given: 3 to 20, until its load tells the gear")
+      ->check(apps::in_range(0.5, 20.0));
   wiggling->add_option("--gains", arguments.gain_share, "share of robot.yaml's gains")
       ->check(apps::in_range(0.05, 1.0))
       ->capture_default_str();

@@ -15,6 +15,7 @@ struct LinkCounts {
   std::uint64_t error_frames = 0;  ///< reports of the CAN controller, ACK errors among them
   std::uint64_t ack_errors = 0;
   std::uint64_t bus_offs = 0;
+  int sending_errors = 0, receiving_errors = 0;  ///< the CAN controller's own counters, as it told them last
 };
 
 /// None of these allocates, locks, throws or waits.

@@ -15,6 +15,10 @@ namespace pmg::can {
 
 namespace {
 
+#ifndef CAN_ERR_CNT
+#define CAN_ERR_CNT 0x00000200U
+#endif
+
 constexpr unsigned short kCanInterface = 280;  // ARPHRD_CAN; <linux/if_arp.h> and <net/if.h> can't be included together
 
 [[noreturn]] void refuse(const std::string& interface, const std::string& wrong, const std::string& advice) {
@@ -162,10 +166,14 @@ std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {
   return taken;
 }
 
-// Error classes: linux/can/error.h.
+// Error classes: linux/can/error.h. Kernels from 6.0 on say with CAN_ERR_CNT that bytes 6 and 7 are the counters.
 void SocketLink::heed(const canfd_frame& error) noexcept {
   ++counts_.error_frames;
   if ((error.can_id & CAN_ERR_ACK) != 0) ++counts_.ack_errors;
+  if ((error.can_id & (CAN_ERR_CRTL | CAN_ERR_CNT)) != 0) {
+    counts_.sending_errors = error.data[6];
+    counts_.receiving_errors = error.data[7];
+  }
   if ((error.can_id & CAN_ERR_BUSOFF) != 0) {
     ++counts_.bus_offs;
     health_ = BusHealth::kOff;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "can/queued_robot.hpp"
+#include "can/roll_call.hpp"
 
 namespace pmg::can {
 namespace {
@@ -176,6 +177,29 @@ TEST(Queues, AfterACableWasOutTheStateIsFreshAgainThoughCommandsWentOn) {
   while (!robot.stands && cycles < kSettlesWithin) robot.cycle(), ++cycles;
   EXPECT_LT(cycles, kSettlesWithin);
   EXPECT_LE(robot.bus->waiting(), 7u);
+}
+
+/// Asked over a queue while answers are held back and the cable is out now and then, one drive of each node is counted
+/// once, and a second one is found.
+TEST(Queues, ARollCallCountsNoLateAnswerTwice) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Disturbances disturbances(seed);
+    drives::BusSetup setup = drives::load_drives(z1()).buses[0];
+    test::QueuedBus bus(setup, static_cast<std::size_t>(disturbances.spread(10, 1000)));
+    bus.drive(2).twice = seed % 2 == 0;
+    std::int64_t now_ns = 0, back_ns = 0;
+    const Wait wait = [&] {
+      now_ns += kMs_ns;
+      if (disturbances.once_in(50))
+        bus.held_until_ns = now_ns + static_cast<std::int64_t>(kMs_ns * disturbances.uniform(4, 20));
+      if (disturbances.once_in(200)) back_ns = now_ns + static_cast<std::int64_t>(kMs_ns * disturbances.spread(5, 100));
+      bus.cut = now_ns < back_ns;
+      bus.run_to(now_ns);
+    };
+    for (const Answer& answer : ask_bus(setup, bus, wait, {}))
+      EXPECT_EQ(answer.count, seed % 2 == 0 && answer.node == setup.motors[2].node ? 2 : 1)
+          << seed << ", " << answer.node;
+  }
 }
 
 /// A bus whose answers are there only for whoever waits for its descriptor, which is ready all the time.
