@@ -9,6 +9,8 @@
 #include <csignal>
 #include <functional>
 #include <iostream>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -20,6 +22,7 @@
 #include "can/candump.hpp"
 #include "can/first_light.hpp"
 #include "can/one_motor.hpp"
+#include "can/socket_link.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
@@ -203,27 +206,30 @@ int wiggle(const Arguments& arguments) {
   return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
 }
 
+/// Frames of all buses in the order in which the kernel got them.
 int dump(const Arguments& arguments) {
-  Buses buses(arguments.robot, Buses::Use::kListen);
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
-  while (!interrupted() && std::chrono::steady_clock::now() < end) {
-    bool any = false;
-    for (std::size_t b = 0; b < buses.links.size(); ++b) {
-      std::array<can::Frame, 64> frames;
-      const std::size_t count = buses.links[b]->receive(frames);
-      const std::int64_t now_ns = std::chrono::system_clock::now().time_since_epoch().count();
-      for (const can::Frame& frame : std::span(frames).first(count)) {
-        std::cout << can::to_line({.stamp_ns = now_ns, .interface = buses.setup.buses[b].name, .frame = frame}) << '\n';
-      }
-      any = any || count > 0;
-    }
+  constexpr std::int64_t kLate_ns = 20'000'000;  // a frame is read so long after it came at most
+  const drives::DriveSetup setup = drives::load_drives(model::load_robot(model::find_robot(arguments.robot)));
+  std::vector<std::unique_ptr<can::SocketLink>> links;
+  for (const drives::BusSetup& bus : setup.buses)
+    links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto end = now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
+  can::FrameOrder order;
+  can::RecordedFrame frame;
+  const auto write = [&](std::int64_t before_ns) {
+    while (order.take(before_ns, frame)) std::cout << can::to_line(frame) << '\n';
     if (!std::cout) throw std::runtime_error("the recording can't be written");
-    if (any) continue;
     std::cout << std::flush;  // whoever reads along sees each frame at once
+  };
+  while (!interrupted() && now() < end) {
+    for (const auto& link : links) {
+      while (link->record(frame)) order.put(frame);
+    }
+    write(std::chrono::system_clock::now().time_since_epoch().count() - kLate_ns);
     std::this_thread::sleep_for(milliseconds(1));
   }
-  std::cout << std::flush;
+  write(std::numeric_limits<std::int64_t>::max());
   return kOk;
 }
 

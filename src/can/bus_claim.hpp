@@ -19,6 +19,8 @@ class BusClaim {
   /// Throws BusIsDriven, one line: another program has it; std::runtime_error: the system refuses.
   explicit BusClaim(const std::string& interface);
   ~BusClaim();
+  BusClaim(const BusClaim&) = delete;
+  BusClaim& operator=(const BusClaim&) = delete;
   BusClaim(BusClaim&& other) noexcept;
   BusClaim& operator=(BusClaim&&) = delete;
 

@@ -1,7 +1,6 @@
 #include "can/bus_motor.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "can/canopen_setup.hpp"
 #include "can/xsens_imu.hpp"
@@ -28,25 +27,22 @@ BusMotor::BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus)
       monitor_(setup.limits,
                bus.bridge_slave != 0 ? drives::MotorMonitor::kFreshOverBridge : drives::MotorMonitor::kFreshCycles) {}
 
-std::optional<Frame> BusMotor::ask(const drives::MotorCommand& wanted, bool stiff, bool synced) noexcept {
+std::optional<Frame> BusMotor::ask(const drives::MotorCommand& wanted, const Cycle& cycle) noexcept {
   const drives::MotorCommand at_motor = setup_->transmission.to_motor(wanted);
   if (auto* canopen = std::get_if<Canopen>(&drive_)) {
     canopen->wanted = at_motor;
-    canopen->stiff = stiff;
+    canopen->stiff = cycle.stiff;
     canopen->off = false;
-    canopen->asked = synced;
-    if (synced) monitor_.ask(false);
-    if (!monitor_.silent() || stiff || ++canopen->since_start < kStartCycles) return std::nullopt;
+    asked_ = cycle.synced;
+    if (asked_) monitor_.ask(false);
+    if (!monitor_.silent() || cycle.stiff || ++canopen->since_start < kStartCycles) return std::nullopt;
     canopen->since_start = 0;
     return canopen::node_command(canopen::NodeCommand::kStart, setup_->node);
   }
   Mit& mit = *std::get_if<Mit>(&drive_);
-  const bool same = at_motor.kp_Nm_per_rad == mit.kp_Nm_per_rad && at_motor.kd_Nm_s_per_rad == mit.kd_Nm_s_per_rad;
-  mit.asked = !monitor_.pauses() || !same;
-  if (!mit.asked) return std::nullopt;
-  mit.kp_Nm_per_rad = at_motor.kp_Nm_per_rad;
-  mit.kd_Nm_s_per_rad = at_motor.kd_Nm_s_per_rad;
-  const bool enabling = !monitor_.enabled() && !stiff;
+  asked_ = cycle.urgent || !monitor_.pauses();
+  if (!asked_) return std::nullopt;
+  const bool enabling = !monitor_.enabled() && !cycle.stiff;
   monitor_.ask(enabling);
   return Frame::of(static_cast<std::uint32_t>(setup_->node),
                    enabling ? drives::kMitEnable : mit.protocol.command(at_motor, setup_->limits, mit.left_Nm), mit.fd);
@@ -55,20 +51,18 @@ std::optional<Frame> BusMotor::ask(const drives::MotorCommand& wanted, bool stif
 std::optional<Frame> BusMotor::ask_off(bool synced) noexcept {
   if (auto* canopen = std::get_if<Canopen>(&drive_)) {
     canopen->off = true;
-    canopen->asked = synced;
-    if (synced) monitor_.ask(false);
+    asked_ = synced;
+    if (asked_) monitor_.ask(false);
     return std::nullopt;
   }
-  Mit& mit = *std::get_if<Mit>(&drive_);
-  mit.asked = !monitor_.pauses();
-  if (!mit.asked) return std::nullopt;
+  asked_ = true;
   monitor_.ask(false);
-  return Frame::of(static_cast<std::uint32_t>(setup_->node), drives::kMitDisable, mit.fd);
+  return Frame::of(static_cast<std::uint32_t>(setup_->node), drives::kMitDisable, std::get_if<Mit>(&drive_)->fd);
 }
 
 void BusMotor::not_asked() noexcept {
-  const bool asked = std::visit([](auto& drive) { return std::exchange(drive.asked, false); }, drive_);
-  if (asked) monitor_.take_back();
+  if (asked_) monitor_.take_back();
+  asked_ = false;
 }
 
 bool BusMotor::hear(const Frame& frame) noexcept {

@@ -23,12 +23,16 @@ class BusMotor {
   void begin() noexcept { monitor_.begin(); }
   /// The bus is to have no SYNC in this cycle: what a CANopen drive sends all the same is late.
   bool pauses_sync() const noexcept { return std::holds_alternative<Canopen>(drive_) && monitor_.pauses(); }
-  /// wanted: at the joint, or at the crank. stiff: some motor of the robot is told a gain or a torque; no drive is
-  /// switched on in such a cycle. synced: SYNC goes out. An MIT drive gets this frame and answers it; none in a pause
-  /// of its monitor unless the gains change, so that no stop waits. A CANopen drive answers the bus's SYNC; one that is
-  /// silent is started anew now and then: it may have left the state "operational".
-  std::optional<Frame> ask(const drives::MotorCommand& wanted, bool stiff, bool synced) noexcept;
-  /// The drive is switched off and answers.
+  struct Cycle {
+    bool stiff = false;   ///< some motor of the robot is told a gain or a torque: no drive is switched on
+    bool urgent = false;  ///< the robot's gains are others than in the cycle before: no drive waits for its command
+    bool synced = false;  ///< SYNC goes out
+  };
+  /// wanted: at the joint, or at the crank. An MIT drive gets this frame and answers it; none in a pause of its monitor
+  /// unless the cycle is urgent. A CANopen drive answers the bus's SYNC; one that is silent is started anew now and
+  /// then: it may have left the state "operational".
+  std::optional<Frame> ask(const drives::MotorCommand& wanted, const Cycle& cycle) noexcept;
+  /// The drive is switched off and answers; it never waits.
   std::optional<Frame> ask_off(bool synced) noexcept;
   /// What asked it, the frame or SYNC, never left this computer.
   void not_asked() noexcept;
@@ -57,17 +61,14 @@ class BusMotor {
     drives::MitProtocol protocol;
     std::uint32_t reply_id;
     bool fd;
-    double left_Nm = 0.0;                               // of the last command's torque, for the next one
-    double kp_Nm_per_rad = 0.0, kd_Nm_s_per_rad = 0.0;  // of the last command
-    bool asked = false;                                 // in this cycle
+    double left_Nm = 0.0;  // of the last command's torque, for the next one
   };
   struct Canopen {
     drives::Cia402Axis axis;
     drives::Cia402Inputs inputs{};
     drives::MotorCommand wanted{};  // at the motor
     bool stiff = false, off = false;
-    bool asked = false;  // in this cycle
-    bool half = false;   // TPDO1 came, its TPDO2 not yet
+    bool half = false;  // TPDO1 came, its TPDO2 not yet
     std::uint16_t emergency = 0;
     int since_start = 0;  // cycles
   };
@@ -77,6 +78,7 @@ class BusMotor {
   const drives::MotorSetup* setup_;
   std::variant<Mit, Canopen> drive_;
   drives::MotorMonitor monitor_;
+  bool asked_ = false;  // in this cycle
 };
 
 /// The identifiers with which the drives of a bus, and its IMU, send to this computer: a receive filter. Allocates.

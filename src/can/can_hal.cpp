@@ -76,6 +76,10 @@ void CanHal::send(const model::JointCommand& command) noexcept {
   const bool paused = last_send_ns_ != 0 && now_ns - last_send_ns_ > kPause_ns;
   last_send_ns_ = now_ns;
   stiff_ = stiff(command);
+  urgent_ =
+      command.kp.size() != kp_.size() || command.kp != kp_ || command.kd.size() != kd_.size() || command.kd != kd_;
+  kp_ = command.kp;
+  kd_ = command.kd;
   imu_.begin_cycle();
   for (Bus& bus : buses_) send(bus, command, paused);
 }
@@ -98,7 +102,7 @@ void CanHal::send(Bus& bus, const model::JointCommand& command, bool paused) noe
   };
   if (synced) put(canopen::sync(), kAllCanopen);  // first: what it asks for is worth most when it is new
   for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-    const auto frame = bus.motors[m].ask(bus.wanted[m], stiff_, synced);
+    const auto frame = bus.motors[m].ask(bus.wanted[m], {.stiff = stiff_, .urgent = urgent_, .synced = synced});
     if (!frame) continue;
     const bool answers = std::holds_alternative<drives::MitRanges>(bus.motors[m].setup().drive);
     put(*frame, answers ? static_cast<int>(m) : kNobody);

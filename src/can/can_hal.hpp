@@ -112,7 +112,8 @@ class CanHal final : public hal::Hal {
   std::vector<Frame> incoming_;
   std::vector<pollfd> polled_;  // one a bus
   XsensImu imu_;
-  bool stiff_ = false, waits_ = false;
+  bool stiff_ = false, urgent_ = false, waits_ = false;
+  JointVector kp_, kd_;  // of the last command
   std::int64_t last_send_ns_ = 0;
   std::uint64_t cycles_ = 0, strangers_ = 0, unreadable_ = 0;
   BusTrouble trouble_, told_;

@@ -69,12 +69,12 @@ void OneMotor::exchange_off() {
 
 bool OneMotor::switch_on() {
   for (int k = 0; k < kAnswerCycles && !motor_.monitor().enabled(); ++k)
-    cycle([this](bool synced) { return motor_.ask({}, false, synced); });
+    cycle([this](bool synced) { return motor_.ask({}, {.synced = synced}); });
   return motor_.monitor().enabled();
 }
 
 void OneMotor::exchange(const drives::MotorCommand& joint) {
-  cycle([&](bool synced) { return motor_.ask(joint, true, synced); });
+  cycle([&](bool synced) { return motor_.ask(joint, {.stiff = true, .synced = synced}); });
   if (motor_.monitor().condition(true) != drives::Condition::kLost) return;
   const drives::Trouble trouble = motor_.monitor().trouble(true);
   throw std::runtime_error(name_of(bus_, setup_) + " " +

@@ -24,7 +24,8 @@ int AnswerLedger::begin() noexcept {
   }
   ++since_pause_;
   behind_ = heard > 0 && owed_ > usual_ ? behind_ + 1 : 0;
-  const bool check = check_in_ > 0 && --check_in_ == 0;
+  const bool check = check_in_ == 1;
+  check_in_ = std::max(check_in_ - 1, 0);
   const bool due = check || behind_ >= kBehindCycles || (behind_ > 0 && owed_ > most_usual_);
   if (!due || since_pause_ < kLeastBetween) {
     if (check) check_in_ = 1;

@@ -55,7 +55,8 @@ bool MotorMonitor::hear(const MotorReading& reading) noexcept {
   const AnswerLedger::Belongs belongs = ledger_.hear();
   take(belongs);
   if (belongs != AnswerLedger::Belongs::kToARequest) return false;
-  const bool to_enabling = enabled_after_ > 0 && --enabled_after_ == 0;
+  const bool to_enabling = enabled_after_ == 1;
+  enabled_after_ = std::max(enabled_after_ - 1, 0);
   if (!std::isfinite(reading.q_rad) || !std::isfinite(reading.dq_rad_s) || !std::isfinite(reading.torque_Nm) ||
       jumped(reading)) {
     ++refused_;

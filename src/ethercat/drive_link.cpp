@@ -4,7 +4,7 @@
 
 namespace pmg::ethercat {
 
-DriveLink::DriveLink(std::vector<int> nodes) : in_(2 * nodes.size()) {
+DriveLink::DriveLink(const std::vector<int>& nodes) : in_(2 * nodes.size()) {
   for (const int node : nodes) drives_.push_back({.node = static_cast<std::uint32_t>(node)});
 }
 

@@ -102,7 +102,8 @@ TEST(AnswerLedger, AnAnswerToARequestThatWasGivenUpIsNobodysSecond) {
   drive.loses = true;
   for (int k = 0; k < 3; ++k) drive.cycle();
   drive.loses = false;
-  while (drive.ledger.given_up() == 0) drive.cycle();
+  for (int k = 0; k < 20 && drive.ledger.given_up() == 0; ++k) drive.cycle();
+  ASSERT_EQ(drive.ledger.given_up(), 3);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(drive.ledger.hear(), Belongs::kToOneGivenUp) << k;
   EXPECT_EQ(drive.ledger.hear(), Belongs::kToNone);
 }
