@@ -51,7 +51,6 @@ AnswerLedger::Belongs AnswerLedger::hear() noexcept {
   ++heard_;
   if (owed_ == 0) return hear_late();
   age_ = static_cast<int>(cycle_ - asked(0));
-  newer_by_ = static_cast<int>(asked(owed_ - 1) - asked(0));
   first_ = (first_ + 1) % kMostOwed;
   --owed_;
   return Belongs::kToARequest;

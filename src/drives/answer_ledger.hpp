@@ -48,10 +48,8 @@ class AnswerLedger {
 
   int owed() const noexcept { return owed_; }  ///< requests that may still be answered
   int given_up() const noexcept { return overdue_; }
-  /// Cycles from the request of the last answer until it came; and how many fewer they are if those that are owed since
-  /// then are lost.
+  /// Cycles from the request of the last answer until it came.
   int age_cycles() const noexcept { return age_; }
-  int perhaps_newer_by_cycles() const noexcept { return newer_by_; }
 
  private:
   Belongs hear_late() noexcept;
@@ -62,7 +60,7 @@ class AnswerLedger {
   std::array<std::uint32_t, kMostOwed> asked_{};  // cycles of what is owed, a ring
   int first_ = 0;                                 // the oldest one's place
   std::uint32_t cycle_ = 0;
-  int age_ = 0, newer_by_ = 0;
+  int age_ = 0;
   int owed_ = 0, overdue_ = 0;  // requests: that may be answered, that were given up
   int heard_ = 0;               // answers in this cycle
   int most_usual_, usual_;      // requests under way as a rule: at most, by the last pause

@@ -37,8 +37,7 @@ void MotorMonitor::begin() noexcept {
   const int given_up = ledger_.begin();
   if (given_up == 0) return;
   lost_ += static_cast<std::uint32_t>(given_up);
-  age_ -= newer_by_;  // what was owed was lost: the state belongs to a later request
-  newer_by_ = enabled_after_ = 0;
+  enabled_after_ = 0;
 }
 
 void MotorMonitor::ask(bool enabling) noexcept {
@@ -68,7 +67,6 @@ bool MotorMonitor::hear(const MotorReading& reading) noexcept {
   reading_ = reading;
   any_ = true;
   age_ = ledger_.age_cycles();
-  newer_by_ = ledger_.perhaps_newer_by_cycles();
   silence_ = 0;
   if (reading.fault != DriveFault::kNone) {
     enabled_ = false;

@@ -109,7 +109,6 @@ class MotorMonitor {
   MotorReading reading_;
   bool any_ = false, enabled_ = false, gains_refused_ = false;
   int age_ = kNever, silence_ = kNever;  // cycles: of the state, since it came
-  int newer_by_ = 0;                     // cycles, if what was owed when it came is lost
   int old_cycles_ = 0;
   int enabled_after_ = 0;  // answers until the one to the oldest request to enable; 0: none is under way
   int jumps_ = 0, uncalled_lately_ = 0, cycles_since_uncalled_ = 0;
