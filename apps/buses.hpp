@@ -1,11 +1,14 @@
 // The buses of a robot, and one question to all of their drives.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "can/bus_claim.hpp"
+#include "can/bus_motor.hpp"
 #include "can/link.hpp"
 #include "can/roll_call.hpp"
 #include "drives/drive_setup.hpp"
@@ -14,12 +17,17 @@
 namespace pmg::apps {
 
 struct Buses {
+  enum class Use {
+    kDrive,   ///< no other program may drive these buses meanwhile
+    kListen,  ///< sends nothing
+  };
   /// Opens every CAN bus that robot.yaml names.
-  /// \throws std::runtime_error where a bus can't be opened, or can't carry its load
-  explicit Buses(const std::string& robot_name);
+  /// \throws std::runtime_error where a bus can't be opened, can't carry its load, or is another program's
+  explicit Buses(const std::string& robot_name, Use use = Use::kDrive);
 
   model::RobotModel robot;
   drives::DriveSetup setup;
+  std::vector<can::BusClaim> claims;
   std::vector<std::unique_ptr<can::Link>> links;
 };
 
@@ -28,6 +36,27 @@ using TakeAnswer = std::function<void(const drives::BusSetup&, const drives::Mot
 /// Asks every bus once; take gets each motor with its answer, nullptr for none. Returns all problems. Ends early after
 /// an interrupt.
 std::vector<std::string> ask(Buses& buses, const TakeAnswer& take);
+
+/// What drives say that another program drives.
+class Overhearing {
+ public:
+  /// Keeps a reference.
+  explicit Overhearing(Buses& buses);
+  /// Listens for 0.2 s; prints a row for each motor from what its drive said last, if that is less than 2 s ago, and
+  /// all problems, as far as that shows them. Returns their number.
+  std::size_t show();
+
+ private:
+  struct Heard {
+    can::BusMotor motor;
+    can::Answer answer{};
+    std::chrono::steady_clock::time_point at{};
+  };
+  void listen();
+
+  Buses& buses_;
+  std::vector<std::vector<Heard>> heard_;  // of each bus: its motors
+};
 
 /// Asks every bus once, and prints a row for each motor and all problems. Returns the number of problems.
 std::size_t show(Buses& buses);

@@ -4,6 +4,7 @@
 
 #include <exception>
 
+#include "can/bus_claim.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/socket_link.hpp"
 
@@ -35,6 +36,7 @@ doctor::DriveAnswer ask(const drives::BusSetup& bus, const drives::MotorSetup& m
 std::vector<doctor::DriveAnswer> ask_firmware(const model::RobotModel& robot, const drives::DriveSetup& setup) {
   std::vector<doctor::DriveAnswer> answers;
   for (const drives::BusSetup& bus : setup.buses) {
+    const can::BusClaim claim(bus.name);
     can::SocketLink link(bus.name, {}, bus.data_bitrate != 0);
     for (const drives::MotorSetup& motor : bus.motors) {
       answers.push_back(ask(bus, motor, robot.joints[static_cast<std::size_t>(motor.index)].bus.drive, link));

@@ -9,6 +9,9 @@
 #include <csignal>
 #include <functional>
 #include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -19,6 +22,7 @@
 #include "can/candump.hpp"
 #include "can/first_light.hpp"
 #include "can/one_motor.hpp"
+#include "can/socket_link.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
@@ -30,13 +34,14 @@ using namespace pmg;
 using apps::Buses;
 using std::chrono::milliseconds;
 
-enum ExitCode { kOk = 0, kProblems = 1 };
+enum ExitCode { kOk = 0, kProblems = 1, kNotTold = 3 };
 
 constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 
 constexpr const char* kFooter = R"(
 For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan and watch switch every drive off and
-only listen. zero, enable and wiggle touch one motor. Nothing else may drive the robot meanwhile: pmg_controller must not run.
+only listen. zero, enable and wiggle touch one motor. One program drives a bus: while pmg_controller runs, they refuse, and watch
+listens without asking, as dump always does.
 
 Example:
   pmg_bus scan --robot z1
@@ -44,12 +49,12 @@ Example:
   pmg_bus wiggle left_knee --robot z1
   pmg_bus dump --robot z1 >first.log
 
-Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened. docs/how-to/hal.md has the order of a
-bring-up.)";
+Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened, 3 wiggle could not tell direction or gear.
+docs/how-to/hal.md has the order of a bring-up.)";
 
 struct Arguments {
   std::string robot = "z1", joint;
-  double by_deg = 3.0, for_s = 0.0, gain_share = 0.3;
+  double by_deg = 0.0, for_s = 0.0, gain_share = 0.3;
   bool yes = false;
 };
 
@@ -65,15 +70,29 @@ int scan(const Arguments& arguments) {
   return apps::show(buses) == 0 ? kOk : kProblems;
 }
 
+/// Asks; where another program drives the buses, it listens to what that program's drives say.
 int watch(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  std::optional<Buses> buses;
+  std::optional<apps::Overhearing> overhearing;
+  std::string driven;
+  try {
+    buses.emplace(arguments.robot);
+  } catch (const can::BusIsDriven& taken) {
+    driven = taken.what();
+    overhearing.emplace(buses.emplace(arguments.robot, Buses::Use::kListen));
+  }
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
   std::size_t problems = 0;
   while (!interrupted() && std::chrono::steady_clock::now() < end) {
     std::cout << "\x1b[H\x1b[2J";
-    problems = apps::show(buses);
-    std::this_thread::sleep_for(milliseconds(200));
+    if (overhearing) {
+      std::cout << driven << ". Only listening:\n";
+      problems = overhearing->show();
+    } else {
+      problems = apps::show(*buses);
+      std::this_thread::sleep_for(milliseconds(200));
+    }
   }
   return problems == 0 ? kOk : kProblems;
 }
@@ -171,41 +190,46 @@ int wiggle(const Arguments& arguments) {
     std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
                              silent.size(), silent.front());
   }
-  const double by_rad = arguments.by_deg * kRadPerDegree;
+  const double by_rad =
+      arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree : can::telling_way_rad(buses.robot, q, arguments.joint);
   std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
-                           arguments.by_deg, can::way_of(buses.robot, q, arguments.joint, by_rad))
+                           by_rad / kRadPerDegree, can::way_of(buses.robot, q, arguments.joint, by_rad))
             << std::flush;
   const std::function<void()> tick = bus_tick();
   const can::Wiggle result = can::wiggle(buses.robot, q, one.bus, one.motor, one.link,
                                          {.by_rad = by_rad, .gain_share = arguments.gain_share}, tick, interrupted);
-  const std::string verdict = can::verdict(result);
+  const can::Verdict verdict = can::verdict(result);
   std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
                            result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
-                           result.model_Nm, verdict);
-  return verdict.starts_with("direction and gear") || verdict.starts_with("its load") ? kOk : kProblems;
+                           result.model_Nm, verdict.text);
+  using Tells = can::Verdict::Tells;
+  return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
 }
 
+/// Frames of all buses in the order in which the kernel got them.
 int dump(const Arguments& arguments) {
-  Buses buses(arguments.robot);
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
-  while (!interrupted() && std::chrono::steady_clock::now() < end) {
-    bool any = false;
-    for (std::size_t b = 0; b < buses.links.size(); ++b) {
-      std::array<can::Frame, 64> frames;
-      const std::size_t count = buses.links[b]->receive(frames);
-      const std::int64_t now_ns = std::chrono::system_clock::now().time_since_epoch().count();
-      for (const can::Frame& frame : std::span(frames).first(count)) {
-        std::cout << can::to_line({.stamp_ns = now_ns, .interface = buses.setup.buses[b].name, .frame = frame}) << '\n';
-      }
-      any = any || count > 0;
-    }
+  constexpr std::int64_t kLate_ns = 20'000'000;  // a frame is read so long after it came at most
+  const drives::DriveSetup setup = drives::load_drives(model::load_robot(model::find_robot(arguments.robot)));
+  std::vector<std::unique_ptr<can::SocketLink>> links;
+  for (const drives::BusSetup& bus : setup.buses)
+    links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto end = now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
+  can::FrameOrder order;
+  can::RecordedFrame frame;
+  const auto write = [&](std::int64_t before_ns) {
+    while (order.take(before_ns, frame)) std::cout << can::to_line(frame) << '\n';
     if (!std::cout) throw std::runtime_error("the recording can't be written");
-    if (any) continue;
     std::cout << std::flush;  // whoever reads along sees each frame at once
+  };
+  while (!interrupted() && now() < end) {
+    for (const auto& link : links) {
+      while (link->record(frame)) order.put(frame);
+    }
+    write(std::chrono::system_clock::now().time_since_epoch().count() - kLate_ns);
     std::this_thread::sleep_for(milliseconds(1));
   }
-  std::cout << std::flush;
+  write(std::numeric_limits<std::int64_t>::max());
   return kOk;
 }
 
@@ -240,7 +264,8 @@ int main(int argc, char** argv) {
   zeroing->add_flag("--yes", arguments.yes, "the joint stands at its zero position");
   CLI::App* wiggling = command("wiggle", "move one joint by a few degrees and compare with the model", wiggle);
   joint(wiggling);
-  wiggling->add_option("--by", arguments.by_deg, "degrees")->check(apps::in_range(0.5, 10.0))->capture_default_str();
+  wiggling->add_option("--by", arguments.by_deg, "degrees; not given: 3 to 20, until its load tells the gear")
+      ->check(apps::in_range(0.5, 20.0));
   wiggling->add_option("--gains", arguments.gain_share, "share of robot.yaml's gains")
       ->check(apps::in_range(0.05, 1.0))
       ->capture_default_str();

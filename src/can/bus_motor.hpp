@@ -13,20 +13,38 @@
 
 namespace pmg::can {
 
-/// No heap, no lock. A cycle: begin(), answers into hear(), targets().
+/// No heap, no lock. A cycle: begin(), ask() or ask_off(), answers into hear(), targets().
 class BusMotor {
  public:
-  /// Keeps a reference to setup. fd: an MIT drive's frames are CAN FD's.
-  BusMotor(const drives::MotorSetup& setup, bool fd) noexcept;
+  /// Keeps a reference to setup, one motor of the bus.
+  BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus) noexcept;
 
-  /// A cycle begins. wanted: at the joint, or at the crank. stiff: some motor of the robot is told a gain or a torque;
-  /// no drive is switched on in such a cycle. An MIT drive gets this frame and answers it. A CANopen drive answers the
-  /// bus's SYNC; one that is silent is started anew now and then: it may have left the state "operational".
-  std::optional<Frame> begin(const drives::MotorCommand& wanted, bool stiff) noexcept;
-  /// A cycle begins in which the drive is switched off and answers.
-  std::optional<Frame> begin_off() noexcept;
+  /// A cycle begins.
+  void begin() noexcept { monitor_.begin(); }
+  /// The bus is to have no SYNC in this cycle: what a CANopen drive sends all the same is late.
+  bool pauses_sync() const noexcept { return std::holds_alternative<Canopen>(drive_) && monitor_.pauses(); }
+  struct Cycle {
+    bool stiff = false;   ///< some motor of the robot is told a gain or a torque: no drive is switched on
+    bool urgent = false;  ///< the robot's gains are others than in the cycle before: no drive waits for its command
+    bool synced = false;  ///< SYNC goes out
+  };
+  /// wanted: at the joint, or at the crank. An MIT drive gets this frame and answers it; none in a pause of its monitor
+  /// unless the cycle is urgent. A CANopen drive answers the bus's SYNC; one that is silent is started anew now and
+  /// then: it may have left the state "operational".
+  std::optional<Frame> ask(const drives::MotorCommand& wanted, const Cycle& cycle) noexcept;
+  /// The drive is switched off and answers; it never waits.
+  std::optional<Frame> ask_off(bool synced) noexcept;
+  /// What asked it, the frame or SYNC, never left this computer.
+  void not_asked() noexcept;
   /// False: not this motor's.
   bool hear(const Frame& frame) noexcept;
+  /// What a frame says, whoever asked for it: of a drive that this program doesn't drive. A CANopen drive's frames come
+  /// in pairs, and the second one is a reading.
+  struct Heard {
+    enum class What : std::uint8_t { kForeign, kNoted, kReading, kPart, kBootUp } what = What::kForeign;
+    drives::MotorReading reading{};  ///< of kReading
+  };
+  Heard overhear(const Frame& frame) noexcept;
   /// The command of a CANopen drive, computed from the newest reading.
   std::optional<Frame> targets() noexcept;
 
@@ -54,22 +72,21 @@ class BusMotor {
     std::uint16_t emergency = 0;
     int since_start = 0;  // cycles
   };
-  bool hear(Canopen& drive, const Frame& frame) noexcept;
+  Heard overhear(Canopen& drive, const Frame& frame) const noexcept;
   drives::Freshness freshness() const noexcept;
 
   const drives::MotorSetup* setup_;
   std::variant<Mit, Canopen> drive_;
   drives::MotorMonitor monitor_;
+  bool asked_ = false;  // in this cycle
 };
 
 /// The identifiers with which the drives of a bus, and its IMU, send to this computer: a receive filter. Allocates.
 std::vector<std::uint32_t> awaited_ids(const drives::BusSetup& bus);
 
-/// The node that sent this frame, if it is one of the cycle's messages.
-std::optional<int> sender(const Frame& frame) noexcept;
-
-/// What a bus with CANopen drives carries in each cycle besides: SYNC, then a heartbeat where it is due. Returns how
-/// many.
-std::size_t network_frames(int cycle, std::span<Frame, 2> frames) noexcept;
+/// The node of a drive that the bus isn't to have, if it sent this frame: a reply with an identifier of the bus's MIT
+/// drives, or one of a CANopen drive's messages of the cycle.
+std::optional<int> stranger(const drives::BusSetup& bus, const Frame& frame) noexcept;
+std::optional<int> mit_stranger(const drives::BusSetup& bus, const Frame& frame) noexcept;
 
 }  // namespace pmg::can

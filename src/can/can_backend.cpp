@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "can/bus_claim.hpp"
+#include "can/bus_ids.hpp"
 #include "can/bus_load.hpp"
 #include "can/can_hal.hpp"
 #include "can/canopen_setup.hpp"
@@ -29,6 +31,7 @@ class CanBackend final : public hal::Backend {
     }
     if (setup_.imu_slave) throw std::invalid_argument("the IMU is an EtherCAT slave; expected --hal ethercat");
     check_load(setup_);
+    check_ids(setup_);
   }
 
   hal::OptionValues configuration() const override {
@@ -48,6 +51,7 @@ class CanBackend final : public hal::Backend {
 
   hal::Hal& connect(const std::function<bool()>& interrupted) override {
     std::vector<std::unique_ptr<Link>> links;
+    for (const drives::BusSetup& bus : setup_.buses) claims_.emplace_back(bus.name);
     for (const drives::BusSetup& bus : setup_.buses)
       links.push_back(std::make_unique<SocketLink>(bus.name, awaited_ids(bus), bus.data_bitrate != 0));
     call_roll(setup_, links, sleeping(), interrupted);
@@ -66,6 +70,7 @@ class CanBackend final : public hal::Backend {
   const io::Clock& clock_;
   hal::OptionValues options_;
   drives::DriveSetup setup_;
+  std::vector<BusClaim> claims_;
   std::unique_ptr<CanHal> hal_;
 };
 

@@ -1,18 +1,19 @@
 #include "can/can_hal.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <ctime>
+
+#include "can/canopen_setup.hpp"
+#include "hal/bus_cycle.hpp"
 
 namespace pmg::can {
 
 namespace {
 
 constexpr std::size_t kIncoming = 64;  // frames a call: more than any bus carries in 2 ms
-constexpr std::size_t kMostBuses = 16;
 
 drives::MotorCommand joint_command(const model::JointCommand& command, int joint) noexcept {
   if (joint >= command.q.size()) return {};
@@ -50,18 +51,16 @@ CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, 
     Bus bus;
     bus.setup = &setup.buses[b];
     bus.link = std::move(links.at(b));
-    bus.motor_of_node.fill(-1);
-    for (const drives::MotorSetup& motor : setup.buses[b].motors) {
-      bus.motor_of_node[static_cast<std::size_t>(motor.node)] = static_cast<int>(bus.motors.size());
-      bus.motors.emplace_back(motor, setup.buses[b].data_bitrate != 0);
-    }
+    for (const drives::MotorSetup& motor : setup.buses[b].motors) bus.motors.emplace_back(motor, setup.buses[b]);
     bus.canopen = setup.buses[b].has_canopen();
     bus.outgoing.resize(bus.motors.size() + 2);
+    bus.asked.resize(bus.outgoing.size());
     bus.wanted.resize(bus.motors.size());
     bus.readings.resize(bus.motors.size());
     for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back({.setup = &linked});
     for (const auto& linked : setup.buses[b].parallel) bus.parallel.push_back({.setup = &linked});
-    waits_ = waits_ || bus.link->descriptor() >= 0;
+    polled_.push_back({.fd = bus.link->descriptor(), .events = POLLIN, .revents = 0});
+    waits_ = waits_ || polled_.back().fd >= 0;
     buses_.push_back(std::move(bus));
   }
 }
@@ -77,23 +76,44 @@ void CanHal::send(const model::JointCommand& command) noexcept {
   const bool paused = last_send_ns_ != 0 && now_ns - last_send_ns_ > kPause_ns;
   last_send_ns_ = now_ns;
   stiff_ = stiff(command);
+  urgent_ =
+      command.kp.size() != kp_.size() || command.kp != kp_ || command.kd.size() != kd_.size() || command.kd != kd_;
+  kp_ = command.kp;
+  kd_ = command.kd;
   imu_.begin_cycle();
-  for (Bus& bus : buses_) {
-    for (std::size_t m = 0; m < bus.motors.size(); ++m)
-      bus.wanted[m] = joint_command(command, bus.motors[m].setup().index);
-    for (const auto& linked : bus.four_bars) command_cranks(bus, linked);
-    for (const auto& linked : bus.parallel) command_cranks(bus, linked);
-    // SYNC goes first: what it asks for is worth most when it is new.
-    std::array<Frame, 2> network;
-    const std::size_t network_count = bus.canopen ? network_frames(static_cast<int>(cycles_ % 1000), network) : 0;
-    std::size_t count = 0;
-    if (network_count > 0) bus.outgoing[count++] = network[0];
-    for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-      if (paused) bus.motors[m].interrupt();
-      if (const auto frame = bus.motors[m].begin(bus.wanted[m], stiff_)) bus.outgoing[count++] = *frame;
+  for (Bus& bus : buses_) send(bus, command, paused);
+}
+
+void CanHal::send(Bus& bus, const model::JointCommand& command, bool paused) noexcept {
+  bool synced = bus.canopen;
+  for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+    BusMotor& motor = bus.motors[m];
+    motor.begin();
+    if (paused) motor.interrupt();
+    synced = synced && !motor.pauses_sync();
+    bus.wanted[m] = joint_command(command, motor.setup().index);
+  }
+  for (const auto& linked : bus.four_bars) command_cranks(bus, linked);
+  for (const auto& linked : bus.parallel) command_cranks(bus, linked);
+  std::size_t count = 0;
+  const auto put = [&](const Frame& frame, int asked) {
+    bus.outgoing[count] = frame;
+    bus.asked[count++] = asked;
+  };
+  if (synced) put(canopen::sync(), kAllCanopen);  // first: what it asks for is worth most when it is new
+  for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+    const auto frame = bus.motors[m].ask(bus.wanted[m], {.stiff = stiff_, .urgent = urgent_, .synced = synced});
+    if (!frame) continue;
+    const bool answers = std::holds_alternative<drives::MitRanges>(bus.motors[m].setup().drive);
+    put(*frame, answers ? static_cast<int>(m) : kNobody);
+  }
+  if (bus.canopen && cycles_ % kHeartbeatCycles == 0) put(canopen::heartbeat(), kNobody);
+  for (std::size_t k = bus.link->send(std::span(bus.outgoing).first(count)); k < count; ++k) {
+    if (bus.asked[k] >= 0) bus.motors[static_cast<std::size_t>(bus.asked[k])].not_asked();
+    if (bus.asked[k] != kAllCanopen) continue;
+    for (BusMotor& motor : bus.motors) {
+      if (std::holds_alternative<drives::Cia402Settings>(motor.setup().drive)) motor.not_asked();
     }
-    if (network_count > 1) bus.outgoing[count++] = network[1];
-    bus.link->send(std::span(bus.outgoing).first(count));
   }
 }
 
@@ -110,6 +130,7 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
   tell();
   ++cycles_;
   if (trouble_.status != hal::BusStatus::kOk) return trouble_.status;
+  state.age_ns = 0;
   const int joints = robot_.joint_index.size();
   for (JointVector* values : {&state.q, &state.dq, &state.tau, &state.temperature_degC}) values->resize(joints);
   for (const Bus& bus : buses_) {
@@ -120,6 +141,7 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
       state.dq[index] = joint.dq_rad_s;
       state.tau[index] = joint.torque_Nm;
       state.temperature_degC[index] = joint.temperature_degC;
+      state.age_ns = std::max(state.age_ns, bus.motors[m].monitor().age_cycles() * hal::BusCycle::kPeriod_ns);
     }
   }
   imu_.read(state);
@@ -211,22 +233,15 @@ void CanHal::drain(Bus& bus) noexcept {
 
 void CanHal::hear(Bus& bus, const Frame& frame) noexcept {
   if (bus.setup->imu && imu_.hear(frame)) return;
-  const auto node = sender(frame);
-  if (!node) {
-    ++unreadable_;
-    return;
+  for (BusMotor& motor : bus.motors) {
+    if (motor.hear(frame)) return;
   }
-  const int index = bus.motor_of_node[static_cast<std::size_t>(*node)];
-  if (index < 0) {
-    ++strangers_;
-  } else if (!bus.motors[static_cast<std::size_t>(index)].hear(frame)) {
-    ++unreadable_;
-  }
+  ++(stranger(*bus.setup, frame) ? strangers_ : unreadable_);
 }
 
 bool CanHal::all_answered() const noexcept {
   return std::ranges::all_of(buses_, [](const Bus& bus) {
-    return std::ranges::all_of(bus.motors, [](const BusMotor& motor) { return motor.monitor().age_cycles() == 0; });
+    return std::ranges::all_of(bus.motors, [](const BusMotor& motor) { return motor.monitor().settled(); });
   });
 }
 
@@ -234,12 +249,8 @@ bool CanHal::wait(std::int64_t deadline_ns) noexcept {
   const io::WallClock clock;
   const std::int64_t left_ns = deadline_ns - clock.now_ns();
   if (left_ns <= 0) return false;
-  std::array<pollfd, kMostBuses> polled{};
-  const std::size_t count = std::min(buses_.size(), kMostBuses);
-  for (std::size_t b = 0; b < count; ++b)
-    polled[b] = {.fd = buses_[b].link->descriptor(), .events = POLLIN, .revents = 0};
   const timespec timeout{.tv_sec = 0, .tv_nsec = left_ns};
-  return ppoll(polled.data(), count, &timeout, nullptr) > 0;
+  return ppoll(polled_.data(), polled_.size(), &timeout, nullptr) > 0;
 }
 
 BusTrouble CanHal::judge() const noexcept {

@@ -1,6 +1,8 @@
 // A robot's drives on its CAN buses, one bus cycle at a time.
 #pragma once
 
+#include <poll.h>
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -81,17 +83,19 @@ class CanHal final : public hal::Hal {
     std::vector<BusMotor> motors;
     bool canopen = false;                        // some motor's drive is a CANopen one
     std::vector<Frame> outgoing;                 // room for one a motor and the network's two
+    std::vector<int> asked;                      // one a frame: the motor that it asks; kAllCanopen, kNobody
     std::vector<drives::MotorCommand> wanted;    // one a motor, before its transmission: at the joint, or at the crank
     std::vector<drives::MotorReading> readings;  // one a motor, of its joint
     std::vector<Linked<1>> four_bars;
     std::vector<Linked<2>> parallel;
-    std::array<int, 256> motor_of_node{};
   };
   template <int N>
   static void command_cranks(Bus& bus, const Linked<N>& linked) noexcept;
   template <int N>
   static void read_joints(Bus& bus, Linked<N>& linked) noexcept;
   static void read_joints(Bus& bus) noexcept;
+  static constexpr int kAllCanopen = -1, kNobody = -2;
+  void send(Bus& bus, const model::JointCommand& command, bool paused) noexcept;
   static void send_targets(Bus& bus) noexcept;
   static int unsolved(const Bus& bus) noexcept;
   void drain() noexcept;
@@ -106,8 +110,10 @@ class CanHal final : public hal::Hal {
   const io::Clock& clock_;
   std::vector<Bus> buses_;
   std::vector<Frame> incoming_;
+  std::vector<pollfd> polled_;  // one a bus
   XsensImu imu_;
-  bool stiff_ = false, waits_ = false;
+  bool stiff_ = false, urgent_ = false, waits_ = false;
+  JointVector kp_, kd_;  // of the last command
   std::int64_t last_send_ns_ = 0;
   std::uint64_t cycles_ = 0, strangers_ = 0, unreadable_ = 0;
   BusTrouble trouble_, told_;

@@ -21,8 +21,20 @@ namespace {
 constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
 constexpr int kSettleCycles = 100;   // 0.2 s at each end
 constexpr double kLeastShare = 0.5;  // of the way asked for, with soft gains and dry friction
+constexpr double kLeastWay_rad = 3.0 * kRadPerDegree, kMostWay_rad = 20.0 * kRadPerDegree;
+// Frictions that a load must have to be compared; friction of opposite ways cancels out of the mean of both.
+constexpr double kSure = 3.0, kSureOfMean = 1.0;
+constexpr double kWayMargin =
+    1.5;  // soft gains don't reach the end, and a step of the drive's torque counts as friction
 
 }  // namespace
+
+double telling_way_rad(const model::RobotModel& robot, const JointVector& q, const std::string& joint) {
+  const model::HangingLoad load = model::hanging_load(robot, joint, q);
+  const double friction_Nm = robot.joints[static_cast<std::size_t>(robot.joint_index.at(joint))].friction_Nm;
+  const double share = kWayMargin * kSure * friction_Nm / std::max(load.gravity_Nm, 1e-9);
+  return std::clamp(std::asin(std::min(share, 1.0)), kLeastWay_rad, kMostWay_rad);
+}
 
 Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives::BusSetup& bus,
               const drives::MotorSetup& motor, Link& link, const WiggleOptions& options,
@@ -61,9 +73,10 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives
     torque_Nm = torque_sum / kRestCycles;
   };
   double q_up = 0.0, q_down = 0.0, q_back = 0.0, torque_up = 0.0, torque_down = 0.0, torque_back = 0.0;
-  const double up = std::min(start_rad + options.by_rad, joint.upper_rad);
+  const double by_rad = options.by_rad.value_or(telling_way_rad(robot, q, motor.joint));
+  const double up = std::min(start_rad + by_rad, joint.upper_rad);
   go_to(up, q_up, torque_up);
-  go_to(start_rad - options.by_rad, q_down, torque_down);
+  go_to(start_rad - by_rad, q_down, torque_down);
   go_to(start_rad, q_back, torque_back);
 
   const model::HangingLoad load = model::hanging_load(robot, motor.joint, q);
@@ -71,7 +84,15 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives
   result.asked_rad = up - start_rad;
   result.moved_rad = q_up - start_rad;
   result.held_Nm = 0.5 * (torque_up + torque_down);  // dry friction takes opposite signs on the two ways
-  result.model_Nm = load.gravity_Nm * std::sin(0.5 * (q_up + q_down) - load.hangs_at_rad);
+  const double middle_rad = 0.5 * (q_up + q_down);
+  result.model_Nm = load.gravity_Nm * std::sin(middle_rad - load.hangs_at_rad);
+  // The joint is at -q then, and its torque has the other sign, too.
+  result.model_inverted_Nm = load.gravity_Nm * std::sin(middle_rad + load.hangs_at_rad);
+  const double model_up_Nm = load.gravity_Nm * std::sin(q_up - load.hangs_at_rad),
+               model_down_Nm = load.gravity_Nm * std::sin(q_down - load.hangs_at_rad);
+  const bool up_pulls_more = std::abs(model_up_Nm) > std::abs(model_down_Nm);
+  result.held_end_Nm = up_pulls_more ? torque_up : torque_down;
+  result.model_end_Nm = up_pulls_more ? model_up_Nm : model_down_Nm;
   result.friction_Nm = joint.friction_Nm + one.motor().torque_step_Nm();
   return result;
 }
@@ -117,23 +138,38 @@ std::string way_of(const model::RobotModel& robot, const JointVector& q, const s
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::string verdict(const Wiggle& wiggle) {
+Verdict verdict(const Wiggle& wiggle) {
+  using Tells = Verdict::Tells;
   if (wiggle.moved_rad < kLeastShare * wiggle.asked_rad) {
-    return wiggle.moved_rad < 0.0
-               ? "it moved the other way than its own drive was told: position and torque of the drive have opposite "
-                 "signs"
-               : "it moved less than half the way: a brake, a stop, too much friction, or another joint's motor";
+    return {Tells::kWrong,
+            wiggle.moved_rad < 0.0
+                ? "it moved the other way than its own drive was told: position and torque of the drive have opposite "
+                  "signs"
+                : "it moved less than half the way: a brake, a stop, too much friction, or another joint's motor"};
   }
-  const double sure_Nm = 3.0 * wiggle.friction_Nm;
-  if (std::abs(wiggle.model_Nm) < sure_Nm)
-    return "its load is too small to tell the direction: compare the way with the eye";
-  if (wiggle.held_Nm * wiggle.model_Nm < 0.0)
-    return "the load pulls the other way than the model's: `direction` in robot.yaml is wrong";
-  const double ratio = wiggle.held_Nm / wiggle.model_Nm;
-  if (ratio < 0.5 || ratio > 2.0)
-    return fmt::format(
-        "the drive holds {:.1f} times the model's load: look at `gear` and at the drive's torque constant", ratio);
-  return "direction and gear agree with the model";
+  // An end's torque has the friction in it, once.
+  const double least_Nm = 0.5 * wiggle.model_end_Nm - wiggle.friction_Nm,
+               most_Nm = 2.0 * wiggle.model_end_Nm + wiggle.friction_Nm;
+  const bool gear_known = std::abs(wiggle.model_end_Nm) >= kSure * wiggle.friction_Nm;
+  const auto [lower_Nm, upper_Nm] = std::minmax({least_Nm, most_Nm});
+  if (gear_known && (wiggle.held_end_Nm < lower_Nm || wiggle.held_end_Nm > upper_Nm))
+    return {
+        Tells::kWrong,
+        fmt::format("the drive holds {:.1f} times the model's load: look at `gear`, at the drive's torque constant, "
+                    "and at the joint's zero",
+                    wiggle.held_end_Nm / wiggle.model_end_Nm)};
+  const double apart_Nm = std::abs(wiggle.model_Nm - wiggle.model_inverted_Nm);
+  const bool direction_known = apart_Nm >= kSureOfMean * wiggle.friction_Nm;
+  if (direction_known &&
+      std::abs(wiggle.held_Nm - wiggle.model_inverted_Nm) < std::abs(wiggle.held_Nm - wiggle.model_Nm))
+    return {Tells::kWrong, "the load pulls the other way than the model's: `direction` in robot.yaml is wrong"};
+  if (direction_known && gear_known) return {Tells::kAgrees, "direction and gear agree with the model"};
+  if (gear_known)
+    return {Tells::kNotAll,
+            "its load agrees with the model's and would be the same the other way round: compare the way with the eye"};
+  if (direction_known)
+    return {Tells::kNotAll, "the direction agrees with the model; its load is too small to tell the gear"};
+  return {Tells::kNotAll, "its load is too small to tell direction and gear: compare the way with the eye"};
 }
 
 }  // namespace pmg::can

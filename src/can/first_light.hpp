@@ -1,7 +1,9 @@
 // The first movements of a new robot on the gantry: one motor at a time, the others switched off.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "can/link.hpp"
@@ -11,7 +13,8 @@
 namespace pmg::can {
 
 struct WiggleOptions {
-  double by_rad = 0.05;     ///< there, back, and back to the start
+  /// There, back, and back to the start; nullopt: as far as telling_way_rad says.
+  std::optional<double> by_rad{};
   double gain_share = 0.3;  ///< of robot.yaml's kp and kd; a drive in position mode has its own
   double speed_rad_s = 0.1;
 };
@@ -21,8 +24,14 @@ struct Wiggle {
   double asked_rad = 0.0, moved_rad = 0.0;  ///< from the start to the farther end of the positive way
   double held_Nm = 0.0;                     ///< mean torque of the drive at rest between the two ends
   double model_Nm = 0.0;                    ///< the model's torque to hold the hanging joint there
-  double friction_Nm = 0.0;                 ///< within which the two can't be compared
+  double model_inverted_Nm = 0.0;           ///< the same if the motor turned the other way round than robot.yaml has it
+  double held_end_Nm = 0.0, model_end_Nm = 0.0;  ///< drive's and model's torque at the end where the load pulls more
+  double friction_Nm = 0.0;                      ///< within which torques can't be compared
 };
+
+/// How far a hanging joint moves from q until its load is well above three times its friction, so that the drive's
+/// torque tells the gear: 3 to 20 degrees [rad].
+double telling_way_rad(const model::RobotModel& robot, const JointVector& q, const std::string& joint);
 
 /// Enables the motor, moves the joint forth and back, and disables it whatever happens. Throws std::runtime_error when
 /// the motor doesn't answer, reports a fault, starts outside its joint's range, or when it was interrupted. q: how the
@@ -35,7 +44,13 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives
 /// [rad], base upright: "31 mm backward, 4 mm up". This is what the eye compares.
 std::string way_of(const model::RobotModel& robot, const JointVector& q, const std::string& joint, double by_rad);
 
-/// What the figures say of direction and gear, one line.
-std::string verdict(const Wiggle& wiggle);
+struct Verdict {
+  enum class Tells : std::uint8_t { kAgrees, kWrong, kNotAll } tells = Tells::kAgrees;
+  std::string text;  ///< one line
+};
+
+/// What the figures say of direction and gear. A limb that hangs straight down from its joint pulls alike whichever way
+/// its motor turns: then nothing but the eye tells the direction.
+Verdict verdict(const Wiggle& wiggle);
 
 }  // namespace pmg::can

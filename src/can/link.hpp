@@ -15,14 +15,16 @@ struct LinkCounts {
   std::uint64_t error_frames = 0;  ///< reports of the CAN controller, ACK errors among them
   std::uint64_t ack_errors = 0;
   std::uint64_t bus_offs = 0;
+  int sending_errors = 0, receiving_errors = 0;  ///< the CAN controller's own counters, as it told them last
 };
 
 /// None of these allocates, locks, throws or waits.
 class Link {
  public:
   virtual ~Link() = default;
-  /// Frames in the order in which they go out; as many as there is room for, the others are counted and dropped.
-  virtual void send(std::span<const Frame> frames) noexcept = 0;
+  /// Frames in the order in which they go out => how many of them there was room for; the others are counted and
+  /// dropped.
+  virtual std::size_t send(std::span<const Frame> frames) noexcept = 0;
   /// What has arrived, at most as many as there is room for; 0: nothing more.
   virtual std::size_t receive(std::span<Frame> frames) noexcept = 0;
   virtual BusHealth health() const noexcept = 0;

@@ -20,7 +20,7 @@ std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor
 
 OneMotor::OneMotor(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
                    const std::function<void()>& tick)
-    : bus_(bus), setup_(motor), motor_(motor, bus.data_bitrate != 0), link_(link), tick_(tick) {
+    : bus_(bus), setup_(motor), motor_(motor, bus), link_(link), tick_(tick) {
   if (std::holds_alternative<drives::Cia402Settings>(motor.drive)) set_up_node(bus, motor, link, tick);
   for (int k = 0; k < kAnswerCycles && !motor_.monitor().answered(); ++k) exchange_off();
   if (!motor_.monitor().answered())
@@ -38,14 +38,20 @@ OneMotor::~OneMotor() {
   link_.send(std::span(&quiet, 1));
 }
 
-void OneMotor::cycle(const std::function<std::optional<Frame>()>& begin) {
-  if (bus_.has_canopen()) {
-    const bool due = ticks_ >= kHeartbeatCycles;
-    if (due) ticks_ = 0;
-    std::array<Frame, 2> network;
-    link_.send(std::span(network).first(network_frames(due ? 0 : 1, network)));
+void OneMotor::cycle(const std::function<std::optional<Frame>(bool synced)>& ask) {
+  const auto send = [this](const Frame& frame) { return link_.send(std::span(&frame, 1)) == 1; };
+  motor_.begin();
+  const bool synced = bus_.has_canopen() && !motor_.pauses_sync();
+  bool asked = synced && send(canopen::sync());
+  if (bus_.has_canopen() && ticks_ >= kHeartbeatCycles) {
+    ticks_ = 0;
+    send(canopen::heartbeat());
   }
-  if (const auto frame = begin()) link_.send(std::span(&*frame, 1));
+  if (const auto frame = ask(synced)) {
+    const bool sent = send(*frame);
+    if (std::holds_alternative<drives::MitRanges>(setup_.drive)) asked = sent;
+  }
+  if (!asked) motor_.not_asked();
   for (int k = 0; k < kPatience && (k == 0 || motor_.monitor().age_cycles() > 0); ++k) {
     tick_();
     ++ticks_;
@@ -58,17 +64,17 @@ void OneMotor::cycle(const std::function<std::optional<Frame>()>& begin) {
 }
 
 void OneMotor::exchange_off() {
-  cycle([this] { return motor_.begin_off(); });
+  cycle([this](bool synced) { return motor_.ask_off(synced); });
 }
 
 bool OneMotor::switch_on() {
   for (int k = 0; k < kAnswerCycles && !motor_.monitor().enabled(); ++k)
-    cycle([this] { return motor_.begin({}, false); });
+    cycle([this](bool synced) { return motor_.ask({}, {.synced = synced}); });
   return motor_.monitor().enabled();
 }
 
 void OneMotor::exchange(const drives::MotorCommand& joint) {
-  cycle([&] { return motor_.begin(joint, true); });
+  cycle([&](bool synced) { return motor_.ask(joint, {.stiff = true, .synced = synced}); });
   if (motor_.monitor().condition(true) != drives::Condition::kLost) return;
   const drives::Trouble trouble = motor_.monitor().trouble(true);
   throw std::runtime_error(name_of(bus_, setup_) + " " +
@@ -85,7 +91,7 @@ void OneMotor::set_zero() {
   std::array<Frame, 32> answers;
   while (link_.receive(answers) > 0) {
   }
-  motor_ = BusMotor(setup_, bus_.data_bitrate != 0);  // the position jumps
+  motor_ = BusMotor(setup_, bus_);  // the position jumps
 }
 
 }  // namespace pmg::can

@@ -36,7 +36,7 @@ class OneMotor {
   const BusMotor& motor() const { return motor_; }
 
  private:
-  void cycle(const std::function<std::optional<Frame>()>& begin);
+  void cycle(const std::function<std::optional<Frame>(bool synced)>& ask);
 
   const drives::BusSetup& bus_;
   const drives::MotorSetup& setup_;

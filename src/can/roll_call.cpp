@@ -10,6 +10,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "can/bus_motor.hpp"
 #include "can/one_motor.hpp"
 
 namespace pmg::can {
@@ -25,36 +26,41 @@ constexpr double kBeyondRange_rad =
 
 using Answers = std::map<int, Answer>;
 
-/// What has arrived from MIT drives.
-void take_mit(const drives::BusSetup& bus, Link& link, Answers& answers) {
+/// What has arrived from MIT drives, strangers' too.
+void take_mit(const drives::BusSetup& bus, std::vector<BusMotor>& motors, Link& link, Answers& answers,
+              OtherFrames* others) {
+  const auto count_one = [&](int node) -> Answer& {
+    Answer& answer = answers[node];
+    answer.node = node;
+    ++answer.count;
+    return answer;
+  };
   std::array<Frame, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
-      const auto node = sender(frame);
-      if (!node || frame.id > canopen::kNodeBits) continue;
-      const auto motor = std::ranges::find(bus.motors, *node, &drives::MotorSetup::node);
-      const auto* mit = motor == bus.motors.end() ? nullptr : std::get_if<drives::MitRanges>(&motor->drive);
-      // A stranger's reply has an identifier that this bus's drives answer with; the IMU's messages have others.
-      const bool reply = std::ranges::any_of(bus.motors, [&](const drives::MotorSetup& other) {
-        const auto* ranges = std::get_if<drives::MitRanges>(&other.drive);
-        return ranges != nullptr && ranges->reply_id == frame.id;
-      });
-      if (mit != nullptr ? mit->reply_id != frame.id : !reply) continue;
-      Answer& answer = answers[*node];
-      answer.node = *node;
-      ++answer.count;
-      if (mit != nullptr) answer.reading = drives::MitProtocol(*mit).reply(frame.bytes())->reading;
+      bool fault_code = false;
+      if (const auto node = mit_stranger(bus, frame)) count_one(*node);
+      for (BusMotor& motor : motors) {
+        const BusMotor::Heard heard = motor.overhear(frame);
+        if (heard.what != BusMotor::Heard::What::kReading) continue;
+        count_one(motor.setup().node).reading = heard.reading;
+        fault_code = heard.reading.fault != drives::DriveFault::kOther;
+      }
+      if (others != nullptr && !fault_code) others->note(frame);
     }
   }
 }
 
 /// What has arrived from SDO servers.
-void take_canopen(Link& link, Answers& answers) {
+void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
   std::array<Frame, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
       const std::uint32_t node = frame.id & canopen::kNodeBits;
-      if (frame.extended || frame.id - node != canopen::kSdoAnswer || !canopen::sdo_answer(frame)) continue;
+      if (frame.extended || frame.id - node != canopen::kSdoAnswer || !canopen::sdo_answer(frame)) {
+        if (others != nullptr) others->note(frame);
+        continue;
+      }
       Answer& answer = answers[static_cast<int>(node)];
       answer.node = static_cast<int>(node);
       ++answer.count;
@@ -148,11 +154,11 @@ void read_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Lin
 }
 
 void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, const std::function<void()>& check,
-                 Answers& answers) {
+                 Answers& answers, OtherFrames* others) {
   const Roll roll{.link = link,
                   .wait = wait,
                   .request = [](int node) { return canopen::sdo_read(node, drives::object::kDeviceType); },
-                  .take = [&link](Answers& into) { take_canopen(link, into); }};
+                  .take = [&](Answers& into) { take_canopen(link, into, others); }};
   std::vector<int> own, strangers;
   for (int node = 1; node < static_cast<int>(canopen::kHostNode); ++node) {
     const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
@@ -176,13 +182,16 @@ void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, cons
 }  // namespace
 
 std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
-                            const std::function<bool()>& interrupted) {
+                            const std::function<bool()>& interrupted, OtherFrames* others) {
   const auto check = [&] {
     if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were asked");
   };
   std::vector<int> mit;
+  std::vector<BusMotor> motors;
   for (const drives::MotorSetup& motor : bus.motors) {
-    if (std::holds_alternative<drives::MitRanges>(motor.drive)) mit.push_back(motor.node);
+    if (!std::holds_alternative<drives::MitRanges>(motor.drive)) continue;
+    mit.push_back(motor.node);
+    motors.emplace_back(motor, bus);
   }
   const Roll roll{.link = link,
                   .wait = wait,
@@ -190,10 +199,10 @@ std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait&
                       [&bus](int node) {
                         return Frame::of(static_cast<std::uint32_t>(node), drives::kMitDisable, bus.data_bitrate != 0);
                       },
-                  .take = [&](Answers& into) { take_mit(bus, link, into); }};
+                  .take = [&](Answers& into) { take_mit(bus, motors, link, into, others); }};
   Answers answers;
   find_and_count(roll, mit, check, answers);
-  if (bus.has_canopen()) ask_canopen(bus, link, wait, check, answers);
+  if (bus.has_canopen()) ask_canopen(bus, link, wait, check, answers, others);
   std::vector<Answer> list;
   for (const auto& [node, answer] : answers) list.push_back(answer);
   return list;

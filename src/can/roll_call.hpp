@@ -8,6 +8,7 @@
 
 #include "can/canopen_setup.hpp"
 #include "can/link.hpp"
+#include "can/other_frames.hpp"
 #include "drives/drive_setup.hpp"
 
 namespace pmg::can {
@@ -16,16 +17,16 @@ namespace pmg::can {
 /// say.
 struct Answer {
   int node = 0;
-  int count = 0;                 ///< answers a request, over several; 2: two drives have this node
-  drives::MotorReading reading;  ///< at the drive's output shaft; zero for a node without a known kind of drive
-  std::string problem{};         ///< of a CANopen drive: why it isn't the one of robot.yaml; empty: it is
+  int count = 0;                   ///< answers a request, over several; 2: two drives have this node
+  drives::MotorReading reading{};  ///< at the drive's output shaft; zero for a node without a known kind of drive
+  std::string problem{};           ///< of a CANopen drive: why it isn't the one of robot.yaml; empty: it is
 };
 
 /// Asks every motor of the bus a few times, for some 0.1 s, 0.3 s if one is silent, and reads the CANopen drives that
 /// answer. Answers that a delay holds back or bunches count as those of one drive. Answers by node,
-/// those of strangers included.
+/// those of strangers included. others: gets what else was heard; null: nobody wants to know.
 std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
-                            const std::function<bool()>& interrupted);
+                            const std::function<bool()>& interrupted, OtherFrames* others = nullptr);
 
 /// What is wrong with these answers, one text a problem: a motor that doesn't answer, two drives of one node, a node
 /// that robot.yaml doesn't have, a fault that a drive reports, a joint more than 0.2 rad beyond its range (a wrong

@@ -15,6 +15,10 @@ namespace pmg::can {
 
 namespace {
 
+#ifndef CAN_ERR_CNT
+#define CAN_ERR_CNT 0x00000200U
+#endif
+
 constexpr unsigned short kCanInterface = 280;  // ARPHRD_CAN; <linux/if_arp.h> and <net/if.h> can't be included together
 
 [[noreturn]] void refuse(const std::string& interface, const std::string& wrong, const std::string& advice) {
@@ -50,7 +54,8 @@ void set(int socket, const std::string& interface, int option, const T& value, c
 
 }  // namespace
 
-SocketLink::SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd) {
+SocketLink::SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd)
+    : interface_(interface) {
   for (Batch* batch : {&out_, &in_}) {
     for (std::size_t i = 0; i < kBatch; ++i) {
       batch->parts[i] = {.iov_base = &batch->frames[i], .iov_len = sizeof(canfd_frame)};
@@ -97,6 +102,8 @@ void SocketLink::open(const std::string& interface, const std::vector<std::uint3
       refuse(interface, "receive filter");
     }
   }
+  const int stamps = 1;
+  if (setsockopt(socket_, SOL_SOCKET, SO_TIMESTAMPNS, &stamps, sizeof stamps) != 0) refuse(interface, "time stamps");
   set(socket_, interface, CAN_RAW_ERR_FILTER, can_err_mask_t{CAN_ERR_MASK}, "error frames");
   sockaddr_can address{};
   address.can_family = AF_CAN;
@@ -104,7 +111,8 @@ void SocketLink::open(const std::string& interface, const std::vector<std::uint3
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) refuse(interface, "bind");
 }
 
-void SocketLink::send(std::span<const Frame> frames) noexcept {
+std::size_t SocketLink::send(std::span<const Frame> frames) noexcept {
+  const std::size_t all = frames.size();
   while (!frames.empty()) {
     const std::size_t count = std::min(frames.size(), kBatch);
     for (std::size_t i = 0; i < count; ++i) {
@@ -125,8 +133,9 @@ void SocketLink::send(std::span<const Frame> frames) noexcept {
     if (errno == EINTR) continue;
     if (errno == ENETDOWN || errno == ENODEV || errno == ENXIO) health_ = BusHealth::kOff;
     counts_.not_sent += frames.size();  // full queue: newer commands follow in 2 ms
-    return;
+    break;
   }
+  return all - frames.size();
 }
 
 std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {
@@ -160,10 +169,51 @@ std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {
   return taken;
 }
 
-// Error classes: linux/can/error.h.
+bool SocketLink::record(RecordedFrame& recorded) noexcept {
+  canfd_frame raw{};
+  iovec part{.iov_base = &raw, .iov_len = sizeof raw};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec))> control{};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  ssize_t got = -1;
+  do {
+    got = recvmsg(socket_, &message, MSG_DONTWAIT);
+  } while (got < 0 && errno == EINTR);
+  if (got != static_cast<ssize_t>(CAN_MTU) && got != static_cast<ssize_t>(CANFD_MTU)) return false;
+  recorded.stamp_ns = 0;
+  for (cmsghdr* part_of = CMSG_FIRSTHDR(&message); part_of != nullptr; part_of = CMSG_NXTHDR(&message, part_of)) {
+    if (part_of->cmsg_level != SOL_SOCKET || part_of->cmsg_type != SCM_TIMESTAMPNS) continue;
+    timespec stamp{};
+    std::memcpy(&stamp, CMSG_DATA(part_of), sizeof stamp);
+    recorded.stamp_ns = static_cast<std::int64_t>(stamp.tv_sec) * 1'000'000'000 + stamp.tv_nsec;
+  }
+  recorded.interface = interface_;
+  using Kind = RecordedFrame::Kind;
+  recorded.kind = (raw.can_id & CAN_ERR_FLAG) != 0   ? Kind::kError
+                  : (raw.can_id & CAN_RTR_FLAG) != 0 ? Kind::kRemote
+                                                     : Kind::kData;
+  if (recorded.kind == Kind::kError) heed(raw);
+  Frame& frame = recorded.frame;
+  frame.fd = got == static_cast<ssize_t>(CANFD_MTU);
+  frame.extended = recorded.kind != Kind::kError && (raw.can_id & CAN_EFF_FLAG) != 0;
+  frame.id = raw.can_id & (frame.extended || recorded.kind == Kind::kError ? CAN_EFF_MASK : CAN_SFF_MASK);
+  frame.length = std::min<std::uint8_t>(raw.len, frame.fd ? 64 : 8);
+  std::memcpy(frame.data.data(), static_cast<const unsigned char*>(raw.data), frame.fd ? 64 : 8);
+  ++counts_.received;
+  return true;
+}
+
+// Error classes: linux/can/error.h. Kernels from 6.0 on say with CAN_ERR_CNT that bytes 6 and 7 are the counters.
 void SocketLink::heed(const canfd_frame& error) noexcept {
   ++counts_.error_frames;
   if ((error.can_id & CAN_ERR_ACK) != 0) ++counts_.ack_errors;
+  if ((error.can_id & (CAN_ERR_CRTL | CAN_ERR_CNT)) != 0) {
+    counts_.sending_errors = error.data[6];
+    counts_.receiving_errors = error.data[7];
+  }
   if ((error.can_id & CAN_ERR_BUSOFF) != 0) {
     ++counts_.bus_offs;
     health_ = BusHealth::kOff;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "can/candump.hpp"
 #include "can/link.hpp"
 
 namespace pmg::can {
@@ -24,11 +25,15 @@ class SocketLink final : public Link {
   SocketLink(const SocketLink&) = delete;
   SocketLink& operator=(const SocketLink&) = delete;
 
-  void send(std::span<const Frame> frames) noexcept override;
+  std::size_t send(std::span<const Frame> frames) noexcept override;
   std::size_t receive(std::span<Frame> frames) noexcept override;
   BusHealth health() const noexcept override { return health_; }
   const LinkCounts& counts() const noexcept override { return counts_; }
   int descriptor() const noexcept override { return socket_; }
+
+  /// The next frame of any kind that has arrived, remote frames and the controller's error reports included, with the
+  /// time at which the kernel got it. False: nothing more. For who records; frames are not to be received otherwise.
+  bool record(RecordedFrame& recorded) noexcept;
 
  private:
   struct Batch {  // what one sendmmsg() or recvmmsg() points to; it points into itself
@@ -39,6 +44,7 @@ class SocketLink final : public Link {
   void open(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd);
   void heed(const canfd_frame& error) noexcept;
 
+  std::string interface_;
   int socket_ = -1;
   BusHealth health_ = BusHealth::kGood;
   LinkCounts counts_;

@@ -16,7 +16,7 @@ MitRanges read_mit(files::ConfigReader& reader) {
           .torque_Nm = reader.required<double>("torque_Nm", files::positive()),
           .kp_Nm_per_rad = reader.required<double>("kp_Nm_per_rad", files::positive()),
           .kd_Nm_s_per_rad = reader.required<double>("kd_Nm_s_per_rad", files::positive()),
-          .reply_id = static_cast<std::uint32_t>(reader.optional<int>("reply_id", 0, files::in_range(0, 0x7F)))};
+          .reply_id = static_cast<std::uint32_t>(reader.optional<int>("reply_id", 0, files::in_range(0, 0x7FF)))};
 }
 
 Cia402Settings read_cia402(files::ConfigReader& reader) {

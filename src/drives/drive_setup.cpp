@@ -97,10 +97,18 @@ MotorSetup make_motor(const model::RobotModel& robot, int index, const std::map<
   if (joint.bus.node < 1 || joint.bus.node > kMostNode) {
     reader.fail("bus", fmt::format("node is {}", joint.bus.node), fmt::format("1 to {}", kMostNode));
   }
+  DriveKind drive = kind->second;
+  if (joint.bus.reply_id) {
+    auto* mit = std::get_if<MitRanges>(&drive);
+    if (mit == nullptr)
+      reader.fail("bus", "has a `reply_id`, and its drive isn't of the MIT protocol",
+                  "none: CANopen gives it by the node");
+    mit->reply_id = static_cast<std::uint32_t>(*joint.bus.reply_id);
+  }
   return {.joint = joint.name,
           .index = index,
           .node = joint.bus.node,
-          .drive = kind->second,
+          .drive = drive,
           .transmission = Transmission(joint.bus),
           .limits = {}};
 }

@@ -8,38 +8,54 @@
 namespace pmg::drives {
 
 const char* to_string(Trouble trouble) noexcept {
-  constexpr std::array<const char*, 9> kTexts = {"answers",
-                                                 "does not answer",
-                                                 "reports a fault",
-                                                 "is not enabled",
-                                                 "its position jumped: a turn was lost",
-                                                 "its encoder stands still while the motor turns",
-                                                 "two drives have this node number",
-                                                 "is told other gains than those of its drive's own loop",
-                                                 "was powered anew and has lost its set-up: start the program anew"};
+  constexpr std::array<const char*, 10> kTexts = {
+      "answers",
+      "does not answer",
+      "reports a fault",
+      "is not enabled",
+      "its position jumped: a turn was lost",
+      "its encoder stands still while the motor turns",
+      "two drives have this node number",
+      "is told other gains than those of its drive's own loop",
+      "was powered anew and has lost its set-up: start the program anew",
+      "answers, but each time with an old state: something holds its bus up"};
   return kTexts[static_cast<std::size_t>(trouble)];
 }
 
-void MotorMonitor::ask(bool enabling) noexcept {
-  if (++cycles_since_overdue_ > kUncalledCycles) overdue_ = 0;
-  if (owed_ == 2) {
-    ++lost_;
-    overdue_ = std::min(overdue_ + 1, kOverdue);
-    cycles_since_overdue_ = 0;
-  }
-  owed_ = std::min(owed_ + 1, 2);
+void MotorMonitor::begin() noexcept {
+  old_cycles_ = any_ && !fresh() && !silent() ? old_cycles_ + 1 : 0;
   age_ = std::min(age_ + 1, kNever);
-  if (++cycles_since_uncalled_ > kUncalledCycles) uncalled_lately_ = 0;
-  enabling_ = enabling;
-  if (age_ > kSilentCycles) enabled_ = false;
+  silence_ = std::min(silence_ + 1, kNever);
+  if (silent()) enabled_ = false;
+  if (++cycles_since_uncalled_ > kUncalledCycles) {
+    if (two()) {  // the second drive is gone; which of the two said what isn't known
+      any_ = false;
+      if (latched_ != Trouble::kRestarted) latched_ = Trouble::kNone;
+    }
+    uncalled_lately_ = 0;
+  }
+  const int given_up = ledger_.begin();
+  if (given_up == 0) return;
+  lost_ += static_cast<std::uint32_t>(given_up);
+  enabled_after_ = 0;
+}
+
+void MotorMonitor::ask(bool enabling) noexcept {
+  ledger_.ask();
+  if (enabling && enabled_after_ == 0) enabled_after_ = ledger_.owed();
+}
+
+void MotorMonitor::take_back() noexcept {
+  ledger_.take_back();
+  if (enabled_after_ > ledger_.owed()) enabled_after_ = 0;
 }
 
 bool MotorMonitor::hear(const MotorReading& reading) noexcept {
-  if (owed_ == 0) {
-    hear_stray();
-    return false;
-  }
-  --owed_;
+  const AnswerLedger::Belongs belongs = ledger_.hear();
+  take(belongs);
+  if (belongs != AnswerLedger::Belongs::kToARequest) return false;
+  const bool to_enabling = enabled_after_ == 1;
+  enabled_after_ = std::max(enabled_after_ - 1, 0);
   if (!std::isfinite(reading.q_rad) || !std::isfinite(reading.dq_rad_s) || !std::isfinite(reading.torque_Nm) ||
       jumped(reading)) {
     ++refused_;
@@ -50,33 +66,43 @@ bool MotorMonitor::hear(const MotorReading& reading) noexcept {
   watch_encoder(reading);
   reading_ = reading;
   any_ = true;
-  age_ = 0;
+  age_ = ledger_.age_cycles();
+  silence_ = 0;
   if (reading.fault != DriveFault::kNone) {
     enabled_ = false;
   } else if (reading.follows != Follows::kUnknown) {
     enabled_ = reading.follows == Follows::kYes;
-  } else if (enabling_) {
+  } else if (to_enabling) {
     enabled_ = true;
   }
   return true;
 }
 
-void MotorMonitor::hear_stray() noexcept {
-  if (owed_ != 0) return;
-  if (overdue_ > 0) {
-    --overdue_;
-    return;
-  }
+void MotorMonitor::hear_stray() noexcept { take(ledger_.hear_part()); }
+
+void MotorMonitor::take(AnswerLedger::Belongs belongs) noexcept {
+  if (belongs != AnswerLedger::Belongs::kToNone) return;
   ++uncalled_;
+  ++uncalled_lately_;
   cycles_since_uncalled_ = 0;
-  if (++uncalled_lately_ >= kUncalled) latched_ = Trouble::kTwoOfOneNode;
+}
+
+void MotorMonitor::interrupt() noexcept {
+  enabled_ = false;
+  enabled_after_ = 0;
 }
 
 bool MotorMonitor::jumped(const MotorReading& reading) const noexcept {
   if (!any_) return false;
   // An answer may belong to the command before: one period more.
-  const double bound_rad = 2.0 * limits_.dq_rad_s * kPeriod_s * (age_ + 1) + kJumpMargin_rad;
-  return std::abs(reading.q_rad - reading_.q_rad) > bound_rad;
+  const double t_s = kPeriod_s * (silence_ + 1);
+  const double most_rad = 2.0 * limits_.dq_rad_s * t_s + kJumpMargin_rad;
+  const double slack_rad = 0.25 * kMostAcceleration_rad_s2 * t_s * t_s + kJumpMargin_rad;
+  const auto [slower, faster] = std::minmax({0.0, reading_.dq_rad_s, reading.dq_rad_s});
+  const double up_rad = std::min(kSpeedShare * faster * t_s + slack_rad, most_rad);
+  const double down_rad = std::min(-kSpeedShare * slower * t_s + slack_rad, most_rad);
+  const double moved_rad = reading.q_rad - reading_.q_rad;
+  return moved_rad > up_rad || moved_rad < -down_rad;
 }
 
 void MotorMonitor::watch_encoder(const MotorReading& reading) noexcept {
@@ -85,21 +111,23 @@ void MotorMonitor::watch_encoder(const MotorReading& reading) noexcept {
     return;
   }
   if (std::abs(reading.dq_rad_s) > kSpeedOffset_rad_s)
-    frozen_travel_rad_ += reading.dq_rad_s * kPeriod_s * std::max(age_, 1);
+    frozen_travel_rad_ += reading.dq_rad_s * kPeriod_s * std::max(silence_, 1);
   if (std::abs(frozen_travel_rad_) > kFrozenTravel_rad) latched_ = Trouble::kFrozenEncoder;
 }
 
 Trouble MotorMonitor::trouble(bool stiff) const noexcept {
+  if (two()) return Trouble::kTwoOfOneNode;  // first: the others may come of it
   if (latched_ != Trouble::kNone) return latched_;
-  if (age_ > kSilentCycles) return Trouble::kSilent;
+  if (silent()) return Trouble::kSilent;
   if (reading_.fault != DriveFault::kNone) return Trouble::kFault;
   if (gains_refused_) return Trouble::kOtherGains;
+  if (old_cycles_ >= kOldCycles && !fresh()) return Trouble::kOldState;
   return stiff && !enabled_ ? Trouble::kNotEnabled : Trouble::kNone;
 }
 
 Condition MotorMonitor::condition(bool stiff) const noexcept {
   if (trouble(stiff) != Trouble::kNone) return Condition::kLost;
-  return age_ > kFreshCycles ? Condition::kLate : Condition::kGood;
+  return fresh() ? Condition::kGood : Condition::kLate;
 }
 
 }  // namespace pmg::drives

@@ -19,14 +19,12 @@ std::size_t put_frames(std::span<const can::Frame> frames, std::span<std::uint8_
   return count;
 }
 
-void BridgeLink::send(std::span<const can::Frame> frames) noexcept {
-  for (const can::Frame& frame : frames) {
-    if (out_count_ == kRoom || frame.fd || frame.length > 8) {
-      ++counts_.not_sent;
-    } else {
-      out_[out_count_++] = frame;
-    }
-  }
+std::size_t BridgeLink::send(std::span<const can::Frame> frames) noexcept {
+  std::size_t taken = 0;
+  for (; taken < frames.size() && out_count_ < kRoom && !frames[taken].fd && frames[taken].length <= 8; ++taken)
+    out_[out_count_++] = frames[taken];
+  counts_.not_sent += frames.size() - taken;
+  return taken;
 }
 
 std::size_t BridgeLink::receive(std::span<can::Frame> frames) noexcept {

@@ -42,7 +42,7 @@ class BridgeLink final : public can::Link {
   /// Frames: while drives are asked one by one, nobody fetches for 20 exchanges, in each of which an IMU sends three.
   static constexpr std::size_t kRoom = 128;
 
-  void send(std::span<const can::Frame> frames) noexcept override;
+  std::size_t send(std::span<const can::Frame> frames) noexcept override;
   std::size_t receive(std::span<can::Frame> frames) noexcept override;
   can::BusHealth health() const noexcept override { return health_; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }

@@ -4,11 +4,11 @@
 
 namespace pmg::ethercat {
 
-DriveLink::DriveLink(std::vector<int> nodes) : in_(2 * nodes.size()) {
+DriveLink::DriveLink(const std::vector<int>& nodes) : in_(2 * nodes.size()) {
   for (const int node : nodes) drives_.push_back({.node = static_cast<std::uint32_t>(node)});
 }
 
-void DriveLink::send(std::span<const can::Frame> frames) noexcept {
+std::size_t DriveLink::send(std::span<const can::Frame> frames) noexcept {
   for (const can::Frame& frame : frames) {
     ++counts_.sent;
     if (frame.id == can::canopen::kSync && frame.length == 0) {
@@ -21,6 +21,7 @@ void DriveLink::send(std::span<const can::Frame> frames) noexcept {
     if (drive == drives_.end() || frame.length != kDriveOutputs) continue;
     std::copy_n(frame.data.begin(), kDriveOutputs, drive->targets.begin());
   }
+  return frames.size();
 }
 
 std::size_t DriveLink::receive(std::span<can::Frame> frames) noexcept {

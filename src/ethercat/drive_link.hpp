@@ -20,9 +20,9 @@ constexpr std::size_t drive_inputs(bool temperature) { return kFirstInputs + (te
 class DriveLink final : public can::Link {
  public:
   /// In the order of the slaves.
-  explicit DriveLink(std::vector<int> nodes);
+  explicit DriveLink(const std::vector<int>& nodes);
 
-  void send(std::span<const can::Frame> frames) noexcept override;
+  std::size_t send(std::span<const can::Frame> frames) noexcept override;
   std::size_t receive(std::span<can::Frame> frames) noexcept override;
   can::BusHealth health() const noexcept override { return can::BusHealth::kGood; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }

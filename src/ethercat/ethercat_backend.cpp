@@ -1,5 +1,9 @@
 #include "ethercat/ethercat_backend.hpp"
 
+#include <optional>
+
+#include "can/bus_claim.hpp"
+#include "can/bus_ids.hpp"
 #include "can/bus_load.hpp"
 #include "can/can_backend.hpp"
 #include "ethercat/ethercat_hal.hpp"
@@ -19,6 +23,7 @@ class EthercatBackend final : public hal::Backend {
         drives_(drives::load_drives(setup.robot)),
         setup_(load_ethercat(setup.robot, drives_)) {
     can::check_load(drives_);
+    can::check_ids(drives_);
   }
 
   hal::OptionValues configuration() const override {
@@ -31,6 +36,7 @@ class EthercatBackend final : public hal::Backend {
   hal::BackendDescription description() const override { return ethercat::description(drives_); }
 
   hal::Hal& connect(const std::function<bool()>& interrupted) override {
+    claim_.emplace(setup_.interface);
     wire_ = std::make_unique<PacketWire>(setup_.interface);
     hal_ = std::make_unique<EthercatHal>(setup_, drives_, robot_, clock_, *wire_, can::sleeping(), interrupted);
     return *hal_;
@@ -43,6 +49,7 @@ class EthercatBackend final : public hal::Backend {
   hal::OptionValues options_;
   drives::DriveSetup drives_;
   EthercatSetup setup_;
+  std::optional<can::BusClaim> claim_;
   std::unique_ptr<PacketWire> wire_;
   std::unique_ptr<EthercatHal> hal_;
 };

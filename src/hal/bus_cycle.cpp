@@ -12,7 +12,7 @@ void BusCycle::run() noexcept {
   sample_.status = hal_.exchange(*sent_, sample_.state);
   // The run's clock stamps what the drives said, whatever clock a backend may have; without an answer the old stamp
   // stays and the control thread sees the state grow old.
-  if (sample_.status == BusStatus::kOk) sample_.state.stamp_ns = clock_.now_ns();
+  if (sample_.status == BusStatus::kOk) sample_.state.stamp_ns = clock_.now_ns() - sample_.state.age_ns;
   sample_.trips = guard_.trips();
   sample_.trip_cause = guard_.cause();
   link_.samples.put(sample_);

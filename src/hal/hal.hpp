@@ -11,7 +11,8 @@ enum class BusStatus { kOk, kStale, kLost };
 class Hal {
  public:
   virtual ~Hal() = default;
-  /// Sends the command, advances or waits for one bus cycle, and fills the state.
+  /// Sends the command, advances or waits for one bus cycle, and fills the state; age_ns where a motor's part of it is
+  /// older than this cycle.
   virtual BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept = 0;
 };
 

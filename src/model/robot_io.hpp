@@ -11,7 +11,8 @@ namespace pmg::model {
 
 /// The measurements of a robot. It has no true base velocity, height or contact force.
 struct RobotState {
-  std::int64_t stamp_ns = 0;     ///< by the Clock of the run
+  std::int64_t stamp_ns = 0;     ///< by the Clock of the run, of the oldest motor's part
+  std::int64_t age_ns = 0;       ///< of that part when the bus cycle gave it; stamp_ns contains it
   std::uint64_t bus_sample = 0;  ///< counts bus cycles
   JointVector q, dq, tau;        ///< [rad], [rad/s], [Nm]
   JointVector temperature_degC;

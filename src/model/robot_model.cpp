@@ -80,6 +80,7 @@ BusAddress read_bus(files::ConfigReader reader) {
   bus.direction = reader.optional<int>("direction", 1);
   if (std::abs(bus.direction) != 1) reader.fail("direction", fmt::format("is {}", bus.direction), "1 or -1");
   bus.gear = reader.optional<double>("gear", 1.0, files::positive());
+  if (reader.has("reply_id")) bus.reply_id = reader.required<int>("reply_id", files::in_range(0, 0x7FF));
   bus.zero_offset_rad = reader.optional<double>("zero_offset_rad", 0.0);
   reader.finish();
   return bus;

@@ -25,10 +25,11 @@ namespace pmg::model {
 struct BusAddress {
   std::string bus;  ///< "can0", "ethercat", ...
   int node = 0;
-  std::string drive;             ///< its entry in robot.yaml's `drives` (src/drives); empty: none
-  int direction = 1;             ///< 1 or -1
-  double gear = 1.0;             ///< turns of the drive's output a turn of the joint
-  double zero_offset_rad = 0.0;  ///< the joint's reading minus its true angle, as zero.yaml has it
+  std::string drive;              ///< its entry in robot.yaml's `drives` (src/drives); empty: none
+  int direction = 1;              ///< 1 or -1
+  double gear = 1.0;              ///< turns of the drive's output a turn of the joint
+  std::optional<int> reply_id{};  ///< identifier of the drive's replies; nullopt: that of its entry in `drives`
+  double zero_offset_rad = 0.0;   ///< the joint's reading minus its true angle, as zero.yaml has it
 };
 
 struct Joint {

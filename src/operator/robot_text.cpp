@@ -82,6 +82,12 @@ std::string timing_text(const RobotNews& news) {
                      news.wake_us.percentile(99), news.tick_us.percentile(50), news.tick_us.percentile(99));
 }
 
+/// From the state that the newest tick started from to that tick [s]; messages of one tick have STATUS' stamp.
+std::optional<double> state_age_s(const RobotNews& news) {
+  if (!news.state) return std::nullopt;
+  return 1e-9 * static_cast<double>(news.status.stamp_ns - news.state->stamp_ns);
+}
+
 nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
   nlohmann::ordered_json json;
   for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = u[i];
@@ -152,6 +158,7 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
                                   100.0 * status.foot_load[kRight],
                                   status.hanging || status.footing_unknown ? ": the policy isn't run" : ""));
   }
+  if (const auto age_s = state_age_s(news)) add("state", fmt::format("{:.1f} ms old", 1e3 * *age_s));
   add("limited", limits_text(news));
   if (const auto hot = hottest(news))
     add("hottest", fmt::format("{:.0f} degC at {}", hot->temperature_degC, hot->joint));
@@ -186,6 +193,7 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"footing_unknown", status.footing_unknown != 0},
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
+  if (const auto age_s = state_age_s(news)) json["state_age_s"] = *age_s;
   if (news.info) {
     json["info"] = {{"model", news.info->model},      {"software", news.info->software}, {"policy", news.info->policy},
                     {"variant", variant(*news.info)}, {"backend", news.info->backend},   {"bundle", news.info->bundle},

@@ -186,6 +186,7 @@ void timing(pages::Page& page, const Runs& runs) {
     times(page, runs, "Control thread's wake-up, behind its plan", &RunTiming::wake_us);
     times(page, runs, "Bus thread's wake-up, the worst of each tick", &RunTiming::bus_wake_us);
     times(page, runs, "Bus exchange, the longest of each tick", &RunTiming::bus_exchange_us);
+    times(page, runs, "State's age at the tick's start, the oldest motor's", &RunTiming::state_age_us);
     times(page, runs, "Generator", &RunTiming::generator_us);
     times(page, runs, "Ground-aware optimisation", &RunTiming::gco_us);
     times(page, runs, "Policy", &RunTiming::policy_us);

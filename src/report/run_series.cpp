@@ -171,6 +171,7 @@ class Gathering {
   bool state(const pmg_msgs::robot_state_t& message) {
     if (!fits(message.joint_count)) return false;
     append(message, t_s_, run_);
+    run_.timing.state_age_us.add(1e-3 * static_cast<double>(newest_ns_ - message.stamp_ns));
     thin_state_.appended({.t_s = &run_.state.t_s,
                           .wide = {},
                           .narrow = pointers(run_.state.q_rad, run_.state.torque_Nm, run_.state.temperature_degC)},

@@ -30,6 +30,7 @@ struct RunTiming {
   std::int64_t ticks = 0;
   Sampled wake_us, tick_us, generator_us, gco_us, policy_us;
   Sampled bus_wake_us, bus_exchange_us;  ///< largest value of the bus cycles since the last tick
+  Sampled state_age_us;                  ///< of the oldest motor's part of the state that a tick started from
   std::int64_t missed_ticks = 0, bus_missed_cycles = 0, dropped_records = 0;
   struct Delay {
     double t_s, late_us;

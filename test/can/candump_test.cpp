@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "../sim/robots.hpp"
 #include "can/can_hal.hpp"
@@ -18,7 +22,9 @@ namespace {
 
 TEST(Candump, LinesAreThoseOfCandump) {
   for (const char* line : {"(1436509052.249713) can0 044#2A366C2B", "(1436509052.000001) can11 7FF#",
-                           "(1.500000) vcan0 1F334455#1122334455667788", "(1436509053.850870) can0 123##1AABBCC"}) {
+                           "(1.500000) vcan0 1F334455#1122334455667788", "(1436509053.850870) can0 123##1AABBCC",
+                           "(1436509052.249713) can0 044#R", "(1436509052.249713) can0 1F334455#R8",
+                           "(1436509052.249713) can0 20000004#0004000000000000"}) {
     const auto recorded = from_line(line);
     ASSERT_TRUE(recorded) << line;
     EXPECT_EQ(to_line(*recorded), line);
@@ -30,12 +36,44 @@ TEST(Candump, LinesAreThoseOfCandump) {
   EXPECT_EQ(recorded->frame.data[3], 0x2B);
 }
 
+TEST(Candump, LinesOfPythonCanAreTakenToo) {
+  // As CanutilsLogWriter of python-can 4.5.0 writes them: received, sent, CAN FD, remote, error.
+  const std::vector<std::pair<std::string, std::string>> lines = {
+      {"(1.500000) can0 044#2A366C2B R", "(1.500000) can0 044#2A366C2B"},
+      {"(1.500000) can0 044# T", "(1.500000) can0 044#"},
+      {"(1.500000) can0 1F334455##1AABB R", "(1.500000) can0 1F334455##1AABB"},
+      {"(1.500000) can0 044#R R", "(1.500000) can0 044#R"},
+      {"(1.500000) can0 20000080#", "(1.500000) can0 20000080#"}};
+  for (const auto& [theirs, ours] : lines) {
+    const auto recorded = from_line(theirs);
+    ASSERT_TRUE(recorded) << theirs;
+    EXPECT_EQ(to_line(*recorded), ours);
+  }
+  EXPECT_EQ(from_line("(1.500000) can0 044#R R")->kind, RecordedFrame::Kind::kRemote);
+  EXPECT_EQ(from_line("(1.500000) can0 20000080#")->kind, RecordedFrame::Kind::kError);
+  EXPECT_FALSE(from_line("(1.500000) can0 044#00 X"));
+}
+
+TEST(Candump, FramesOfSeveralBusesComeInTheOrderOfTheirStamps) {
+  FrameOrder order;
+  int number = 0;
+  for (const std::int64_t stamp_ns : {30, 10, 20, 10})
+    order.put({.stamp_ns = stamp_ns, .frame = {.id = static_cast<std::uint32_t>(number++)}});
+  RecordedFrame frame;
+  std::vector<std::uint32_t> taken;
+  while (order.take(30, frame)) taken.push_back(frame.frame.id);
+  EXPECT_EQ(taken, (std::vector<std::uint32_t>{1, 3, 2})) << "a later one may still come before the one of 30";
+  EXPECT_TRUE(order.take(31, frame));
+  EXPECT_FALSE(order.take(1000, frame));
+}
+
 TEST(Candump, OtherLinesAreNone) {
   for (const char* line :
-       {"", "can0  044   [4]  2A 36 6C 2B", "(1436509052.249713) can0 044#R", "(1436509052.249713) can0 044#2A3",
-        "(1.2) can0 044#", "(1436509052.249713) can0 44#", "(1436509052.249713) can0 FFF#00",
-        "(1436509052.249713) can0 044#112233445566778899", "(1436509052.249713)  044#00", "(-1.249713) can0 044#00",
-        "(1436509052.249713) can0 044#2A 36", "(99999999999999999999.000000) can0 044#"}) {
+       {"", "can0  044   [4]  2A 36 6C 2B", "(1436509052.249713) can0 044#R9", "(1436509052.249713) can0 044#R1A",
+        "(1436509052.249713) can0 044#2A3", "(1.2) can0 044#", "(1436509052.249713) can0 44#",
+        "(1436509052.249713) can0 FFF#00", "(1436509052.249713) can0 044#112233445566778899",
+        "(1436509052.249713)  044#00", "(-1.249713) can0 044#00", "(1436509052.249713) can0 044#2A 36",
+        "(99999999999999999999.000000) can0 044#"}) {
     EXPECT_FALSE(from_line(line)) << line;
   }
 }

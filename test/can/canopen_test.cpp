@@ -493,8 +493,11 @@ TEST_F(CanopenDrives, AnEmergencyMessageNamesAFaultWithoutACode) {
   const Frame emergency = Frame::of(0x081, std::array<std::uint8_t, 8>{0x10, 0x43, 1});
   host_[kLeg]->push(emergency);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "the status word tells whether the drive follows";
+  const double count_rad = std::get<drives::Cia402Settings>(mixed().buses[kLeg].motors[0].drive).count_rad();
+  const auto counts = static_cast<std::uint32_t>(std::lround(hal_->motor(kLeg, 0).reading().q_rad / count_rad));
   Frame first = Frame::of(0x181, std::array<std::uint8_t, 8>{0x18, 0x02}),
         second = Frame::of(0x281, std::array<std::uint8_t, 8>{});
+  for (unsigned i = 0; i < 4; ++i) first.data[2 + i] = static_cast<std::uint8_t>(counts >> 8U * i);
   hip().silent = true;
   hal_->send(standing_);
   host_[kLeg]->push(first);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "can/emulated_robot.hpp"
@@ -60,7 +61,7 @@ TEST_F(FirstLight, AKneeMovesAndItsLoadTellsTheDirection) {
   tick();  // the last frame arrives
   EXPECT_FALSE(drives_->drive(0, 3).enabled()) << "switched off afterwards";
   for (std::size_t m = 0; m < 6; ++m) EXPECT_EQ(drives_->drive(0, m).enabled(), false) << "no other drive was ever on";
-  EXPECT_FALSE(verdict(result).empty());
+  EXPECT_FALSE(verdict(result).text.empty());
   EXPECT_GT(std::abs(result.model_Nm), 0.1) << "the shank does not hang straight down";
   EXPECT_NEAR(result.held_Nm, result.model_Nm, result.friction_Nm);
 }
@@ -128,6 +129,69 @@ TEST_F(FirstLightTorque, ADriveThatIsAnotherThanRobotYamlSaysDoesNotMove) {
   EXPECT_FALSE(drives_->drive(0, 3).enabled());
 }
 
+// The load of a leg that hangs a little forward tells the direction of its hip; sideways it hangs straight.
+TEST_F(FirstLight, TheDirectionIsToldWhereTheLimbHangsObliquelyAndElseLeftToTheEye) {
+  const auto& leg = setup_.buses[0].motors;
+  ASSERT_EQ(leg[0].joint, "left_hip_pitch");
+  ASSERT_EQ(leg[1].joint, "left_hip_roll");
+  ASSERT_EQ(leg[2].joint, "left_hip_yaw");
+  const Verdict pitch = verdict(wiggle(leg[0], {.gain_share = 1.0})),
+                roll = verdict(wiggle(leg[1], {.gain_share = 1.0})), yaw = verdict(wiggle(leg[2], {.gain_share = 1.0}));
+  EXPECT_EQ(pitch.tells, Verdict::Tells::kAgrees) << pitch.text;
+  EXPECT_EQ(roll.tells, Verdict::Tells::kNotAll) << roll.text;
+  EXPECT_THAT(roll.text, testing::HasSubstr("the same the other way round"));
+  EXPECT_EQ(yaw.tells, Verdict::Tells::kNotAll) << yaw.text;
+  EXPECT_THAT(yaw.text, testing::HasSubstr("too small to tell direction and gear"));
+}
+
+TEST_F(FirstLight, AnInvertedDirectionAndAWrongGearAreNamed) {
+  const model::Joint& joint = test::z1().joints[static_cast<std::size_t>(setup_.buses[0].motors[0].index)];
+  const auto described = [&](int direction, double gear) {
+    drives::MotorSetup motor = setup_.buses[0].motors[0];
+    model::BusAddress address = joint.bus;
+    address.direction = direction;
+    address.gear = gear;
+    motor.transmission = drives::Transmission(address);
+    motor.limits = motor.transmission.to_motor(drives::MotorLimits{.q_lower_rad = joint.lower_rad,
+                                                                   .q_upper_rad = joint.upper_rad,
+                                                                   .dq_rad_s = joint.velocity_limit_rad_s,
+                                                                   .torque_Nm = joint.effort_limit_Nm});
+    sensed_.q[motor.index] /= direction * gear;
+    return verdict(wiggle(motor, {.gain_share = 1.0}));
+  };
+  const Verdict inverted = described(-1, 1.0);
+  EXPECT_EQ(inverted.tells, Verdict::Tells::kWrong);
+  EXPECT_THAT(inverted.text, testing::HasSubstr("`direction` in robot.yaml is wrong"));
+  const Verdict geared = described(1, 3.0);
+  EXPECT_EQ(geared.tells, Verdict::Tells::kWrong) << geared.text;
+  EXPECT_THAT(geared.text, testing::HasSubstr("look at `gear`"));
+}
+
+// docs/how-to/hal.md names them.
+TEST_F(FirstLight, TheDirectionsOfSevenHangingJointsOfZ1CanBeTold) {
+  std::set<std::string> told;
+  for (const drives::BusSetup& bus : setup_.buses) {
+    for (const drives::MotorSetup& motor : bus.motors) {
+      const model::HangingLoad load = model::hanging_load(test::z1(), motor.joint, sensed_.q);
+      const double friction_Nm = test::z1().joints[static_cast<std::size_t>(motor.index)].friction_Nm,
+                   step_Nm = drives::MitProtocol(std::get<drives::MitRanges>(motor.drive)).torque().step();
+      if (2.0 * load.gravity_Nm * std::abs(std::sin(load.hangs_at_rad)) >= friction_Nm + step_Nm)
+        told.insert(motor.joint);
+    }
+  }
+  EXPECT_THAT(told, testing::ElementsAre("head_pitch", "left_hip_pitch", "left_knee", "left_shoulder_pitch",
+                                         "right_hip_pitch", "right_knee", "right_shoulder_pitch"));
+}
+
+TEST_F(FirstLight, AJointMovesUntilItsLoadTellsItsGear) {
+  const JointVector& q = sensed_.q;
+  EXPECT_LT(telling_way_rad(test::z1(), q, "waist_pitch"), 5.0 * kRadPerDegree);
+  EXPECT_NEAR(telling_way_rad(test::z1(), q, "left_hip_yaw"), 20.0 * kRadPerDegree, 1e-9) << "the most";
+  const double way_rad = telling_way_rad(test::z1(), q, "left_hip_pitch");
+  const auto load = model::hanging_load(test::z1(), "left_hip_pitch", q);
+  EXPECT_NEAR(load.gravity_Nm * std::sin(way_rad), 1.5 * 3.0 * 0.6, 1e-9) << "its friction is 0.6 Nm";
+}
+
 TEST(FirstLightText, TheWayOfAKneeIsBackwardAndUp) {
   // Z1's knee bends the shank backward for a positive angle; standing, it is bent by 0.3 rad already.
   EXPECT_THAT(way_of(test::z1(), test::z1().q_stand(), "left_knee", 0.05), testing::HasSubstr("backward"));
@@ -136,19 +200,40 @@ TEST(FirstLightText, TheWayOfAKneeIsBackwardAndUp) {
 }
 
 TEST(FirstLightText, TheVerdictFollowsFromTheFigures) {
-  const Wiggle good = {.asked_rad = 0.05, .moved_rad = 0.045, .held_Nm = 4.1, .model_Nm = 4.5, .friction_Nm = 0.6};
-  EXPECT_EQ(verdict(good), "direction and gear agree with the model");
+  using Tells = Verdict::Tells;
+  const Wiggle good = {.asked_rad = 0.05,
+                       .moved_rad = 0.045,
+                       .held_Nm = 4.1,
+                       .model_Nm = 4.5,
+                       .model_inverted_Nm = -3.0,
+                       .held_end_Nm = 5.6,
+                       .model_end_Nm = 5.2,
+                       .friction_Nm = 0.6};
+  const auto expect = [](const Wiggle& wiggle, Tells tells, const char* text) {
+    EXPECT_EQ(verdict(wiggle).tells, tells) << verdict(wiggle).text;
+    EXPECT_THAT(verdict(wiggle).text, testing::HasSubstr(text));
+  };
+  expect(good, Tells::kAgrees, "direction and gear agree with the model");
   Wiggle wiggle = good;
-  wiggle.held_Nm = -4.1;
-  EXPECT_THAT(verdict(wiggle), testing::HasSubstr("`direction` in robot.yaml is wrong"));
-  wiggle.held_Nm = 12.0;
-  EXPECT_THAT(verdict(wiggle), testing::HasSubstr("2.7 times the model's load: look at `gear`"));
+  wiggle.held_Nm = -3.1;
+  expect(wiggle, Tells::kWrong, "`direction` in robot.yaml is wrong");
   wiggle = good;
-  wiggle.model_Nm = 1.0;
-  EXPECT_THAT(verdict(wiggle), testing::HasSubstr("too small to tell the direction"));
+  wiggle.held_end_Nm = 14.04;
+  expect(wiggle, Tells::kWrong, "2.7 times the model's load: look at `gear`");
+  wiggle = good;
+  wiggle.model_inverted_Nm = 4.0;
+  expect(wiggle, Tells::kNotAll, "would be the same the other way round");
+  wiggle = good;
+  wiggle.model_end_Nm = 1.0;
+  wiggle.held_end_Nm = 1.5;
+  expect(wiggle, Tells::kNotAll, "too small to tell the gear");
+  wiggle.model_inverted_Nm = 4.0;
+  expect(wiggle, Tells::kNotAll, "too small to tell direction and gear");
   wiggle = good;
   wiggle.moved_rad = 0.01;
-  EXPECT_THAT(verdict(wiggle), testing::HasSubstr("less than half the way"));
+  expect(wiggle, Tells::kWrong, "less than half the way");
+  wiggle.moved_rad = -0.04;
+  expect(wiggle, Tells::kWrong, "opposite signs");
 }
 
 }  // namespace

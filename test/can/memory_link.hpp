@@ -17,15 +17,16 @@ class MemoryLink final : public can::Link {
     b->other_ = a.get();
     return {std::move(a), std::move(b)};
   }
-  void send(std::span<const can::Frame> frames) noexcept override {
+  std::size_t send(std::span<const can::Frame> frames) noexcept override {
+    if (cut) {
+      counts_.not_sent += frames.size();
+      return 0;
+    }
     for (const can::Frame& frame : frames) {
-      if (cut) {
-        ++counts_.not_sent;
-        continue;
-      }
       ++counts_.sent;
       other_->push(frame);
     }
+    return frames.size();
   }
   std::size_t receive(std::span<can::Frame> frames) noexcept override {
     std::size_t count = 0;

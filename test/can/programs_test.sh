@@ -21,6 +21,13 @@ check "an unknown joint" 2 "^pmg_bus: 'left_kne' isn't a joint; did you mean lef
 ("$bin/pmg_bus" scan --robot z1 >/dev/null; "$bin/pmg_bus" scan --robot z1 >/dev/null) &
 check "a recording" 0 '^\([0-9]+\.[0-9]{6}\) can4 021#[0-9A-F]{16}$' "$bin/pmg_bus" dump --for 1 --robot z1
 wait $!
+"$bin/pmg_bus" watch --for 60 --robot z1 >/dev/null &
+watching=$!
+until "$bin/pmg_bus" dump --for 0.3 --robot z1 | grep -q ' can4 005#'; do kill -0 $watching || exit 1; done # it asks
+check "one program drives a bus" 2 '^pmg_bus: can0: pmg_bus \(process [0-9]+\) drives it; expected nobody else' "$bin/pmg_bus" scan --robot z1
+check "others listen" 0 'left_knee +can0 +4 .*no fault' "$bin/pmg_bus" watch --for 1 --robot z1
+kill $watching
+wait $watching
 ip link set can2 down
 check "a bus that is down" 2 '^pmg_bus: can2: is down; expected it up' "$bin/pmg_bus" scan --robot z1
 ip link del can2

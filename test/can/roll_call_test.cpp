@@ -23,7 +23,7 @@ namespace {
 class BunchingLink final : public Link {
  public:
   explicit BunchingLink(Link& inner) : inner_(inner) {}
-  void send(std::span<const Frame> frames) noexcept override { inner_.send(frames); }
+  std::size_t send(std::span<const Frame> frames) noexcept override { return inner_.send(frames); }
   std::size_t receive(std::span<Frame> frames) noexcept override {
     if (!open_) return 0;
     const std::size_t count = inner_.receive(frames);

@@ -16,6 +16,9 @@ namespace {
 
 using hal::BusStatus;
 
+/// Limp cycles after a loss: an answer, a pause in which what was lost is given up, and two that enable.
+constexpr int kBackCycles = 4;
+
 /// Z1's left leg behind slcan, in lockstep: the kernel has passed on every frame before a cycle ends.
 class SocketsSlcan : public testing::Test {
  protected:
@@ -87,7 +90,7 @@ TEST_F(SocketsSlcan, BusOffIsLostInTheSameCycleAndEndsWithTheInterfacesRestartUn
   adapter_.restart();
   for (int k = 0; k < 2; ++k) EXPECT_EQ(cycle(standing_), BusStatus::kLost) << "not enabled under stiffness";
   EXPECT_THAT(trouble(), testing::HasSubstr("is not enabled"));
-  for (int k = 0; k < 2; ++k) cycle(limp_);
+  for (int k = 0; k < kBackCycles; ++k) cycle(limp_);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
 }
 
@@ -108,7 +111,7 @@ TEST_F(SocketsSlcan, FramesThatNobodyAcknowledgesAreCountedAndTheirMotorsLostInT
   EXPECT_THAT(trouble(), testing::HasSubstr("does not answer"));
   EXPECT_EQ(link().counts().ack_errors, 6u);
   for (const auto& drive : drives_) drive->silent = false;
-  for (int k = 0; k < 2; ++k) cycle(limp_);
+  for (int k = 0; k < kBackCycles; ++k) cycle(limp_);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
 }
 

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <iterator>
@@ -137,6 +138,36 @@ TEST_F(Sockets, FramesArriveWholeInOrderAndThroughTheFilter) {
     EXPECT_TRUE(std::ranges::equal(got[i].bytes(), wanted.bytes()));
   }
   EXPECT_TRUE(receive(drives).empty()) << "its own frames don't come back";
+}
+
+TEST_F(Sockets, ARecordingHasEveryFrameWithTheKernelsStamp) {
+  SocketLink recorder("can2", {}, true), drives("can2", {}, true);
+  const auto now_ns = [] { return std::chrono::system_clock::now().time_since_epoch().count(); };
+  const std::int64_t before_ns = now_ns();
+  const std::array<Frame, 2> frames = {Frame::of(0x044, std::array<std::uint8_t, 2>{0x2A, 0x36}),
+                                       Frame::of(0x123, std::array<std::uint8_t, 2>{0xAA, 0xBB}, true)};
+  drives.send(frames);
+  can_frame remote{}, error{};
+  remote.can_id = 0x123 | CAN_RTR_FLAG;
+  remote.len = 4;
+  error.can_id = CAN_ERR_FLAG | 0x4U;
+  error.len = 8;
+  error.data[1] = 4;
+  for (const can_frame* frame : {&remote, &error})
+    ASSERT_EQ(write(drives.descriptor(), frame, sizeof *frame), static_cast<ssize_t>(sizeof *frame));
+  std::vector<std::string> lines;
+  RecordedFrame recorded;
+  pollfd polled{.fd = recorder.descriptor(), .events = POLLIN, .revents = 0};
+  while (lines.size() < 4 && poll(&polled, 1, 1000) > 0) {
+    while (recorder.record(recorded)) {
+      EXPECT_GE(recorded.stamp_ns, before_ns);
+      EXPECT_LE(recorded.stamp_ns, now_ns());
+      recorded.stamp_ns = 1'500'000'000;
+      lines.push_back(to_line(recorded));
+    }
+  }
+  EXPECT_THAT(lines, testing::ElementsAre("(1.500000) can2 044#2A36", "(1.500000) can2 123##1AABB",
+                                          "(1.500000) can2 123#R4", "(1.500000) can2 20000004#0004000000000000"));
 }
 
 TEST_F(Sockets, SendingAndReceivingAllocatesNothing) {

@@ -96,6 +96,16 @@ TEST_F(DriveSetupFile, SamplePointsAreReadAndBounded) {
   EXPECT_THAT(refusal(), testing::HasSubstr("buses.can0.sample_point: is '80'; expected a number from 0.5 to 0.95"));
 }
 
+TEST_F(DriveSetupFile, AJointsDriveMayReplyWithAnIdentifierOfItsOwn) {
+  replace("node: 4, drive: leg", "node: 4, reply_id: 0x104, drive: leg");
+  EXPECT_EQ(refusal(), "taken");
+  const DriveSetup setup = load_drives(model::load_robot(folder_));
+  EXPECT_EQ(std::get<MitRanges>(setup.buses[0].motors[3].drive).reply_id, 0x104u);
+  EXPECT_EQ(std::get<MitRanges>(setup.buses[0].motors[2].drive).reply_id, 0u) << "as its entry in `drives` has it";
+  replace("reply_id: 0x104", "reply_id: 0x800");
+  EXPECT_THAT(refusal(), testing::HasSubstr("expected"));
+}
+
 TEST_F(DriveSetupFile, ACia402DriveIsReadAndRefusedWhereItDoesNotFit) {
   replace("  arm: {",
           "  knee: {protocol: cia402, mode: torque, counts_per_turn: 65536, velocity_unit_rad_s: 0.001, "

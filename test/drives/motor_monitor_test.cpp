@@ -9,10 +9,15 @@ namespace {
 
 constexpr MotorLimits kMotorLimits = {.q_lower_rad = -2.0, .q_upper_rad = 2.0, .dq_rad_s = 10.0, .torque_Nm = 50.0};
 
+void ask(MotorMonitor& monitor, bool enabling) {
+  monitor.begin();
+  if (!monitor.pauses()) monitor.ask(enabling);
+}
+
 TEST(MotorMonitor, AMotorAtFullSpeedIsBelieved) {
   MotorMonitor monitor(kMotorLimits);
   for (int k = 0; k < 100; ++k) {
-    monitor.ask(k == 0);
+    ask(monitor, k == 0);
     ASSERT_TRUE(monitor.hear({.q_rad = 15.0 * 0.002 * k, .dq_rad_s = 15.0}))
         << "1.5 times the limit is the control thread's fault";
   }
@@ -21,29 +26,64 @@ TEST(MotorMonitor, AMotorAtFullSpeedIsBelieved) {
 
 TEST(MotorMonitor, ADamagedReadingIsDroppedAndThreeAreALostPosition) {
   MotorMonitor monitor(kMotorLimits);
-  monitor.ask(true);
+  ask(monitor, true);
   monitor.hear({.q_rad = 0.1});
   for (const double bad : {1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    monitor.ask(false);
+    ask(monitor, false);
     EXPECT_FALSE(monitor.hear({.q_rad = bad}));
   }
-  monitor.ask(false);
+  ask(monitor, false);
   EXPECT_TRUE(monitor.hear({.q_rad = 0.1}));
   EXPECT_EQ(monitor.trouble(true), Trouble::kNone);
   for (int k = 0; k < 3; ++k) {
-    monitor.ask(false);
+    ask(monitor, false);
     EXPECT_FALSE(monitor.hear({.q_rad = -1.5}));
   }
   EXPECT_EQ(monitor.trouble(true), Trouble::kPositionJump);
   EXPECT_EQ(monitor.reading().q_rad, 0.1);
 }
 
+/// The least jump of a reading that isn't believed, from and to these speeds, in steps of 1 mrad.
+double least_jump_rad(double before_rad_s, double after_rad_s, double sign) {
+  for (double jump_rad = 0.0; jump_rad < 1.0; jump_rad += 0.001) {
+    MotorMonitor monitor({.q_lower_rad = -2.0, .q_upper_rad = 2.0, .dq_rad_s = 18.0, .torque_Nm = 50.0});
+    ask(monitor, true);
+    monitor.hear({.dq_rad_s = before_rad_s});
+    ask(monitor, false);
+    if (!monitor.hear({.q_rad = sign * jump_rad, .dq_rad_s = after_rad_s})) return jump_rad;
+  }
+  return 1.0;
+}
+
+// The numbers of docs/reference/safety.md.
+TEST(MotorMonitor, ALostTurnIsSeenFromTheDocumentedSizeOn) {
+  constexpr double kStep_rad = 0.001;
+  EXPECT_NEAR(least_jump_rad(0.0, 0.0, 1.0), 0.062, kStep_rad) << "a motor at rest";
+  EXPECT_NEAR(least_jump_rad(6.0, 6.0, -1.0), 0.062, kStep_rad) << "against its motion";
+  EXPECT_NEAR(least_jump_rad(6.0, 6.0, 1.0), 0.098, kStep_rad) << "with its motion";
+  EXPECT_NEAR(least_jump_rad(0.0, 6.0, 1.0), 0.098, kStep_rad) << "the faster of both speeds counts";
+  EXPECT_NEAR(least_jump_rad(18.0, 18.0, 1.0), 0.170, kStep_rad);
+  EXPECT_NEAR(least_jump_rad(30.0, 30.0, 1.0), 0.194, kStep_rad) << "however fast it says that it is";
+}
+
+TEST(MotorMonitor, AMotorThatHitsItsStopHardIsBelieved) {
+  MotorMonitor monitor(kMotorLimits);
+  double q_rad = 0.0, dq_rad_s = 10.0;
+  for (int k = 0; k < 200; ++k) {
+    ask(monitor, k == 0);
+    ASSERT_TRUE(monitor.hear({.q_rad = q_rad, .dq_rad_s = dq_rad_s})) << k;
+    if (q_rad > 0.5) dq_rad_s = -10.0;  // within one cycle
+    if (q_rad < 0.1) dq_rad_s = 10.0;
+    q_rad += dq_rad_s * MotorMonitor::kPeriod_s;
+  }
+}
+
 TEST(MotorMonitor, ADamagedReadingIsNoAnswer) {
   MotorMonitor monitor(kMotorLimits);
-  monitor.ask(true);
+  ask(monitor, true);
   monitor.hear({.q_rad = 0.1});
   for (int k = 0; k < 2; ++k) {
-    monitor.ask(false);
+    ask(monitor, false);
     monitor.hear({.q_rad = 1.5});
   }
   EXPECT_EQ(monitor.age_cycles(), 2);
@@ -54,7 +94,7 @@ TEST(MotorMonitor, TravelOfAFrozenEncoderCountsTheCyclesWithoutAnAnswerToo) {
   MotorMonitor monitor(kMotorLimits);
   int cycles = 0;
   while (monitor.trouble(false) != Trouble::kFrozenEncoder && cycles < 100) {  // an answer in every second cycle
-    monitor.ask(cycles == 0);
+    ask(monitor, cycles == 0);
     if (cycles++ % 2 == 0) monitor.hear({.q_rad = 0.3, .dq_rad_s = 6.0});
   }
   EXPECT_EQ(cycles, 11) << "0.024 rad from answer to answer: the fifth after the first is beyond 0.1 rad";
@@ -63,7 +103,7 @@ TEST(MotorMonitor, TravelOfAFrozenEncoderCountsTheCyclesWithoutAnAnswerToo) {
 TEST(MotorMonitor, DamagedReadingsBetweenGoodOnesAreNoLostPosition) {
   MotorMonitor monitor(kMotorLimits);
   for (int k = 0; k < 20; ++k) {
-    monitor.ask(k == 0);
+    ask(monitor, k == 0);
     EXPECT_EQ(monitor.hear({.q_rad = k % 2 == 0 ? 0.1 : 1.5}), k % 2 == 0) << k;
   }
   EXPECT_EQ(monitor.refused(), 10u);
@@ -72,12 +112,12 @@ TEST(MotorMonitor, DamagedReadingsBetweenGoodOnesAreNoLostPosition) {
 
 TEST(MotorMonitor, BunchedAnswersAreNoSecondDriveAndASecondDriveIsFoundAllTheSame) {
   MotorMonitor monitor(kMotorLimits);
-  for (int k = 0; k < 6; ++k) monitor.ask(false);
+  for (int k = 0; k < 6; ++k) ask(monitor, false);
   for (int k = 0; k < 6; ++k) monitor.hear({});
   EXPECT_EQ(monitor.uncalled(), 0u);
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(monitor.trouble(false), Trouble::kNone);
-    monitor.ask(false);
+    ask(monitor, false);
     monitor.hear({});
     monitor.hear({});
   }
@@ -87,7 +127,7 @@ TEST(MotorMonitor, BunchedAnswersAreNoSecondDriveAndASecondDriveIsFoundAllTheSam
 TEST(MotorMonitor, AMotorAtRestWithAnOffsetOfItsSpeedHasNoFrozenEncoder) {
   MotorMonitor monitor(kMotorLimits);
   for (int k = 0; k < 10'000; ++k) {
-    monitor.ask(k == 0);
+    ask(monitor, k == 0);
     monitor.hear({.q_rad = 0.3, .dq_rad_s = MotorMonitor::kSpeedOffset_rad_s});
   }
   EXPECT_EQ(monitor.trouble(true), Trouble::kNone);
@@ -96,7 +136,7 @@ TEST(MotorMonitor, AMotorAtRestWithAnOffsetOfItsSpeedHasNoFrozenEncoder) {
 TEST(MotorMonitor, AMotorThatTurnsBackAndForthAFewStepsHasNoFrozenEncoder) {
   MotorMonitor monitor(kMotorLimits);
   for (int k = 0; k < 1000; ++k) {  // it stands still for three cycles at a time: 0.018 rad at 3 rad/s
-    monitor.ask(k == 0);
+    ask(monitor, k == 0);
     monitor.hear({.q_rad = k / 4 % 2 == 0 ? 0.3 : 0.31, .dq_rad_s = 3.0});
   }
   EXPECT_EQ(monitor.trouble(true), Trouble::kNone);
@@ -104,12 +144,12 @@ TEST(MotorMonitor, AMotorThatTurnsBackAndForthAFewStepsHasNoFrozenEncoder) {
 
 TEST(MotorMonitor, ADriveIsEnabledOnlyByAnAnswerToItsRequest) {
   MotorMonitor monitor(kMotorLimits);
-  monitor.ask(true);
+  ask(monitor, true);
   EXPECT_FALSE(monitor.enabled());
   monitor.hear({});
   EXPECT_TRUE(monitor.enabled());
   monitor.interrupt();
-  monitor.ask(false);
+  ask(monitor, false);
   monitor.hear({});
   EXPECT_FALSE(monitor.enabled());
   EXPECT_EQ(monitor.trouble(true), Trouble::kNotEnabled);

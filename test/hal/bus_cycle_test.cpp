@@ -13,11 +13,13 @@ class ScriptedHal final : public Hal {
   BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
     given = command;
     if (status == BusStatus::kOk) state.bus_sample = ++answers;
+    state.age_ns = age_ns;
     return status;
   }
   BusStatus status = BusStatus::kOk;
   model::JointCommand given;
   std::uint64_t answers = 0;
+  std::int64_t age_ns = 0;
 };
 
 struct OneBus {
@@ -51,6 +53,13 @@ TEST(BusCycle, AStateKeepsItsStampUntilTheDrivesAnswerAgain) {
   one.hal.status = BusStatus::kOk;
   one.cycle();
   EXPECT_EQ(one.sample().state.stamp_ns, 8'000'000);
+}
+
+TEST(BusCycle, AStampIsThatOfTheOldestMotorsPartOfTheState) {
+  OneBus one;
+  one.hal.age_ns = 1'500'000;
+  one.cycle();
+  EXPECT_EQ(one.sample().state.stamp_ns, 500'000);
 }
 
 TEST(BusCycle, TheDrivesGetTheNewestCommandInTheNextCycle) {

@@ -45,6 +45,7 @@ TEST_F(RobotBoardTest, OneRobotFillsAScreen) {
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("biped"), HasSubstr("model biped"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("mode"), HasSubstr("passive"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("hottest"), HasSubstr("35 degC"))));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("state"), HasSubstr(" ms old"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("driven by"), HasSubstr("nobody   no command yet"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("real-time"), HasSubstr("NOT granted"))));
   for (const std::string& line : lines) {

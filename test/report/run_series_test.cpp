@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::SmallLog;
 using testing::Contains;
+using testing::DoubleNear;
+using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
@@ -122,6 +124,12 @@ TEST_F(RunSeriesTest, KnowsTheScenariosStepsAndTheErrorsWithinEach) {
   EXPECT_NEAR(run.steps[2].tracking.lin_vel_mae_m_s, 0.1, 1e-9);
   EXPECT_NEAR(run.tracking.followed_s, 3.0, 1e-9);
   EXPECT_THAT(verdict(run), HasSubstr("Mean absolute errors over 3.0 s on its own feet: velocity 0."));
+}
+
+TEST_F(RunSeriesTest, TheAgeOfAStateIsThatAtItsTick) {
+  const RunSeries run = read_run(write({}));
+  EXPECT_THAT(run.timing.state_age_us.values(), Each(DoubleNear(3000.0, 1e-6)));
+  EXPECT_EQ(run.timing.state_age_us.values().size(), 300U);
 }
 
 TEST_F(RunSeriesTest, AnyChannelMayBeMissing) {

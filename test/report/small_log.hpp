@@ -81,7 +81,7 @@ struct SmallLog {
   }
   pmg_msgs::robot_state_t state(std::int64_t now_ns) const {
     pmg_msgs::robot_state_t message{};
-    message.stamp_ns = now_ns;
+    message.stamp_ns = now_ns - 3'000'000;
     message.joint_count = joint_count();
     message.q_rad.assign(joints.size(), 0.2);
     message.dq_rad_s.assign(joints.size(), 0.0);

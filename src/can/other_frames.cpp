@@ -1,0 +1,110 @@
+#include "can/other_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "can/bus_ids.hpp"
+#include "can/bus_motor.hpp"
+#include "can/canopen.hpp"
+
+namespace pmg::can {
+
+namespace {
+
+constexpr std::uint8_t kMostFaultCode = 7;  // of the CubeMars dialect
+
+const drives::MotorSetup* motor_of(const drives::BusSetup& bus, int node) {
+  const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
+  return motor == bus.motors.end() ? nullptr : &*motor;
+}
+
+/// A DaMiao's first byte: its state in the upper half, its node in the lower one.
+const drives::MotorSetup* damiao_motor(const drives::BusSetup& bus, std::uint8_t first) {
+  const int state = first >> 4;
+  return state == 1 || state >= 8 ? motor_of(bus, first & 0x0F) : nullptr;
+}
+
+/// "left_knee's drive answers as a DaMiao's"; empty: it may be anything.
+std::string guess(const drives::BusSetup& bus, const Frame& frame, bool a_reply) {
+  if (frame.extended)
+    return "a protocol with 29-bit identifiers, as RobStride's, CyberGear's and CubeMars' servo mode have; robot.yaml "
+           "says `protocol: mit` or `cia402`";
+  const std::uint32_t function = frame.id & ~canopen::kNodeBits;
+  if (function == canopen::kHeartbeat && frame.length == 1)
+    return fmt::format("a CANopen node's heartbeat, node {}; robot.yaml has no such drive here",
+                       frame.id & canopen::kNodeBits);
+  if (frame.length == 0 || frame.length > 8) return {};
+  const drives::MotorSetup* motor = motor_of(bus, frame.data[0]);
+  const drives::MotorSetup* damiao = motor == nullptr ? damiao_motor(bus, frame.data[0]) : nullptr;
+  if (damiao != nullptr && frame.length == 8)
+    return fmt::format(
+        "a DaMiao's answer of {}, whose first byte has a state besides the node; robot.yaml's "
+        "`protocol: mit` means CubeMars' answers",
+        damiao->joint);
+  if (motor == nullptr) return {};
+  if (frame.length == 6 || frame.length == 7)
+    return fmt::format(
+        "a Mini Cheetah's answer of {}, without a fault code; robot.yaml's `protocol: mit` means 8 bytes",
+        motor->joint);
+  if (frame.length != 8) return {};
+  if (!a_reply)
+    return fmt::format("an answer of {} with another identifier; robot.yaml's `reply_id` should be 0x{:X}",
+                       motor->joint, frame.id);
+  return fmt::format(
+      "a DaMiao's answer of {}: {} would be no fault code, but a temperature; robot.yaml's `protocol: "
+      "mit` means CubeMars' answers",
+      motor->joint, frame.data[7]);
+}
+
+}  // namespace
+
+void OtherFrames::note(const Frame& frame) {
+  Seen& seen = seen_[{frame.id, frame.extended, frame.fd, frame.length}];
+  ++seen.count;
+  seen.last = frame;
+}
+
+std::vector<std::string> OtherFrames::lines(const drives::BusSetup& bus) const {
+  const std::vector<SentId> ids = sent_ids(bus);
+  std::vector<std::string> lines;
+  for (const auto& [key, seen] : seen_) {
+    const Frame& frame = seen.last;
+    const auto sent = std::ranges::find(ids, frame.id, &SentId::id);
+    const bool ours = !frame.extended && sent != ids.end();
+    const bool a_reply = ours && sent->shared;
+    if (ours && !a_reply) continue;
+    if (a_reply && frame.length == 8 && frame.data[7] <= kMostFaultCode && motor_of(bus, frame.data[0])) continue;
+    const std::string what = guess(bus, frame, a_reply);
+    lines.push_back(fmt::format("{}: heard identifier 0x{:X}{} with {} bytes, {} times: {}", bus.name, frame.id,
+                                frame.fd ? " (CAN FD)" : "", frame.length, seen.count,
+                                what.empty() ? "no message of a drive that robot.yaml has" : what));
+  }
+  return lines;
+}
+
+std::string controller_line(const drives::BusSetup& bus, const Link& link) {
+  const LinkCounts& counts = link.counts();
+  if (counts.error_frames == 0 && link.health() == BusHealth::kGood) return {};
+  const char* state = link.health() == BusHealth::kOff       ? "bus-off"
+                      : link.health() == BusHealth::kPassive ? "error-passive"
+                                                             : "error-active";
+  std::string text = fmt::format(
+      "{}: this computer's CAN controller is {}, {} error reports, error counters {} sending and {} "
+      "receiving; ",
+      bus.name, state, counts.error_frames, counts.sending_errors, counts.receiving_errors);
+  if (counts.ack_errors > 0) {
+    text +=
+        fmt::format("nobody acknowledged a frame {} times: no drive has power or the cable is off", counts.ack_errors);
+  } else {
+    text += fmt::format("expected that all have {} bit/s{}", bus.bitrate,
+                        bus.data_bitrate == 0
+                            ? std::string(", classic frames (an FD frame is an error to a classic controller)")
+                            : fmt::format(" and {} bit/s, and take CAN FD (to a classic drive its frames are errors)",
+                                          bus.data_bitrate));
+  }
+  return text;
+}
+
+}  // namespace pmg::can
