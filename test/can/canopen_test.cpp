@@ -336,6 +336,15 @@ TEST_F(CanopenDrives, AnswersThatADelayBunchedAreNoSecondDrive) {
   EXPECT_LE(cycles_until(BusStatus::kLost), 2 + 2) << "two of the four were given up before";
 }
 
+TEST_F(CanopenDrives, ASyncThatNeverLeftThisComputerAsksNobody) {
+  stand();
+  host_[kLeg]->cut = true;
+  for (int k = 0; k < 2; ++k) cycle(standing_);
+  host_[kLeg]->cut = false;
+  cycle(standing_);
+  EXPECT_EQ(hal_->motor(kLeg, 0).age_cycles(), 0);
+}
+
 TEST_F(CanopenDrives, ASilentMotorIsLateInTheSecondCycleAndLostInTheSixth) {
   stand();
   hip().silent = true;

@@ -124,6 +124,26 @@ TEST(MotorMonitor, BunchedAnswersAreNoSecondDriveAndASecondDriveIsFoundAllTheSam
   EXPECT_EQ(monitor.trouble(false), Trouble::kTwoOfOneNode);
 }
 
+TEST(MotorMonitor, WhatTwoDrivesOfOneNodeSaidIsNotHeldAgainstTheOneThatStays) {
+  MotorMonitor monitor(kMotorLimits);
+  for (int k = 0; k < 5; ++k) {
+    ask(monitor, false);
+    monitor.hear({.q_rad = 0.1});
+  }
+  for (int k = 0; k < 5; ++k) {
+    ask(monitor, false);
+    monitor.hear({.q_rad = 1.0});  // the other one, and first
+    monitor.hear({.q_rad = 0.1});
+  }
+  EXPECT_EQ(monitor.trouble(false), Trouble::kTwoOfOneNode) << "and no lost turn";
+  for (int k = 0; k <= MotorMonitor::kUncalledCycles; ++k) {
+    ask(monitor, false);
+    monitor.hear({.q_rad = 0.1});
+  }
+  EXPECT_EQ(monitor.trouble(false), Trouble::kNone);
+  EXPECT_EQ(monitor.reading().q_rad, 0.1);
+}
+
 TEST(MotorMonitor, AMotorAtRestWithAnOffsetOfItsSpeedHasNoFrozenEncoder) {
   MotorMonitor monitor(kMotorLimits);
   for (int k = 0; k < 10'000; ++k) {
@@ -154,6 +174,16 @@ TEST(MotorMonitor, ADriveIsEnabledOnlyByAnAnswerToItsRequest) {
   EXPECT_FALSE(monitor.enabled());
   EXPECT_EQ(monitor.trouble(true), Trouble::kNotEnabled);
   EXPECT_EQ(monitor.trouble(false), Trouble::kNone) << "limp anyway";
+}
+
+TEST(MotorMonitor, AnAnswerToAnEarlierRequestEnablesNothing) {
+  MotorMonitor monitor(kMotorLimits);
+  ask(monitor, false);
+  ask(monitor, true);
+  monitor.hear({});
+  EXPECT_FALSE(monitor.enabled()) << "it belongs to the request before";
+  monitor.hear({});
+  EXPECT_TRUE(monitor.enabled());
 }
 
 }  // namespace
