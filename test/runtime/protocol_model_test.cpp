@@ -85,7 +85,7 @@ class Requests {
 
 TEST(ProtocolModel, NoRequestIsCarriedOutTwiceOrAfterItsRefusalOrAStopAndEveryAnswerIsItsOwn) { search<Requests>(4); }
 
-TEST(ProtocolModel, NoRequestIsCarriedOutTwiceOrAfterItsRefusalOrAStopInSixSteps) { search<Requests>(6); }
+TEST(ProtocolModel, NoRequestIsCarriedOutTwiceOrAfterItsRefusalOrAStopInFiveSteps) { search<Requests>(5); }
 
 /// Allowances: anna drives at 50 Hz and repeats a request every 50 ms; nobody takes room from her. And the hoist.
 class Allowances {
