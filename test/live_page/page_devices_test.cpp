@@ -134,7 +134,10 @@ TEST_F(PageDevicesTest, APageThatIsNotPairedHasNoHeadset) {
   first_.held = true;
   ++first_.presses;
   run(0.1);
-  first_.forward_m = 0.3;
+  for (int k = 0; k < 35; ++k) {
+    first_.forward_m += 0.01;
+    step();
+  }
   run(1.0);
   EXPECT_EQ(mode(), Mode::kStand);
 }

@@ -215,6 +215,10 @@ TEST_F(PageHandsTest, RepeatedAndOlderMessagesChangeNothing) {
   ASSERT_EQ(u(kVx), 0.0);
   for (int k = 0; k < 20; ++k) {
     hands_.take({phone_.page, driving}, network_.clock.now_ns());
+    Finger overtaken = phone_;
+    overtaken.number -= 5;
+    overtaken.forwards = 1.0;
+    hands_.take({phone_.page, overtaken.text(network_.clock.now_ns())}, network_.clock.now_ns());
     driver_.step();
     EXPECT_EQ(driver_.asked()[kVx], 0.0);
     step();
