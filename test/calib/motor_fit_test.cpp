@@ -102,6 +102,30 @@ TEST_P(EveryMethod, FindsTheDrivesGains) {
 INSTANTIATE_TEST_SUITE_P(Optimizers, EveryMethod, testing::Values("bobyqa", "sbplx", "crs2", "cmaes"),
                          [](const auto& instance) { return std::string(instance.param); });
 
+// The search sees one run, whose joint is another one; on all runs the start is better than what it finds.
+TEST(MotorFit, IsNeverWorseThanItsStart) {
+  const calib::FitProblem usual = problem({}, 0.0, 6);
+  const bench::Bench bench = test::pd_bench(true);
+  calib::JointModel other = truth();
+  other.actuator.drive.kp_scale = 0.4;
+  other.actuator.drive.kd_scale = 0.5;
+  const calib::FitProblem searched = usual.thinned(1);
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& joint : usual.runs()) {
+    bench::BenchRun run = joint.run();
+    const bool is_searched = run.recording.q_rad == searched.runs().front().run().recording.q_rad;
+    run.recording.q_rad = joint.rollout(is_searched ? other : truth());
+    runs.emplace_back(bench, std::move(run), joint.step_s());
+  }
+  const calib::FitProblem misleading(usual.parameters(), truth(), runs);
+  const double at_start = misleading.loss(misleading.point_of(truth()));
+  const calib::Fit fit = calib::fit(
+      misleading, {.runs_while_searching = 1, .starts = 1, .evaluations_per_dimension = 1, .newton_steps = 0});
+  EXPECT_GT(misleading.loss(fit.starts.front().point), at_start) << "the search was misled";
+  EXPECT_LE(fit.loss_rad2, at_start);
+  EXPECT_EQ(fit.loss_rad2, misleading.loss(fit.point));
+}
+
 TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   const calib::FitProblem joint = problem({}, 0.0, 2);
   int calls = 0;

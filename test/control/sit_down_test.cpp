@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "control/control_rig.hpp"
 #include "control/drive_gains.hpp"
@@ -251,6 +252,50 @@ TEST(SitDown, APolicyThatFailsMeanwhileLeavesTheReferenceAlone) {
   rig.run(0.5);
   EXPECT_TRUE(rig.tick.result().sitting);
   EXPECT_EQ(rig.fault(), faults::FaultCode::kTemperature);
+}
+
+/// Phases by which each of the next ticks goes on, in ticks at the speed of the gait.
+std::vector<double> phases_per_tick(ControlRig& rig, double duration_s) {
+  std::vector<double> advanced;
+  const double per_tick = 0.01 * rig.tick.result().reference.phase_rate_per_s;
+  double last = rig.tick.result().reference.phase;
+  std::int64_t last_tick = rig.control_cycle.record().tick;
+  rig.after_cycle = [&] {
+    const TickRecord& record = rig.control_cycle.record();
+    if (record.tick == last_tick || rig.tick.result().reference.gain == 0.0) return;
+    const double phase = rig.tick.result().reference.phase;
+    advanced.push_back((phase - last - std::floor(phase - last)) / per_tick);
+    last = phase;
+    last_tick = record.tick;
+  };
+  rig.run(duration_s);
+  rig.after_cycle = nullptr;
+  return advanced;
+}
+
+// A reference that jumps by two ticks is followed by joints that jump.
+TEST(SitDown, OneTickAdvancesTheMotionOnce) {
+  const auto walks = [](ControlRig& rig) {
+    rig.reach_walk();
+    rig.drive.command[kVx] = 0.3;
+    rig.run(1.0);
+  };
+  for (const bool sits_already : {false, true}) {
+    for (const BreakablePolicy::Break how : {BreakablePolicy::Break::kNotANumber, BreakablePolicy::Break::kFarAction}) {
+      ControlRig rig(test::biped());
+      walks(rig);
+      if (sits_already) {
+        overheat(rig);
+        rig.run(0.1);
+        ASSERT_TRUE(rig.tick.result().sitting);
+      }
+      rig.policy->how = how;
+      const std::vector<double> advanced = phases_per_tick(rig, 0.2);
+      ASSERT_GT(advanced.size(), 10U);
+      EXPECT_TRUE(rig.tick.result().sitting);
+      for (const double ticks : advanced) EXPECT_NEAR(ticks, 1.0, 0.2);
+    }
+  }
 }
 
 TEST(SitDown, TheReferenceStopsAndGoesDown) {

@@ -93,7 +93,8 @@ TEST(DirectEvidence, SortsWhatChecksSayByWhatMayBeConcludedFromIt) {
 class Veto : public Rules {
  protected:
   std::string objection(const std::vector<std::string>& doubted, const std::function<void(Trial&)>& change = {},
-                        const std::function<void(SearchLimits&)>& limit = {}) const {
+                        const std::function<void(SearchLimits&)>& limit = {},
+                        const std::vector<std::string>& shown = {}) const {
     calib::JointModel truth;
     truth.actuator = healthy_actuator();
     const effects::NestedFit fit(test::record(bench_, truth, 8, 2e-4), 1);
@@ -102,6 +103,7 @@ class Veto : public Rules {
     base.scale = effects::scale_of(bench_, fit.runs(), truth);
     DirectEvidence evidence;
     evidence.doubted = doubted;
+    evidence.shown = shown;
     SearchLimits limits{
         .noise_squares = 4e-8, .healthy_squares = 0.0, .of_noise = 0.0, .of_beginning = 0.0, .of_rest = 0.0};
     if (limit) limit(limits);
@@ -142,6 +144,17 @@ TEST_F(Veto, OfEachRuleStandsAlone) {
   EXPECT_THAT(objection(
                   {}, [](Trial& t) { t.share_of_rest = 0.1; }, [](SearchLimits& l) { l.of_rest = 0.2; }),
               HasSubstr("10 % of what is left"));
+}
+
+// Half-second blocks hardly detect it, so a gain in ln error will do; the folds still decide.
+TEST_F(Veto, OfAnEffectThatACheckShowsNeedsFoldsThatAreWorseWithIt) {
+  using testing::HasSubstr;
+  const auto of_shown = [&](const std::function<void(Trial&)>& change) {
+    return objection({}, change, {}, {"load_friction"});
+  };
+  EXPECT_EQ(of_shown([](Trial& t) { t.comparison.deviations = 0.0; }), "") << "what a check shows needs no deviations";
+  EXPECT_THAT(of_shown([](Trial& t) { t.comparison.log_gain = -0.1; }), HasSubstr("no better"));
+  EXPECT_THAT(of_shown([](Trial& t) { t.comparison.folds_won = 0.3; }), HasSubstr("no better"));
 }
 
 TEST_F(Rules, ACheckThatSeesAnotherSizeDoesNotAgree) {
