@@ -89,6 +89,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.times = StageTimes{};
   result_.limited = LimitReport{};
   result_.policy_held = false;
+  reference_is_made_ = false;
   if (input.late_ns > 0) ++result_.late_ticks;
   take_messages(input);
 
@@ -254,16 +255,18 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
 }
 
 faults::Fault Tick::drive(const model::RobotState& state) noexcept {
-  faults::Fault fault = make_reference();
-  if (fault.code == faults::FaultCode::kNone) lead_arms();
-  if (fault.code == faults::FaultCode::kNone) {
-    if (policy_waits() || without_policy_) {
-      target_ = result_.reference.q;
-    } else {
-      fault = ask_policy(state);
-    }
+  if (!reference_is_made_) {
+    if (const faults::Fault fault = make_reference(); fault.code != faults::FaultCode::kNone) return fault;
+    lead_arms();
+    reference_is_made_ = true;
+  } else if (arms_) {
+    result_.arms.arm = arms_->keep(result_.reference.q);
   }
-  if (fault.code != faults::FaultCode::kNone) return fault;
+  if (policy_waits() || without_policy_) {
+    target_ = result_.reference.q;
+  } else if (const faults::Fault fault = ask_policy(state); fault.code != faults::FaultCode::kNone) {
+    return fault;
+  }
 
   model::JointCommand& command = result_.command;
   command.q = target_;
@@ -389,8 +392,10 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
     result_.command.q = limiter_.last();
     return true;
   }
-  result_.user = Command{};
-  result_.user[kHeight] = sit_down_.lowest_m();
+  if (!reference_is_made_) {
+    result_.user = Command{};
+    result_.user[kHeight] = sit_down_.lowest_m();
+  }
   if (drive(input.state).code == faults::FaultCode::kNone) return true;
   if (without_policy_) return false;
   leave_policy(input.state);  // it failed meanwhile; the reference goes on alone

@@ -159,6 +159,7 @@ class Tick {
   bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
   void begin_policy() noexcept;
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
+  /// Called again in a tick whose policy failed: the reference goes on once a tick.
   faults::Fault drive(const model::RobotState& state) noexcept;
   faults::Fault make_reference() noexcept;
   /// (the generator's reference) => (with arms where the operator has them).
@@ -202,12 +203,13 @@ class Tick {
   Limiter limiter_;
   faults::ActionMonitor action_monitor_;
   SitDown sit_down_;
-  FallbackReference fallback_;   // in a sit-down whose generator has failed
-  Reference good_reference_;     // the last finite one
-  Command good_observed_;        // u' with it
-  bool without_policy_ = false;  // in a sit-down whose policy isn't sound
-  bool stop_asked_ = false;      // in this tick, by anybody
-  JointVector target_;           // the policy's last good one, before ramp and limits
+  FallbackReference fallback_;      // in a sit-down whose generator has failed
+  Reference good_reference_;        // the last finite one
+  Command good_observed_;           // u' with it
+  bool without_policy_ = false;     // in a sit-down whose policy isn't sound
+  bool stop_asked_ = false;         // in this tick, by anybody
+  bool reference_is_made_ = false;  // in this tick, with led arms
+  JointVector target_;              // the policy's last good one, before ramp and limits
   int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
   TickResult result_;
 };

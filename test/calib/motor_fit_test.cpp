@@ -120,7 +120,7 @@ TEST(MotorFit, IsNeverWorseThanItsStart) {
   const calib::FitProblem misleading(usual.parameters(), truth(), runs);
   const double at_start = misleading.loss(misleading.point_of(truth()));
   const calib::Fit fit = calib::fit(
-      misleading, {.runs_while_searching = 1, .starts = 1, .evaluations_per_dimension = 1, .newton_steps = 0});
+      misleading, {.starts = 1, .runs_while_searching = 1, .evaluations_per_dimension = 1, .newton_steps = 0});
   EXPECT_GT(misleading.loss(fit.starts.front().point), at_start) << "the search was misled";
   EXPECT_LE(fit.loss_rad2, at_start);
   EXPECT_EQ(fit.loss_rad2, misleading.loss(fit.point));

@@ -281,7 +281,7 @@ TEST(SitDown, OneTickAdvancesTheMotionOnce) {
     rig.run(1.0);
   };
   for (const bool sits_already : {false, true}) {
-    for (const BreakablePolicy::Break how : {BreakablePolicy::Break::kNotANumber, BreakablePolicy::Break::kFarAction}) {
+    for (const BreakablePolicy::Break how : {BreakablePolicy::Break::kNotANumber, BreakablePolicy::Break::kLate}) {
       ControlRig rig(test::biped());
       walks(rig);
       if (sits_already) {
