@@ -54,7 +54,9 @@ void ControllerArguments::declare(CLI::App& app) {
       "--keys", keys, "folder of keys (pmg_key); ~/.config/pmg/controller-keys where messages leave this computer");
   app.add_flag("--insecure-without-keys", insecure, "let everybody who reaches the address drive the robot")
       ->excludes(keys_option);
-  CLI::Option* log_option = app.add_option("--log", log, "folder of the log; out/NAME-TIME if not given");
+  CLI::Option* log_option = app.add_option(
+      "--log", log,
+      "folder of the log; out/NAME-TIME if not given; where one of another run is, FOLDER-2, FOLDER-3, ...");
   app.add_flag("--no-log", no_log, "write no log but that of the seconds around a fault")->excludes(log_option);
   CLI::Option* joint = app.add_option("--bench", bench, "excite this joint of the hanging robot once");
   CLI::Option* folder = app.add_option("--excitation", excitation,

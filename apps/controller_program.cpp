@@ -27,6 +27,7 @@
 #include "json_output.hpp"
 #include "program.hpp"
 #include "recording/recorder.hpp"
+#include "recording/run_folder.hpp"
 #include "recording/run_info.hpp"
 #include "runtime/comms.hpp"
 #include "runtime/controller_report.hpp"
@@ -203,6 +204,10 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
 void complete(Arguments& arguments, const model::RobotModel& robot) {
   if (arguments.name.empty()) arguments.name = robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
+  const fs::path asked = std::exchange(arguments.log, recording::run_folder(arguments.log));
+  if (asked != arguments.log && asked != arguments.log / "") {
+    spdlog::warn("{} has the log of another run: this one's goes to {}", asked.string(), arguments.log.string());
+  }
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);
   arguments.threads.realtime = !arguments.no_realtime;
 }

@@ -23,7 +23,7 @@ struct RecorderOptions {
   std::filesystem::path directory;      ///< made if absent
   bool log = true;                      ///< false: the flight recorder alone
   std::int64_t file_bytes = 256 << 20;  ///< size at which the next file begins: some ten minutes of 31 joints
-  int files = 8;                        ///< log-NNNN.lcm in the folder at most, those of earlier runs included
+  int files = 8;                        ///< log-NNNN.lcm in the folder at most, earlier ones included
   std::int64_t spare_bytes = 64 << 20;  ///< room that the disk must have before writing resumes after a refusal
   double retry_s = 1.0;                 ///< pause between two tries after a refusal
   double control_rate_Hz = 100.0;

@@ -134,6 +134,17 @@ TEST_F(PmgController, WithoutRealTimeItSaysSoAtTheStartAndInTheLog) {
   EXPECT_TRUE(told);
 }
 
+TEST_F(PmgController, ASecondRunInOneFolderGetsAFolderOfItsOwnAndSaysSo) {
+  const std::vector<std::string> same = arguments({"--duration", "0.2", "--log", log(), "--no-realtime"});
+  ASSERT_EQ(run(same).exit_code, 0);
+  const auto first = fs::file_size(log_file());
+  const test::Finished second = run(same);
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("has the log of another run: this one's goes to " + log() + "-2"));
+  EXPECT_EQ(fs::file_size(log_file()), first);
+  EXPECT_TRUE(fs::exists(log() + "-2/log-0000.lcm"));
+}
+
 class PmgControllerSignal : public PmgController, public testing::WithParamInterface<int> {};
 
 TEST_P(PmgControllerSignal, DampsClosesTheLogAndExitsWithZero) {
