@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,8 +49,12 @@ class ExcitationCommand {
   std::string run(const std::string& joint, const std::filesystem::path& out, unsigned seed) const {
     bench::ExcitationLimits limits = limits_;
     std::vector<bench::ExcitationGains> gains;
-    if (!robot_.empty()) take_robot(joint, limits, gains);
-    if (!angle_.empty()) std::tie(limits.lower_rad, limits.upper_rad) = pair(angle_, ':', "--angle", "LOWER:UPPER");
+    const std::optional<model::Joint> of_robot = robots_joint(joint);
+    if (of_robot) {
+      limits = bench::excitation_limits(*of_robot, limits);
+      gains = bench::excitation_gains(*of_robot);
+    }
+    if (!angle_.empty()) take_angle(limits, of_robot);
     if (robot_.empty() && angle_.empty()) missing("--angle");
     if (speed_rad_s_ > 0.0) limits.speed_rad_s = speed_rad_s_;
     if (robot_.empty() && speed_rad_s_ <= 0.0) missing("--speed");
@@ -69,16 +74,22 @@ class ExcitationCommand {
   }
 
  private:
-  void take_robot(const std::string& name, bench::ExcitationLimits& limits,
-                  std::vector<bench::ExcitationGains>& gains) const {
+  void take_angle(bench::ExcitationLimits& limits, const std::optional<model::Joint>& joint) const {
+    std::tie(limits.lower_rad, limits.upper_rad) = pair(angle_, ':', "--angle", "LOWER:UPPER");
+    if (!joint || (limits.lower_rad >= joint->lower_rad && limits.upper_rad <= joint->upper_rad)) return;
+    const bool degrees = limits.upper_rad - limits.lower_rad > 6.3;
+    throw std::invalid_argument(fmt::format("--angle {}: {} moves from {:.3f} to {:.3f} rad{}", angle_, joint->name,
+                                            joint->lower_rad, joint->upper_rad, degrees ? "; are these degrees?" : ""));
+  }
+
+  std::optional<model::Joint> robots_joint(const std::string& name) const {
+    if (robot_.empty()) return std::nullopt;
     const model::RobotModel robot = model::load_robot(model::find_robot(robot_));
     const auto index = robot.joint_index.find(name);
     if (!index)
       throw std::invalid_argument(fmt::format("--joint {}: {} has no such joint; {}", name, robot.name,
                                               files::expected_name(name, robot.joint_index.names())));
-    const model::Joint& joint = robot.joints[static_cast<std::size_t>(*index)];
-    limits = bench::excitation_limits(joint, limits);
-    gains = bench::excitation_gains(joint);
+    return robot.joints[static_cast<std::size_t>(*index)];
   }
 
   static std::pair<double, double> pair(const std::string& text, char between, const char* option, const char* form) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "files/config_reader.hpp"
+#include "files/nearest_name.hpp"
 #include "pmg/types.hpp"
 
 namespace pmg::bench {
@@ -148,6 +149,38 @@ BenchRun describe(const Bench& bench, std::size_t row) {
   return run;
 }
 
+/// Throws files::ConfigError where the folder is something else.
+void expect_bench(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "bench.yaml")) {
+    throw files::ConfigError(
+        fmt::format("{}: is no bench, it has no bench.yaml; expected a folder with bench.yaml, runs.csv and runs/ "
+                    "(docs/how-to/calibration.md)",
+                    folder.string()));
+  }
+}
+
+void expect_recorded(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "runs") || !std::filesystem::exists(folder / "commands")) return;
+  throw files::ConfigError(
+      fmt::format("{}: is an excitation that is still to be recorded; expected the bench that pmg_sil --bench JOINT "
+                  "--excitation {} --out BENCH makes of it, or on a robot pmg_controller --bench",
+                  folder.string(), folder.string()));
+}
+
+/// Columns are free, for --fit and --score; one that is nearly a known one would leave that one unread.
+void expect_no_misspelt_column(const CsvTable& runs) {
+  static const std::vector<std::string> known = {"file",         "trajectory",    "repeat",
+                                                 "kp_firmware",  "kp_Nm_per_rad", "kd_Nm_s_per_rad",
+                                                 "load_mass_kg", "load_length_m", "temp_C"};
+  for (const std::string& column : runs.header) {
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    const std::string meant = files::nearest_name(column, known);
+    if (meant.empty() || runs.find(meant)) continue;
+    throw files::ConfigError(fmt::format("{}:{}: column {} is read by nothing; did you mean {}?", runs.file.string(),
+                                         runs.header_line, column, meant));
+  }
+}
+
 }  // namespace
 
 double Bench::feed_forward_output(double torque_Nm, double supply) const {
@@ -161,6 +194,7 @@ std::string Bench::joint_name() const {
 }
 
 Bench read_bench(const std::filesystem::path& folder) {
+  expect_bench(folder);
   ConfigReader reader = ConfigReader::from_file(folder / "bench.yaml");
   Bench bench;
   bench.folder = folder;
@@ -190,10 +224,12 @@ Bench read_bench(const std::filesystem::path& folder) {
   if (reader.has("reference")) reader.map("reference");  // a reference result for comparisons; a fit does not use it
   reader.finish();
   bench.runs = read_csv(folder / "runs.csv");
+  expect_no_misspelt_column(bench.runs);
   return bench;
 }
 
 std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const work::Progress& progress) const {
+  expect_recorded(folder);
   const std::vector<bool> kept = filter.keeps(runs);
   std::vector<BenchRun> found;
   const RecordingFormat format{rig == Rig::kLinear, sample_rate_hz, law != DriveLaw::kTorque, other_units};

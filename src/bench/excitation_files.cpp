@@ -84,6 +84,12 @@ void write_excitation(const fs::path& folder, const Excitation& excitation, cons
 }
 
 Excitation read_excitation(const fs::path& folder) {
+  if (fs::exists(folder / "runs") && !fs::exists(folder / "commands")) {
+    throw files::ConfigError(
+        fmt::format("{}: is a recorded bench; expected the excitation that it was recorded with (pmg_calibrate_motor "
+                    "--make-excitation)",
+                    folder.string()));
+  }
   const CsvTable table = read_csv(folder / "runs.csv");
   Excitation excitation;
   std::map<std::string, double> rate_hz;

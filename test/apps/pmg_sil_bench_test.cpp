@@ -161,6 +161,11 @@ TEST_F(RobotBench, WritesNothingForBadInput) {
                 {"--make-excitation", "--angle", "1:0", "--speed", "1", "--gains", "20,1", "--out", at("recorded")}),
             2);
   EXPECT_FALSE(fs::exists(at("recorded")));
+  EXPECT_EQ(run("pmg_calibrate_motor", {"--make-excitation", "--robot", "z1", "--joint", "left_elbow", "--angle",
+                                        "5:80", "--out", at("recorded")}),
+            2);
+  EXPECT_THAT(err_, AllOf(HasSubstr("left_elbow moves from"), HasSubstr("are these degrees?")));
+  EXPECT_FALSE(fs::exists(at("recorded")));
 }
 
 }  // namespace

@@ -59,6 +59,25 @@ class BenchFiles : public testing::Test {
                            ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+// Without it the fit took a gain of 1 for one of hundreds, and ended with a file.
+TEST_F(BenchFiles, AColumnThatIsNearlyAKnownOneIsAskedAbout) {
+  for (const auto& [meant, written] : {std::pair{"repeat", "repeats"}, std::pair{"kp_Nm_per_rad", "kp_Nm_per_rd"}}) {
+    replace("runs.csv", meant, written);
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("runs.csv:1: column " + std::string(written)),
+                                 HasSubstr("did you mean " + std::string(meant))));
+    replace("runs.csv", written, meant);
+  }
+  replace("runs.csv", "trajectory", "day");
+  EXPECT_EQ(refusal(), "accepted") << "columns of one's own are free";
+}
+
+TEST_F(BenchFiles, AFolderThatIsNoBenchIsToldWhatItIs) {
+  fs::rename(folder_ / "runs", folder_ / "commands");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("is an excitation that is still to be recorded"), HasSubstr("--bench")));
+  fs::remove(folder_ / "bench.yaml");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("is no bench"), HasSubstr("bench.yaml, runs.csv and runs/")));
+}
+
 TEST_F(BenchFiles, AJointIsCalledAsBenchYamlSaysOrElseAsItsFolder) {
   EXPECT_EQ(bench::read_bench(folder_).joint_name(), folder_.filename().string());
   std::ofstream(folder_ / "bench.yaml", std::ios::app) << "joint: left_knee\n";

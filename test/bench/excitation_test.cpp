@@ -115,6 +115,11 @@ TEST(Excitation, RefusesLimitsAndGainsThatMakeNoSense) {
   EXPECT_THROW(make_excitation(kLimits, kGains, 0, 1), std::invalid_argument);
 }
 
+TEST_F(ExcitationFiles, ARecordedBenchIsToldThatItIsOne) {
+  fs::create_directories(folder_ / "runs");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("is a recorded bench"), HasSubstr("--make-excitation")));
+}
+
 TEST_F(ExcitationFiles, AreReadBackAndAreABenchWithoutRecordings) {
   const Excitation excitation = make_excitation(kLimits, kGains, 2, 1);
   write_excitation(folder_, excitation, "made by a test");
