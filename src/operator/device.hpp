@@ -55,6 +55,9 @@ struct DeviceManner {
 /// For one thread. All times come from one monotonic clock.
 class Device {
  public:
+  /// What a far device said counts no more when it travelled this much longer than the device's fastest message.
+  static constexpr std::int64_t kLate_ns = 200'000'000;
+
   Device() = default;
   virtual ~Device() = default;
   Device(const Device&) = default;
