@@ -114,7 +114,7 @@ function show() {
   const lines = [[`${(state && state.robot) || 'no robot'}: ${connection.mode()}`, '#ffffff', 64]];
   if (alarm) lines.push([alarm, '#ff8a65', 36]);
   if (!lost && !state.you.paired) lines.push([connection.words(), '#ff8a65', 36]);
-  if (news && news.fault) lines.push([`fault: ${news.fault}`, '#ff8a65', 36]);
+  if (news && news.fault && !doing.includes(news.fault)) lines.push([`fault: ${news.fault}`, '#ff8a65', 36]);
   if (state) lines.push([doing, '#ffffff', 36]);
   if (note) lines.push([note, '#ffcc80', 36]);
   if (state && state.asked) {
@@ -123,22 +123,35 @@ function show() {
   }
   for (const line of (state && state.arms) || []) lines.push([line, '#b0d4f1', 30]);
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';
-  panel.fillRect(0, 0, 1024, 512);
-  panel.drawImage($('robot-view'), 624, 112, 400, 400);
+  panel.fillRect(0, 0, PANEL.width, PANEL.height);
+  panel.drawImage($('robot-view'), PANEL.width - PANEL.robot, PANEL.height - PANEL.robot, PANEL.robot, PANEL.robot);
   painted = true;
-  let y = 20;
-  for (const [text, colour, size] of lines) {
+  let placed = wrapped(lines, 1);
+  for (let scale = 0.95; placed.at(-1).y > PANEL.height - PANEL.margin && scale > 0.4; scale -= 0.05) placed = wrapped(lines, scale);
+  for (const {text, colour, size, y} of placed) {
     panel.fillStyle = colour;
-    panel.font = `${size}px system-ui, sans-serif`;
-    let rest = text.split(' ');
-    while (rest.length && y < 470) {                        // as many words as fit into a line
+    panel.font = fontOf(size);
+    panel.fillText(text, PANEL.margin, y);
+  }
+}
+const PANEL = {width: 1024, height: 512, robot: 400, margin: 24};
+const fontOf = (size) => `${size}px system-ui, sans-serif`;
+/// (lines, scale of their letters) => the same with as many words in a line as fit beside the robot, each with its place.
+function wrapped(lines, scale) {
+  const placed = [];
+  let y = PANEL.margin;
+  for (const [text, colour, fullSize] of lines) {
+    const size = fullSize * scale;
+    panel.font = fontOf(size);
+    for (let rest = text.split(/ +/); rest.length > 0;) {
       y += size * 1.25;
+      const width = PANEL.width - 2 * PANEL.margin - (y > PANEL.height - PANEL.robot ? PANEL.robot : 0);
       let count = rest.length;
-      while (count > 1 && panel.measureText(rest.slice(0, count).join(' ')).width > (y < 130 ? 964 : 590)) count -= 1;
-      panel.fillText(rest.slice(0, count).join(' '), 30, y, y < 130 ? 964 : 590);
-      rest = rest.slice(count);
+      while (count > 1 && panel.measureText(rest.slice(0, count).join(' ')).width > width) count -= 1;
+      placed.push({text: rest.splice(0, count).join(' '), colour, size, y});
     }
   }
+  return placed;
 }
 let drawnBundle = null;
 setInterval(() => {                                        // drawing the robot takes a good part of a frame: five times a second
