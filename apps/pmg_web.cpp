@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
@@ -96,24 +95,6 @@ int revoke(const Arguments& arguments) {
   return kNone;
 }
 
-/// From palm to palm with arms stretched sideways [m]; 0: it has no arms that can be led.
-double arm_span_m(const model::RobotModel& robot) {
-  const auto setup = arms::read_arm_setup(robot);
-  if (!setup) return 0.0;
-  double span_m = 0.0;
-  for (const arms::PalmSetup& palm : setup->palm) {
-    bool past_shoulder = false;
-    for (const KDL::Segment& segment : palm.chain.segments) {
-      const KDL::Vector p = segment.getFrameToTip().p;
-      span_m += past_shoulder ? p.Norm()
-                              : std::abs(p.y());  // the shoulder is beside the middle, the arm as long as its parts
-      past_shoulder = past_shoulder || segment.getJoint().getType() != KDL::Joint::None;
-    }
-    span_m += palm.T_LP.translation().norm();
-  }
-  return span_m;
-}
-
 /// What is known of the robot once the controller names its model: this computer must have its files.
 class KnownRobot {
  public:
@@ -125,7 +106,7 @@ class KnownRobot {
     return motion_ ? &*motion_ : nullptr;
   }
 
-  double arm_span() const { return span_m_; }
+  double arm_span() const { return span_m_; }  ///< [m]; 0: it has no arms that can be led
   /// What a page draws of it, once after it has become known; empty: nothing new.
   std::string take_shape() { return std::exchange(shape_, {}); }
 
@@ -138,7 +119,8 @@ class KnownRobot {
       const model::RobotModel robot = model::load_robot(model::find_robot(info.model));
       if (robot.joint_index.names() != info.joint_names) throw std::runtime_error("its joints are others");
       motion_.emplace(robot);
-      span_m_ = arm_span_m(robot);
+      const auto setup = arms::read_arm_setup(robot);
+      span_m_ = setup ? arms::span_m(*setup) : 0.0;
       shape_ = live_page::robot_shape(robot);
     } catch (const std::exception& error) {
       std::cerr << fmt::format("pmg_web: no measured motion is shown: model {}: {}\n", io::plain_text(info.model),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "files/config_reader.hpp"
 
@@ -56,6 +57,25 @@ std::optional<ArmSetup> read_arm_setup(const model::RobotModel& robot) {
   }
   section.finish();
   return setup;
+}
+
+double span_m(const ArmSetup& setup) {
+  double span_m = 0.0;
+  for (const PalmSetup& palm : setup.palm) {
+    double shoulder_m = 0.0;
+    bool past_shoulder = false;
+    for (const KDL::Segment& segment : palm.chain.segments) {
+      const KDL::Vector origin_m = segment.getFrameToTip().p;  // of the joint, in the link before it
+      if (past_shoulder) {
+        span_m += origin_m.Norm();
+      } else {
+        shoulder_m += origin_m.y();
+      }
+      past_shoulder = past_shoulder || segment.getJoint().getType() != KDL::Joint::Fixed;
+    }
+    span_m += std::abs(shoulder_m) + palm.T_LP.translation().norm();
+  }
+  return span_m;
 }
 
 }  // namespace pmg::arms

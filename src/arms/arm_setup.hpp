@@ -26,4 +26,9 @@ struct ArmSetup {
 /// hangs on no joints or more than kMaxArmJoints, or if a joint of an arm is one of the policy's or of both arms.
 std::optional<ArmSetup> read_arm_setup(const model::RobotModel& robot);
 
+/// From palm to palm with both arms stretched sideways [m], by their links' lengths alone: the shoulder is as far from
+/// the middle as its first joint lies to the side, the rest of the arm as long as the distances from joint to joint.
+///   span = sum over arms of ( |sum of y up to the first moving joint| + sum over later origins of |p_i| + |p_LP| )
+double span_m(const ArmSetup& setup);
+
 }  // namespace pmg::arms

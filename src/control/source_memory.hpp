@@ -5,6 +5,7 @@
 
 #include "control/mode.hpp"
 #include "control/source_table.hpp"
+#include "io/transit.hpp"
 
 namespace pmg::control {
 
@@ -21,9 +22,7 @@ struct SourceRecord {
   Mode asked_mode = Mode::kPassive;
   bool asked_reset = false;
   Verdict verdict = Verdict::kTaken;
-  /// Smallest (received - stamp) of the messages that were taken. The two clocks have different zeros; the difference
-  /// between two messages still shows how much longer one of them travelled.
-  std::int64_t smallest_offset_ns = 0;
+  io::Transit transit{};  ///< of the messages that were taken
 };
 
 /// A fixed number of sources (SourceTable); no heap. Stamps are the senders' and may be anything.
@@ -34,9 +33,6 @@ class SourceMemory {
   static constexpr std::int64_t kSessionHolds_ns = 10'000'000'000;
   /// A message is late when it travelled this much longer than the fastest one of its session.
   static constexpr std::int64_t kLate_ns = 200'000'000;
-  /// The smallest offset grows by 1 ms a second, twice the rate at which NTP may slew a clock. Otherwise two clocks
-  /// that drift apart would make all messages of a long session late.
-  static constexpr std::int64_t kForgetting = 1000;
 
   /// The record of this session; null when nothing is remembered.
   const SourceRecord* find(const Source& source) const noexcept { return table_.find(source); }

@@ -2,67 +2,28 @@
 // the robot's controller judge every message.
 'use strict';
 
-const $ = (id) => document.getElementById(id);
 const CHANNELS = [
   ['vx_m_s', 'forwards', 'm/s'], ['vy_m_s', 'left', 'm/s'], ['omega_rad_s', 'turn', 'rad/s'],
   ['pitch_rad', 'bend', 'rad'], ['roll_rad', 'lean', 'rad'], ['height_m', 'height', 'm']];
 const HELD_MS = 33, IDLE_MS = 200;        // between messages
-const GONE_MS = 1000;                     // without a state from the server
-const STOP_KEPT_MS = 10000;               // a stop that couldn't be sent is sent if the connection is back by then
 const HOLD_MS = 1000;                     // of a button that moves the robot
 
-// ---- who this page is -----------------------------------------------------------------------------------------------
-let token = '';
-try {
-  const given = location.hash.slice(1);
-  if (given) localStorage.setItem('pmg.token', given);
-  token = localStorage.getItem('pmg.token') || '';
-} catch { token = location.hash.slice(1); }
-history.replaceState(null, '', location.pathname);   // so that it isn't seen, nor sent to anybody with the address
-
-// ---- the connection -------------------------------------------------------------------------------------------------
-let socket = null, heardAt = 0, refused = 0, state = null, number = 0, presses = 0, stopAt = 0;
-
-function connect() {
-  const withToken = token && refused < 2;            // after two refusals: look, without it
-  const opening = new WebSocket(`wss://${location.host}/socket`, withToken ? ['pmg', 'pmg.token.' + token] : ['pmg']);
-  let opened = false;
-  socket = opening;
-  opening.onopen = () => { opened = true; if (stopAt && Date.now() - stopAt < STOP_KEPT_MS) stop(); };
-  opening.onmessage = (event) => { heardAt = performance.now(); show(JSON.parse(event.data)); };
-  opening.onclose = () => {
-    if (opening !== socket) return;                  // a newer one has taken its place
-    release();
-    if (withToken && opened) refused = 0;
-    // A browser doesn't say why a socket wasn't opened: a server that gives out pages but no socket has refused the token.
-    const asked = withToken && !opened ? fetch('/page.css', {cache: 'no-store'}).then((answer) => { if (answer.ok) refused += 1; }) : Promise.resolve();
-    asked.catch(() => {}).finally(() => setTimeout(connect, 500));
-  };
-}
-function say(text) {
-  if (!socket || socket.readyState !== WebSocket.OPEN) return false;
-  socket.send(text);
-  return true;
-}
+// ---- the connection: what is held counts no longer when it, or the page, is away -------------------------------------
+const connection = new Connection({hear: show, lost: release});
+let number = 0, presses = 0;
 // A phone that slept has a clock that stood still, and a connection that may be dead: begin anew.
 document.addEventListener('visibilitychange', () => {
   release();
-  if (!document.hidden && socket) { const old = socket; connect(); old.close(); }
+  if (!document.hidden) connection.open();
 });
 window.addEventListener('blur', release);
 window.addEventListener('pagehide', release);
-
-// ---- the stop -------------------------------------------------------------------------------------------------------
 function stop() {
-  stopAt = say('stop') ? 0 : stopAt || Date.now();
+  connection.stop();
   release();
-  $('stop').classList.add('sent');
-  setTimeout(() => $('stop').classList.remove('sent'), 400);
-  alarm();
+  header();
 }
-$('stop').addEventListener('pointerdown', (event) => { event.preventDefault(); stop(); });
-$('stop').addEventListener('keydown', (event) => { if (event.key === 'Enter' || event.key === ' ') stop(); });
-document.addEventListener('keydown', (event) => { if (event.key === 'Escape') stop(); });
+wireStop(stop);
 
 // ---- sticks: hold to drive ------------------------------------------------------------------------------------------
 const sticks = [
@@ -117,9 +78,9 @@ for (const stick of sticks) {
 let toldAt = 0;
 function tell() {
   toldAt = performance.now();
-  if (!state || !state.you.paired) return;
+  if (!connection.state || !connection.state.you.paired) return;
   const unit = (value) => Math.max(-1, Math.min(1, value)) || 0;
-  say(JSON.stringify({
+  connection.say(JSON.stringify({
     n: ++number, t: performance.now(), held: sticks.some((stick) => stick.pointer !== null), press: presses,
     forwards: unit(-sticks[0].y), turn: unit(-sticks[0].x), left: unit(-sticks[1].x)}));
 }
@@ -135,7 +96,7 @@ for (const button of document.querySelectorAll('button.hold')) {
   const begin = () => {
     if (timer) return;
     button.classList.add('pressed');
-    timer = setTimeout(() => { end(); say(JSON.stringify({request: button.dataset.request})); }, HOLD_MS);
+    timer = setTimeout(() => { end(); connection.say(JSON.stringify({request: button.dataset.request})); }, HOLD_MS);
   };
   button.addEventListener('pointerdown', (event) => { event.preventDefault(); begin(); });
   for (const name of ['pointerup', 'pointercancel', 'pointerleave', 'blur']) button.addEventListener(name, end);
@@ -156,33 +117,18 @@ function row(body, cells) {
 }
 const fixed = (value, digits = 2) => typeof value === 'number' ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(digits) : '–';
 
-function alarm() {
-  const silent = performance.now() - heardAt > GONE_MS;
-  const lost = silent || !socket || socket.readyState !== WebSocket.OPEN;
-  const text = stopAt ? 'THE STOP IS NOT SENT: no connection. Use the emergency stop.'
-    : lost ? 'No connection to the server: what is shown is old, and nothing here has an effect.'
-    : state && !state.heard ? 'The robot is not heard. Its own controller brings the velocity to zero without commands.' : '';
-  $('alarm').textContent = text;
-  $('alarm').hidden = !text;
-  document.body.classList.toggle('stale', lost);
-  if (lost) $('link').textContent = 'no connection';
+function header() {
+  connection.showHeader();
+  document.body.classList.toggle('stale', connection.isLost());
 }
-setInterval(alarm, 200);
+setInterval(header, 200);
 
-let drawnBundle = null, drawnSession = null;
-function show(next) {
-  const first = !state || state.you.paired !== next.you.paired;
-  state = next;
-  const news = state.news, paired = state.you.paired;
-  if (first && paired) tell();
-  $('robot').textContent = state.robot || 'no robot';
-  const mode = !news ? 'not heard' : !state.heard ? 'no longer heard' : news.mode + (news.hanging ? ', hanging' : '');
-  $('mode').textContent = mode;
-  $('mode').className = 'badge ' + (news && state.heard ? news.mode : 'gone');
-  $('link').textContent = paired ? `paired as ${paired}` : token && refused >= 2
-    ? 'this token is not taken (revoked, or too many pages): you may look, and do nothing; reload to try again' : 'not paired: you may look, and do nothing (pmg_web pair NAME)';
+let drawnBundle = null, drawnSession = null, wasPaired = '';
+function show(state) {
+  const {news} = state, {paired} = state.you;
+  if (paired && paired !== wasPaired) tell();
+  wasPaired = paired;
   document.body.classList.toggle('reader', !paired);
-  $('stop').disabled = !paired;
   $('text').textContent = (state.text || (state.you.drives ? 'you drive' : 'it is driven')) + (state.limited ? '; ' + state.limited : '');
   $('note').textContent = state.you.note;
   $('note').hidden = !state.you.note;
@@ -190,17 +136,17 @@ function show(next) {
   $('fault').hidden = !news || !news.fault;
   sticks[0].element.classList.toggle('drives', state.you.drives);
   sticks[1].element.classList.toggle('drives', state.you.drives);
-  showChannels();
-  showFacts();
+  showChannels(state);
+  showFacts(state);
   if (news && news.info && (news.info.bundle !== drawnBundle || news.session !== drawnSession)) {
     drawnBundle = news.info.bundle;
     drawnSession = news.session;
     robotView.load().catch(() => {});
   }
   robotView.show(state.joints, state.tilt);
-  alarm();
+  header();
 }
-function showChannels() {
+function showChannels(state) {
   const body = $('channels');
   body.textContent = '';
   CHANNELS.forEach(([name, label, unit], i) => {
@@ -211,7 +157,7 @@ function showChannels() {
   keep(state.asked ? state.asked[0] : undefined, state.news && state.news.command ? state.news.command.vx_m_s : undefined,
     state.measured ? state.measured[0] : undefined);
 }
-function showFacts() {
+function showFacts(state) {
   const body = $('facts'), news = state.news;
   body.textContent = '';
   if (!news) return;
@@ -277,4 +223,4 @@ function keep(asked, taken, measured) {
   });
 }
 
-connect();
+connection.open();

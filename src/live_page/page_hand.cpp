@@ -5,7 +5,7 @@ namespace pmg::live_page {
 void PageHand::take(const HandNews& news, std::int64_t now_ns) noexcept {
   if (news.number <= number_) return;
   number_ = news.number;
-  late_ = transit_.take(news.stamp_ns, now_ns) > ops::Transit::kLate_ns;
+  late_ = transit_.take(news.stamp_ns, now_ns) > ops::Device::kLate_ns;
   const bool pressed = presses_ >= 0 && news.presses > presses_;
   if (presses_ < 0 || news.presses > presses_) presses_ = news.presses;
   if (late_) {

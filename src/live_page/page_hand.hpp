@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 
+#include "io/transit.hpp"
 #include "live_page/page_message.hpp"
 #include "operator/device.hpp"
 #include "operator/stick_shape.hpp"
-#include "operator/transit.hpp"
 
 namespace pmg::live_page {
 
@@ -33,7 +33,7 @@ class PageHand {
 
  private:
   std::string name_, note_;
-  ops::Transit transit_;
+  io::Transit transit_;
   ops::Hold hold_;
   std::array<double, 2> main_{};
   double side_ = 0.0;

@@ -2,36 +2,12 @@
 // decides nothing: the server judges every message.
 'use strict';
 
-const $ = (id) => document.getElementById(id);
-const SEND_MS = 15, GONE_MS = 1000, STOP_KEPT_MS = 10000, HOLD_MS = 1000, PULLED = 0.7;
+const SEND_MS = 15, HOLD_MS = 1000, PULLED = 0.7;
 
-let token = '';
-try {
-  const given = location.hash.slice(1);
-  if (given) localStorage.setItem('pmg.token', given);
-  token = localStorage.getItem('pmg.token') || '';
-} catch { token = location.hash.slice(1); }
-history.replaceState(null, '', location.pathname);
-
-// ---- the connection: entering VR may close it, and it comes back ------------------------------------------------------
-let socket = null, heardAt = -1e9, state = null, stopAt = 0;
-function connect() {
-  const opening = new WebSocket(`wss://${location.host}/socket`, token ? ['pmg', 'pmg.token.' + token] : ['pmg']);
-  socket = opening;
-  opening.onopen = () => { if (stopAt && Date.now() - stopAt < STOP_KEPT_MS) stop(); };
-  opening.onmessage = (event) => { heardAt = performance.now(); state = JSON.parse(event.data); show(); };
-  opening.onclose = () => { if (opening === socket) setTimeout(connect, 500); };
-}
-const open = () => socket && socket.readyState === WebSocket.OPEN;
-function say(text) {
-  // What waits in the browser is old when it goes out: rather leave it out.
-  if (!open() || (socket.bufferedAmount > 4096 && text !== 'stop')) return false;
-  socket.send(text);
-  return true;
-}
-function stop() { stopAt = say('stop') ? 0 : stopAt || Date.now(); show(); }
-$('stop').addEventListener('pointerdown', stop);
-document.addEventListener('keydown', (event) => { if (event.key === 'Escape') stop(); });
+// Entering VR may close the connection, and it comes back.
+const connection = new Connection({hear: show, lost: () => {}});
+function stop() { connection.stop(); show(); }
+wireStop(stop);
 
 // ---- what is told ---------------------------------------------------------------------------------------------------
 const hand = () => ({pose: null, leads: false, presses: 0, backs: 0, grip: false, wasLeading: false, pulledAt: 0, standAt: 0, stick: false, stopped: false});
@@ -62,7 +38,7 @@ function look(frame) {
     own.stick = down(3);
     if (down(5) && !own.stopped) stop();
     own.stopped = down(5);
-    own.standAt = heldFor(down(4) && !held, own.standAt, () => say('{"request":"stand"}'));
+    own.standAt = heldFor(down(4) && !held, own.standAt, () => connection.say('{"request":"stand"}'));
     own.pulledAt = heldFor((source.gamepad.axes[3] || 0) > PULLED, own.pulledAt, () => { held ? own.backs += 1 : counts.uprights += 1; });
   }
   if (anyGrip && !held) counts.presses += 1;
@@ -76,10 +52,10 @@ function heldFor(down, since, call) {
   return since;
 }
 function tell(shown) {
-  if (!state || !state.you.paired) return;
+  if (!connection.state || !connection.state.you.paired) return;
   toldAt = performance.now();
   const part = ({pose: place, leads, presses, backs}) => ({pose: place, leads, presses, backs});
-  say(JSON.stringify({
+  connection.say(JSON.stringify({
     vr: ++counts.n, t: performance.now(), shown, head, left: part(hands.left), right: part(hands.right), held,
     presses: counts.presses, recentres: counts.recentres, spans: counts.spans, uprights: counts.uprights}));
 }
@@ -128,26 +104,17 @@ if (navigator.xr) {
 const panel = $('panel').getContext('2d');
 let painted = true;
 function show() {
-  const lost = !open() || performance.now() - heardAt > GONE_MS, news = state && state.news;
-  const mode = !news ? 'not heard' : !state.heard ? 'no longer heard' : news.mode;
-  const alarm = stopAt ? 'THE STOP IS NOT SENT: no connection. Use the emergency stop.'
-    : lost ? 'No connection to the server: nothing here has an effect.' : '';
-  const paired = state && state.you.paired;
-  $('robot').textContent = (state && state.robot) || 'no robot';
-  $('mode').textContent = mode;
-  $('mode').className = 'badge ' + (news && state.heard ? news.mode : 'gone');
-  $('link').textContent = lost ? 'no connection' : paired ? `paired as ${paired}` : 'not paired: you may look, and do nothing';
-  $('stop').disabled = !paired;
-  $('alarm').textContent = alarm;
-  $('alarm').hidden = !alarm;
+  const {state} = connection, news = state && state.news, alarm = connection.alarm(), lost = connection.isLost();
+  connection.showHeader();
   const doing = state ? state.text || (state.you.drives ? 'you drive' : 'it is driven') : '';
   $('text').textContent = doing;
   const note = state ? state.you.note : '';
   $('note').textContent = note;
   $('note').hidden = !note;
-  const lines = [[`${(state && state.robot) || 'no robot'}: ${mode}`, '#ffffff', 64]];
+  const lines = [[`${(state && state.robot) || 'no robot'}: ${connection.mode()}`, '#ffffff', 64]];
   if (alarm) lines.push([alarm, '#ff8a65', 36]);
-  if (news && news.fault) lines.push([`fault: ${news.fault}`, '#ff8a65', 36]);
+  if (!lost && !state.you.paired) lines.push([connection.words(), '#ff8a65', 36]);
+  if (news && news.fault && !doing.includes(news.fault)) lines.push([`fault: ${news.fault}`, '#ff8a65', 36]);
   if (state) lines.push([doing, '#ffffff', 36]);
   if (note) lines.push([note, '#ffcc80', 36]);
   if (state && state.asked) {
@@ -156,25 +123,39 @@ function show() {
   }
   for (const line of (state && state.arms) || []) lines.push([line, '#b0d4f1', 30]);
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';
-  panel.fillRect(0, 0, 1024, 512);
-  panel.drawImage($('robot-view'), 624, 112, 400, 400);
+  panel.fillRect(0, 0, PANEL.width, PANEL.height);
+  panel.drawImage($('robot-view'), PANEL.width - PANEL.robot, PANEL.height - PANEL.robot, PANEL.robot, PANEL.robot);
   painted = true;
-  let y = 20;
-  for (const [text, colour, size] of lines) {
+  let placed = wrapped(lines, 1);
+  for (let scale = 0.95; placed.at(-1).y > PANEL.height - PANEL.margin && scale > 0.4; scale -= 0.05) placed = wrapped(lines, scale);
+  for (const {text, colour, size, y} of placed) {
     panel.fillStyle = colour;
-    panel.font = `${size}px system-ui, sans-serif`;
-    let rest = text.split(' ');
-    while (rest.length && y < 470) {                        // as many words as fit into a line
+    panel.font = fontOf(size);
+    panel.fillText(text, PANEL.margin, y);
+  }
+}
+const PANEL = {width: 1024, height: 512, robot: 400, margin: 24};
+const fontOf = (size) => `${size}px system-ui, sans-serif`;
+/// (lines, scale of their letters) => the same with as many words in a line as fit beside the robot, each with its place.
+function wrapped(lines, scale) {
+  const placed = [];
+  let y = PANEL.margin;
+  for (const [text, colour, fullSize] of lines) {
+    const size = fullSize * scale;
+    panel.font = fontOf(size);
+    for (let rest = text.split(/ +/); rest.length > 0;) {
       y += size * 1.25;
+      const width = PANEL.width - 2 * PANEL.margin - (y > PANEL.height - PANEL.robot ? PANEL.robot : 0);
       let count = rest.length;
-      while (count > 1 && panel.measureText(rest.slice(0, count).join(' ')).width > (y < 130 ? 964 : 590)) count -= 1;
-      panel.fillText(rest.slice(0, count).join(' '), 30, y, y < 130 ? 964 : 590);
-      rest = rest.slice(count);
+      while (count > 1 && panel.measureText(rest.slice(0, count).join(' ')).width > width) count -= 1;
+      placed.push({text: rest.splice(0, count).join(' '), colour, size, y});
     }
   }
+  return placed;
 }
 let drawnBundle = null;
 setInterval(() => {                                        // drawing the robot takes a good part of a frame: five times a second
+  const {state} = connection;
   if (state && state.joints && state.news.info && state.news.info.bundle !== drawnBundle) {
     drawnBundle = state.news.info.bundle;
     robotView.load().catch(() => {});
@@ -225,4 +206,4 @@ function paint(frame) {
   }
 }
 
-connect();
+connection.open();

@@ -52,7 +52,7 @@ void VrCommand::hold_palms() {
 void VrCommand::take(const VrNews& news, std::int64_t now_ns) {
   if (!present_ || news.number <= seen_.number) return;
   seen_.number = news.number;
-  const bool late = transit_.take(news.stamp_ns, now_ns) > ops::Transit::kLate_ns;
+  const bool late = transit_.take(news.stamp_ns, now_ns) > ops::Device::kLate_ns;
   const bool pressed = seen_.presses >= 0 && news.presses > seen_.presses;
   seen_.presses = std::max(seen_.presses, news.presses);
   now_ns_ = now_ns;

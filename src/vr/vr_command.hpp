@@ -7,8 +7,8 @@
 #include <string>
 
 #include "arms_operator/arms_board.hpp"
+#include "io/transit.hpp"
 #include "operator/device.hpp"
-#include "operator/transit.hpp"
 #include "vr/head_motion.hpp"
 #include "vr/palm_lead.hpp"
 
@@ -72,7 +72,7 @@ class VrCommand : public ops::Device {
   double robot_span_m_ = 0.0, scale_ = 1.0;
   CommandLimits limits_;  // zero until they are known: then every command is zero
   bool present_ = false, driving_ = false, led_ = false, steady_ = false, loss_told_ = true;
-  ops::Transit transit_;
+  io::Transit transit_;
   Seen seen_;
   std::optional<Centre> centre_;
   std::optional<Pose> head_;

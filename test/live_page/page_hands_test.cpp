@@ -182,7 +182,7 @@ TEST_F(PageHandsTest, APageThatIsClosedOrReloadedUnderTheFingerStopsAndNeedsAFre
 TEST_F(PageHandsTest, MessagesThatComeLateDriveNothingAndAnOldTouchDoesNotCount) {
   stand();
   drive(phone_);
-  phone_.clock_offset_ns -= ops::Transit::kLate_ns + 50'000'000;  // each is on its way for so much longer
+  phone_.clock_offset_ns -= ops::Device::kLate_ns + 50'000'000;  // each is on its way for so much longer
   run(0.3 + 0.55);
   EXPECT_EQ(u(kVx), 0.0);
   EXPECT_TRUE(hands_.hand(1)->late());
@@ -190,7 +190,7 @@ TEST_F(PageHandsTest, MessagesThatComeLateDriveNothingAndAnOldTouchDoesNotCount)
   run(0.1);
   phone_.touch();
   run(0.2);
-  phone_.clock_offset_ns += ops::Transit::kLate_ns + 50'000'000;
+  phone_.clock_offset_ns += ops::Device::kLate_ns + 50'000'000;
   phone_.forwards = 1.0;
   run(2.0);
   EXPECT_EQ(mode(), Mode::kStand) << "the touch came late";
@@ -200,7 +200,7 @@ TEST_F(PageHandsTest, MessagesThatComeLateDriveNothingAndAnOldTouchDoesNotCount)
 TEST_F(PageHandsTest, LettingGoCountsHoweverLateItComes) {
   stand();
   drive(phone_);
-  phone_.clock_offset_ns -= ops::Transit::kLate_ns + 50'000'000;
+  phone_.clock_offset_ns -= ops::Device::kLate_ns + 50'000'000;
   phone_.lift();
   step();
   EXPECT_EQ(hands_.driving(), std::nullopt);

@@ -121,7 +121,7 @@ def wrong(name):
 
 def shell_scripts():
     listed = run("git", "-C", ROOT, "grep", "-lzE", "--untracked", r"^#!.*\b(ba)?sh$").split("\0")
-    return [ROOT / name for name in listed if name] + sorted(ROOT.glob("scripts/*.bash"))
+    return [ROOT / name for name in listed if name] + sorted(path for folder in ("scripts", "third_party") for path in ROOT.glob(f"{folder}/*.bash"))
 
 
 class Commands(unittest.TestCase):

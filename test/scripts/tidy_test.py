@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-USED = (".clang-tidy", "scripts/tidy", "third_party/python-packages", "third_party/python/tools.txt")
+USED = (".clang-tidy", "scripts/tidy", "third_party/pinned_folder.bash", "third_party/python-packages", "third_party/python/tools.txt")
 TOOLS = [ROOT / "third_party/python-packages", "tools", "--cached"]
 MOVED = "#include <string>\n#include <utility>\nstd::string f(std::string a) { std::string b = std::move(a); return a + b; }\n"
 

@@ -70,7 +70,7 @@ TEST_F(VrLoss, ASilentLinkHoldsAfterThreeTenthsOfASecond) {
 
 TEST_F(VrLoss, LateMessagesDoNotDriveOnAndALateReleaseEnds) {
   walk();
-  headset_.delay_ns = ops::Transit::kLate_ns + 20'000'000;
+  headset_.delay_ns = ops::Device::kLate_ns + 20'000'000;
   run(0.25);
   EXPECT_DOUBLE_EQ(command_[kVx], 0.8) << "as silence";
   EXPECT_THAT(vr_.note(), HasSubstr("late"));
@@ -79,7 +79,7 @@ TEST_F(VrLoss, LateMessagesDoNotDriveOnAndALateReleaseEnds) {
   expect_held();
   headset_.delay_ns = 0;
   glide(-kReach_m, 0.0);
-  headset_.delay_ns = ops::Transit::kLate_ns + 20'000'000;
+  headset_.delay_ns = ops::Device::kLate_ns + 20'000'000;
   headset_.squeeze();
   run(0.1);
   headset_.delay_ns = 0;
