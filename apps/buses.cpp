@@ -89,7 +89,7 @@ Overhearing::Overhearing(Buses& buses) : buses_(buses) {
   for (const drives::BusSetup& bus : buses.setup.buses) {
     auto& motors = heard_.emplace_back();
     for (const drives::MotorSetup& motor : bus.motors)
-      motors.push_back({.motor = can::BusMotor(motor, bus), .answer = {.node = motor.node, .count = 1}});
+      motors.push_back({.motor = can::BusMotor(motor, bus, monitors_.emplace_back(motor.limits)), .answer = {.node = motor.node, .count = 1}});
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -55,6 +56,7 @@ class Overhearing {
   void listen();
 
   Buses& buses_;
+  std::deque<drives::MotorMonitor> monitors_;
   std::vector<std::vector<Heard>> heard_;  // of each bus: its motors
 };
 

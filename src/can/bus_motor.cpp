@@ -17,15 +17,19 @@ bool known(const drives::BusSetup& bus, int node) noexcept {
 
 }  // namespace
 
-BusMotor::BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus) noexcept
+int fresh_cycles(const drives::BusSetup& bus) noexcept {
+  return bus.bridge_slave != 0 ? drives::MotorMonitor::kFreshOverBridge : drives::MotorMonitor::kFreshCycles;
+}
+
+BusMotor::BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus,
+                   drives::MotorMonitor& monitor) noexcept
     : setup_(&setup),
       drive_([&]() -> std::variant<Mit, Canopen> {
         if (const auto* mit = std::get_if<drives::MitRanges>(&setup.drive))
           return Mit{.protocol = drives::MitProtocol(*mit), .reply_id = mit->reply_id, .fd = bus.data_bitrate != 0};
         return Canopen{.axis = drives::Cia402Axis(*std::get_if<drives::Cia402Settings>(&setup.drive), setup.limits)};
       }()),
-      monitor_(setup.limits,
-               bus.bridge_slave != 0 ? drives::MotorMonitor::kFreshOverBridge : drives::MotorMonitor::kFreshCycles) {}
+      monitor_(&monitor) {}
 
 std::optional<Frame> BusMotor::ask(const drives::MotorCommand& wanted, const Cycle& cycle) noexcept {
   const drives::MotorCommand at_motor = setup_->transmission.to_motor(wanted);
@@ -34,16 +38,16 @@ std::optional<Frame> BusMotor::ask(const drives::MotorCommand& wanted, const Cyc
     canopen->stiff = cycle.stiff;
     canopen->off = false;
     asked_ = cycle.synced;
-    if (asked_) monitor_.ask(false);
-    if (!monitor_.silent() || cycle.stiff || ++canopen->since_start < kStartCycles) return std::nullopt;
+    if (asked_) monitor_->ask(false);
+    if (!monitor_->silent() || cycle.stiff || ++canopen->since_start < kStartCycles) return std::nullopt;
     canopen->since_start = 0;
     return canopen::node_command(canopen::NodeCommand::kStart, setup_->node);
   }
   Mit& mit = *std::get_if<Mit>(&drive_);
-  asked_ = cycle.urgent || !monitor_.pauses();
+  asked_ = cycle.urgent || !monitor_->pauses();
   if (!asked_) return std::nullopt;
-  const bool enabling = !monitor_.enabled() && !cycle.stiff;
-  monitor_.ask(enabling);
+  const bool enabling = !monitor_->enabled() && !cycle.stiff;
+  monitor_->ask(enabling);
   return Frame::of(static_cast<std::uint32_t>(setup_->node),
                    enabling ? drives::kMitEnable : mit.protocol.command(at_motor, setup_->limits, mit.left_Nm), mit.fd);
 }
@@ -52,16 +56,16 @@ std::optional<Frame> BusMotor::ask_off(bool synced) noexcept {
   if (auto* canopen = std::get_if<Canopen>(&drive_)) {
     canopen->off = true;
     asked_ = synced;
-    if (asked_) monitor_.ask(false);
+    if (asked_) monitor_->ask(false);
     return std::nullopt;
   }
   asked_ = true;
-  monitor_.ask(false);
+  monitor_->ask(false);
   return Frame::of(static_cast<std::uint32_t>(setup_->node), drives::kMitDisable, std::get_if<Mit>(&drive_)->fd);
 }
 
 void BusMotor::not_asked() noexcept {
-  if (asked_) monitor_.take_back();
+  if (asked_) monitor_->take_back();
   asked_ = false;
 }
 
@@ -71,13 +75,13 @@ bool BusMotor::hear(const Frame& frame) noexcept {
     case Heard::What::kForeign:
       return false;
     case Heard::What::kReading:
-      monitor_.hear(heard.reading);
+      monitor_->hear(heard.reading);
       return true;
     case Heard::What::kPart:
-      monitor_.hear_stray();
+      monitor_->hear_stray();
       return true;
     case Heard::What::kBootUp:
-      monitor_.restarted();
+      monitor_->restarted();
       return true;
     case Heard::What::kNoted:
       return true;
@@ -122,8 +126,8 @@ BusMotor::Heard BusMotor::overhear(Canopen& drive, const Frame& frame) const noe
 }
 
 drives::Freshness BusMotor::freshness() const noexcept {
-  if (!monitor_.answered() || monitor_.silent()) return drives::Freshness::kNone;
-  const bool fresh = monitor_.believed() && monitor_.fresh();
+  if (!monitor_->answered() || monitor_->silent()) return drives::Freshness::kNone;
+  const bool fresh = monitor_->believed() && monitor_->fresh();
   return fresh ? drives::Freshness::kFresh : drives::Freshness::kLate;
 }
 
@@ -132,13 +136,13 @@ std::optional<Frame> BusMotor::targets() noexcept {
   if (canopen == nullptr) return std::nullopt;
   if (canopen->off) return canopen::targets_frame(setup_->node, {});
   const drives::Cia402Targets targets =
-      canopen->axis.command(canopen->wanted, canopen->stiff, monitor_.reading(), freshness());
-  monitor_.refuse_gains(canopen->axis.refused());
+      canopen->axis.command(canopen->wanted, canopen->stiff, monitor_->reading(), freshness());
+  monitor_->refuse_gains(canopen->axis.refused());
   return canopen::targets_frame(setup_->node, targets);
 }
 
 void BusMotor::interrupt() noexcept {
-  if (std::holds_alternative<Mit>(drive_)) monitor_.interrupt();
+  if (std::holds_alternative<Mit>(drive_)) monitor_->interrupt();
 }
 
 double BusMotor::torque_step_Nm() const noexcept {

@@ -13,16 +13,14 @@
 
 namespace pmg::can {
 
-/// No heap, no lock. A cycle: begin(), ask() or ask_off(), answers into hear(), targets().
+/// No heap, no lock. A cycle: its monitor begins, ask() or ask_off(), answers into hear(), targets().
 class BusMotor {
  public:
-  /// Keeps a reference to setup, one motor of the bus.
-  BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus) noexcept;
+  /// Keeps references to setup, one motor of the bus, and to its monitor, whose cycle its owner begins.
+  BusMotor(const drives::MotorSetup& setup, const drives::BusSetup& bus, drives::MotorMonitor& monitor) noexcept;
 
-  /// A cycle begins.
-  void begin() noexcept { monitor_.begin(); }
   /// The bus is to have no SYNC in this cycle: what a CANopen drive sends all the same is late.
-  bool pauses_sync() const noexcept { return std::holds_alternative<Canopen>(drive_) && monitor_.pauses(); }
+  bool pauses_sync() const noexcept { return std::holds_alternative<Canopen>(drive_) && monitor_->pauses(); }
   struct Cycle {
     bool stiff = false;   ///< some motor of the robot is told a gain or a torque: no drive is switched on
     bool urgent = false;  ///< the robot's gains are others than in the cycle before: no drive waits for its command
@@ -52,7 +50,7 @@ class BusMotor {
   void interrupt() noexcept;
 
   const drives::MotorSetup& setup() const noexcept { return *setup_; }
-  const drives::MotorMonitor& monitor() const noexcept { return monitor_; }
+  const drives::MotorMonitor& monitor() const noexcept { return *monitor_; }
   double torque_step_Nm() const noexcept;    ///< of its torque reading
   std::uint16_t emergency() const noexcept;  ///< error code of the last emergency message; 0: none, or it is over
 
@@ -77,9 +75,12 @@ class BusMotor {
 
   const drives::MotorSetup* setup_;
   std::variant<Mit, Canopen> drive_;
-  drives::MotorMonitor monitor_;
+  drives::MotorMonitor* monitor_;
   bool asked_ = false;  // in this cycle
 };
+
+/// For a monitor of one of its motors: see drives::MotorMonitor.
+int fresh_cycles(const drives::BusSetup& bus) noexcept;
 
 /// The identifiers with which the drives of a bus, and its IMU, send to this computer: a receive filter. Allocates.
 std::vector<std::uint32_t> awaited_ids(const drives::BusSetup& bus);

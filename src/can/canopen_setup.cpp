@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "drives/robot_drives.hpp"
+
 namespace pmg::can {
 
 namespace {
@@ -132,7 +134,7 @@ void set_up_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, L
     node.write({0x1029, 1, 1}, 1);  // a silent computer stops the motor, not the node's PDOs; not every drive has it
     command(canopen::NodeCommand::kStart);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{} ({}, node {}): {}", motor.joint, bus.name, motor.node, error.what()));
+    throw std::runtime_error(drives::name_of(bus, motor) + ": " + error.what());
   }
 }
 

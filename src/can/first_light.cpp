@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "can/one_motor.hpp"
+#include "drives/robot_drives.hpp"
 #include "hal/bus_cycle.hpp"
 #include "model/hanging_load.hpp"
 #include "pmg/types.hpp"

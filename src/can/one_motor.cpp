@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "can/canopen_setup.hpp"
+#include "drives/robot_drives.hpp"
 
 namespace pmg::can {
 
@@ -14,16 +15,12 @@ constexpr int kAnswerCycles = 250;  // 0.5 s: some nodes take their time to star
 constexpr int kPatience = 5;        // ticks: 10 ms, which some adapters take; drives let go after 20 ms
 }  // namespace
 
-std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor) {
-  return fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
-}
-
 OneMotor::OneMotor(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
                    const std::function<void()>& tick)
-    : bus_(bus), setup_(motor), motor_(motor, bus), link_(link), tick_(tick) {
+    : bus_(bus), setup_(motor), monitor_(motor.limits, fresh_cycles(bus)), motor_(motor, bus, monitor_), link_(link), tick_(tick) {
   if (std::holds_alternative<drives::Cia402Settings>(motor.drive)) set_up_node(bus, motor, link, tick);
-  for (int k = 0; k < kAnswerCycles && !motor_.monitor().answered(); ++k) exchange_off();
-  if (!motor_.monitor().answered())
+  for (int k = 0; k < kAnswerCycles && !monitor_.answered(); ++k) exchange_off();
+  if (!monitor_.answered())
     throw std::runtime_error(name_of(bus, motor) + " does not answer; expected a powered drive with this node number");
 }
 
@@ -40,7 +37,7 @@ OneMotor::~OneMotor() {
 
 void OneMotor::cycle(const std::function<std::optional<Frame>(bool synced)>& ask) {
   const auto send = [this](const Frame& frame) { return link_.send(std::span(&frame, 1)) == 1; };
-  motor_.begin();
+  monitor_.begin();
   const bool synced = bus_.has_canopen() && !motor_.pauses_sync();
   bool asked = synced && send(canopen::sync());
   if (bus_.has_canopen() && ticks_ >= kHeartbeatCycles) {
@@ -52,7 +49,7 @@ void OneMotor::cycle(const std::function<std::optional<Frame>(bool synced)>& ask
     if (std::holds_alternative<drives::MitRanges>(setup_.drive)) asked = sent;
   }
   if (!asked) motor_.not_asked();
-  for (int k = 0; k < kPatience && (k == 0 || motor_.monitor().age_cycles() > 0); ++k) {
+  for (int k = 0; k < kPatience && (k == 0 || monitor_.age_cycles() > 0); ++k) {
     tick_();
     ++ticks_;
     std::array<Frame, 32> frames;
@@ -68,20 +65,16 @@ void OneMotor::exchange_off() {
 }
 
 bool OneMotor::switch_on() {
-  for (int k = 0; k < kAnswerCycles && !motor_.monitor().enabled(); ++k)
+  for (int k = 0; k < kAnswerCycles && !monitor_.enabled(); ++k)
     cycle([this](bool synced) { return motor_.ask({}, {.synced = synced}); });
-  return motor_.monitor().enabled();
+  return monitor_.enabled();
 }
 
 void OneMotor::exchange(const drives::MotorCommand& joint) {
   cycle([&](bool synced) { return motor_.ask(joint, {.stiff = true, .synced = synced}); });
-  if (motor_.monitor().condition(true) != drives::Condition::kLost) return;
-  const drives::Trouble trouble = motor_.monitor().trouble(true);
+  if (monitor_.condition(true) != drives::Condition::kLost) return;
   throw std::runtime_error(name_of(bus_, setup_) + " " +
-                           (trouble == drives::Trouble::kFault
-                                ? std::string("reports ") + drives::to_string(motor_.monitor().reading().fault)
-                                : std::string(drives::to_string(trouble))) +
-                           "; it is switched off");
+                           drives::words_of(monitor_.trouble(true), monitor_.reading().fault) + "; it is switched off");
 }
 
 void OneMotor::set_zero() {
@@ -91,7 +84,8 @@ void OneMotor::set_zero() {
   std::array<Frame, 32> answers;
   while (link_.receive(answers) > 0) {
   }
-  motor_ = BusMotor(setup_, bus_);  // the position jumps
+  monitor_ = drives::MotorMonitor(setup_.limits, fresh_cycles(bus_));  // the position jumps
+  motor_ = BusMotor(setup_, bus_, monitor_);
 }
 
 }  // namespace pmg::can

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include "can/bus_motor.hpp"
 #include "can/canopen_setup.hpp"
@@ -11,9 +10,6 @@
 #include "drives/drive_setup.hpp"
 
 namespace pmg::can {
-
-/// "left_knee (can0, node 4)"
-std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor);
 
 class OneMotor {
  public:
@@ -32,7 +28,7 @@ class OneMotor {
   void exchange_off();
   void set_zero();  ///< MIT: the present position becomes the drive's zero; drive off
 
-  drives::MotorReading joint() const { return setup_.transmission.to_joint(motor_.monitor().reading()); }
+  drives::MotorReading joint() const { return setup_.transmission.to_joint(monitor_.reading()); }
   const BusMotor& motor() const { return motor_; }
 
  private:
@@ -40,6 +36,7 @@ class OneMotor {
 
   const drives::BusSetup& bus_;
   const drives::MotorSetup& setup_;
+  drives::MotorMonitor monitor_;
   BusMotor motor_;
   Link& link_;
   const std::function<void()>& tick_;

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "can/bus_motor.hpp"
-#include "can/one_motor.hpp"
+#include "drives/robot_drives.hpp"
 
 namespace pmg::can {
 
@@ -188,10 +189,11 @@ std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait&
   };
   std::vector<int> mit;
   std::vector<BusMotor> motors;
+  std::deque<drives::MotorMonitor> monitors;
   for (const drives::MotorSetup& motor : bus.motors) {
     if (!std::holds_alternative<drives::MitRanges>(motor.drive)) continue;
     mit.push_back(motor.node);
-    motors.emplace_back(motor, bus);
+    motors.emplace_back(motor, bus, monitors.emplace_back(motor.limits));
   }
   const Roll roll{.link = link,
                   .wait = wait,

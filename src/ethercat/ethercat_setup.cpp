@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "can/one_motor.hpp"
 #include "ethercat/bridge_link.hpp"
 #include "ethercat/drive_link.hpp"
 #include "files/config_reader.hpp"
@@ -71,7 +70,7 @@ std::map<int, Place> places(const drives::DriveSetup& drives, const files::Confi
       add(bus.name, bus.bridge_slave, {.who = bus.name + "'s bridge", .alias = bus.bridge_alias, .bridge = true});
     for (const drives::MotorSetup& motor : bus.motors) {
       if (bus.first_slave != 0)
-        add(bus.name, slave_of(bus, motor), {.who = can::name_of(bus, motor), .alias = alias_of(bus, motor)});
+        add(bus.name, slave_of(bus, motor), {.who = drives::name_of(bus, motor), .alias = alias_of(bus, motor)});
     }
   }
   if (const auto& own = drives.imu_slave) add("imu", own->slave, {.who = "the IMU", .alias = own->alias});
@@ -140,7 +139,7 @@ std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const drives
                                       .alias = alias_of(bus, motor),
                                       .output_bytes = kDriveOutputs,
                                       .input_bytes = drive_inputs(settings.temperature_index != 0),
-                                      .who = can::name_of(bus, motor),
+                                      .who = drives::name_of(bus, motor),
                                       .prepare = [prepare, b, m](drives::ObjectDictionary& objects) {
                                         if (prepare) prepare(b, m, objects);
                                       }};

@@ -282,9 +282,9 @@ TEST_F(Drives, EveryFaultThatADriveReportsIsLostAtOnce) {
 TEST_F(Drives, APauseLongerThanTheDrivesWatchdogsEndsUnderDamping) {
   clock_.advance_to(1'000'000);
   stand();
-  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns);
+  clock_.advance_to(clock_.now_ns() + drives::RobotDrives::kPause_ns);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "not longer";
-  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns + 1);
+  clock_.advance_to(clock_.now_ns() + drives::RobotDrives::kPause_ns + 1);
   EXPECT_EQ(cycle(standing_), BusStatus::kLost);
   EXPECT_EQ(trouble(), "left_hip_pitch (can0, node 1) is not enabled");
   cycle(limp());
