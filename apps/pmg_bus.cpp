@@ -62,7 +62,7 @@ bool interrupted() { return apps::interrupt_requested != 0; }
 
 int scan(const Arguments& arguments) {
   Buses buses(arguments.robot);
-  for (const drives::BusSetup& bus : buses.setup.buses) {
+  for (const can::BusSetup& bus : buses.setup.buses) {
     const can::BusLoad load = can::planned_load(bus);
     std::cout << fmt::format("{}: {} motors{}, {} frames a cycle, at most {:.0f} % of the bus\n", bus.name,
                              bus.motors.size(), bus.imu ? " and the IMU" : "", load.frames, 100.0 * load.share);
@@ -98,7 +98,7 @@ int watch(const Arguments& arguments) {
 }
 
 struct OneMotor {
-  const drives::BusSetup& bus;
+  const can::BusSetup& bus;
   const drives::MotorSetup& motor;
   can::Link& link;
 };
@@ -152,15 +152,13 @@ int zero(const Arguments& arguments) {
   can::OneMotor motor(one.bus, one.motor, one.link, tick);
   const double before_rad = motor.joint().q_rad;
   const double offset_rad = buses.robot.joints[static_cast<std::size_t>(one.motor.index)].bus.zero_offset_rad;
-  if (std::holds_alternative<drives::Cia402Settings>(one.motor.drive)) {
+  if (!motor.set_zero()) {
     std::cout << fmt::format(
-        "{} is at {:.2f} deg. A CiA 402 drive keeps no zero that every maker's has: write `zero_offset_rad: {:.4f}` "
-        "into "
-        "its `bus` in robot.yaml\n",
+        "{} is at {:.2f} deg. Its drive's protocol has no message that sets a zero: write `zero_offset_rad: {:.4f}` "
+        "into its `bus` in robot.yaml\n",
         arguments.joint, before_rad / kRadPerDegree, before_rad + offset_rad);
     return kOk;
   }
-  motor.set_zero();
   for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
   const double after_rad = motor.joint().q_rad;
   std::cout << fmt::format("{}: was {:.2f} deg, is {:.2f} deg now\n", arguments.joint, before_rad / kRadPerDegree,
@@ -171,7 +169,7 @@ int zero(const Arguments& arguments) {
 /// How the robot hangs [rad]; joints whose motors don't answer as if they stood, their names in `silent`.
 JointVector posture(Buses& buses, std::vector<std::string>& silent) {
   JointVector q = buses.robot.q_stand();
-  apps::ask(buses, [&](const drives::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
+  apps::ask(buses, [&](const can::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
     if (answer == nullptr)
       silent.push_back(motor.joint);
     else
@@ -209,9 +207,9 @@ int wiggle(const Arguments& arguments) {
 /// Frames of all buses in the order in which the kernel got them.
 int dump(const Arguments& arguments) {
   constexpr std::int64_t kLate_ns = 20'000'000;  // a frame is read so long after it came at most
-  const drives::DriveSetup setup = drives::load_drives(model::load_robot(model::find_robot(arguments.robot)));
+  const can::DriveSetup setup = can::load_drives(model::load_robot(model::find_robot(arguments.robot)));
   std::vector<std::unique_ptr<can::SocketLink>> links;
-  for (const drives::BusSetup& bus : setup.buses)
+  for (const can::BusSetup& bus : setup.buses)
     links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
   const auto now = [] { return std::chrono::steady_clock::now(); };
   const auto end = now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);

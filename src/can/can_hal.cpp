@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "can/bus_ids.hpp"
 #include "can/canopen_setup.hpp"
 
 namespace pmg::can {
@@ -13,17 +14,17 @@ namespace {
 
 constexpr std::size_t kIncoming = 64;  // frames a call: more than any bus carries in 2 ms
 
-std::vector<int> fresh_by_bus(const drives::DriveSetup& setup) {
-  std::vector<int> cycles;
-  for (const drives::BusSetup& bus : setup.buses) cycles.push_back(fresh_cycles(bus));
-  return cycles;
+std::vector<drives::RobotDrives::Way> ways(const DriveSetup& setup) {
+  std::vector<drives::RobotDrives::Way> ways;
+  for (const BusSetup& bus : setup.buses) ways.push_back({.group = &bus, .fresh_cycles = bus.fresh_cycles()});
+  return ways;
 }
 
 }  // namespace
 
-std::string describe(const BusTrouble& trouble, const drives::DriveSetup& setup) {
+std::string describe(const BusTrouble& trouble, const DriveSetup& setup) {
   if (trouble.bus < 0) return "the drives answer";
-  const drives::BusSetup& bus = setup.buses[static_cast<std::size_t>(trouble.bus)];
+  const BusSetup& bus = setup.buses[static_cast<std::size_t>(trouble.bus)];
   if (trouble.imu) return fmt::format("the IMU on {} does not speak", bus.name);
   if (trouble.motor < 0)
     return fmt::format("{} is {}", bus.name, trouble.health == BusHealth::kOff ? "off" : "error-passive");
@@ -31,18 +32,18 @@ std::string describe(const BusTrouble& trouble, const drives::DriveSetup& setup)
   return drives::name_of(bus, motor) + " " + drives::words_of(trouble.trouble, trouble.fault);
 }
 
-CanHal::CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
+CanHal::CanHal(const DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
                std::vector<std::unique_ptr<Link>> links)
-    : clock_(clock), drives_(setup, robot.joint_index.size(), fresh_by_bus(setup)), incoming_(kIncoming) {
+    : clock_(clock), drives_(ways(setup), robot.joint_index.size()), incoming_(kIncoming) {
   buses_.reserve(setup.buses.size());
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     Bus bus;
     bus.setup = &setup.buses[b];
     bus.link = std::move(links.at(b));
     for (std::size_t m = 0; m < setup.buses[b].motors.size(); ++m)
-      bus.motors.emplace_back(setup.buses[b].motors[m], setup.buses[b], drives_.monitor(b, m));
-    bus.canopen = setup.buses[b].has_canopen();
-    bus.outgoing.resize(bus.motors.size() + 2);
+      bus.motors.emplace_back(setup.buses[b].motors[m], drives_.monitor(b, m), setup.buses[b].data_bitrate != 0);
+    bus.synced = std::ranges::any_of(bus.motors, &drives::MotorChannel::asked_by_sync);
+    bus.outgoing.resize(bus.motors.size() * drives::Outbox::kMost + 2);
     bus.asked.resize(bus.outgoing.size());
     polled_.push_back({.fd = bus.link->descriptor(), .events = POLLIN, .revents = 0});
     waits_ = waits_ || polled_.back().fd >= 0;
@@ -64,8 +65,8 @@ void CanHal::send(const model::JointCommand& command) noexcept {
 
 void CanHal::send(std::size_t b) noexcept {
   Bus& bus = buses_[b];
-  bool synced = bus.canopen;
-  for (BusMotor& motor : bus.motors) {
+  bool synced = bus.synced;
+  for (drives::MotorChannel& motor : bus.motors) {
     if (drives_.paused()) motor.interrupt();
     synced = synced && !motor.pauses_sync();
   }
@@ -74,20 +75,19 @@ void CanHal::send(std::size_t b) noexcept {
     bus.outgoing[count] = frame;
     bus.asked[count++] = asked;
   };
-  if (synced) put(canopen::sync(), kAllCanopen);  // first: what it asks for is worth most when it is new
+  if (synced) put(drives::canopen::sync(), kAllSynced);  // first: what it asks for is worth most when it is new
   for (std::size_t m = 0; m < bus.motors.size(); ++m) {
-    const auto frame = bus.motors[m].ask(
-        drives_.wanted(b, m), {.stiff = drives_.stiff(), .urgent = drives_.urgent(), .synced = synced});
-    if (!frame) continue;
-    const bool answers = std::holds_alternative<drives::MitRanges>(bus.motors[m].setup().drive);
-    put(*frame, answers ? static_cast<int>(m) : kNobody);
+    drives::MotorChannel& motor = bus.motors[m];
+    drives::Outbox out;
+    motor.ask(drives_.wanted(b, m), {.stiff = drives_.stiff(), .urgent = drives_.urgent(), .synced = synced}, out);
+    for (const Frame& frame : out.messages()) put(frame, motor.asked_by_sync() ? kNobody : static_cast<int>(m));
   }
-  if (bus.canopen && cycles_ % kHeartbeatCycles == 0) put(canopen::heartbeat(), kNobody);
+  if (bus.synced && cycles_ % kHeartbeatCycles == 0) put(drives::canopen::heartbeat(), kNobody);
   for (std::size_t k = bus.link->send(std::span(bus.outgoing).first(count)); k < count; ++k) {
     if (bus.asked[k] >= 0) bus.motors[static_cast<std::size_t>(bus.asked[k])].not_asked();
-    if (bus.asked[k] != kAllCanopen) continue;
-    for (BusMotor& motor : bus.motors) {
-      if (std::holds_alternative<drives::Cia402Settings>(motor.setup().drive)) motor.not_asked();
+    if (bus.asked[k] != kAllSynced) continue;
+    for (drives::MotorChannel& motor : bus.motors) {
+      if (motor.asked_by_sync()) motor.not_asked();
     }
   }
 }
@@ -111,8 +111,10 @@ hal::BusStatus CanHal::receive(model::RobotState& state) noexcept {
 
 void CanHal::send_targets(Bus& bus) noexcept {
   std::size_t count = 0;
-  for (BusMotor& motor : bus.motors) {
-    if (const auto frame = motor.targets()) bus.outgoing[count++] = *frame;
+  for (drives::MotorChannel& motor : bus.motors) {
+    drives::Outbox out;
+    motor.follow_up(out);
+    for (const Frame& frame : out.messages()) bus.outgoing[count++] = frame;
   }
   if (count > 0) bus.link->send(std::span(bus.outgoing).first(count));
 }
@@ -138,7 +140,7 @@ void CanHal::drain(Bus& bus) noexcept {
 
 void CanHal::hear(Bus& bus, const Frame& frame) noexcept {
   if (bus.setup->imu && imu_.hear(frame)) return;
-  for (BusMotor& motor : bus.motors) {
+  for (drives::MotorChannel& motor : bus.motors) {
     if (motor.hear(frame)) return;
   }
   ++(stranger(*bus.setup, frame) ? strangers_ : unreadable_);

@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "can/bus_motor.hpp"
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
 #include "can/xsens_imu.hpp"
+#include "drives/motor_channel.hpp"
 #include "drives/robot_drives.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
@@ -31,7 +32,7 @@ struct BusTrouble {
 };
 
 /// One line: "left_knee (can0, node 4) does not answer".
-std::string describe(const BusTrouble& trouble, const drives::DriveSetup& setup);
+std::string describe(const BusTrouble& trouble, const DriveSetup& setup);
 
 class CanHal final : public hal::Hal {
  public:
@@ -39,7 +40,7 @@ class CanHal final : public hal::Hal {
   static constexpr std::int64_t kWait_ns = 500'000;
 
   /// One link a bus, in the order of setup.buses. Keeps references; clock is the run's, on which a pause is counted.
-  CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
+  CanHal(const DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
          std::vector<std::unique_ptr<Link>> links);
 
   /// Sends every motor its command, or the request to enable it, and receives for kWait_ns at most. CANopen drives are
@@ -69,14 +70,14 @@ class CanHal final : public hal::Hal {
 
  private:
   struct Bus {
-    const drives::BusSetup* setup = nullptr;
+    const BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
-    std::vector<BusMotor> motors;
-    bool canopen = false;                        // some motor's drive is a CANopen one
-    std::vector<Frame> outgoing;                 // room for one a motor and the network's two
-    std::vector<int> asked;                      // one a frame: the motor that it asks; kAllCanopen, kNobody
+    std::vector<drives::MotorChannel> motors;
+    bool synced = false;          // SYNC asks some motor's drive
+    std::vector<Frame> outgoing;  // room for all of its motors' and the network's two
+    std::vector<int> asked;       // one a frame: the motor that it asks; kAllSynced, kNobody
   };
-  static constexpr int kAllCanopen = -1, kNobody = -2;
+  static constexpr int kAllSynced = -1, kNobody = -2;
   void send(std::size_t b) noexcept;
   static void send_targets(Bus& bus) noexcept;
   void drain() noexcept;

@@ -1,7 +1,5 @@
 #include "drives/robot_drives.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -24,23 +22,18 @@ MotorCommand joint_command(const model::JointCommand& command, int joint) noexce
 
 }  // namespace
 
-std::string name_of(const BusSetup& bus, const MotorSetup& motor) {
-  return fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
-}
-
 std::string words_of(Trouble trouble, DriveFault fault) {
   if (trouble == Trouble::kFault) return std::string("reports ") + to_string(fault);
   return trouble == Trouble::kNone ? "answers late" : to_string(trouble);
 }
 
-RobotDrives::RobotDrives(const DriveSetup& setup, int joints, const std::vector<int>& fresh_cycles) : joints_(joints) {
-  for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-    Bus& bus = buses_.emplace_back();
-    for (const MotorSetup& motor : setup.buses[b].motors) {
-      bus.motors.push_back({.setup = &motor, .monitor = MotorMonitor(motor.limits, fresh_cycles.at(b))});
-    }
-    for (const auto& linked : setup.buses[b].four_bars) bus.four_bars.push_back({.setup = &linked});
-    for (const auto& linked : setup.buses[b].parallel) bus.parallel.push_back({.setup = &linked});
+RobotDrives::RobotDrives(const std::vector<Way>& ways, int joints) : joints_(joints) {
+  for (const Way& way : ways) {
+    Group& group = groups_.emplace_back();
+    for (const MotorSetup& motor : way.group->motors)
+      group.motors.push_back({.setup = &motor, .monitor = MotorMonitor(motor.limits, way.fresh_cycles)});
+    for (const auto& linked : way.group->four_bars) group.four_bars.push_back({.setup = &linked});
+    for (const auto& linked : way.group->parallel) group.parallel.push_back({.setup = &linked});
   }
 }
 
@@ -52,46 +45,46 @@ void RobotDrives::begin(const model::JointCommand& command, std::int64_t now_ns)
       command.kp.size() != kp_.size() || command.kp != kp_ || command.kd.size() != kd_.size() || command.kd != kd_;
   kp_ = command.kp;
   kd_ = command.kd;
-  for (Bus& bus : buses_) {
-    for (Motor& motor : bus.motors) {
+  for (Group& group : groups_) {
+    for (Motor& motor : group.motors) {
       motor.monitor.begin();
       motor.wanted = joint_command(command, motor.setup->index);
     }
-    for (const auto& linked : bus.four_bars) command_cranks(bus, linked);
-    for (const auto& linked : bus.parallel) command_cranks(bus, linked);
+    for (const auto& linked : group.four_bars) command_cranks(group, linked);
+    for (const auto& linked : group.parallel) command_cranks(group, linked);
   }
 }
 
 // Cranks of motors that are limp get no torque: the joints' gains are zero.
 template <int N>
-void RobotDrives::command_cranks(Bus& bus, const Linked<N>& linked) noexcept {
+void RobotDrives::command_cranks(Group& group, const Linked<N>& linked) noexcept {
   typename RodLinkage<N>::Commands joints{};
-  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = bus.motors[linked.setup->motors[i]].wanted;
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = group.motors[linked.setup->motors[i]].wanted;
   const auto cranks = linked.setup->linkage.to_motors(joints, linked.q_rad, linked.dq_rad_s, linked.theta_rad);
-  for (std::size_t i = 0; i < joints.size(); ++i) bus.motors[linked.setup->motors[i]].wanted = cranks[i];
+  for (std::size_t i = 0; i < joints.size(); ++i) group.motors[linked.setup->motors[i]].wanted = cranks[i];
 }
 
 bool RobotDrives::all_settled() const noexcept {
-  return std::ranges::all_of(buses_, [](const Bus& bus) {
-    return std::ranges::all_of(bus.motors, [](const Motor& motor) { return motor.monitor.settled(); });
+  return std::ranges::all_of(groups_, [](const Group& group) {
+    return std::ranges::all_of(group.motors, [](const Motor& motor) { return motor.monitor.settled(); });
   });
 }
 
 void RobotDrives::read() noexcept {
-  for (Bus& bus : buses_) {
-    for (Motor& motor : bus.motors) motor.joint = motor.setup->transmission.to_joint(motor.monitor.reading());
-    for (auto& linked : bus.four_bars) read_joints(bus, linked);
-    for (auto& linked : bus.parallel) read_joints(bus, linked);
+  for (Group& group : groups_) {
+    for (Motor& motor : group.motors) motor.joint = motor.setup->transmission.to_joint(motor.monitor.reading());
+    for (auto& linked : group.four_bars) read_joints(group, linked);
+    for (auto& linked : group.parallel) read_joints(group, linked);
   }
 }
 
 // (crank angles, speeds, torques) => (the joints'): q by Newton from the last sample, dq = J^-1 dtheta,
 // torque_q = J^T torque_theta.
 template <int N>
-void RobotDrives::read_joints(Bus& bus, Linked<N>& linked) noexcept {
+void RobotDrives::read_joints(Group& group, Linked<N>& linked) noexcept {
   typename RodLinkage<N>::Angles theta, dtheta, torque;
   const auto motor = [&](int i) -> MotorReading& {
-    return bus.motors[linked.setup->motors[static_cast<std::size_t>(i)]].joint;
+    return group.motors[linked.setup->motors[static_cast<std::size_t>(i)]].joint;
   };
   for (int i = 0; i < N; ++i) {
     theta[i] = motor(i).q_rad;
@@ -114,19 +107,19 @@ void RobotDrives::read_joints(Bus& bus, Linked<N>& linked) noexcept {
 }
 
 // Motor angles that no joint angles belong to: a reading is wrong. The first such motor; -1: none.
-int RobotDrives::unsolved(const Bus& bus) noexcept {
-  for (const auto& linked : bus.four_bars) {
+int RobotDrives::unsolved(const Group& group) noexcept {
+  for (const auto& linked : group.four_bars) {
     if (!linked.solved) return static_cast<int>(linked.setup->motors[0]);
   }
-  for (const auto& linked : bus.parallel) {
+  for (const auto& linked : group.parallel) {
     if (!linked.solved) return static_cast<int>(linked.setup->motors[0]);
   }
   return -1;
 }
 
-MotorTrouble RobotDrives::judge(std::size_t bus) const noexcept {
+MotorTrouble RobotDrives::judge(std::size_t group) const noexcept {
   MotorTrouble late;
-  const std::vector<Motor>& motors = buses_[bus].motors;
+  const std::vector<Motor>& motors = groups_[group].motors;
   for (std::size_t m = 0; m < motors.size(); ++m) {
     const MotorMonitor& monitor = motors[m].monitor;
     const Condition condition = monitor.condition(stiff_);
@@ -138,7 +131,7 @@ MotorTrouble RobotDrives::judge(std::size_t bus) const noexcept {
     if (condition == Condition::kLost) return trouble;
     if (late.motor < 0) late = trouble;
   }
-  if (const int motor = unsolved(buses_[bus]); motor >= 0)
+  if (const int motor = unsolved(groups_[group]); motor >= 0)
     return {.condition = Condition::kLost, .motor = motor, .trouble = Trouble::kPositionJump};
   return late;
 }
@@ -146,8 +139,8 @@ MotorTrouble RobotDrives::judge(std::size_t bus) const noexcept {
 void RobotDrives::fill(model::RobotState& state) const noexcept {
   state.age_ns = 0;
   for (JointVector* values : {&state.q, &state.dq, &state.tau, &state.temperature_degC}) values->resize(joints_);
-  for (const Bus& bus : buses_) {
-    for (const Motor& motor : bus.motors) {
+  for (const Group& group : groups_) {
+    for (const Motor& motor : group.motors) {
       const int index = motor.setup->index;
       state.q[index] = motor.joint.q_rad;
       state.dq[index] = motor.joint.dq_rad_s;

@@ -6,23 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "drives/drive_setup.hpp"
+#include "drives/motor_group.hpp"
 #include "drives/motor_monitor.hpp"
 #include "model/robot_io.hpp"
 
 namespace pmg::drives {
 
-/// The first thing that is wrong with the motors of a bus.
+/// The first thing that is wrong with the motors of a group.
 struct MotorTrouble {
   Condition condition = Condition::kGood;
-  int motor = -1;  ///< index in the bus's motors; -1: none
+  int motor = -1;  ///< index in the group's motors; -1: none
   Trouble trouble = Trouble::kNone;
   DriveFault fault = DriveFault::kNone;
   bool operator==(const MotorTrouble&) const = default;
 };
 
-/// "left_knee (can0, node 4)"
-std::string name_of(const BusSetup& bus, const MotorSetup& motor);
 /// "does not answer", "reports over-current", "answers late"
 std::string words_of(Trouble trouble, DriveFault fault);
 
@@ -33,8 +31,13 @@ class RobotDrives {
   /// A pause between two cycles after which the drives' watchdogs may have acted. They are to be set to 20 ms or more.
   static constexpr std::int64_t kPause_ns = 20'000'000;
 
-  /// joints: of the robot. fresh_cycles: of each bus, see MotorMonitor. Keeps a reference to setup.
-  RobotDrives(const DriveSetup& setup, int joints, const std::vector<int>& fresh_cycles);
+  /// Motors that are reached the same way, and for how many cycles their readings count as fresh (MotorMonitor).
+  struct Way {
+    const MotorGroup* group;
+    int fresh_cycles = MotorMonitor::kFreshCycles;
+  };
+  /// joints: of the robot. Keeps references to the groups.
+  RobotDrives(const std::vector<Way>& ways, int joints);
 
   /// (command of the joints, time of the run's clock) => what each motor is wanted to do, through cranks and rods. Ages
   /// every reading by a cycle.
@@ -47,21 +50,21 @@ class RobotDrives {
   bool paused() const noexcept { return paused_; }
 
   /// At the joint, or at the crank: before the motor's transmission.
-  const MotorCommand& wanted(std::size_t bus, std::size_t motor) const noexcept {
-    return buses_[bus].motors[motor].wanted;
+  const MotorCommand& wanted(std::size_t group, std::size_t motor) const noexcept {
+    return groups_[group].motors[motor].wanted;
   }
-  MotorMonitor& monitor(std::size_t bus, std::size_t motor) noexcept { return buses_[bus].motors[motor].monitor; }
-  const MotorMonitor& monitor(std::size_t bus, std::size_t motor) const noexcept {
-    return buses_[bus].motors[motor].monitor;
+  MotorMonitor& monitor(std::size_t group, std::size_t motor) noexcept { return groups_[group].motors[motor].monitor; }
+  const MotorMonitor& monitor(std::size_t group, std::size_t motor) const noexcept {
+    return groups_[group].motors[motor].monitor;
   }
   /// Every request is answered, or given up.
   bool all_settled() const noexcept;
 
   /// (what the motors said) => (joints), through transmissions, cranks and rods.
   void read() noexcept;
-  /// Of one bus: the first motor that is lost, or a linkage whose motors' angles no joint angles belong to; else the
+  /// Of one group: the first motor that is lost, or a linkage whose motors' angles no joint angles belong to; else the
   /// first one that is late.
-  MotorTrouble judge(std::size_t bus) const noexcept;
+  MotorTrouble judge(std::size_t group) const noexcept;
   /// q, dq, tau, temperature_degC of every joint with a motor, and the age of the oldest reading.
   void fill(model::RobotState& state) const noexcept;
 
@@ -79,18 +82,18 @@ class RobotDrives {
     MotorCommand wanted{};
     MotorReading joint{};  // what it said, at the joint
   };
-  struct Bus {
+  struct Group {
     std::vector<Motor> motors;
     std::vector<Linked<1>> four_bars;
     std::vector<Linked<2>> parallel;
   };
   template <int N>
-  static void command_cranks(Bus& bus, const Linked<N>& linked) noexcept;
+  static void command_cranks(Group& group, const Linked<N>& linked) noexcept;
   template <int N>
-  static void read_joints(Bus& bus, Linked<N>& linked) noexcept;
-  static int unsolved(const Bus& bus) noexcept;
+  static void read_joints(Group& group, Linked<N>& linked) noexcept;
+  static int unsolved(const Group& group) noexcept;
 
-  std::vector<Bus> buses_;
+  std::vector<Group> groups_;
   int joints_;
   bool stiff_ = false, urgent_ = false, paused_ = false;
   JointVector kp_, kd_;  // of the last command

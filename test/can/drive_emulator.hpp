@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "can/bus_setup.hpp"
 #include "can/frame.hpp"
-#include "drives/drive_setup.hpp"
 
 namespace pmg::test {
 

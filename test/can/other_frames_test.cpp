@@ -13,6 +13,7 @@
 #include "../sim/robots.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
+#include "drives/mit_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -31,7 +32,7 @@ class OtherDialects : public testing::Test {
       const std::size_t count = there->receive(frames);
       for (const Frame& asked : std::span(frames).first(count)) {
         const auto motor = std::ranges::find(bus_.motors, static_cast<int>(asked.id), &drives::MotorSetup::node);
-        const drives::MitProtocol protocol(std::get<drives::MitRanges>(motor->drive));
+        const drives::MitProtocol protocol(drives::as_mit(motor->drive)->ranges());
         const Frame right = Frame::of(
             0, protocol.reply({.node = static_cast<std::uint8_t>(asked.id), .reading = {.temperature_degC = 31.0}}));
         if (const auto frame = answer(static_cast<int>(asked.id), right)) there->send(std::span(&*frame, 1));
@@ -42,7 +43,7 @@ class OtherDialects : public testing::Test {
     return others.lines(bus_);
   }
 
-  drives::BusSetup bus_ = drives::load_drives(z1()).buses[0];
+  can::BusSetup bus_ = can::load_drives(z1()).buses[0];
   std::vector<std::string> problems_;
 };
 
