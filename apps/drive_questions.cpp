@@ -7,7 +7,7 @@
 #include "can/bus_claim.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/socket_link.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::apps {
 

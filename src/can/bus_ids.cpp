@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "can/xsens_imu.hpp"
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
 
 namespace pmg::can {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "drives/canopen_drive.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "drives/motor_monitor.hpp"
 #include "files/config_reader.hpp"
 

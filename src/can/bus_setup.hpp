@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "drive_protocols/standard_drives.hpp"
 #include "drives/motor_group.hpp"
 
 namespace pmg::can {
@@ -47,6 +48,6 @@ struct DriveSetup {
 /// Reads robot.directory/robot.yaml. Throws files::ConfigError as drives::read_motor_groups() does, when a bus can't
 /// carry its drives' protocols together, or when the number of buses with the IMU isn't one (none with `imu.serial`).
 DriveSetup load_drives(const model::RobotModel& robot,
-                       const drives::DriveCatalogue& catalogue = drives::DriveCatalogue::standard());
+                       const drives::DriveCatalogue& catalogue = drives::standard_drives());
 
 }  // namespace pmg::can

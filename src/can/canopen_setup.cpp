@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 

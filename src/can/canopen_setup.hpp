@@ -7,8 +7,8 @@
 
 #include "can/bus_setup.hpp"
 #include "can/link.hpp"
-#include "drives/canopen.hpp"
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 
 namespace pmg::can {
 

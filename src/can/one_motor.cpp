@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "can/canopen_setup.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "drives/robot_drives.hpp"
 
 namespace pmg::can {

@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "can/bus_ids.hpp"
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 
@@ -25,11 +26,17 @@ const drives::MotorSetup* damiao_motor(const BusSetup& bus, std::uint8_t first) 
   return state == 1 || state >= 8 ? motor_of(bus, first & 0x0F) : nullptr;
 }
 
-/// "left_knee's drive answers as a DaMiao's"; empty: it may be anything.
+/// robot.yaml's word for the motor's protocol.
+std::string says(const drives::MotorSetup& motor) {
+  const drives::MitDrive* mit = drives::as_mit(motor.drive);
+  return mit == nullptr ? std::string("another protocol") : fmt::format("`protocol: {}`", mit->protocol_name());
+}
+
+/// "a DaMiao's answer of left_knee; robot.yaml has ..."; empty: it may be anything.
 std::string guess(const BusSetup& bus, const Frame& frame, bool a_reply) {
   if (frame.extended)
     return "a protocol with 29-bit identifiers, as RobStride's, CyberGear's and CubeMars' servo mode have; robot.yaml "
-           "says `protocol: mit` or `cia402`";
+           "has none of them";
   const std::uint32_t function = frame.id & ~drives::canopen::kNodeBits;
   if (function == drives::canopen::kHeartbeat && frame.length == 1)
     return fmt::format("a CANopen node's heartbeat, node {}; robot.yaml has no such drive here",
@@ -39,22 +46,23 @@ std::string guess(const BusSetup& bus, const Frame& frame, bool a_reply) {
   const drives::MotorSetup* damiao = motor == nullptr ? damiao_motor(bus, frame.data[0]) : nullptr;
   if (damiao != nullptr && frame.length == 8)
     return fmt::format(
-        "a DaMiao's answer of {}, whose first byte has a state besides the node; robot.yaml's "
-        "`protocol: mit` means CubeMars' answers",
-        damiao->joint);
+        "a DaMiao's answer of {}, whose first byte has a state besides the node; robot.yaml has {}: expected "
+        "`protocol: "
+        "damiao`",
+        damiao->joint, says(*damiao));
   if (motor == nullptr) return {};
   if (frame.length == 6 || frame.length == 7)
     return fmt::format(
-        "a Mini Cheetah's answer of {}, without a fault code; robot.yaml's `protocol: mit` means 8 bytes",
-        motor->joint);
+        "a Mini Cheetah's answer of {}, without a fault code; robot.yaml has {}: expected `protocol: mini_cheetah`",
+        motor->joint, says(*motor));
   if (frame.length != 8) return {};
   if (!a_reply)
     return fmt::format("an answer of {} with another identifier; robot.yaml's `reply_id` should be 0x{:X}",
                        motor->joint, frame.id);
   return fmt::format(
-      "a DaMiao's answer of {}: {} would be no fault code, but a temperature; robot.yaml's `protocol: "
-      "mit` means CubeMars' answers",
-      motor->joint, frame.data[7]);
+      "a DaMiao's answer of {}, or a RobStride's: {} would be no fault code, but a temperature; robot.yaml has {}: "
+      "expected `protocol: damiao` or `protocol: robstride`",
+      motor->joint, frame.data[7], says(*motor));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 

@@ -2,29 +2,7 @@
 
 #include <algorithm>
 
-#include "drives/canopen_drive.hpp"
-#include "drives/damiao.hpp"
-#include "drives/mini_cheetah.hpp"
-#include "drives/mit_drive.hpp"
-#include "drives/robstride.hpp"
-
 namespace pmg::drives {
-
-DriveCatalogue DriveCatalogue::standard() {
-  DriveCatalogue catalogue;
-  catalogue.add("mit", [](files::ConfigReader& reader) { return std::make_shared<MitDrive>(read_mit_ranges(reader)); });
-  catalogue.add("damiao",
-                [](files::ConfigReader& reader) { return std::make_shared<DamiaoDrive>(read_mit_ranges(reader)); });
-  catalogue.add("mini_cheetah", [](files::ConfigReader& reader) {
-    return std::make_shared<MiniCheetahDrive>(read_mit_ranges(reader));
-  });
-  catalogue.add("robstride", [](files::ConfigReader& reader) {
-    return std::make_shared<RobstrideDrive>(read_mit_ranges(reader, RobstrideDrive::kReplyId));
-  });
-  catalogue.add("cia402",
-                [](files::ConfigReader& reader) { return std::make_shared<CanopenDrive>(read_cia402(reader)); });
-  return catalogue;
-}
 
 void DriveCatalogue::add(const std::string& protocol, Read read) {
   const auto known = std::ranges::find(read_, protocol, &std::pair<std::string, Read>::first);

@@ -14,8 +14,6 @@ class DriveCatalogue {
  public:
   using Read = std::function<DriveKind(files::ConfigReader&)>;
 
-  /// Those of this project.
-  static DriveCatalogue standard();
   /// One more, or another meaning of a name. read: makes a kind from an entry of `drives`; it asks for every key it
   /// knows besides `protocol`.
   void add(const std::string& protocol, Read read);

@@ -1,8 +1,8 @@
 // A slave's objects over its mailbox: CANopen over EtherCAT (ETG.1000.6).
 #pragma once
 
-#include "drives/canopen.hpp"
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 #include "ethercat/soem_port.hpp"
 
 namespace pmg::ethercat {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "can/link.hpp"
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
 
 namespace pmg::ethercat {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "can/one_motor.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/coe_dictionary.hpp"
 #include "imu/at_rest.hpp"
 

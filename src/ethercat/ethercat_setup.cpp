@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/bridge_link.hpp"
 #include "ethercat/drive_link.hpp"
 #include "files/config_reader.hpp"

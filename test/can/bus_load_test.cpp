@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "../sim/robots.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../model/robots.hpp"
-#include "drives/canopen_drive.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "files/config_error.hpp"
 
 namespace pmg::can {

@@ -20,7 +20,7 @@
 #include "can/flood.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "hal/bus_cycle.hpp"
 

@@ -16,8 +16,8 @@
 #include "can/cia402_emulator.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
-#include "drives/canopen_drive.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 namespace {

@@ -18,7 +18,7 @@
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
 #include "can/roll_call.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 
 namespace pmg::can {

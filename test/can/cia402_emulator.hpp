@@ -9,7 +9,7 @@
 
 #include "can/drive_emulator.hpp"
 #include "can/object_store.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::test {
 

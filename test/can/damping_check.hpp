@@ -9,9 +9,9 @@
 
 #include "can/bus_setup.hpp"
 #include "can/drive_emulator.hpp"
-#include "drives/canopen_drive.hpp"
-#include "drives/mit_drive.hpp"
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 

@@ -12,7 +12,7 @@
 #include "can/link.hpp"
 #include "can/mit_emulator.hpp"
 #include "can/xsens_imu.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "model/robot_io.hpp"
 
 namespace pmg::test {

@@ -8,7 +8,7 @@
 #include "can/can_hal.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/robot_behind_drives.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "io/clock.hpp"
 
 namespace pmg::test {

@@ -10,7 +10,7 @@
 
 #include "can/canopen_setup.hpp"
 #include "can/robot_stage.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::sil {
 

@@ -12,7 +12,7 @@
 #include "can/emulated_robot.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "model/hanging_load.hpp"
 #include "model/robots.hpp"
 #include "sil/simulated_robot.hpp"

@@ -21,7 +21,7 @@
 #include "can/canopen_setup.hpp"
 #include "can/first_light.hpp"
 #include "can/socket_link.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "can/bus_setup.hpp"
 #include "can/frame.hpp"
-#include "drives/canopen.hpp"
-#include "drives/canopen_drive.hpp"
-#include "drives/mit_drive.hpp"
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 
 namespace pmg::test {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "can/drive_emulator.hpp"
-#include "drives/mit_drive.hpp"
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 
 namespace pmg::test {
 
@@ -25,6 +25,8 @@ class MitEmulator final : public DriveEmulator {
       command_ = {};
     } else if (bytes == drives::kMitDisable) {
       enabled_ = false;
+    } else if (type_->clearing() != nullptr && bytes == *type_->clearing()) {
+      if (fault_passed) fault = drives::DriveFault::kNone;
     } else if (bytes == drives::kMitZero) {
       set_zero();
     } else if (enabled_) {
@@ -42,6 +44,9 @@ class MitEmulator final : public DriveEmulator {
     if (++silent_cycles_ <= patience * kWatchdogCycles || !enabled_) return;
     enabled_ = false;
     tripped_ = true;
+    if (type_->clearing() == nullptr) return;
+    fault = drives::DriveFault::kCommunication;  // such drives keep it as a fault
+    fault_passed = true;
   }
 
   drives::MotorCommand command() const noexcept override {

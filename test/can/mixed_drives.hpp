@@ -7,7 +7,7 @@
 
 #include "can/bus_load.hpp"
 #include "can/bus_setup.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::test {

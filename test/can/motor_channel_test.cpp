@@ -8,8 +8,8 @@
 
 #include "../sim/robots.hpp"
 #include "can/mixed_drives.hpp"
-#include "drives/canopen.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::drives {
 namespace {

@@ -13,7 +13,7 @@
 #include "../sim/robots.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -70,7 +70,9 @@ TEST_F(OtherDialects, ADaMiaoIsNamedByItsTemperatureAndByItsState) {
                 if (node == 4) right.data[7] = 29;  // rotor's temperature; switched off: state 0
                 return right;
               }),
-              ElementsAre(HasSubstr("a DaMiao's answer of left_knee: 29 would be no fault code, but a temperature")));
+              ElementsAre(HasSubstr(
+                  "a DaMiao's answer of left_knee, or a RobStride's: 29 would be no fault code, but a temperature; "
+                  "robot.yaml has `protocol: mit`: expected `protocol: damiao` or `protocol: robstride`")));
   EXPECT_THAT(problems_, ElementsAre(HasSubstr("reports a fault that the protocol doesn't name")));
   EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
                 if (node == 4) right.data[0] = 0x84;  // over-voltage

@@ -28,7 +28,7 @@ namespace {
 using hal::BusStatus;
 
 drives::DriveCatalogue with_twins() {
-  drives::DriveCatalogue catalogue = drives::DriveCatalogue::standard();
+  drives::DriveCatalogue catalogue = drives::standard_drives();
   catalogue.add("twin", [](files::ConfigReader& reader) -> drives::DriveKind {
     return std::make_shared<test::TwinDrives>(reader.required<double>("most_torque_Nm", files::positive()));
   });

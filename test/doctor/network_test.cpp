@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "doctor/checks.hpp"
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "patient.hpp"
 #include "said.hpp"
 #include "seal/key_files.hpp"

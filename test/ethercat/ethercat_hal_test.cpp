@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "ethercat/lockstep_cable.hpp"
 #include "ethercat/packet_wire.hpp"
 #include "generator_core/allocation_count.hpp"

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "../sim/robots.hpp"
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/datagrams.hpp"
 #include "ethercat/ethercat_hal.hpp"
 #include "ethercat/packet_wire.hpp"

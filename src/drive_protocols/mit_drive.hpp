@@ -2,8 +2,8 @@
 // is the dialect of CubeMars' AK series; other dialects derive from it.
 #pragma once
 
+#include "drive_protocols/mit_protocol.hpp"
 #include "drives/drive_type.hpp"
-#include "drives/mit_protocol.hpp"
 
 namespace pmg::drives {
 

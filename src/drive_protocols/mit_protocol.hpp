@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "drives/fixed_point.hpp"
+#include "drive_protocols/fixed_point.hpp"
 #include "drives/motor.hpp"
 
 namespace pmg::drives {

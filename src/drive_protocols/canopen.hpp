@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 #include "drives/message.hpp"
 
 namespace pmg::drives::canopen {

@@ -2,7 +2,7 @@
 // of RS00): a temperature of 16 bits in each reply, no fault, no state.
 #pragma once
 
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::drives {
 

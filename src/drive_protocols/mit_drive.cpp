@@ -1,4 +1,4 @@
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +20,15 @@ class MitSpeaker final : public Protocol {
     since_clear_ = std::min(since_clear_ + 1, kClearCycles);
     if (!order.enabling) {
       put(type_->codec().command(order.command, limits_, left_Nm_), out);
-    } else if (faulty_ && type_->clearing() != nullptr && since_clear_ >= kClearCycles) {
-      since_clear_ = 0;
-      put(*type_->clearing(), out);
     } else {
-      put(kMitEnable, out);
+      put(fault_ != DriveFault::kNone && clears() ? *type_->clearing() : kMitEnable, out);
     }
   }
-  void off(Outbox& out) noexcept override { put(kMitDisable, out); }
+  /// That a computer fell silent is no fault once one speaks again.
+  void off(Outbox& out) noexcept override {
+    since_clear_ = std::min(since_clear_ + 1, kClearCycles);
+    put(fault_ == DriveFault::kCommunication && clears() ? *type_->clearing() : kMitDisable, out);
+  }
   bool zero(Outbox& out) noexcept override {
     put(kMitZero, out);
     return true;
@@ -37,12 +38,18 @@ class MitSpeaker final : public Protocol {
     if (message.extended || message.id != type_->ranges().reply_id) return {};
     const auto reply = type_->read(message.bytes());
     if (!reply || reply->node != type_->named(node_)) return {};
-    faulty_ = reply->reading.fault != DriveFault::kNone;
+    fault_ = reply->reading.fault;
     return {.what = Heard::What::kReading, .reading = reply->reading};
   }
   bool tells_whether_it_follows() const noexcept override { return type_->says_enabled(); }
 
  private:
+  /// Now is the time for the message that clears faults.
+  bool clears() noexcept {
+    if (type_->clearing() == nullptr || since_clear_ < kClearCycles) return false;
+    since_clear_ = 0;
+    return true;
+  }
   void put(const MitFrame& frame, Outbox& out) const noexcept {
     out.put(Message::of(static_cast<std::uint32_t>(node_), frame, fd_));
   }
@@ -51,8 +58,8 @@ class MitSpeaker final : public Protocol {
   int node_;
   MotorLimits limits_;
   bool fd_;
-  double left_Nm_ = 0.0;  // of the last command's torque, for the next one
-  bool faulty_ = false;
+  double left_Nm_ = 0.0;                  // of the last command's torque, for the next one
+  DriveFault fault_ = DriveFault::kNone;  // of the last reply
   int since_clear_ = kClearCycles;
 };
 

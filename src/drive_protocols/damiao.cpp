@@ -1,4 +1,4 @@
-#include "drives/damiao.hpp"
+#include "drive_protocols/damiao.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "drives/robstride.hpp"
+#include "drive_protocols/robstride.hpp"
 
 #include <algorithm>
 #include <cmath>

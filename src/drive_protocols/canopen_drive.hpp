@@ -1,7 +1,7 @@
 // Drives of the profile CiA 402 over CANopen as a kind: PDOs in the bus cycle, asked by SYNC.
 #pragma once
 
-#include "drives/cia402.hpp"
+#include "drive_protocols/cia402.hpp"
 #include "drives/drive_type.hpp"
 
 namespace pmg::drives {

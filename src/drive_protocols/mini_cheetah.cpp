@@ -1,4 +1,4 @@
-#include "drives/mini_cheetah.hpp"
+#include "drive_protocols/mini_cheetah.hpp"
 
 #include <algorithm>
 

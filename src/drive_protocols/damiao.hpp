@@ -3,7 +3,7 @@
 // umeow0716/damiao_firmware.
 #pragma once
 
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::drives {
 

@@ -1,4 +1,4 @@
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
 
 #include <array>
 

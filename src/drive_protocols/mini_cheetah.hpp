@@ -2,7 +2,7 @@
 // temperature and fault.
 #pragma once
 
-#include "drives/mit_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::drives {
 

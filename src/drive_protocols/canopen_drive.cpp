@@ -1,4 +1,4 @@
-#include "drives/canopen_drive.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
 
 namespace pmg::drives {
 
