@@ -6,7 +6,7 @@
 #include <deque>
 #include <stdexcept>
 
-#include "drives/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
 #include "hal/bus_cycle.hpp"
 
 namespace pmg::can {
@@ -14,11 +14,10 @@ namespace pmg::can {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = hal::BusCycle::kPeriod_ns;
-/// Without the frame that begins a cycle for so long, the next one begins all the same: bus threads are late at times.
-constexpr std::int64_t kLate_ns = 2 * kPeriod_ns;
+/// Frames of both ways are missing for so long: who recorded wasn't there, or nobody drove the buses.
+constexpr std::int64_t kHole_ns = 5 * kPeriod_ns;
 /// Cycles after which every drive and the IMU have spoken that speak at all.
 constexpr std::uint64_t kFirstCycles = XsensImu::kSilentCycles + 2;
-constexpr std::int64_t kMostSilence_ns = 500 * kPeriod_ns;  // that is gone through cycle by cycle
 
 }  // namespace
 
@@ -79,9 +78,14 @@ void Replay::take(const RecordedFrame& recorded) {
     first_ns_ = begin_ns_ = stamp_ns_;
     begin(stamp_ns_);
   }
-  if (stamp_ns_ - begin_ns_ > kMostSilence_ns) begin(stamp_ns_ - kMostSilence_ns);
-  const std::int64_t patience_ns = marker_ ? kLate_ns : kPeriod_ns;
-  while (stamp_ns_ - begin_ns_ > patience_ns) begin(begin_ns_ + kPeriod_ns);
+  const std::int64_t since_ns = stamp_ns_ - begin_ns_;
+  if (since_ns > kHole_ns) {
+    const double at_s = 1e-9 * static_cast<double>(begin_ns_ - *first_ns_);
+    if (tell_) tell_(at_s, fmt::format("nothing was recorded for {:.3f} s", 1e-9 * static_cast<double>(since_ns)));
+    begin(stamp_ns_);
+  } else if (!marker_ && since_ns >= kPeriod_ns) {
+    begin(stamp_ns_);
+  }
   const bool asking = asks(at, recorded.frame);
   if (asking && !marker_) marker_ = {at, recorded.frame.id};
   if (asking && *marker_ == std::pair{at, recorded.frame.id} && stamp_ns_ > begin_ns_) begin(stamp_ns_);
