@@ -19,6 +19,12 @@ constexpr std::int64_t kHole_ns = 5 * kPeriod_ns;
 /// Cycles after which every drive and the IMU have spoken that speak at all.
 constexpr std::uint64_t kFirstCycles = XsensImu::kSilentCycles + 2;
 
+/// This computer's own on a bus with CANopen drives.
+bool network(const Frame& frame) {
+  using namespace drives::canopen;
+  return !frame.extended && (frame.id == kNetworkManagement || frame.id == kHeartbeat + kHostNode) && frame.length <= 2;
+}
+
 }  // namespace
 
 /// One bus: what was pushed is received; what is sent goes nowhere.
@@ -74,8 +80,10 @@ void Replay::take(const RecordedFrame& recorded) {
   ++frames_;
   const auto at = static_cast<std::size_t>(bus - setup_.buses.begin());
   stamp_ns_ = std::max(stamp_ns_, recorded.stamp_ns);  // clocks are set back at times
-  if (!first_ns_) {
-    first_ns_ = begin_ns_ = stamp_ns_;
+  if (!first_ns_) first_ns_ = stamp_ns_;
+  const bool asking = asks(at, recorded.frame);
+  if (!running_) {  // answers to what was asked before the recording belong to no cycle
+    if (!asking && stamp_ns_ - *first_ns_ < kHole_ns) return;
     begin(stamp_ns_);
   }
   const std::int64_t since_ns = stamp_ns_ - begin_ns_;
@@ -86,10 +94,9 @@ void Replay::take(const RecordedFrame& recorded) {
   } else if (!marker_ && since_ns >= kPeriod_ns) {
     begin(stamp_ns_);
   }
-  const bool asking = asks(at, recorded.frame);
   if (asking && !marker_) marker_ = {at, recorded.frame.id};
   if (asking && *marker_ == std::pair{at, recorded.frame.id} && stamp_ns_ > begin_ns_) begin(stamp_ns_);
-  if (!asking) links_[at]->push(recorded.frame);
+  if (!asking && !network(recorded.frame)) links_[at]->push(recorded.frame);
 }
 
 void Replay::begin(std::int64_t stamp_ns) {

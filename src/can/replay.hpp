@@ -17,9 +17,10 @@
 namespace pmg::can {
 
 /// Frames that drives and IMU sent are received anew, cycle by cycle. A cycle begins where the recording has the first
-/// command (or SYNC) again; where it has none, every 2 ms. Nothing is asked of the drives where the recording has a
-/// hole of 10 ms or more, in which frames of both ways are missing; it is told. The recorded commands themselves are
-/// not acted on: drives count as told to be limp, so that one doesn't follow its commands is not said.
+/// command (or SYNC) again; where it has none, every 2 ms. What comes before the first of them is left out. Nothing is
+/// asked of the drives where the recording has a hole of 10 ms or more, in which frames of both ways are missing; it is
+/// told. The recorded commands themselves are not acted on: drives count as told to be limp, so that one doesn't follow
+/// its commands is not said.
 class Replay {
  public:
   using Tell = std::function<void(double t_s, const std::string& text)>;

@@ -53,18 +53,14 @@ void take_asked(const BusSetup& bus, const std::vector<Asked>& motors, Link& lin
   std::array<Frame, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
-      bool heard_by_one = false, fault_code = false;
+      bool fault_code = false;
+      if (const auto node = asked_stranger(bus, frame)) count_one(*node);
       for (const Asked& motor : motors) {
         const drives::Heard heard = motor.protocol->hear(frame);
-        heard_by_one = heard_by_one || heard.what != drives::Heard::What::kForeign;
         fault_code = fault_code || heard.what == drives::Heard::What::kNoted;
         if (heard.what != drives::Heard::What::kReading) continue;
         count_one(motor.setup->node).reading = heard.reading;
         fault_code = heard.reading.fault != drives::DriveFault::kOther;
-      }
-      if (!heard_by_one) {
-        const auto node = asked_stranger(bus, frame);
-        if (node) count_one(*node);
       }
       if (others != nullptr && !fault_code) others->note(frame);
     }

@@ -9,6 +9,7 @@
 #include "../sim/robots.hpp"
 #include "can/mixed_drives.hpp"
 #include "drive_protocols/canopen.hpp"
+#include "drive_protocols/damiao.hpp"
 #include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::drives {
@@ -66,6 +67,24 @@ TEST(MotorChannel, ACanopenDriveInAPauseGetsItsTargetsAndNoSync) {
   Outbox targets;
   one.motor.follow_up(targets);
   EXPECT_EQ(targets.messages().size(), 1u);
+}
+
+TEST(MotorChannel, AfterAPauseOfThisComputerOnlyADriveThatDoesNotSayWhetherItFollowsIsEnabledAnew) {
+  MotorSetup knee = can::load_drives(z1()).buses[0].motors[3];
+  const MitRanges ranges = as_mit(knee.drive)->ranges();
+  const auto enabled_after_pause = [&](const DriveKind& kind) {
+    knee.drive = kind;
+    MonitoredMotor one(knee);
+    one.monitor.begin();
+    one.ask({});
+    const MitReply on = {.node = static_cast<std::uint8_t>(knee.node), .reading = {.follows = Follows::kYes}};
+    one.motor.hear(as_mit(kind)->reply(on));
+    EXPECT_TRUE(one.monitor.enabled());
+    one.motor.interrupt();
+    return one.monitor.enabled();
+  };
+  EXPECT_FALSE(enabled_after_pause(std::make_shared<MitDrive>(ranges)));
+  EXPECT_TRUE(enabled_after_pause(std::make_shared<DamiaoDrive>(ranges)));
 }
 
 TEST(MotorChannel, WhatNeverLeftThisComputerIsNotAskedFor) {
