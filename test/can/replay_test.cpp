@@ -136,6 +136,18 @@ TEST(Replay, ARecordingThatBeginsInTheMiddleOfACycleHasNoTrouble) {
   EXPECT_THAT(replayed(setup, all.substr(at)).lines, testing::IsEmpty());
 }
 
+TEST(Replay, AnImuThatSpeaksOnlyNowAndThenIsNoTroubleAtTheBegin) {
+  const DriveSetup setup = load_drives(z1());
+  std::istringstream all(recorded(setup, 50));
+  std::string line, later;
+  while (std::getline(all, line)) {
+    const auto frame = from_line(line);
+    const bool early = frame->stamp_ns - kStart_ns < 8'000'000;
+    if (!early || frame->interface != "can4" || frame->frame.id < kImuQuaternion) later += line + "\n";
+  }
+  EXPECT_THAT(replayed(setup, later).lines, testing::IsEmpty());
+}
+
 TEST(Replay, ARecordingWithoutTheCommandsIsReadToo) {
   const DriveSetup setup = load_drives(z1());
   std::istringstream all(recorded(setup, 100));
