@@ -9,54 +9,43 @@
 #include <iostream>
 #include <span>
 #include <thread>
-#include <variant>
 
 #include "can/bus_ids.hpp"
 #include "can/bus_load.hpp"
-#include "can/bus_motor.hpp"
 #include "can/socket_link.hpp"
 #include "doctor/can_link.hpp"
+#include "doctor/checks.hpp"
 #include "pmg/types.hpp"
 #include "program.hpp"
 
 namespace pmg::apps {
 namespace {
 
-std::string row(const drives::MotorSetup& motor, const drives::BusSetup& bus, const can::Answer* answer) {
+std::string row(const drives::MotorSetup& motor, const can::BusSetup& bus, const can::Answer* answer) {
   const std::string who = fmt::format("{:22} {:6} {:4}  ", motor.joint, bus.name, motor.node);
   if (answer == nullptr) return who + "-";
   const drives::MotorReading joint = motor.transmission.to_joint(answer->reading);
-  const auto* cia402 = std::get_if<drives::Cia402Settings>(&motor.drive);
-  const bool knows_temperature = cia402 == nullptr || cia402->temperature_index != 0;
   return who + fmt::format("{:8.2f} deg {:8.2f} Nm {:>4} degC  {}", joint.q_rad / kRadPerDegree, joint.torque_Nm,
-                           knows_temperature ? fmt::format("{:.0f}", joint.temperature_degC) : "-",
+                           motor.drive->tells_temperature() ? fmt::format("{:.0f}", joint.temperature_degC) : "-",
                            drives::to_string(joint.fault));
 }
 
 /// What the interface's controller has, where that isn't robot.yaml's; empty: the same, or the kernel doesn't tell.
-std::string interface_rate(const drives::BusSetup& bus) {
+std::string interface_rate(const can::BusSetup& bus) {
   int error = 0;
   const auto link = doctor::ask_can_link(bus.name, error);
-  if (!link) return {};
-  const auto differs = [](std::uint32_t is, int expected) {
-    return is != 0 && is != static_cast<std::uint32_t>(expected);
-  };
-  if (!differs(link->arbitration.bitrate, bus.bitrate) &&
-      (bus.data_bitrate == 0 || !differs(link->data.bitrate, bus.data_bitrate)))
-    return {};
-  return fmt::format("{}: the interface has {} bit/s{}; expected {}{} as in robot.yaml", bus.name,
-                     link->arbitration.bitrate,
-                     link->data.bitrate != 0 ? fmt::format(" and {}", link->data.bitrate) : "", bus.bitrate,
-                     bus.data_bitrate != 0 ? fmt::format(" and {}", bus.data_bitrate) : "");
+  if (!link || link->kind != "can") return {};
+  const doctor::Finding finding = doctor::bitrate_finding(bus, *link);
+  return finding.verdict == doctor::Verdict::kOk ? std::string() : finding.check + ": " + finding.found;
 }
 
 }  // namespace
 
 Buses::Buses(const std::string& robot_name, Use use)
-    : robot(model::load_robot(model::find_robot(robot_name))), setup(drives::load_drives(robot)) {
+    : robot(model::load_robot(model::find_robot(robot_name))), setup(can::load_drives(robot)) {
   can::check_load(setup);
   can::check_ids(setup);
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     if (use == Use::kDrive) claims.emplace_back(bus.name);
     links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
   }
@@ -65,7 +54,7 @@ Buses::Buses(const std::string& robot_name, Use use)
 std::vector<std::string> ask(Buses& buses, const TakeAnswer& take) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
-    const drives::BusSetup& bus = buses.setup.buses[b];
+    const can::BusSetup& bus = buses.setup.buses[b];
     can::OtherFrames others;
     const std::vector<can::Answer> answers = can::ask_bus(
         bus, *buses.links[b], can::sleeping(), [] { return interrupt_requested != 0; }, &others);
@@ -86,10 +75,12 @@ std::vector<std::string> ask(Buses& buses, const TakeAnswer& take) {
 }
 
 Overhearing::Overhearing(Buses& buses) : buses_(buses) {
-  for (const drives::BusSetup& bus : buses.setup.buses) {
+  for (const can::BusSetup& bus : buses.setup.buses) {
     auto& motors = heard_.emplace_back();
     for (const drives::MotorSetup& motor : bus.motors)
-      motors.push_back({.motor = can::BusMotor(motor, bus), .answer = {.node = motor.node, .count = 1}});
+      motors.push_back({.motor = &motor,
+                        .protocol = motor.drive->protocol(motor.node, motor.limits, bus.data_bitrate != 0),
+                        .answer = {.node = motor.node, .count = 1}});
   }
 }
 
@@ -99,8 +90,8 @@ void Overhearing::listen() {
     while (const std::size_t count = buses_.links[b]->receive(frames)) {
       for (const can::Frame& frame : std::span(frames).first(count)) {
         for (Heard& heard : heard_[b]) {
-          const can::BusMotor::Heard said = heard.motor.overhear(frame);
-          if (said.what != can::BusMotor::Heard::What::kReading) continue;
+          const drives::Heard said = heard.protocol->hear(frame);
+          if (said.what != drives::Heard::What::kReading) continue;
           heard.answer.reading = said.reading;
           heard.at = std::chrono::steady_clock::now();
         }
@@ -118,12 +109,12 @@ std::size_t Overhearing::show() {
   }
   std::vector<std::string> all;
   for (std::size_t b = 0; b < heard_.size(); ++b) {
-    const drives::BusSetup& bus = buses_.setup.buses[b];
+    const can::BusSetup& bus = buses_.setup.buses[b];
     std::vector<can::Answer> answers;
     for (const Heard& heard : heard_[b]) {
       const bool known =
           heard.at.time_since_epoch().count() != 0 && std::chrono::steady_clock::now() < heard.at + kKept;
-      std::cout << row(heard.motor.setup(), bus, known ? &heard.answer : nullptr) << '\n';
+      std::cout << row(*heard.motor, bus, known ? &heard.answer : nullptr) << '\n';
       if (known) answers.push_back(heard.answer);
     }
     const std::vector<std::string> found = can::problems(bus, answers);
@@ -136,7 +127,7 @@ std::size_t Overhearing::show() {
 
 std::size_t show(Buses& buses) {
   const std::vector<std::string> all =
-      ask(buses, [](const drives::BusSetup& bus, const drives::MotorSetup& motor, const can::Answer* answer) {
+      ask(buses, [](const can::BusSetup& bus, const drives::MotorSetup& motor, const can::Answer* answer) {
         std::cout << row(motor, bus, answer) << '\n';
       });
   for (const std::string& problem : all) std::cout << problem << '\n';

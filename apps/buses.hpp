@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "can/bus_claim.hpp"
-#include "can/bus_motor.hpp"
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
 #include "can/roll_call.hpp"
-#include "drives/drive_setup.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::apps {
@@ -26,12 +25,12 @@ struct Buses {
   explicit Buses(const std::string& robot_name, Use use = Use::kDrive);
 
   model::RobotModel robot;
-  drives::DriveSetup setup;
+  can::DriveSetup setup;
   std::vector<can::BusClaim> claims;
   std::vector<std::unique_ptr<can::Link>> links;
 };
 
-using TakeAnswer = std::function<void(const drives::BusSetup&, const drives::MotorSetup&, const can::Answer*)>;
+using TakeAnswer = std::function<void(const can::BusSetup&, const drives::MotorSetup&, const can::Answer*)>;
 
 /// Asks every bus once; take gets each motor with its answer, nullptr for none. Returns all problems. Ends early after
 /// an interrupt.
@@ -48,7 +47,8 @@ class Overhearing {
 
  private:
   struct Heard {
-    can::BusMotor motor;
+    const drives::MotorSetup* motor;
+    std::unique_ptr<drives::Protocol> protocol;
     can::Answer answer{};
     std::chrono::steady_clock::time_point at{};
   };

@@ -21,7 +21,7 @@ doctor::ControllerNeeds needs_of(const ControllerArguments& arguments, const mod
   needs.priority = std::max(arguments.threads.bus.priority, arguments.threads.control.priority);
   needs.cpus = {.bus = arguments.threads.bus.cpu, .control = arguments.threads.control.cpu};
   if (!arguments.no_log) needs.log = arguments.log;
-  if (arguments.backend.hal() == "can") needs.can_buses = drives::load_drives(robot).buses;
+  if (arguments.backend.hal() == "can") needs.can_buses = can::load_drives(robot).buses;
   needs.imu = robot.imu.serial;
   const hal::OptionValues configuration = backend.configuration();
   const auto card = configuration.find("interface");

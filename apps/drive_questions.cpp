@@ -7,6 +7,7 @@
 #include "can/bus_claim.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/socket_link.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::apps {
 
@@ -14,13 +15,13 @@ namespace {
 
 constexpr drives::ObjectId kRevision{0x1018, 3, 4};  // CiA 301, identity object
 
-doctor::DriveAnswer ask(const drives::BusSetup& bus, const drives::MotorSetup& motor, const std::string& kind,
+doctor::DriveAnswer ask(const can::BusSetup& bus, const drives::MotorSetup& motor, const std::string& kind,
                         can::Link& link) {
   doctor::DriveAnswer answer{.motor = fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node),
                              .kind = kind,
                              .revision = {},
                              .problem = {}};
-  if (!std::holds_alternative<drives::Cia402Settings>(motor.drive)) return answer;
+  if (drives::as_cia402(motor.drive) == nullptr) return answer;
   try {
     can::SdoClient objects(motor.node, link, can::sleeping());
     answer.revision = objects.read(kRevision);
@@ -33,9 +34,9 @@ doctor::DriveAnswer ask(const drives::BusSetup& bus, const drives::MotorSetup& m
 
 }  // namespace
 
-std::vector<doctor::DriveAnswer> ask_firmware(const model::RobotModel& robot, const drives::DriveSetup& setup) {
+std::vector<doctor::DriveAnswer> ask_firmware(const model::RobotModel& robot, const can::DriveSetup& setup) {
   std::vector<doctor::DriveAnswer> answers;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     const can::BusClaim claim(bus.name);
     can::SocketLink link(bus.name, {}, bus.data_bitrate != 0);
     for (const drives::MotorSetup& motor : bus.motors) {

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <functional>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -17,12 +16,11 @@
 #include <thread>
 #include <vector>
 
+#include "bus_recording.hpp"
 #include "buses.hpp"
 #include "can/bus_load.hpp"
-#include "can/candump.hpp"
 #include "can/first_light.hpp"
 #include "can/one_motor.hpp"
-#include "can/socket_link.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
@@ -41,19 +39,20 @@ constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 constexpr const char* kFooter = R"(
 For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan and watch switch every drive off and
 only listen. zero, enable and wiggle touch one motor. One program drives a bus: while pmg_controller runs, they refuse, and watch
-listens without asking, as dump always does.
+listens without asking, as dump always does. replay needs no bus.
 
 Example:
   pmg_bus scan --robot z1
   pmg_bus watch --robot z1
   pmg_bus wiggle left_knee --robot z1
   pmg_bus dump --robot z1 >first.log
+  pmg_bus replay first.log --robot z1
 
 Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened, 3 wiggle could not tell direction or gear.
 docs/how-to/hal.md has the order of a bring-up.)";
 
 struct Arguments {
-  std::string robot = "z1", joint;
+  std::string robot = "z1", joint, recording;
   double by_deg = 0.0, for_s = 0.0, gain_share = 0.3;
   bool yes = false;
 };
@@ -62,7 +61,7 @@ bool interrupted() { return apps::interrupt_requested != 0; }
 
 int scan(const Arguments& arguments) {
   Buses buses(arguments.robot);
-  for (const drives::BusSetup& bus : buses.setup.buses) {
+  for (const can::BusSetup& bus : buses.setup.buses) {
     const can::BusLoad load = can::planned_load(bus);
     std::cout << fmt::format("{}: {} motors{}, {} frames a cycle, at most {:.0f} % of the bus\n", bus.name,
                              bus.motors.size(), bus.imu ? " and the IMU" : "", load.frames, 100.0 * load.share);
@@ -98,7 +97,7 @@ int watch(const Arguments& arguments) {
 }
 
 struct OneMotor {
-  const drives::BusSetup& bus;
+  const can::BusSetup& bus;
   const drives::MotorSetup& motor;
   can::Link& link;
 };
@@ -152,15 +151,13 @@ int zero(const Arguments& arguments) {
   can::OneMotor motor(one.bus, one.motor, one.link, tick);
   const double before_rad = motor.joint().q_rad;
   const double offset_rad = buses.robot.joints[static_cast<std::size_t>(one.motor.index)].bus.zero_offset_rad;
-  if (std::holds_alternative<drives::Cia402Settings>(one.motor.drive)) {
+  if (!motor.set_zero()) {
     std::cout << fmt::format(
-        "{} is at {:.2f} deg. A CiA 402 drive keeps no zero that every maker's has: write `zero_offset_rad: {:.4f}` "
-        "into "
-        "its `bus` in robot.yaml\n",
+        "{} is at {:.2f} deg. Its drive's protocol has no message that sets a zero: write `zero_offset_rad: {:.4f}` "
+        "into its `bus` in robot.yaml\n",
         arguments.joint, before_rad / kRadPerDegree, before_rad + offset_rad);
     return kOk;
   }
-  motor.set_zero();
   for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
   const double after_rad = motor.joint().q_rad;
   std::cout << fmt::format("{}: was {:.2f} deg, is {:.2f} deg now\n", arguments.joint, before_rad / kRadPerDegree,
@@ -171,7 +168,7 @@ int zero(const Arguments& arguments) {
 /// How the robot hangs [rad]; joints whose motors don't answer as if they stood, their names in `silent`.
 JointVector posture(Buses& buses, std::vector<std::string>& silent) {
   JointVector q = buses.robot.q_stand();
-  apps::ask(buses, [&](const drives::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
+  apps::ask(buses, [&](const can::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
     if (answer == nullptr)
       silent.push_back(motor.joint);
     else
@@ -206,32 +203,8 @@ int wiggle(const Arguments& arguments) {
   return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
 }
 
-/// Frames of all buses in the order in which the kernel got them.
-int dump(const Arguments& arguments) {
-  constexpr std::int64_t kLate_ns = 20'000'000;  // a frame is read so long after it came at most
-  const drives::DriveSetup setup = drives::load_drives(model::load_robot(model::find_robot(arguments.robot)));
-  std::vector<std::unique_ptr<can::SocketLink>> links;
-  for (const drives::BusSetup& bus : setup.buses)
-    links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
-  const auto now = [] { return std::chrono::steady_clock::now(); };
-  const auto end = now() + std::chrono::duration<double>(arguments.for_s > 0.0 ? arguments.for_s : 1e9);
-  can::FrameOrder order;
-  can::RecordedFrame frame;
-  const auto write = [&](std::int64_t before_ns) {
-    while (order.take(before_ns, frame)) std::cout << can::to_line(frame) << '\n';
-    if (!std::cout) throw std::runtime_error("the recording can't be written");
-    std::cout << std::flush;  // whoever reads along sees each frame at once
-  };
-  while (!interrupted() && now() < end) {
-    for (const auto& link : links) {
-      while (link->record(frame)) order.put(frame);
-    }
-    write(std::chrono::system_clock::now().time_since_epoch().count() - kLate_ns);
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  write(std::numeric_limits<std::int64_t>::max());
-  return kOk;
-}
+int dump(const Arguments& arguments) { return apps::dump_buses(arguments.robot, arguments.for_s); }
+int replay(const Arguments& arguments) { return apps::replay_recording(arguments.robot, arguments.recording); }
 
 }  // namespace
 
@@ -269,6 +242,9 @@ int main(int argc, char** argv) {
   wiggling->add_option("--gains", arguments.gain_share, "share of robot.yaml's gains")
       ->check(apps::in_range(0.05, 1.0))
       ->capture_default_str();
+  command("replay", "what the backend says of a recording in candump's format", replay)
+      ->add_option("recording", arguments.recording, "a file that dump or candump -L wrote")
+      ->required();
   duration(command("dump", "record all buses in candump's format, on stdout", dump));
   return apps::run_program(app, argc, argv, [&]() -> int {
     apps::notice({SIGINT, SIGTERM}, nullptr);

@@ -95,7 +95,7 @@ doctor::Findings examine(const Arguments& arguments) {
     throw std::invalid_argument(
         "--hal ethercat: --interface is missing; expected the card that EtherCAT has for itself");
   model::find_robot(arguments.control.robot);
-  drives::DriveSetup setup;
+  can::DriveSetup setup;
   std::optional<model::SerialImuModel> imu;
   doctor::Findings all;
   add(all, "robot", [&] { return doctor::check_robot_files(arguments.control, arguments.bundle, can); });
@@ -104,7 +104,7 @@ doctor::Findings examine(const Arguments& arguments) {
   });
   if (known) {
     const model::RobotModel robot = model::load_robot(model::find_robot(arguments.control.robot));
-    setup = drives::load_drives(robot);
+    setup = can::load_drives(robot);
     imu = robot.imu.serial;
     add(all, "drives' firmware", [&] {
       if (!arguments.ask_drives) return doctor::check_firmware(std::nullopt);

@@ -2,62 +2,82 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string_view>
 
-#include "can/canopen.hpp"
 #include "can/xsens_imu.hpp"
+#include "drive_protocols/canopen.hpp"
 
 namespace pmg::can {
 
 namespace {
 
-void add_canopen(const drives::MotorSetup& motor, std::vector<SentId>& ids) {
-  const auto node = static_cast<std::uint32_t>(motor.node);
-  for (const std::uint32_t function : {canopen::kReceive1, canopen::kSdoRequest})
-    ids.push_back({.id = function + node, .who = motor.joint + "'s commands"});
-  for (const std::uint32_t function :
-       {canopen::kEmergency, canopen::kTransmit1, canopen::kTransmit2, canopen::kSdoAnswer, canopen::kHeartbeat})
-    ids.push_back({.id = function + node, .who = motor.joint + "'s answers"});
+constexpr std::array kImuIds = {kImuQuaternion, kImuRateOfTurn, kImuAcceleration};
+
+bool known(const BusSetup& bus, int node) noexcept {
+  return std::ranges::find(bus.motors, node, &drives::MotorSetup::node) != bus.motors.end();
 }
 
 }  // namespace
 
-std::vector<SentId> sent_ids(const drives::BusSetup& bus) {
+std::vector<SentId> sent_ids(const BusSetup& bus) {
   std::vector<SentId> ids;
   for (const drives::MotorSetup& motor : bus.motors) {
-    const auto* mit = std::get_if<drives::MitRanges>(&motor.drive);
-    if (mit == nullptr) {
-      add_canopen(motor, ids);
-      continue;
-    }
-    ids.push_back({.id = static_cast<std::uint32_t>(motor.node), .who = motor.joint + "'s commands"});
-    ids.push_back({.id = mit->reply_id, .who = motor.joint + "'s replies", .shared = true});
+    for (const drives::MotorId& id : motor.drive->ids(motor.node))
+      ids.push_back({.id = id.id, .who = motor.joint + "'s " + id.what, .shared_by = id.shared_by, .mark = id.mark});
   }
   if (bus.imu) {
-    for (const std::uint32_t id : {kImuQuaternion, kImuRateOfTurn, kImuAcceleration})
-      ids.push_back({.id = id, .who = "the IMU"});
+    for (const std::uint32_t id : kImuIds) ids.push_back({.id = id, .who = "the IMU"});
   }
   if (bus.has_canopen()) {
-    ids.push_back({.id = canopen::kNetworkManagement, .who = "CANopen's node commands"});
-    ids.push_back({.id = canopen::kSync, .who = "CANopen's SYNC"});
-    ids.push_back({.id = canopen::kHeartbeat + canopen::kHostNode, .who = "this computer's heartbeat"});
+    ids.push_back({.id = drives::canopen::kNetworkManagement, .who = "CANopen's node commands"});
+    ids.push_back({.id = drives::canopen::kSync, .who = "CANopen's SYNC"});
+    ids.push_back({.id = drives::canopen::kHeartbeat + drives::canopen::kHostNode, .who = "this computer's heartbeat"});
   }
   return ids;
 }
 
-void check_ids(const drives::DriveSetup& setup) {
-  for (const drives::BusSetup& bus : setup.buses) {
+void check_ids(const DriveSetup& setup) {
+  for (const BusSetup& bus : setup.buses) {
     if (bus.first_slave != 0) continue;
-    std::map<std::uint32_t, SentId> senders;
+    std::vector<SentId> senders;
     for (const SentId& sent : sent_ids(bus)) {
-      const auto [other, alone] = senders.emplace(sent.id, sent);
-      if (alone || (sent.shared && other->second.shared)) continue;
+      const auto other = std::ranges::find_if(senders, [&](const SentId& one) {
+        const bool apart = one.shared_by != nullptr && sent.shared_by != nullptr && one.mark != sent.mark &&
+                           std::string_view(one.shared_by) == sent.shared_by;
+        return one.id == sent.id && !apart;
+      });
+      if (other == senders.end()) {
+        senders.push_back(sent);
+        continue;
+      }
       throw std::invalid_argument(
           fmt::format("{}: {} and {} have the identifier 0x{:X}; expected one sender: another `node`, or `reply_id`",
-                      bus.name, other->second.who, sent.who, sent.id));
+                      bus.name, other->who, sent.who, sent.id));
     }
   }
+}
+
+std::vector<std::uint32_t> awaited_ids(const BusSetup& bus) {
+  std::vector<std::uint32_t> ids;
+  for (const drives::MotorSetup& motor : bus.motors) {
+    for (const drives::MotorId& id : motor.drive->ids(motor.node)) {
+      if (id.answer && std::ranges::find(ids, id.id) == ids.end()) ids.push_back(id.id);
+    }
+  }
+  if (bus.imu) ids.insert(ids.end(), kImuIds.begin(), kImuIds.end());
+  return ids;
+}
+
+std::optional<int> stranger(const BusSetup& bus, const Frame& frame) noexcept {
+  for (const drives::MotorSetup& motor : bus.motors) {
+    const auto node = motor.drive->sender(frame);
+    if (node && !known(bus, *node)) return node;
+  }
+  const auto node = drives::canopen::sender(frame);
+  return node && !known(bus, *node) ? node : std::nullopt;
 }
 
 }  // namespace pmg::can

@@ -23,15 +23,14 @@ double frame_time_s(int bytes, int bitrate, int data_bitrate) {
   return 34.0 / bitrate + static_cast<double>(fast_bits) / data_bitrate;
 }
 
-BusLoad planned_load(const drives::BusSetup& bus) {
+BusLoad planned_load(const BusSetup& bus) {
   BusLoad load;
   const auto add = [&](int frames, int bytes, int data_bitrate) {
     load.frames += frames;
     load.time_s += frames * frame_time_s(bytes, bus.bitrate, data_bitrate);
   };
   for (const drives::MotorSetup& motor : bus.motors) {
-    const bool canopen = std::holds_alternative<drives::Cia402Settings>(motor.drive);
-    add(canopen ? 3 : 2, kFrameBytes, bus.data_bitrate);
+    add(motor.drive->messages_a_cycle(), kFrameBytes, bus.data_bitrate);
   }
   if (bus.has_canopen()) {
     add(1, 0, 0);                // SYNC
@@ -42,8 +41,8 @@ BusLoad planned_load(const drives::BusSetup& bus) {
   return load;
 }
 
-void check_load(const drives::DriveSetup& setup) {
-  for (const drives::BusSetup& bus : setup.buses) {
+void check_load(const DriveSetup& setup) {
+  for (const BusSetup& bus : setup.buses) {
     if (bus.first_slave != 0) continue;
     const BusLoad load = planned_load(bus);
     if (load.share <= 1.0) continue;

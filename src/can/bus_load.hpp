@@ -1,7 +1,7 @@
 // What a bus has to carry, planned before anything is sent.
 #pragma once
 
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 
 namespace pmg::can {
 
@@ -20,9 +20,9 @@ struct BusLoad {
 
 /// In each cycle of 2 ms: a command and a reply of each MIT drive, RPDO1, TPDO1 and TPDO2 of each CANopen drive, SYNC
 /// and a heartbeat on a bus with such drives, and three frames of the IMU.
-BusLoad planned_load(const drives::BusSetup& bus);
+BusLoad planned_load(const BusSetup& bus);
 
 /// Throws std::invalid_argument when a CAN bus can't carry its frames in every cycle.
-void check_load(const drives::DriveSetup& setup);
+void check_load(const DriveSetup& setup);
 
 }  // namespace pmg::can

@@ -24,8 +24,8 @@ constexpr int kHoldCycles = 9;
 class CanBackend final : public hal::Backend {
  public:
   explicit CanBackend(const hal::BackendSetup& setup)
-      : robot_(setup.robot), clock_(setup.clock), options_(setup.options), setup_(drives::load_drives(setup.robot)) {
-    for (const drives::BusSetup& bus : setup_.buses) {
+      : robot_(setup.robot), clock_(setup.clock), options_(setup.options), setup_(load_drives(setup.robot)) {
+    for (const BusSetup& bus : setup_.buses) {
       if (bus.first_slave != 0)
         throw std::invalid_argument(bus.name + ": its drives are EtherCAT slaves; expected --hal ethercat");
     }
@@ -36,7 +36,7 @@ class CanBackend final : public hal::Backend {
 
   hal::OptionValues configuration() const override {
     hal::OptionValues values = options_;
-    for (const drives::BusSetup& bus : setup_.buses) {
+    for (const BusSetup& bus : setup_.buses) {
       const BusLoad load = planned_load(bus);
       values[bus.name] = fmt::format(
           "{} motors, {} bit/s{}, {} frames a cycle, {:.0f} % of it at the worst bit stuffing", bus.motors.size(),
@@ -51,8 +51,8 @@ class CanBackend final : public hal::Backend {
 
   hal::Hal& connect(const std::function<bool()>& interrupted) override {
     std::vector<std::unique_ptr<Link>> links;
-    for (const drives::BusSetup& bus : setup_.buses) claims_.emplace_back(bus.name);
-    for (const drives::BusSetup& bus : setup_.buses)
+    for (const BusSetup& bus : setup_.buses) claims_.emplace_back(bus.name);
+    for (const BusSetup& bus : setup_.buses)
       links.push_back(std::make_unique<SocketLink>(bus.name, awaited_ids(bus), bus.data_bitrate != 0));
     call_roll(setup_, links, sleeping(), interrupted);
     set_up_nodes(setup_, links, sleeping(), interrupted);
@@ -69,7 +69,7 @@ class CanBackend final : public hal::Backend {
   const model::RobotModel& robot_;
   const io::Clock& clock_;
   hal::OptionValues options_;
-  drives::DriveSetup setup_;
+  DriveSetup setup_;
   std::vector<BusClaim> claims_;
   std::unique_ptr<CanHal> hal_;
 };
@@ -80,16 +80,15 @@ hal::BackendLimits limits() {
   return {.guard = {.hold_cycles = kHoldCycles}, .stale_state_s = std::nullopt, .overrun_ticks = std::nullopt};
 }
 
-hal::BackendDescription description(const drives::DriveSetup& setup) {
+hal::BackendDescription description(const DriveSetup& setup) {
   hal::BackendDescription description{.drive_sampling_s = 0.0, .command_delay_s = model::kBusPeriod_s};
   // A torque acts for a cycle: what it was computed from grows older by half of it on average.
   constexpr double kBusLoopAge_s = 0.5 * model::kBusPeriod_s;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const BusSetup& bus : setup.buses) {
     for (const drives::MotorSetup& motor : bus.motors) {
-      const auto* cia402 = std::get_if<drives::Cia402Settings>(&motor.drive);
-      if (cia402 == nullptr) continue;
-      (cia402->mode == drives::Cia402Mode::kTorque ? description.closed_by_bus : description.own_gains)
-          .push_back(motor.joint);
+      const drives::LoopPlace loop = motor.drive->loop();
+      if (loop == drives::LoopPlace::kBusThread) description.closed_by_bus.push_back(motor.joint);
+      if (loop == drives::LoopPlace::kOwnGains) description.own_gains.push_back(motor.joint);
     }
   }
   if (!description.closed_by_bus.empty()) description.bus_loop_age_s = kBusLoopAge_s;

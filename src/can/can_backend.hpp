@@ -1,7 +1,7 @@
 // The backend `can`: drives and IMU on CAN buses.
 #pragma once
 
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 #include "hal/backend_factory.hpp"
 
 namespace pmg::can {
@@ -13,7 +13,7 @@ hal::BackendLimits limits();
 /// a control tick. What a CiA 402 drive does in position mode isn't known; in torque mode the bus thread closes the
 /// loop. Drives answer a cycle's command with their state of that moment, so the command computed from it is the next
 /// cycle's.
-hal::BackendDescription description(const drives::DriveSetup& setup);
+hal::BackendDescription description(const DriveSetup& setup);
 
 /// No options: robot.yaml describes drives and buses.
 void register_backend(hal::BackendFactory& factory);

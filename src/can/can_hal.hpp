@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "can/bus_motor.hpp"
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
 #include "can/xsens_imu.hpp"
-#include "drives/drive_setup.hpp"
+#include "drives/motor_channel.hpp"
+#include "drives/robot_drives.hpp"
 #include "hal/hal.hpp"
 #include "io/clock.hpp"
 #include "io/mailbox.hpp"
@@ -31,17 +32,15 @@ struct BusTrouble {
 };
 
 /// One line: "left_knee (can0, node 4) does not answer".
-std::string describe(const BusTrouble& trouble, const drives::DriveSetup& setup);
+std::string describe(const BusTrouble& trouble, const DriveSetup& setup);
 
 class CanHal final : public hal::Hal {
  public:
   /// How long an exchange waits for the drives' answers. Answers that come later count in the next cycle.
   static constexpr std::int64_t kWait_ns = 500'000;
-  /// A pause of the bus thread after which the drives' watchdogs may have acted. They are to be set to 20 ms or more.
-  static constexpr std::int64_t kPause_ns = 20'000'000;
 
   /// One link a bus, in the order of setup.buses. Keeps references; clock is the run's, on which a pause is counted.
-  CanHal(const drives::DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
+  CanHal(const DriveSetup& setup, const model::RobotModel& robot, const io::Clock& clock,
          std::vector<std::unique_ptr<Link>> links);
 
   /// Sends every motor its command, or the request to enable it, and receives for kWait_ns at most. CANopen drives are
@@ -62,7 +61,7 @@ class CanHal final : public hal::Hal {
   /// A loss that began, another one, or its end, since the last call. For one other thread, wait-free.
   bool take_change(BusTrouble& change) noexcept { return changes_.take(change); }
   const drives::MotorMonitor& motor(std::size_t bus, std::size_t motor) const noexcept {
-    return buses_[bus].motors[motor].monitor();
+    return drives_.monitor(bus, motor);
   }
   const Link& link(std::size_t bus) const noexcept { return *buses_[bus].link; }
   const XsensImu& imu() const noexcept { return imu_; }
@@ -70,51 +69,31 @@ class CanHal final : public hal::Hal {
   std::uint64_t unreadable() const noexcept { return unreadable_; }  ///< frames that are nobody's message
 
  private:
-  template <int N>
-  struct Linked {
-    using Angles = typename drives::RodLinkage<N>::Angles;
-    const drives::LinkedMotors<N>* setup = nullptr;
-    Angles q_rad = Angles::Zero(), dq_rad_s = Angles::Zero(), theta_rad = Angles::Zero();  // of the last sample
-    bool solved = true;  // the joint angles belong to the last motor angles
-  };
   struct Bus {
-    const drives::BusSetup* setup = nullptr;
+    const BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
-    std::vector<BusMotor> motors;
-    bool canopen = false;                        // some motor's drive is a CANopen one
-    std::vector<Frame> outgoing;                 // room for one a motor and the network's two
-    std::vector<int> asked;                      // one a frame: the motor that it asks; kAllCanopen, kNobody
-    std::vector<drives::MotorCommand> wanted;    // one a motor, before its transmission: at the joint, or at the crank
-    std::vector<drives::MotorReading> readings;  // one a motor, of its joint
-    std::vector<Linked<1>> four_bars;
-    std::vector<Linked<2>> parallel;
+    std::vector<drives::MotorChannel> motors;
+    bool synced = false;          // SYNC asks some motor's drive
+    std::vector<Frame> outgoing;  // room for all of its motors' and the network's two
+    std::vector<int> asked;       // one a frame: the motor that it asks; kAllSynced, kNobody
   };
-  template <int N>
-  static void command_cranks(Bus& bus, const Linked<N>& linked) noexcept;
-  template <int N>
-  static void read_joints(Bus& bus, Linked<N>& linked) noexcept;
-  static void read_joints(Bus& bus) noexcept;
-  static constexpr int kAllCanopen = -1, kNobody = -2;
-  void send(Bus& bus, const model::JointCommand& command, bool paused) noexcept;
+  static constexpr int kAllSynced = -1, kNobody = -2;
+  void send(std::size_t b) noexcept;
   static void send_targets(Bus& bus) noexcept;
-  static int unsolved(const Bus& bus) noexcept;
   void drain() noexcept;
   void drain(Bus& bus) noexcept;
   void hear(Bus& bus, const Frame& frame) noexcept;
-  bool all_answered() const noexcept;
   bool wait(std::int64_t deadline_ns) noexcept;
   BusTrouble judge() const noexcept;
   void tell() noexcept;
 
-  const model::RobotModel& robot_;
   const io::Clock& clock_;
+  drives::RobotDrives drives_;
   std::vector<Bus> buses_;
   std::vector<Frame> incoming_;
   std::vector<pollfd> polled_;  // one a bus
   XsensImu imu_;
-  bool stiff_ = false, urgent_ = false, waits_ = false;
-  JointVector kp_, kd_;  // of the last command
-  std::int64_t last_send_ns_ = 0;
+  bool waits_ = false;
   std::uint64_t cycles_ = 0, strangers_ = 0, unreadable_ = 0;
   BusTrouble trouble_, told_;
   io::Mailbox<BusTrouble> changes_;

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "drive_protocols/canopen_drive.hpp"
+
 namespace pmg::can {
 
 namespace {
@@ -55,17 +57,17 @@ void set_up_pdos(SdoClient& node, std::uint32_t number, const drives::Cia402Sett
   }
   set_up_pdo(node, {kReceiveSettings,
                     kReceiveMap,
-                    canopen::kReceive1 + number,
+                    drives::canopen::kReceive1 + number,
                     kEventDriven,
                     {object::kControlWord, object::kTargetPosition, object::kTargetTorque}});
   set_up_pdo(node, {kTransmitSettings,
                     kTransmitMap,
-                    canopen::kTransmit1 + number,
+                    drives::canopen::kTransmit1 + number,
                     kEverySync,
                     {object::kStatusWord, object::kPosition, object::kTorque}});
   std::vector<drives::ObjectId> second = {object::kVelocity, object::kErrorCode};
   if (settings.temperature_index != 0) second.push_back({settings.temperature_index, settings.temperature_subindex, 2});
-  set_up_pdo(node, {kTransmitSettings + 1, kTransmitMap + 1, canopen::kTransmit2 + number, kEverySync, second});
+  set_up_pdo(node, {kTransmitSettings + 1, kTransmitMap + 1, drives::canopen::kTransmit2 + number, kEverySync, second});
 }
 
 }  // namespace
@@ -74,26 +76,27 @@ Wait sleeping() {
   return [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
 }
 
-std::optional<canopen::SdoAnswer> SdoClient::ask(const Frame& request, const drives::ObjectId& id) {
+std::optional<drives::canopen::SdoAnswer> SdoClient::ask(const Frame& request, const drives::ObjectId& id) {
   std::array<Frame, 64> frames;
   while (link_.receive(frames) > 0) {
   }
   for (int attempt = 0; attempt < kTries; ++attempt) {
     link_.send(std::span(&request, 1));
-    std::optional<canopen::SdoAnswer> found;
+    std::optional<drives::canopen::SdoAnswer> found;
     for (int wait = 0; wait < kWaits && !found; ++wait) {
       wait_();
       const std::size_t count = link_.receive(frames);
       for (const Frame& frame : std::span(frames).first(count)) {
-        if (frame.extended || frame.id != canopen::kSdoAnswer + static_cast<std::uint32_t>(node_)) continue;
-        const auto answer = canopen::sdo_answer(frame);
+        if (frame.extended || frame.id != drives::canopen::kSdoAnswer + static_cast<std::uint32_t>(node_)) continue;
+        const auto answer = drives::canopen::sdo_answer(frame);
         if (!answer || answer->id.index != id.index || answer->id.subindex != id.subindex) continue;
         found = answer;
       }
     }
     if (!found) continue;
     if (!found->aborted) return found;
-    if (found->value == canopen::kAbortNoObject || found->value == canopen::kAbortNoSubindex) return std::nullopt;
+    if (found->value == drives::canopen::kAbortNoObject || found->value == drives::canopen::kAbortNoSubindex)
+      return std::nullopt;
     throw std::runtime_error(
         fmt::format("refuses object {} with SDO abort 0x{:08X}", drives::to_string(id), found->value));
   }
@@ -104,7 +107,7 @@ std::optional<canopen::SdoAnswer> SdoClient::ask(const Frame& request, const dri
 }
 
 std::optional<std::uint32_t> SdoClient::read(const drives::ObjectId& id) {
-  const auto answer = ask(canopen::sdo_read(node_, id), id);
+  const auto answer = ask(drives::canopen::sdo_read(node_, id), id);
   if (!answer) return std::nullopt;
   if (!answer->upload || !answer->expedited)
     throw std::runtime_error(fmt::format("gives no number as object {}", drives::to_string(id)));
@@ -112,35 +115,35 @@ std::optional<std::uint32_t> SdoClient::read(const drives::ObjectId& id) {
 }
 
 bool SdoClient::write(const drives::ObjectId& id, std::uint32_t value) {
-  return ask(canopen::sdo_write(node_, id, value), id).has_value();
+  return ask(drives::canopen::sdo_write(node_, id, value), id).has_value();
 }
 
-void set_up_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait) {
-  const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
-  const auto command = [&](canopen::NodeCommand what) {
-    const Frame frame = canopen::node_command(what, motor.node);
+void set_up_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait) {
+  const auto& settings = *drives::as_cia402(motor.drive);
+  const auto command = [&](drives::canopen::NodeCommand what) {
+    const Frame frame = drives::canopen::node_command(what, motor.node);
     link.send(std::span(&frame, 1));
     for (int k = 0; k < kStartWaits; ++k) wait();
   };
   try {
     SdoClient node(motor.node, link, wait);
-    command(canopen::NodeCommand::kPreOperational);
+    command(drives::canopen::NodeCommand::kPreOperational);
     drives::check_drive(node, settings);
     drives::set_up_drive(node, settings, motor.limits);
     set_up_pdos(node, static_cast<std::uint32_t>(motor.node), settings);
-    must_write(node, {0x1016, 1, 4}, canopen::kHostNode << 16U | kHeartbeatTimeout_ms);
+    must_write(node, {0x1016, 1, 4}, drives::canopen::kHostNode << 16U | kHeartbeatTimeout_ms);
     node.write({0x1029, 1, 1}, 1);  // a silent computer stops the motor, not the node's PDOs; not every drive has it
-    command(canopen::NodeCommand::kStart);
+    command(drives::canopen::NodeCommand::kStart);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{} ({}, node {}): {}", motor.joint, bus.name, motor.node, error.what()));
+    throw std::runtime_error(drives::name_of(bus, motor) + ": " + error.what());
   }
 }
 
-void set_up_nodes(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
+void set_up_nodes(const DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                   const std::function<bool()>& interrupted) {
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     for (const drives::MotorSetup& motor : setup.buses[b].motors) {
-      if (!std::holds_alternative<drives::Cia402Settings>(motor.drive)) continue;
+      if (drives::as_cia402(motor.drive) == nullptr) continue;
       if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were set up");
       set_up_node(setup.buses[b], motor, *links[b], wait);
     }

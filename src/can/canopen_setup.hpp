@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "can/canopen.hpp"
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
-#include "drives/cia402_objects.hpp"
-#include "drives/drive_setup.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 
 namespace pmg::can {
 
@@ -28,7 +28,7 @@ class SdoClient final : public drives::ObjectDictionary {
 
  private:
   /// Nullopt: no such object.
-  std::optional<canopen::SdoAnswer> ask(const Frame& request, const drives::ObjectId& id);
+  std::optional<drives::canopen::SdoAnswer> ask(const Frame& request, const drives::ObjectId& id);
 
   int node_;
   Link& link_;
@@ -43,10 +43,10 @@ inline constexpr int kHeartbeatCycles = 4;
 /// Puts the node into pre-operational, checks it against robot.yaml, sets it up, and starts it; it stays switched off.
 /// RPDO1 acts when it comes; TPDO1 and TPDO2 come with every SYNC; all other PDOs are off. Throws std::runtime_error:
 /// "left_knee (can0, node 4): object 0x6076 (rated torque) is ...".
-void set_up_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait);
+void set_up_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait);
 
 /// The same for every CANopen drive of every bus.
-void set_up_nodes(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
+void set_up_nodes(const DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                   const std::function<bool()>& interrupted);
 
 }  // namespace pmg::can

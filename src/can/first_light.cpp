@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "can/one_motor.hpp"
+#include "drives/robot_drives.hpp"
 #include "hal/bus_cycle.hpp"
 #include "model/hanging_load.hpp"
 #include "pmg/types.hpp"
@@ -36,7 +37,7 @@ double telling_way_rad(const model::RobotModel& robot, const JointVector& q, con
   return std::clamp(std::asin(std::min(share, 1.0)), kLeastWay_rad, kMostWay_rad);
 }
 
-Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives::BusSetup& bus,
+Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSetup& bus,
               const drives::MotorSetup& motor, Link& link, const WiggleOptions& options,
               const std::function<void()>& tick, const std::function<bool()>& interrupted) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
@@ -48,8 +49,7 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives
                     name_of(bus, motor), start_rad, joint.lower_rad, joint.upper_rad));
   }
   one.switch_on();
-  const auto* cia402 = std::get_if<drives::Cia402Settings>(&motor.drive);
-  const bool own_gains = cia402 != nullptr && cia402->mode == drives::Cia402Mode::kPosition;
+  const bool own_gains = motor.drive->loop() == drives::LoopPlace::kOwnGains;
   const double share = own_gains ? 1.0 : options.gain_share;
 
   double target_rad = start_rad;
@@ -93,7 +93,7 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives
   const bool up_pulls_more = std::abs(model_up_Nm) > std::abs(model_down_Nm);
   result.held_end_Nm = up_pulls_more ? torque_up : torque_down;
   result.model_end_Nm = up_pulls_more ? model_up_Nm : model_down_Nm;
-  result.friction_Nm = joint.friction_Nm + one.motor().torque_step_Nm();
+  result.friction_Nm = joint.friction_Nm + motor.drive->torque_step_Nm();
   return result;
 }
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
-#include "drives/drive_setup.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::can {
@@ -36,7 +36,7 @@ double telling_way_rad(const model::RobotModel& robot, const JointVector& q, con
 /// Enables the motor, moves the joint forth and back, and disables it whatever happens. Throws std::runtime_error when
 /// the motor doesn't answer, reports a fault, starts outside its joint's range, or when it was interrupted. q: how the
 /// robot hangs [rad], which the model's torque depends on. tick is called every 2 ms and waits; emulators answer in it.
-Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const drives::BusSetup& bus,
+Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSetup& bus,
               const drives::MotorSetup& motor, Link& link, const WiggleOptions& options,
               const std::function<void()>& tick, const std::function<bool()>& interrupted);
 

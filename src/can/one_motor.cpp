@@ -1,11 +1,11 @@
 #include "can/one_motor.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <stdexcept>
 
 #include "can/canopen_setup.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drives/robot_drives.hpp"
 
 namespace pmg::can {
 
@@ -14,16 +14,16 @@ constexpr int kAnswerCycles = 250;  // 0.5 s: some nodes take their time to star
 constexpr int kPatience = 5;        // ticks: 10 ms, which some adapters take; drives let go after 20 ms
 }  // namespace
 
-std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor) {
-  return fmt::format("{} ({}, node {})", motor.joint, bus.name, motor.node);
-}
-
-OneMotor::OneMotor(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link,
-                   const std::function<void()>& tick)
-    : bus_(bus), setup_(motor), motor_(motor, bus), link_(link), tick_(tick) {
-  if (std::holds_alternative<drives::Cia402Settings>(motor.drive)) set_up_node(bus, motor, link, tick);
-  for (int k = 0; k < kAnswerCycles && !motor_.monitor().answered(); ++k) exchange_off();
-  if (!motor_.monitor().answered())
+OneMotor::OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick)
+    : bus_(bus),
+      setup_(motor),
+      monitor_(motor.limits, bus.fresh_cycles()),
+      motor_(motor, monitor_, bus.data_bitrate != 0),
+      link_(link),
+      tick_(tick) {
+  if (drives::as_cia402(motor.drive) != nullptr) set_up_node(bus, motor, link, tick);
+  for (int k = 0; k < kAnswerCycles && !monitor_.answered(); ++k) exchange_off();
+  if (!monitor_.answered())
     throw std::runtime_error(name_of(bus, motor) + " does not answer; expected a powered drive with this node number");
 }
 
@@ -33,26 +33,26 @@ OneMotor::~OneMotor() {
   } catch (...) {  // tick's; the drive's watchdog remains
     return;
   }
-  if (!std::holds_alternative<drives::Cia402Settings>(setup_.drive)) return;
-  const Frame quiet = canopen::node_command(canopen::NodeCommand::kPreOperational, setup_.node);
+  if (drives::as_cia402(setup_.drive) == nullptr) return;
+  const Frame quiet = drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, setup_.node);
   link_.send(std::span(&quiet, 1));
 }
 
-void OneMotor::cycle(const std::function<std::optional<Frame>(bool synced)>& ask) {
+void OneMotor::cycle(const std::function<void(bool synced, drives::Outbox&)>& ask) {
   const auto send = [this](const Frame& frame) { return link_.send(std::span(&frame, 1)) == 1; };
-  motor_.begin();
+  monitor_.begin();
   const bool synced = bus_.has_canopen() && !motor_.pauses_sync();
-  bool asked = synced && send(canopen::sync());
+  bool asked = synced && send(drives::canopen::sync());
   if (bus_.has_canopen() && ticks_ >= kHeartbeatCycles) {
     ticks_ = 0;
-    send(canopen::heartbeat());
+    send(drives::canopen::heartbeat());
   }
-  if (const auto frame = ask(synced)) {
-    const bool sent = send(*frame);
-    if (std::holds_alternative<drives::MitRanges>(setup_.drive)) asked = sent;
-  }
+  drives::Outbox out;
+  ask(synced, out);
+  const bool sent = link_.send(out.messages()) == out.messages().size();
+  if (!motor_.asked_by_sync()) asked = sent;
   if (!asked) motor_.not_asked();
-  for (int k = 0; k < kPatience && (k == 0 || motor_.monitor().age_cycles() > 0); ++k) {
+  for (int k = 0; k < kPatience && (k == 0 || monitor_.age_cycles() > 0); ++k) {
     tick_();
     ++ticks_;
     std::array<Frame, 32> frames;
@@ -60,38 +60,39 @@ void OneMotor::cycle(const std::function<std::optional<Frame>(bool synced)>& ask
       for (const Frame& got : std::span(frames).first(count)) motor_.hear(got);
     }
   }
-  if (const auto targets = motor_.targets()) link_.send(std::span(&*targets, 1));
+  drives::Outbox follow_up;
+  motor_.follow_up(follow_up);
+  if (!follow_up.messages().empty()) link_.send(follow_up.messages());
 }
 
 void OneMotor::exchange_off() {
-  cycle([this](bool synced) { return motor_.ask_off(synced); });
+  cycle([this](bool synced, drives::Outbox& out) { motor_.ask_off(synced, out); });
 }
 
 bool OneMotor::switch_on() {
-  for (int k = 0; k < kAnswerCycles && !motor_.monitor().enabled(); ++k)
-    cycle([this](bool synced) { return motor_.ask({}, {.synced = synced}); });
-  return motor_.monitor().enabled();
+  for (int k = 0; k < kAnswerCycles && !monitor_.enabled(); ++k)
+    cycle([this](bool synced, drives::Outbox& out) { motor_.ask({}, {.synced = synced}, out); });
+  return monitor_.enabled();
 }
 
 void OneMotor::exchange(const drives::MotorCommand& joint) {
-  cycle([&](bool synced) { return motor_.ask(joint, {.stiff = true, .synced = synced}); });
-  if (motor_.monitor().condition(true) != drives::Condition::kLost) return;
-  const drives::Trouble trouble = motor_.monitor().trouble(true);
+  cycle([&](bool synced, drives::Outbox& out) { motor_.ask(joint, {.stiff = true, .synced = synced}, out); });
+  if (monitor_.condition(true) != drives::Condition::kLost) return;
   throw std::runtime_error(name_of(bus_, setup_) + " " +
-                           (trouble == drives::Trouble::kFault
-                                ? std::string("reports ") + drives::to_string(motor_.monitor().reading().fault)
-                                : std::string(drives::to_string(trouble))) +
-                           "; it is switched off");
+                           drives::words_of(monitor_.trouble(true), monitor_.reading().fault) + "; it is switched off");
 }
 
-void OneMotor::set_zero() {
-  const Frame frame = Frame::of(static_cast<std::uint32_t>(setup_.node), drives::kMitZero, bus_.data_bitrate != 0);
-  link_.send(std::span(&frame, 1));
+bool OneMotor::set_zero() {
+  drives::Outbox out;
+  if (!motor_.zero(out)) return false;
+  link_.send(out.messages());
   tick_();
   std::array<Frame, 32> answers;
   while (link_.receive(answers) > 0) {
   }
-  motor_ = BusMotor(setup_, bus_);  // the position jumps
+  monitor_ = drives::MotorMonitor(setup_.limits, bus_.fresh_cycles());  // the position jumps
+  motor_ = drives::MotorChannel(setup_, monitor_, bus_.data_bitrate != 0);
+  return true;
 }
 
 }  // namespace pmg::can

@@ -3,24 +3,20 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
-#include "can/bus_motor.hpp"
+#include "can/bus_setup.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/link.hpp"
-#include "drives/drive_setup.hpp"
+#include "drives/motor_channel.hpp"
 
 namespace pmg::can {
-
-/// "left_knee (can0, node 4)"
-std::string name_of(const drives::BusSetup& bus, const drives::MotorSetup& motor);
 
 class OneMotor {
  public:
   /// Sets a CANopen drive up and waits for the first answer, drive off. tick is called every 2 ms and waits; emulators
   /// answer in it. Throws std::runtime_error: the motor doesn't answer, or its drive isn't as robot.yaml has it. Keeps
   /// references.
-  OneMotor(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick);
+  OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick);
   ~OneMotor();  ///< switches it off
   OneMotor(const OneMotor&) = delete;
   OneMotor& operator=(const OneMotor&) = delete;
@@ -30,17 +26,19 @@ class OneMotor {
   /// One bus cycle. Throws std::runtime_error when the motor is in trouble.
   void exchange(const drives::MotorCommand& joint);
   void exchange_off();
-  void set_zero();  ///< MIT: the present position becomes the drive's zero; drive off
+  /// The present position becomes the drive's zero; drive off. False: its protocol has no message for that.
+  bool set_zero();
 
-  drives::MotorReading joint() const { return setup_.transmission.to_joint(motor_.monitor().reading()); }
-  const BusMotor& motor() const { return motor_; }
+  drives::MotorReading joint() const { return setup_.transmission.to_joint(monitor_.reading()); }
+  const drives::MotorChannel& motor() const { return motor_; }
 
  private:
-  void cycle(const std::function<std::optional<Frame>(bool synced)>& ask);
+  void cycle(const std::function<void(bool synced, drives::Outbox&)>& ask);
 
-  const drives::BusSetup& bus_;
+  const BusSetup& bus_;
   const drives::MotorSetup& setup_;
-  BusMotor motor_;
+  drives::MotorMonitor monitor_;
+  drives::MotorChannel motor_;
   Link& link_;
   const std::function<void()>& tick_;
   int ticks_ = kHeartbeatCycles;  // since the last heartbeat

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "can/bus_ids.hpp"
-#include "can/bus_motor.hpp"
-#include "can/canopen.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 
@@ -15,47 +15,54 @@ namespace {
 
 constexpr std::uint8_t kMostFaultCode = 7;  // of the CubeMars dialect
 
-const drives::MotorSetup* motor_of(const drives::BusSetup& bus, int node) {
+const drives::MotorSetup* motor_of(const BusSetup& bus, int node) {
   const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
   return motor == bus.motors.end() ? nullptr : &*motor;
 }
 
 /// A DaMiao's first byte: its state in the upper half, its node in the lower one.
-const drives::MotorSetup* damiao_motor(const drives::BusSetup& bus, std::uint8_t first) {
+const drives::MotorSetup* damiao_motor(const BusSetup& bus, std::uint8_t first) {
   const int state = first >> 4;
   return state == 1 || state >= 8 ? motor_of(bus, first & 0x0F) : nullptr;
 }
 
-/// "left_knee's drive answers as a DaMiao's"; empty: it may be anything.
-std::string guess(const drives::BusSetup& bus, const Frame& frame, bool a_reply) {
+/// robot.yaml's word for the motor's protocol.
+std::string says(const drives::MotorSetup& motor) {
+  const drives::MitDrive* mit = drives::as_mit(motor.drive);
+  return mit == nullptr ? std::string("another protocol") : fmt::format("`protocol: {}`", mit->protocol_name());
+}
+
+/// "a DaMiao's answer of left_knee; robot.yaml has ..."; empty: it may be anything.
+std::string guess(const BusSetup& bus, const Frame& frame, bool a_reply) {
   if (frame.extended)
     return "a protocol with 29-bit identifiers, as RobStride's, CyberGear's and CubeMars' servo mode have; robot.yaml "
-           "says `protocol: mit` or `cia402`";
-  const std::uint32_t function = frame.id & ~canopen::kNodeBits;
-  if (function == canopen::kHeartbeat && frame.length == 1)
+           "has none of them";
+  const std::uint32_t function = frame.id & ~drives::canopen::kNodeBits;
+  if (function == drives::canopen::kHeartbeat && frame.length == 1)
     return fmt::format("a CANopen node's heartbeat, node {}; robot.yaml has no such drive here",
-                       frame.id & canopen::kNodeBits);
+                       frame.id & drives::canopen::kNodeBits);
   if (frame.length == 0 || frame.length > 8) return {};
   const drives::MotorSetup* motor = motor_of(bus, frame.data[0]);
   const drives::MotorSetup* damiao = motor == nullptr ? damiao_motor(bus, frame.data[0]) : nullptr;
   if (damiao != nullptr && frame.length == 8)
     return fmt::format(
-        "a DaMiao's answer of {}, whose first byte has a state besides the node; robot.yaml's "
-        "`protocol: mit` means CubeMars' answers",
-        damiao->joint);
+        "a DaMiao's answer of {}, whose first byte has a state besides the node; robot.yaml has {}: expected "
+        "`protocol: "
+        "damiao`",
+        damiao->joint, says(*damiao));
   if (motor == nullptr) return {};
   if (frame.length == 6 || frame.length == 7)
     return fmt::format(
-        "a Mini Cheetah's answer of {}, without a fault code; robot.yaml's `protocol: mit` means 8 bytes",
-        motor->joint);
+        "a Mini Cheetah's answer of {}, without a fault code; robot.yaml has {}: expected `protocol: mini_cheetah`",
+        motor->joint, says(*motor));
   if (frame.length != 8) return {};
   if (!a_reply)
     return fmt::format("an answer of {} with another identifier; robot.yaml's `reply_id` should be 0x{:X}",
                        motor->joint, frame.id);
   return fmt::format(
-      "a DaMiao's answer of {}: {} would be no fault code, but a temperature; robot.yaml's `protocol: "
-      "mit` means CubeMars' answers",
-      motor->joint, frame.data[7]);
+      "a DaMiao's answer of {}, or a RobStride's: {} would be no fault code, but a temperature; robot.yaml has {}: "
+      "expected `protocol: damiao` or `protocol: robstride`",
+      motor->joint, frame.data[7], says(*motor));
 }
 
 }  // namespace
@@ -66,14 +73,14 @@ void OtherFrames::note(const Frame& frame) {
   seen.last = frame;
 }
 
-std::vector<std::string> OtherFrames::lines(const drives::BusSetup& bus) const {
+std::vector<std::string> OtherFrames::lines(const BusSetup& bus) const {
   const std::vector<SentId> ids = sent_ids(bus);
   std::vector<std::string> lines;
   for (const auto& [key, seen] : seen_) {
     const Frame& frame = seen.last;
     const auto sent = std::ranges::find(ids, frame.id, &SentId::id);
     const bool ours = !frame.extended && sent != ids.end();
-    const bool a_reply = ours && sent->shared;
+    const bool a_reply = ours && sent->shared_by != nullptr;
     if (ours && !a_reply) continue;
     if (a_reply && frame.length == 8 && frame.data[7] <= kMostFaultCode && motor_of(bus, frame.data[0])) continue;
     const std::string what = guess(bus, frame, a_reply);
@@ -84,7 +91,7 @@ std::vector<std::string> OtherFrames::lines(const drives::BusSetup& bus) const {
   return lines;
 }
 
-std::string controller_line(const drives::BusSetup& bus, const Link& link) {
+std::string controller_line(const BusSetup& bus, const Link& link) {
   const LinkCounts& counts = link.counts();
   if (counts.error_frames == 0 && link.health() == BusHealth::kGood) return {};
   const char* state = link.health() == BusHealth::kOff       ? "bus-off"

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <vector>
 
+#include "can/bus_setup.hpp"
 #include "can/link.hpp"
-#include "drives/drive_setup.hpp"
 
 namespace pmg::can {
 
@@ -18,7 +18,7 @@ class OtherFrames {
   void note(const Frame& frame);
   /// One line for each identifier and length: how often, and what it may be. Ours are not among them: the IMU's
   /// messages and what CANopen drives of this bus send.
-  std::vector<std::string> lines(const drives::BusSetup& bus) const;
+  std::vector<std::string> lines(const BusSetup& bus) const;
 
  private:
   struct Seen {
@@ -29,6 +29,6 @@ class OtherFrames {
 };
 
 /// What the CAN controller of this computer says of a bus on which drives were asked; empty: nothing is wrong with it.
-std::string controller_line(const drives::BusSetup& bus, const Link& link);
+std::string controller_line(const BusSetup& bus, const Link& link);
 
 }  // namespace pmg::can

@@ -10,8 +10,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "can/bus_motor.hpp"
-#include "can/one_motor.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 
@@ -26,9 +25,25 @@ constexpr double kBeyondRange_rad =
 
 using Answers = std::map<int, Answer>;
 
-/// What has arrived from MIT drives, strangers' too.
-void take_mit(const drives::BusSetup& bus, std::vector<BusMotor>& motors, Link& link, Answers& answers,
-              OtherFrames* others) {
+/// A drive that the bus isn't to have and that answers as those do that their messages ask.
+std::optional<int> asked_stranger(const BusSetup& bus, const Frame& frame) {
+  for (const drives::MotorSetup& motor : bus.motors) {
+    if (drives::as_cia402(motor.drive) != nullptr) continue;
+    const auto node = motor.drive->sender(frame);
+    if (node && std::ranges::find(bus.motors, *node, &drives::MotorSetup::node) == bus.motors.end()) return node;
+  }
+  return std::nullopt;
+}
+
+/// A motor whose drive its messages ask, and its way to speak.
+struct Asked {
+  const drives::MotorSetup* setup;
+  std::unique_ptr<drives::Protocol> protocol;
+};
+
+/// What has arrived from such drives, strangers' too.
+void take_asked(const BusSetup& bus, const std::vector<Asked>& motors, Link& link, Answers& answers,
+                OtherFrames* others) {
   const auto count_one = [&](int node) -> Answer& {
     Answer& answer = answers[node];
     answer.node = node;
@@ -39,11 +54,12 @@ void take_mit(const drives::BusSetup& bus, std::vector<BusMotor>& motors, Link& 
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
       bool fault_code = false;
-      if (const auto node = mit_stranger(bus, frame)) count_one(*node);
-      for (BusMotor& motor : motors) {
-        const BusMotor::Heard heard = motor.overhear(frame);
-        if (heard.what != BusMotor::Heard::What::kReading) continue;
-        count_one(motor.setup().node).reading = heard.reading;
+      if (const auto node = asked_stranger(bus, frame)) count_one(*node);
+      for (const Asked& motor : motors) {
+        const drives::Heard heard = motor.protocol->hear(frame);
+        fault_code = fault_code || heard.what == drives::Heard::What::kNoted;
+        if (heard.what != drives::Heard::What::kReading) continue;
+        count_one(motor.setup->node).reading = heard.reading;
         fault_code = heard.reading.fault != drives::DriveFault::kOther;
       }
       if (others != nullptr && !fault_code) others->note(frame);
@@ -56,8 +72,8 @@ void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
   std::array<Frame, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
     for (const Frame& frame : std::span(frames).first(count)) {
-      const std::uint32_t node = frame.id & canopen::kNodeBits;
-      if (frame.extended || frame.id - node != canopen::kSdoAnswer || !canopen::sdo_answer(frame)) {
+      const std::uint32_t node = frame.id & drives::canopen::kNodeBits;
+      if (frame.extended || frame.id - node != drives::canopen::kSdoAnswer || !drives::canopen::sdo_answer(frame)) {
         if (others != nullptr) others->note(frame);
         continue;
       }
@@ -72,15 +88,15 @@ void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
 struct Roll {
   Link& link;
   const Wait& wait;
-  std::function<Frame(int node)> request;
+  std::function<void(int node, std::vector<Frame>& frames)> request;
   std::function<void(Answers&)> take;
 
   void ask(const std::vector<int>& nodes, Answers& answers) const {
     for (std::size_t at = 0; at < nodes.size(); at += kBatch) {
       std::vector<Frame> frames;
-      for (const int node : std::span(nodes).subspan(at, std::min(kBatch, nodes.size() - at)))
-        frames.push_back(request(node));
-      const int all = heard(answers) + static_cast<int>(frames.size());
+      const auto batch = std::span(nodes).subspan(at, std::min(kBatch, nodes.size() - at));
+      for (const int node : batch) request(node, frames);
+      const int all = heard(answers) + static_cast<int>(batch.size());
       link.send(frames);
       listen(answers, all);
     }
@@ -138,11 +154,10 @@ void find_and_count(const Roll& roll, const std::vector<int>& nodes, const std::
 }
 
 /// Switches the drive off and reads it.
-void read_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait,
-               Answer& answer) {
-  const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+void read_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait, Answer& answer) {
+  const auto& settings = *drives::as_cia402(motor.drive);
   try {
-    const Frame quiet = canopen::node_command(canopen::NodeCommand::kPreOperational, motor.node);
+    const Frame quiet = drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, motor.node);
     link.send(std::span(&quiet, 1));
     SdoClient node(motor.node, link, wait);
     node.write(drives::object::kControlWord, 0);
@@ -153,18 +168,21 @@ void read_node(const drives::BusSetup& bus, const drives::MotorSetup& motor, Lin
   }
 }
 
-void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, const std::function<void()>& check,
+void ask_canopen(const BusSetup& bus, Link& link, const Wait& wait, const std::function<void()>& check,
                  Answers& answers, OtherFrames* others) {
   const Roll roll{.link = link,
                   .wait = wait,
-                  .request = [](int node) { return canopen::sdo_read(node, drives::object::kDeviceType); },
+                  .request =
+                      [](int node, std::vector<Frame>& frames) {
+                        frames.push_back(drives::canopen::sdo_read(node, drives::object::kDeviceType));
+                      },
                   .take = [&](Answers& into) { take_canopen(link, into, others); }};
   std::vector<int> own, strangers;
-  for (int node = 1; node < static_cast<int>(canopen::kHostNode); ++node) {
+  for (int node = 1; node < static_cast<int>(drives::canopen::kHostNode); ++node) {
     const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
     if (motor == bus.motors.end()) {
       strangers.push_back(node);
-    } else if (std::holds_alternative<drives::Cia402Settings>(motor->drive)) {
+    } else if (drives::as_cia402(motor->drive) != nullptr) {
       own.push_back(node);
     }
   }
@@ -172,7 +190,7 @@ void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, cons
   roll.ask(strangers, nodes);
   find_and_count(roll, own, check, nodes);
   for (const drives::MotorSetup& motor : bus.motors) {
-    if (!std::holds_alternative<drives::Cia402Settings>(motor.drive) || !nodes.contains(motor.node)) continue;
+    if (drives::as_cia402(motor.drive) == nullptr || !nodes.contains(motor.node)) continue;
     check();
     read_node(bus, motor, link, wait, nodes[motor.node]);
   }
@@ -181,34 +199,37 @@ void ask_canopen(const drives::BusSetup& bus, Link& link, const Wait& wait, cons
 
 }  // namespace
 
-std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
-                            const std::function<bool()>& interrupted, OtherFrames* others) {
+std::vector<Answer> ask_bus(const BusSetup& bus, Link& link, const Wait& wait, const std::function<bool()>& interrupted,
+                            OtherFrames* others) {
   const auto check = [&] {
     if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were asked");
   };
-  std::vector<int> mit;
-  std::vector<BusMotor> motors;
+  std::vector<int> nodes;
+  std::vector<Asked> motors;
   for (const drives::MotorSetup& motor : bus.motors) {
-    if (!std::holds_alternative<drives::MitRanges>(motor.drive)) continue;
-    mit.push_back(motor.node);
-    motors.emplace_back(motor, bus);
+    auto protocol = motor.drive->protocol(motor.node, motor.limits, bus.data_bitrate != 0);
+    if (protocol->asked_by() != drives::Protocol::AskedBy::kItsMessages) continue;
+    nodes.push_back(motor.node);
+    motors.push_back({.setup = &motor, .protocol = std::move(protocol)});
   }
-  const Roll roll{.link = link,
-                  .wait = wait,
-                  .request =
-                      [&bus](int node) {
-                        return Frame::of(static_cast<std::uint32_t>(node), drives::kMitDisable, bus.data_bitrate != 0);
-                      },
-                  .take = [&](Answers& into) { take_mit(bus, motors, link, into, others); }};
+  const auto off = [&motors](int node, std::vector<Frame>& frames) {
+    const auto motor = std::ranges::find(motors, node, [](const Asked& asked) { return asked.setup->node; });
+    drives::Outbox out;
+    motor->protocol->off(out);
+    frames.insert(frames.end(), out.messages().begin(), out.messages().end());
+  };
+  const Roll roll{.link = link, .wait = wait, .request = off, .take = [&](Answers& into) {
+                    take_asked(bus, motors, link, into, others);
+                  }};
   Answers answers;
-  find_and_count(roll, mit, check, answers);
+  find_and_count(roll, nodes, check, answers);
   if (bus.has_canopen()) ask_canopen(bus, link, wait, check, answers, others);
   std::vector<Answer> list;
   for (const auto& [node, answer] : answers) list.push_back(answer);
   return list;
 }
 
-std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector<Answer>& answers) {
+std::vector<std::string> problems(const BusSetup& bus, const std::vector<Answer>& answers) {
   std::vector<std::string> found;
   for (const drives::MotorSetup& motor : bus.motors) {
     const std::string who = name_of(bus, motor);
@@ -242,7 +263,7 @@ std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector
   return found;
 }
 
-void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
+void call_roll(const DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                const std::function<bool()>& interrupted) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "can/bus_setup.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/link.hpp"
 #include "can/other_frames.hpp"
-#include "drives/drive_setup.hpp"
 
 namespace pmg::can {
 
@@ -25,17 +25,17 @@ struct Answer {
 /// Asks every motor of the bus a few times, for some 0.1 s, 0.3 s if one is silent, and reads the CANopen drives that
 /// answer. Answers that a delay holds back or bunches count as those of one drive. Answers by node,
 /// those of strangers included. others: gets what else was heard; null: nobody wants to know.
-std::vector<Answer> ask_bus(const drives::BusSetup& bus, Link& link, const Wait& wait,
-                            const std::function<bool()>& interrupted, OtherFrames* others = nullptr);
+std::vector<Answer> ask_bus(const BusSetup& bus, Link& link, const Wait& wait, const std::function<bool()>& interrupted,
+                            OtherFrames* others = nullptr);
 
 /// What is wrong with these answers, one text a problem: a motor that doesn't answer, two drives of one node, a node
 /// that robot.yaml doesn't have, a fault that a drive reports, a joint more than 0.2 rad beyond its range (a wrong
 /// zero, direction or gear, or a lost turn).
-std::vector<std::string> problems(const drives::BusSetup& bus, const std::vector<Answer>& answers);
+std::vector<std::string> problems(const BusSetup& bus, const std::vector<Answer>& answers);
 
 /// Disables and asks every motor of every CAN bus; drives that are EtherCAT slaves are left out. Throws
 /// std::runtime_error with the first problem and the number of others.
-void call_roll(const drives::DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
+void call_roll(const DriveSetup& setup, const std::vector<std::unique_ptr<Link>>& links, const Wait& wait,
                const std::function<bool()>& interrupted);
 
 }  // namespace pmg::can

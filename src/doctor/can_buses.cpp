@@ -18,7 +18,7 @@ namespace {
 double recommended_sample_point(int bitrate) { return bitrate > 800'000 ? 0.75 : bitrate > 500'000 ? 0.8 : 0.875; }
 
 /// The command that sets an interface as robot.yaml has its bus.
-std::string set_up(const drives::BusSetup& bus) {
+std::string set_up(const can::BusSetup& bus) {
   std::string text = fmt::format("as root: ip link set {0} down; ip link set {0} up txqueuelen 64 type can bitrate {1}",
                                  bus.name, bus.bitrate);
   if (bus.sample_point > 0.0) text += fmt::format(" sample-point {:g}", bus.sample_point);
@@ -28,24 +28,9 @@ std::string set_up(const drives::BusSetup& bus) {
   return text + " restart-ms 100";
 }
 
-Finding bitrate_finding(const drives::BusSetup& bus, const CanLink& link) {
-  const std::string check = bus.name + " bit rate";
-  const auto differs = [](std::uint32_t is, int wanted) { return is != static_cast<std::uint32_t>(wanted); };
-  if (differs(link.arbitration.bitrate, bus.bitrate)) {
-    return fail(check, fmt::format("{} bit/s; robot.yaml says {}", link.arbitration.bitrate, bus.bitrate), set_up(bus));
-  }
-  if (bus.data_bitrate != 0 && differs(link.data.bitrate, bus.data_bitrate)) {
-    return fail(check,
-                fmt::format("{} bit/s in the data phase; robot.yaml says {}", link.data.bitrate, bus.data_bitrate),
-                set_up(bus));
-  }
-  return ok(check, bus.data_bitrate == 0 ? fmt::format("{} bit/s", bus.bitrate)
-                                         : fmt::format("{} and {} bit/s", bus.bitrate, bus.data_bitrate));
-}
-
 /// told: robot.yaml's; 0: not said. Nullopt: it is as expected.
-std::optional<Finding> wrong_sample_point(const drives::BusSetup& bus, const CanTiming& timing, int bitrate,
-                                          double told, const char* phase, const Limits& limits) {
+std::optional<Finding> wrong_sample_point(const can::BusSetup& bus, const CanTiming& timing, int bitrate, double told,
+                                          const char* phase, const Limits& limits) {
   const double is = timing.sample_permille / 1000.0, expected = told > 0.0 ? told : recommended_sample_point(bitrate);
   constexpr double kRounding = 1e-9;
   if (std::abs(is - expected) <= limits.sample_point_step + kRounding) return std::nullopt;
@@ -58,7 +43,7 @@ std::optional<Finding> wrong_sample_point(const drives::BusSetup& bus, const Can
                            set_up(bus) + also + fmt::format(", or write it into robot.yaml: buses.{}", bus.name));
 }
 
-Finding sample_finding(const drives::BusSetup& bus, const CanLink& link, const Limits& limits) {
+Finding sample_finding(const can::BusSetup& bus, const CanLink& link, const Limits& limits) {
   if (const auto wrong = wrong_sample_point(bus, link.arbitration, bus.bitrate, bus.sample_point, "", limits))
     return *wrong;
   // In the data phase CiA recommends nothing that holds for every transceiver: robot.yaml alone decides.
@@ -70,7 +55,7 @@ Finding sample_finding(const drives::BusSetup& bus, const CanLink& link, const L
   return ok(bus.name + " sample point", fmt::format("{:.1f} %", link.arbitration.sample_permille / 10.0));
 }
 
-Finding state_finding(const drives::BusSetup& bus, const CanLink& link) {
+Finding state_finding(const can::BusSetup& bus, const CanLink& link) {
   const std::string check = bus.name + " state";
   const std::uint32_t state = link.state.value_or(CAN_STATE_MAX);
   const std::string wiring = "look at wires and termination (60 Ohm between CAN_H and CAN_L), power the drives, then: ";
@@ -86,7 +71,7 @@ Finding state_finding(const drives::BusSetup& bus, const CanLink& link) {
   return state == CAN_STATE_ERROR_ACTIVE ? ok(check, "error-active") : warn(check, "isn't told", "pmg_bus scan");
 }
 
-Finding queue_finding(const Host& host, const drives::BusSetup& bus) {
+Finding queue_finding(const Host& host, const can::BusSetup& bus) {
   const std::string check = bus.name + " queue";
   const std::string text = host.text(fmt::format("sys/class/net/{}/tx_queue_len", bus.name)).value_or("");
   std::size_t length = 0;
@@ -100,7 +85,22 @@ Finding queue_finding(const Host& host, const drives::BusSetup& bus) {
 
 }  // namespace
 
-Findings check_can_bus(const Host& host, const drives::BusSetup& bus, const Limits& limits) {
+Finding bitrate_finding(const can::BusSetup& bus, const CanLink& link) {
+  const std::string check = bus.name + " bit rate";
+  const auto differs = [](std::uint32_t is, int wanted) { return is != static_cast<std::uint32_t>(wanted); };
+  if (differs(link.arbitration.bitrate, bus.bitrate)) {
+    return fail(check, fmt::format("{} bit/s; robot.yaml says {}", link.arbitration.bitrate, bus.bitrate), set_up(bus));
+  }
+  if (bus.data_bitrate != 0 && differs(link.data.bitrate, bus.data_bitrate)) {
+    return fail(check,
+                fmt::format("{} bit/s in the data phase; robot.yaml says {}", link.data.bitrate, bus.data_bitrate),
+                set_up(bus));
+  }
+  return ok(check, bus.data_bitrate == 0 ? fmt::format("{} bit/s", bus.bitrate)
+                                         : fmt::format("{} and {} bit/s", bus.bitrate, bus.data_bitrate));
+}
+
+Findings check_can_bus(const Host& host, const can::BusSetup& bus, const Limits& limits) {
   int error = 0;
   const auto link = host.can_link(bus.name, error);
   if (!link && error == ENODEV)

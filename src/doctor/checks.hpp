@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "can/bus_setup.hpp"
 #include "control/control_setup.hpp"
+#include "doctor/can_link.hpp"
 #include "doctor/finding.hpp"
 #include "doctor/host.hpp"
-#include "drives/drive_setup.hpp"
 
 namespace pmg::doctor {
 
@@ -46,7 +47,9 @@ Findings check_cpus(const Host& host, const RealtimeCpus& cpus);
 /// A card that EtherCAT has for itself: up, linked, without address, prompt, its interrupts away from the control
 /// thread.
 Findings check_card(const Host& host, const std::string& interface, const RealtimeCpus& cpus, const Limits& limits);
-Findings check_can_bus(const Host& host, const drives::BusSetup& bus, const Limits& limits);
+/// The bit rates of an interface whose kind is "can".
+Finding bitrate_finding(const can::BusSetup& bus, const CanLink& link);
+Findings check_can_bus(const Host& host, const can::BusSetup& bus, const Limits& limits);
 
 /// The line of an IMU of its own.
 Findings check_serial_imu(const Host& host, const model::SerialImuModel& imu);

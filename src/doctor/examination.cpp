@@ -27,7 +27,7 @@ Findings examine_for_controller(const Host& host, const ControllerNeeds& needs, 
     add(check_cpus(host, needs.cpus));
   }
   for (const std::string& card : needs.cards) add(check_card(host, card, needs.cpus, limits));
-  for (const drives::BusSetup& bus : needs.can_buses) add(check_can_bus(host, bus, limits));
+  for (const can::BusSetup& bus : needs.can_buses) add(check_can_bus(host, bus, limits));
   if (needs.imu) add(check_serial_imu(host, *needs.imu));
   if (!needs.log.empty()) add(check_disk(host, needs.log, limits));
   add(check_clock(host, began, host.clock(), limits));

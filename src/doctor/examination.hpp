@@ -15,8 +15,8 @@ struct ControllerNeeds {
   bool realtime = true;
   int priority = 80;  ///< the highest that it asks for
   RealtimeCpus cpus;
-  std::vector<drives::BusSetup> can_buses;  ///< that it drives motors on
-  std::vector<std::string> cards;           ///< that EtherCAT has for itself
+  std::vector<can::BusSetup> can_buses;  ///< that it drives motors on
+  std::vector<std::string> cards;        ///< that EtherCAT has for itself
   std::optional<model::SerialImuModel> imu;
   std::filesystem::path log;  ///< empty: no log
 };

@@ -49,7 +49,7 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
     return findings;
   if (drives) {
     look(findings, "drives", kCorrect, [&] {
-      const drives::DriveSetup found = drives::load_drives(robot);
+      const can::DriveSetup found = can::load_drives(robot);
       return fmt::format("every joint has one that covers it, on {} buses", found.buses.size());
     });
   }

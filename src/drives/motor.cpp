@@ -12,7 +12,7 @@ bool finite(const MotorCommand& command) noexcept {
 }
 
 const char* to_string(DriveFault fault) noexcept {
-  constexpr std::array<const char*, 11> kTexts = {"no fault",
+  constexpr std::array<const char*, 12> kTexts = {"no fault",
                                                   "over-temperature of the motor",
                                                   "over-current",
                                                   "over-voltage",
@@ -22,7 +22,8 @@ const char* to_string(DriveFault fault) noexcept {
                                                   "blocked rotor",
                                                   "a fault that the protocol doesn't name",
                                                   "a communication fault",
-                                                  "a following error"};
+                                                  "a following error",
+                                                  "an overload"};
   return kTexts[static_cast<std::size_t>(fault)];
 }
 

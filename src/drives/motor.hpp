@@ -34,6 +34,7 @@ enum class DriveFault : std::uint8_t {
   kOther,  ///< a code that the protocol's documentation doesn't name
   kCommunication,
   kFollowing,  ///< the position lags behind its target by more than the drive allows
+  kOverload,   ///< more torque for longer than the drive allows
 };
 
 const char* to_string(DriveFault fault) noexcept;  ///< "over-temperature of the motor"

@@ -40,7 +40,7 @@ void map(drives::ObjectDictionary& dictionary, std::uint16_t assigned, std::uint
 }  // namespace
 
 // SOEM's own SDO transfers write what a slave sends in segments beyond the end of the caller's number.
-std::optional<can::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& request, const drives::ObjectId& id) {
+std::optional<drives::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& request, const drives::ObjectId& id) {
   ec_mbxbuft mail{};
   ecx_mbxreceive(&context_, slave_, &mail, 0);  // what is left of an earlier start
   std::uint8_t& counter = context_.slavelist[slave_].mbx_cnt;
@@ -59,10 +59,10 @@ std::optional<can::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& requ
     // An abort is a request to end the transfer; some slaves send it as a response.
     if ((mail[5] & 0x0FU) != kCoe || (service != kSdoResponse && service != kSdoRequest) || length < 2 + kSdoBytes)
       continue;
-    const auto answer = can::canopen::sdo_answer(can::Frame::of(0, std::span(mail + kSdo, kSdoBytes)));
+    const auto answer = drives::canopen::sdo_answer(can::Frame::of(0, std::span(mail + kSdo, kSdoBytes)));
     if (!answer || answer->id.index != id.index || answer->id.subindex != id.subindex) continue;
     if (!answer->aborted) return answer;
-    if (answer->value == can::canopen::kAbortNoObject || answer->value == can::canopen::kAbortNoSubindex)
+    if (answer->value == drives::canopen::kAbortNoObject || answer->value == drives::canopen::kAbortNoSubindex)
       return std::nullopt;
     throw std::runtime_error(
         fmt::format("refuses object {} with SDO abort 0x{:08X}", drives::to_string(id), answer->value));
@@ -72,7 +72,7 @@ std::optional<can::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& requ
 }
 
 std::optional<std::uint32_t> CoeDictionary::read(const drives::ObjectId& id) {
-  const auto answer = ask(can::canopen::sdo_read(0, id), id);
+  const auto answer = ask(drives::canopen::sdo_read(0, id), id);
   if (!answer) return std::nullopt;
   if (!answer->upload || !answer->expedited)
     throw std::runtime_error(fmt::format("gives no number as object {}", drives::to_string(id)));
@@ -80,7 +80,7 @@ std::optional<std::uint32_t> CoeDictionary::read(const drives::ObjectId& id) {
 }
 
 bool CoeDictionary::write(const drives::ObjectId& id, std::uint32_t value) {
-  return ask(can::canopen::sdo_write(0, id, value), id).has_value();
+  return ask(drives::canopen::sdo_write(0, id, value), id).has_value();
 }
 
 void map_process_data(drives::ObjectDictionary& dictionary, const drives::Cia402Settings& settings) {

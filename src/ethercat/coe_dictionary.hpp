@@ -1,8 +1,8 @@
 // A slave's objects over its mailbox: CANopen over EtherCAT (ETG.1000.6).
 #pragma once
 
-#include "can/canopen.hpp"
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 #include "ethercat/soem_port.hpp"
 
 namespace pmg::ethercat {
@@ -16,7 +16,7 @@ class CoeDictionary final : public drives::ObjectDictionary {
 
  private:
   /// An expedited transfer. Nullopt: there is no such object.
-  std::optional<can::canopen::SdoAnswer> ask(const can::Frame& request, const drives::ObjectId& id);
+  std::optional<drives::canopen::SdoAnswer> ask(const can::Frame& request, const drives::ObjectId& id);
 
   ecx_contextt& context_;
   std::uint16_t slave_;

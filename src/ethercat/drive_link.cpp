@@ -11,13 +11,13 @@ DriveLink::DriveLink(const std::vector<int>& nodes) : in_(2 * nodes.size()) {
 std::size_t DriveLink::send(std::span<const can::Frame> frames) noexcept {
   for (const can::Frame& frame : frames) {
     ++counts_.sent;
-    if (frame.id == can::canopen::kSync && frame.length == 0) {
+    if (frame.id == drives::canopen::kSync && frame.length == 0) {
       in_first_ = in_count_ = 0;
       for (Drive& drive : drives_) drive.asked = true;
       continue;
     }
-    const auto drive =
-        std::ranges::find_if(drives_, [&](const Drive& one) { return frame.id == can::canopen::kReceive1 + one.node; });
+    const auto drive = std::ranges::find_if(
+        drives_, [&](const Drive& one) { return frame.id == drives::canopen::kReceive1 + one.node; });
     if (drive == drives_.end() || frame.length != kDriveOutputs) continue;
     std::copy_n(frame.data.begin(), kDriveOutputs, drive->targets.begin());
   }
@@ -36,8 +36,8 @@ void DriveLink::take(std::size_t at, std::span<const std::uint8_t> inputs) noexc
   Drive& drive = drives_[at];
   if (!drive.asked || inputs.size() <= kFirstInputs || in_count_ + 2 > in_.size()) return;
   drive.asked = false;
-  in_[in_count_++] = can::Frame::of(can::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
-  in_[in_count_++] = can::Frame::of(can::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));
+  in_[in_count_++] = can::Frame::of(drives::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
+  in_[in_count_++] = can::Frame::of(drives::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));
 }
 
 void DriveLink::fill(std::size_t at, std::span<std::uint8_t> outputs) const noexcept {

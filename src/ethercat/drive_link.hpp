@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "can/canopen.hpp"
 #include "can/link.hpp"
+#include "drive_protocols/canopen.hpp"
 
 namespace pmg::ethercat {
 

@@ -20,7 +20,7 @@ class EthercatBackend final : public hal::Backend {
       : robot_(setup.robot),
         clock_(setup.clock),
         options_(setup.options),
-        drives_(drives::load_drives(setup.robot)),
+        drives_(can::load_drives(setup.robot)),
         setup_(load_ethercat(setup.robot, drives_)) {
     can::check_load(drives_);
     can::check_ids(drives_);
@@ -47,7 +47,7 @@ class EthercatBackend final : public hal::Backend {
   const model::RobotModel& robot_;
   const io::Clock& clock_;
   hal::OptionValues options_;
-  drives::DriveSetup drives_;
+  can::DriveSetup drives_;
   EthercatSetup setup_;
   std::optional<can::BusClaim> claim_;
   std::unique_ptr<PacketWire> wire_;
@@ -56,10 +56,10 @@ class EthercatBackend final : public hal::Backend {
 
 }  // namespace
 
-hal::BackendDescription description(const drives::DriveSetup& setup) {
+hal::BackendDescription description(const can::DriveSetup& setup) {
   hal::BackendDescription description = can::description(setup);
   bool all = true;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     const bool bridged = bus.first_slave == 0;
     all = all && bridged;
     description.older_imu = description.older_imu || (bridged && bus.imu);

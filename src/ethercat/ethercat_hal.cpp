@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "can/one_motor.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/coe_dictionary.hpp"
 #include "imu/at_rest.hpp"
 
@@ -21,7 +22,7 @@ constexpr int kImuExchanges = 200;  // for its first sample
 
 }  // namespace
 
-EthercatHal::EthercatHal(const EthercatSetup& setup, const drives::DriveSetup& drives, const model::RobotModel& robot,
+EthercatHal::EthercatHal(const EthercatSetup& setup, const can::DriveSetup& drives, const model::RobotModel& robot,
                          const io::Clock& clock, Wire& wire, const can::Wait& pause,
                          const std::function<bool()>& interrupted)
     : setup_(setup),
@@ -44,7 +45,7 @@ EthercatHal::EthercatHal(const EthercatSetup& setup, const drives::DriveSetup& d
 
 void EthercatHal::prepare_drive(std::size_t bus, std::size_t motor, drives::ObjectDictionary& objects) {
   const drives::MotorSetup& setup = drives_.buses[bus].motors[motor];
-  const auto& settings = std::get<drives::Cia402Settings>(setup.drive);
+  const auto& settings = *drives::as_cia402(setup.drive);
   drives::check_drive(objects, settings);
   drives::set_up_drive(objects, settings, setup.limits);
   drive_answers_[bus].push_back(
@@ -54,7 +55,7 @@ void EthercatHal::prepare_drive(std::size_t bus, std::size_t motor, drives::Obje
 
 std::vector<std::unique_ptr<can::Link>> EthercatHal::make_links() {
   std::vector<std::unique_ptr<can::Link>> links;
-  for (const drives::BusSetup& bus : drives_.buses) {
+  for (const can::BusSetup& bus : drives_.buses) {
     if (bus.first_slave != 0) {
       std::vector<int> nodes;
       std::vector<std::size_t> slaves;

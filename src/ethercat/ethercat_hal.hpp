@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "can/bus_setup.hpp"
 #include "can/can_hal.hpp"
 #include "can/roll_call.hpp"
-#include "drives/drive_setup.hpp"
 #include "ethercat/bridge_link.hpp"
 #include "ethercat/clock_lock.hpp"
 #include "ethercat/drive_link.hpp"
@@ -30,7 +30,7 @@ class EthercatHal final : public hal::Hal, public hal::PhaseSource {
 
   /// Brings the slaves up and asks every drive and the IMU while the drives are off. pause: a millisecond or so between
   /// two exchanges; emulators answer in it. Keeps references. Throws std::runtime_error, one line.
-  EthercatHal(const EthercatSetup& setup, const drives::DriveSetup& drives, const model::RobotModel& robot,
+  EthercatHal(const EthercatSetup& setup, const can::DriveSetup& drives, const model::RobotModel& robot,
               const io::Clock& clock, Wire& wire, const can::Wait& pause, const std::function<bool()>& interrupted);
 
   /// Reads what the slaves got in the last cycle, decides as on a CAN bus (can::CanHal), and writes the commands.
@@ -79,7 +79,7 @@ class EthercatHal final : public hal::Hal, public hal::PhaseSource {
   hal::BusStatus judge() noexcept;
 
   EthercatSetup setup_;
-  const drives::DriveSetup& drives_;
+  const can::DriveSetup& drives_;
   const io::Clock& clock_;
   std::int64_t sent_ns_ = 0;  // the cycle's first frame
   std::optional<ProcessDataImu> imu_;

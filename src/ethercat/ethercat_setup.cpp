@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "can/one_motor.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/bridge_link.hpp"
 #include "ethercat/drive_link.hpp"
 #include "files/config_reader.hpp"
@@ -23,27 +23,27 @@ struct Place {
   bool bridge = false;
 };
 
-int channels_of(const drives::DriveSetup& drives, int slave) {
+int channels_of(const can::DriveSetup& drives, int slave) {
   int most = -1;
-  for (const drives::BusSetup& bus : drives.buses) {
+  for (const can::BusSetup& bus : drives.buses) {
     if (bus.bridge_slave == slave) most = std::max(most, bus.bridge_channel);
   }
   return most + 1;
 }
 
-int slave_of(const drives::BusSetup& bus, const drives::MotorSetup& motor) { return bus.first_slave + motor.node - 1; }
-int alias_of(const drives::BusSetup& bus, const drives::MotorSetup& motor) {
+int slave_of(const can::BusSetup& bus, const drives::MotorSetup& motor) { return bus.first_slave + motor.node - 1; }
+int alias_of(const can::BusSetup& bus, const drives::MotorSetup& motor) {
   return bus.first_alias == 0 ? 0 : bus.first_alias + motor.node - 1;
 }
 
-void check_bridge(const EthercatSetup& setup, const drives::DriveSetup& drives, const drives::BusSetup& bus,
+void check_bridge(const EthercatSetup& setup, const can::DriveSetup& drives, const can::BusSetup& bus,
                   const files::ConfigReader& buses) {
   if (bus.bridge_slave == 0)
     buses.fail(bus.name, "has no `bridge`",
                "the slave that bridges this bus, or `first_slave` of drives that are slaves");
   if (bus.data_bitrate != 0) buses.fail(bus.name, "has CAN FD behind a bridge", "no `data_bitrate`: classic frames");
   if (bus.has_canopen()) buses.fail(bus.name, "has CANopen drives behind a bridge", "drives of `protocol: mit`");
-  const auto same = std::ranges::count_if(drives.buses, [&](const drives::BusSetup& other) {
+  const auto same = std::ranges::count_if(drives.buses, [&](const can::BusSetup& other) {
     return other.bridge_slave == bus.bridge_slave && other.bridge_channel == bus.bridge_channel;
   });
   if (same > 1) buses.fail(bus.name, "has the bridge's channel of another bus", "a channel of its own");
@@ -54,7 +54,7 @@ void check_bridge(const EthercatSetup& setup, const drives::DriveSetup& drives, 
 }
 
 /// Every position of the cable once. Throws files::ConfigError.
-std::map<int, Place> places(const drives::DriveSetup& drives, const files::ConfigReader& buses) {
+std::map<int, Place> places(const can::DriveSetup& drives, const files::ConfigReader& buses) {
   std::map<int, Place> all;
   const auto add = [&](const std::string& key, int slave, const Place& place) {
     const auto [found, added] = all.emplace(slave, place);
@@ -66,12 +66,12 @@ std::map<int, Place> places(const drives::DriveSetup& drives, const files::Confi
     }
     buses.fail(key, fmt::format("has slave {}, which is {}, too", slave, found->second.who), "a slave of its own");
   };
-  for (const drives::BusSetup& bus : drives.buses) {
+  for (const can::BusSetup& bus : drives.buses) {
     if (bus.first_slave == 0)
       add(bus.name, bus.bridge_slave, {.who = bus.name + "'s bridge", .alias = bus.bridge_alias, .bridge = true});
     for (const drives::MotorSetup& motor : bus.motors) {
       if (bus.first_slave != 0)
-        add(bus.name, slave_of(bus, motor), {.who = can::name_of(bus, motor), .alias = alias_of(bus, motor)});
+        add(bus.name, slave_of(bus, motor), {.who = drives::name_of(bus, motor), .alias = alias_of(bus, motor)});
     }
   }
   if (const auto& own = drives.imu_slave) add("imu", own->slave, {.who = "the IMU", .alias = own->alias});
@@ -95,11 +95,11 @@ void check_told_apart(const std::map<int, Place>& places, const files::ConfigRea
 
 }  // namespace
 
-EthercatSetup load_ethercat(const model::RobotModel& robot, const drives::DriveSetup& drives) {
+EthercatSetup load_ethercat(const model::RobotModel& robot, const can::DriveSetup& drives) {
   files::ConfigReader root = files::ConfigReader::from_file(robot.directory / "robot.yaml");
   files::ConfigReader reader = root.map("ethercat"), buses = root.map("buses");
   EthercatSetup setup{.interface = reader.required<std::string>("interface")};
-  if (std::ranges::any_of(drives.buses, [](const drives::BusSetup& bus) { return bus.bridge_slave != 0; })) {
+  if (std::ranges::any_of(drives.buses, [](const can::BusSetup& bus) { return bus.bridge_slave != 0; })) {
     setup.frames_out = reader.required<int>("frames_out", files::in_range(1, kMostFrames));
     setup.frames_in = reader.required<int>("frames_in", files::in_range(1, kMostFrames));
   }
@@ -109,18 +109,18 @@ EthercatSetup load_ethercat(const model::RobotModel& robot, const drives::DriveS
   setup.vendor_id = identity("vendor_id");
   setup.product_code = identity("product_code");
   reader.finish();
-  for (const drives::BusSetup& bus : drives.buses) {
+  for (const can::BusSetup& bus : drives.buses) {
     if (bus.first_slave == 0) check_bridge(setup, drives, bus, buses);
   }
   check_told_apart(places(drives, buses), root);
   return setup;
 }
 
-std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const drives::DriveSetup& drives,
+std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const can::DriveSetup& drives,
                                         const PrepareDrive& prepare) {
   std::map<int, SlaveSetup> slaves;
   for (std::size_t b = 0; b < drives.buses.size(); ++b) {
-    const drives::BusSetup& bus = drives.buses[b];
+    const can::BusSetup& bus = drives.buses[b];
     if (bus.first_slave == 0) {
       const auto channels = static_cast<std::size_t>(channels_of(drives, bus.bridge_slave));
       slaves[bus.bridge_slave] = {.vendor_id = setup.vendor_id,
@@ -134,13 +134,13 @@ std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const drives
     }
     for (std::size_t m = 0; m < bus.motors.size(); ++m) {
       const drives::MotorSetup& motor = bus.motors[m];
-      const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+      const auto& settings = *drives::as_cia402(motor.drive);
       slaves[slave_of(bus, motor)] = {.vendor_id = settings.vendor_id,
                                       .product_code = settings.product_code,
                                       .alias = alias_of(bus, motor),
                                       .output_bytes = kDriveOutputs,
                                       .input_bytes = drive_inputs(settings.temperature_index != 0),
-                                      .who = can::name_of(bus, motor),
+                                      .who = drives::name_of(bus, motor),
                                       .prepare = [prepare, b, m](drives::ObjectDictionary& objects) {
                                         if (prepare) prepare(b, m, objects);
                                       }};

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 #include "ethercat/master.hpp"
 #include "model/robot_model.hpp"
 
@@ -22,13 +22,13 @@ struct EthercatSetup {
 /// Throws files::ConfigError when robot.yaml doesn't describe it, when a bus is neither behind a bridge nor one of
 /// drives that are slaves, when two things have one slave or one channel, when a position of the cable has no slave,
 /// when two slaves can't be told apart, or when a channel has too little room for its bus.
-EthercatSetup load_ethercat(const model::RobotModel& robot, const drives::DriveSetup& drives);
+EthercatSetup load_ethercat(const model::RobotModel& robot, const can::DriveSetup& drives);
 
 /// Called with each drive that is a slave, in pre-operational: the bus's and the motor's index, and its objects.
 using PrepareDrive = std::function<void(std::size_t bus, std::size_t motor, drives::ObjectDictionary& objects)>;
 
 /// The slaves that these buses and the IMU need, in the cable's order.
-std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const drives::DriveSetup& drives,
+std::vector<SlaveSetup> expected_slaves(const EthercatSetup& setup, const can::DriveSetup& drives,
                                         const PrepareDrive& prepare);
 
 }  // namespace pmg::ethercat

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 #include "ethercat/wire.hpp"
 
 namespace pmg::ethercat {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 #include "imu/mti_messages.hpp"
 
 namespace pmg::ethercat {
@@ -16,7 +16,7 @@ class ProcessDataImu {
   /// In bus cycles since the last sample, as with an IMU on CAN.
   static constexpr int kLateCycles = 5, kSilentCycles = 10;
 
-  explicit ProcessDataImu(const drives::ImuSlave& setup) noexcept : setup_(setup) {}
+  explicit ProcessDataImu(const can::ImuSlave& setup) noexcept : setup_(setup) {}
 
   void begin_cycle() noexcept;
   /// This cycle's inputs. A counter that stays, a status other than 0, or values that can't be (imu::believed_sample())
@@ -31,7 +31,7 @@ class ProcessDataImu {
  private:
   static constexpr int kNever = 1'000'000;
 
-  drives::ImuSlave setup_;
+  can::ImuSlave setup_;
   imu::MtiSample sample_;
   std::optional<std::uint16_t> counter_;
   std::uint16_t status_ = 0;

@@ -25,9 +25,9 @@ namespace {
 using Links = std::vector<std::unique_ptr<Link>>;
 
 /// Both ends of every bus.
-std::pair<Links, Links> links(const drives::DriveSetup& setup) {
+std::pair<Links, Links> links(const can::DriveSetup& setup) {
   std::pair<Links, Links> ends;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     if (std::getenv("PMG_CAN_SOCKETS") == nullptr) {
       auto [here, there] = test::MemoryLink::pair();
       ends.first.push_back(std::move(here));
@@ -43,7 +43,7 @@ std::pair<Links, Links> links(const drives::DriveSetup& setup) {
 TEST(CanBusCycle, TakesNeitherHeapNorLock) {
   if (!test::trap_available()) GTEST_SKIP() << "a sanitizer replaces the same functions";
   const model::RobotModel& robot = test::z1();
-  const drives::DriveSetup setup = drives::load_drives(robot);
+  const can::DriveSetup setup = can::load_drives(robot);
   auto [host, far] = links(setup);
   const io::SimulationClock clock;
   CanHal hal(setup, robot, clock, std::move(host));

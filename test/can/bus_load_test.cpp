@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "../sim/robots.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -18,10 +19,10 @@ TEST(BusLoad, AFrameOfEightBytesTakes135BitsAtWorst) {
 }
 
 TEST(BusLoad, Z1sBusesCarryTheirFrames) {
-  const drives::DriveSetup setup = drives::load_drives(z1());
+  const can::DriveSetup setup = can::load_drives(z1());
   check_load(setup);
   int motors = 0, fullest = 0;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     motors += static_cast<int>(bus.motors.size());
     fullest = std::max(fullest, planned_load(bus).frames);
   }
@@ -30,8 +31,8 @@ TEST(BusLoad, Z1sBusesCarryTheirFrames) {
 }
 
 TEST(BusLoad, TheImuTakesThreeFramesOfItsBus) {
-  drives::DriveSetup setup = drives::load_drives(z1());
-  drives::BusSetup bus = setup.buses[0];
+  can::DriveSetup setup = can::load_drives(z1());
+  can::BusSetup bus = setup.buses[0];
   const BusLoad without = planned_load(bus);
   bus.imu = true;
   EXPECT_EQ(planned_load(bus).frames, without.frames + 3);
@@ -39,11 +40,11 @@ TEST(BusLoad, TheImuTakesThreeFramesOfItsBus) {
 }
 
 TEST(BusLoad, ACanopenDriveTakesThreeFramesAndItsBusSyncAndHeartbeat) {
-  drives::DriveSetup setup = drives::load_drives(z1());
+  can::DriveSetup setup = can::load_drives(z1());
   setup.buses.resize(1);
   std::vector<drives::MotorSetup>& motors = setup.buses[0].motors;
   motors.erase(motors.begin() + 4, motors.end());
-  for (drives::MotorSetup& motor : motors) motor.drive = drives::Cia402Settings{};
+  for (drives::MotorSetup& motor : motors) motor.drive = drives::cia402_drive({});
   const BusLoad load = planned_load(setup.buses[0]);
   EXPECT_EQ(load.frames, 14);
   EXPECT_NEAR(load.time_s, 12 * 135e-6 + 55e-6 + 65e-6, 1e-12);
@@ -53,7 +54,7 @@ TEST(BusLoad, ACanopenDriveTakesThreeFramesAndItsBusSyncAndHeartbeat) {
 }
 
 TEST(BusLoad, ABusThatCantCarryItsFramesIsRefused) {
-  drives::DriveSetup setup = drives::load_drives(z1());
+  can::DriveSetup setup = can::load_drives(z1());
   setup.buses[0].motors.push_back(setup.buses[0].motors.back());
   check_load(setup);  // seven
   setup.buses[0].motors.push_back(setup.buses[0].motors.back());

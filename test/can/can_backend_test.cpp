@@ -10,7 +10,7 @@
 #include <string>
 
 #include "../sim/robots.hpp"
-#include "can/bus_motor.hpp"
+#include "can/bus_ids.hpp"
 #include "can/mixed_drives.hpp"
 #include "io/clock.hpp"
 #include "model/temporary_copy.hpp"
@@ -52,7 +52,7 @@ TEST(CanBackend, ItsConfigurationSaysWhatEachBusCarries) {
 }
 
 TEST(CanBackend, ItSaysWhichLoopsTheBusThreadClosesAndWhichDrivesHaveTheirOwnGains) {
-  const hal::BackendDescription plain = description(drives::load_drives(z1())),
+  const hal::BackendDescription plain = description(can::load_drives(z1())),
                                 mixed = description(test::mixed_drives(z1()));
   EXPECT_THAT(plain.closed_by_bus, testing::IsEmpty());
   EXPECT_THAT(plain.own_gains, testing::IsEmpty());
@@ -67,9 +67,9 @@ TEST(CanBackend, ItSaysWhichLoopsTheBusThreadClosesAndWhichDrivesHaveTheirOwnGai
 }
 
 TEST(CanBackend, ASocketHearsWhatTheDrivesAndTheImuOfItsBusSendAndNothingElse) {
-  const drives::DriveSetup plain = drives::load_drives(z1()), mixed = test::mixed_drives(z1());
+  const can::DriveSetup plain = can::load_drives(z1()), mixed = test::mixed_drives(z1());
   EXPECT_THAT(awaited_ids(plain.buses[0]), testing::ElementsAre(0x000)) << "every MIT drive answers to one identifier";
-  const auto with_imu = std::ranges::find(plain.buses, true, &drives::BusSetup::imu);
+  const auto with_imu = std::ranges::find(plain.buses, true, &can::BusSetup::imu);
   EXPECT_THAT(awaited_ids(*with_imu), testing::ElementsAre(0x000, 0x21, 0x32, 0x34));
   EXPECT_THAT(awaited_ids(mixed.buses[0]),
               testing::UnorderedElementsAre(0x181, 0x281, 0x081, 0x701, 0x581, 0x182, 0x282, 0x082, 0x702, 0x582,  //

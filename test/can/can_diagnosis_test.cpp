@@ -19,7 +19,7 @@ namespace {
 
 /// A world, and the drives and buses before it.
 struct RobotOnBuses {
-  RobotOnBuses(const drives::DriveSetup& setup, const sim::WorldOptions& options)
+  RobotOnBuses(const can::DriveSetup& setup, const sim::WorldOptions& options)
       : world(z1(), options), links(test::link_pairs<test::MemoryLink>(setup.buses.size())) {
     robot.emplace(setup, z1(), world, std::move(links.first), std::move(links.second));
   }
@@ -28,7 +28,7 @@ struct RobotOnBuses {
   std::optional<test::EmulatedRobot> robot;
 };
 
-RobotDiagnosis diagnosed(const drives::DriveSetup& setup, const sim::ActuatorsByJoint& motors,
+RobotDiagnosis diagnosed(const can::DriveSetup& setup, const sim::ActuatorsByJoint& motors,
                          const std::vector<std::string>& excitations) {
   const test::TemporaryFolder folder;
   std::vector<std::filesystem::path> logs;
@@ -49,7 +49,7 @@ RobotDiagnosis diagnosed(const drives::DriveSetup& setup, const sim::ActuatorsBy
 
 TEST(DiagnosisOverCan, ACommandActsSoLongAfterItsStateAsTheBackendSays) {
   for (const bool mixed : {false, true}) {
-    const drives::DriveSetup setup = mixed ? test::mixed_drives(z1()) : drives::load_drives(z1());
+    const can::DriveSetup setup = mixed ? test::mixed_drives(z1()) : can::load_drives(z1());
     RobotOnBuses on(setup, world_to_excite("hanging", {}));
     const int cycles = test::command_delay_cycles(*on.robot, on.world, test::joints_of(setup.buses[0]));
     EXPECT_EQ(cycles * model::kBusPeriod_s, can::description(setup).command_delay_s) << mixed;
@@ -58,7 +58,7 @@ TEST(DiagnosisOverCan, ACommandActsSoLongAfterItsStateAsTheBackendSays) {
 
 // Were the frames' fields rounded alike each time, a wrist at rest would get a torque for ever, as from a wrong zero.
 TEST(DiagnosisOverCan, NothingIsNamedBehindMitDrivesOfAHealthyRobot) {
-  const RobotDiagnosis found = diagnosed(drives::load_drives(z1()), {}, {"hanging", "standing"});
+  const RobotDiagnosis found = diagnosed(can::load_drives(z1()), {}, {"hanging", "standing"});
   EXPECT_EQ(found.verdict, evidence::Verdict::kNone) << robot_diagnosis_text(found);
   EXPECT_GT(found.coverage.hanging_s, 35.0);
   EXPECT_GT(found.coverage.standing_s, 40.0);
@@ -67,7 +67,7 @@ TEST(DiagnosisOverCan, NothingIsNamedBehindMitDrivesOfAHealthyRobot) {
 
 TEST(DiagnosisOverCan, OnlyTheJointThatRubsIsNamedBehindMitDrives) {
   // As in process.
-  expect_only_friction(diagnosed(drives::load_drives(z1()), rubbing_elbow(), {"hanging"}), "left_elbow", 0.4, 0.1);
+  expect_only_friction(diagnosed(can::load_drives(z1()), rubbing_elbow(), {"hanging"}), "left_elbow", 0.4, 0.1);
 }
 
 // The bus thread closes the loop of this hip roll; the shoulders' drives move with their own gains alone.

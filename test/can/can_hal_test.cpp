@@ -20,6 +20,7 @@
 #include "can/flood.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "hal/bus_cycle.hpp"
 
@@ -29,8 +30,8 @@ namespace {
 using hal::BusStatus;
 using test::MemoryLink;
 
-const drives::DriveSetup& z1_drives() {
-  static const drives::DriveSetup setup = drives::load_drives(z1());
+const can::DriveSetup& z1_drives() {
+  static const can::DriveSetup setup = can::load_drives(z1());
   return setup;
 }
 
@@ -165,7 +166,7 @@ TEST_F(Drives, AReplyWithAnotherIdentifierThanItsDrivesIsNone) {
   stand();
   knee().silent = true;
   hal_->send(standing_);
-  const drives::MitProtocol protocol(std::get<drives::MitRanges>(knee().setup().drive));
+  const drives::MitProtocol protocol(drives::as_mit(knee().setup().drive)->ranges());
   host_[0]->push(Frame::of(0x7E, protocol.reply({.node = 4, .reading = {.q_rad = 0.3}})));
   hal_->receive(state_);
   EXPECT_EQ(hal_->motor(0, 3).age_cycles(), 1);
@@ -282,9 +283,9 @@ TEST_F(Drives, EveryFaultThatADriveReportsIsLostAtOnce) {
 TEST_F(Drives, APauseLongerThanTheDrivesWatchdogsEndsUnderDamping) {
   clock_.advance_to(1'000'000);
   stand();
-  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns);
+  clock_.advance_to(clock_.now_ns() + drives::RobotDrives::kPause_ns);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "not longer";
-  clock_.advance_to(clock_.now_ns() + CanHal::kPause_ns + 1);
+  clock_.advance_to(clock_.now_ns() + drives::RobotDrives::kPause_ns + 1);
   EXPECT_EQ(cycle(standing_), BusStatus::kLost);
   EXPECT_EQ(trouble(), "left_hip_pitch (can0, node 1) is not enabled");
   cycle(limp());
@@ -381,7 +382,7 @@ TEST_F(Drives, ACycleAllocatesNothing) {
 
 /// Z1's left ankle with two motors in the shank, as robot.yaml's `linkages` describes it.
 TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
-  drives::DriveSetup setup = z1_drives();
+  can::DriveSetup setup = z1_drives();
   const auto rod = [](double y, double z) {
     return drives::CrankAndRod{.crank_centre_m = {0.0, y, z},
                                .axis = {0.0, 1.0, 0.0},
@@ -398,7 +399,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   std::vector<std::unique_ptr<Link>> links;
   links.push_back(std::move(host));
   CanHal hal(setup, z1(), clock_, std::move(links));
-  const drives::MitProtocol protocol(std::get<drives::MitRanges>(setup.buses[0].motors[4].drive));
+  const drives::MitProtocol protocol(drives::as_mit(setup.buses[0].motors[4].drive)->ranges());
 
   const Eigen::Vector2d q(-0.2, 0.1), dq(0.8, -0.5), torque(12.0, -3.0);
   Eigen::Vector2d theta = *ankle.motor_angles(q);
@@ -475,7 +476,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
 }
 
 TEST_F(Drives, TheRollCallNamesEveryProblem) {
-  drives::BusSetup bus = z1_drives().buses[0];
+  can::BusSetup bus = z1_drives().buses[0];
   const double stand = bus.motors[0].limits.q_lower_rad;
   std::vector<Answer> answers;
   for (const drives::MotorSetup& motor : bus.motors) {

@@ -16,6 +16,8 @@
 #include "can/cia402_emulator.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -95,7 +97,7 @@ TEST(Candump, NoTextCrashesItAndWhatItTakesComesBack) {
 
 /// A recording of an arm's replies, as `pmg_bus dump` and candump write it, goes into the backend.
 TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
-  const drives::DriveSetup setup = drives::load_drives(z1());
+  const can::DriveSetup setup = can::load_drives(z1());
   std::vector<std::unique_ptr<Link>> links, far;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     auto [here, there] = test::MemoryLink::pair();
@@ -104,7 +106,7 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
   }
   const io::SimulationClock clock;
   CanHal hal(setup, z1(), clock, std::move(links));
-  const drives::MitProtocol protocol(std::get<drives::MitRanges>(setup.buses[0].motors[3].drive));
+  const drives::MitProtocol protocol(drives::as_mit(setup.buses[0].motors[3].drive)->ranges());
   std::string recording;
   for (int k = 0; k < 5; ++k) {
     const drives::MitFrame bytes =
@@ -129,7 +131,7 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
 
 /// The same of a CANopen drive: what its emulator says on the bus is written as candump does, and read again.
 TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
-  const drives::DriveSetup setup = test::mixed_drives(z1());
+  const can::DriveSetup setup = test::mixed_drives(z1());
   const drives::MotorSetup& motor = setup.buses[0].motors[0];
   test::Cia402Emulator drive(motor);
   const auto say = [&](const Frame& frame, std::string& recording) {
@@ -150,13 +152,13 @@ TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
       }
     }
   };
-  drives::DriveSetup one;
+  can::DriveSetup one;
   one.buses.push_back(setup.buses[0]);
   one.buses[0].motors.erase(one.buses[0].motors.begin() + 1, one.buses[0].motors.end());
   set_up_nodes(one, host, answer, {});
   std::string recording;
   drive.feel(motor.transmission.to_motor(drives::MotorReading{.q_rad = 0.3, .dq_rad_s = 0.5}));
-  say(canopen::sync(), recording);
+  say(drives::canopen::sync(), recording);
   ASSERT_EQ(std::ranges::count(recording, '\n'), 2) << recording;
 
   std::vector<std::unique_ptr<Link>> links(setup.buses.size()), robots(setup.buses.size());
@@ -175,7 +177,7 @@ TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
   }
   model::RobotState state;
   hal.receive(state);
-  const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+  const auto& settings = *drives::as_cia402(motor.drive);
   EXPECT_NEAR(motor.transmission.to_joint(hal.motor(0, 0).reading()).q_rad, 0.3, settings.count_rad());
   EXPECT_NEAR(hal.motor(0, 0).reading().dq_rad_s,
               motor.transmission.to_motor(drives::MotorReading{.dq_rad_s = 0.5}).dq_rad_s,

@@ -18,6 +18,7 @@
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
 #include "can/roll_call.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 
 namespace pmg::can {
@@ -28,8 +29,8 @@ using drives::DriveFault;
 using hal::BusStatus;
 using test::MemoryLink;
 
-const drives::DriveSetup& mixed() {
-  static const drives::DriveSetup setup = test::mixed_drives(z1());
+const can::DriveSetup& mixed() {
+  static const can::DriveSetup setup = test::mixed_drives(z1());
   return setup;
 }
 constexpr std::size_t kLeg = 0, kArm = 6;  // buses: CANopen in torque mode with one MIT drive, CANopen in position mode
@@ -170,10 +171,11 @@ TEST_F(CanopenDrives, ADriveThatIsAnotherThanRobotYamlSaysIsRefusedWithObjectAnd
 }
 
 TEST_F(CanopenDrives, TheIdentityIsCheckedWhereRobotYamlHasIt) {
-  drives::DriveSetup setup = mixed();
-  auto& settings = std::get<drives::Cia402Settings>(setup.buses[kLeg].motors[0].drive);
+  can::DriveSetup setup = mixed();
+  drives::Cia402Settings settings = *drives::as_cia402(setup.buses[kLeg].motors[0].drive);
   settings.vendor_id = 0x1234;
   settings.product_code = 0x5679;
+  setup.buses[kLeg].motors[0].drive = drives::cia402_drive(settings);
   try {
     set_up_node(setup.buses[kLeg], setup.buses[kLeg].motors[0], *host_[kLeg], wait_);
     FAIL();
@@ -502,7 +504,7 @@ TEST_F(CanopenDrives, AnEmergencyMessageNamesAFaultWithoutACode) {
   const Frame emergency = Frame::of(0x081, std::array<std::uint8_t, 8>{0x10, 0x43, 1});
   host_[kLeg]->push(emergency);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "the status word tells whether the drive follows";
-  const double count_rad = std::get<drives::Cia402Settings>(mixed().buses[kLeg].motors[0].drive).count_rad();
+  const double count_rad = drives::as_cia402(mixed().buses[kLeg].motors[0].drive)->count_rad();
   const auto counts = static_cast<std::uint32_t>(std::lround(hal_->motor(kLeg, 0).reading().q_rad / count_rad));
   Frame first = Frame::of(0x181, std::array<std::uint8_t, 8>{0x18, 0x02}),
         second = Frame::of(0x281, std::array<std::uint8_t, 8>{});
@@ -557,7 +559,7 @@ TEST_F(CanopenDrives, TheRollCallFindsDrivesStrangersAndDifferences) {
   hip().objects.value(0x6076) = 40'000;
   hip().fault = DriveFault::kUnderVoltage;
   drives_->cia402(kLeg, 1).silent = drives_->cia402(kLeg, 2).twice = false;
-  drives::BusSetup fewer = mixed().buses[kLeg];
+  can::BusSetup fewer = mixed().buses[kLeg];
   fewer.motors.erase(fewer.motors.begin() + 1);
   EXPECT_THAT(problems(fewer, ask_bus(fewer, *host_[kLeg], wait_, {})),
               testing::ElementsAre("left_hip_pitch (can0a, node 1) reports under-voltage; expected no fault",

@@ -9,6 +9,7 @@
 
 #include "can/drive_emulator.hpp"
 #include "can/object_store.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::test {
 
@@ -17,7 +18,7 @@ class Cia402Emulator final : public DriveEmulator {
   static constexpr int kQuickStopTicks = 25;  // 50 ms down the ramp
 
   explicit Cia402Emulator(const drives::MotorSetup& setup)
-      : DriveEmulator(setup), settings_(std::get<drives::Cia402Settings>(setup.drive)) {
+      : DriveEmulator(setup), settings_(*drives::as_cia402(setup.drive)) {
     power_up();
   }
 

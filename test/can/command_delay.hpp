@@ -43,7 +43,7 @@ inline int command_delay_cycles(RobotBehindDrives& robot, sim::World& world, con
 }
 
 /// Indices of the motors of a bus, the last one's first.
-inline std::vector<int> joints_of(const drives::BusSetup& bus) {
+inline std::vector<int> joints_of(const can::BusSetup& bus) {
   std::vector<int> joints;
   for (const drives::MotorSetup& motor : bus.motors) joints.insert(joints.begin(), motor.index);
   return joints;

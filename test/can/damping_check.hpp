@@ -7,9 +7,11 @@
 #include <variant>
 #include <vector>
 
+#include "can/bus_setup.hpp"
 #include "can/drive_emulator.hpp"
-#include "drives/drive_setup.hpp"
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 
@@ -19,8 +21,8 @@ namespace pmg::test {
 /// is robot.yaml's, or that of the drive's own brake.
 class DampingCheck {
  public:
-  DampingCheck(const drives::DriveSetup& setup, const model::RobotModel& robot) : bounds_(robot.joints.size()) {
-    for (const drives::BusSetup& bus : setup.buses) {
+  DampingCheck(const can::DriveSetup& setup, const model::RobotModel& robot) : bounds_(robot.joints.size()) {
+    for (const can::BusSetup& bus : setup.buses) {
       for (const drives::MotorSetup& motor : bus.motors) {
         const auto joint = static_cast<std::size_t>(motor.index);
         bounds_[joint] = bounds(motor, robot.joints[joint].kd_Nm_s_per_rad);
@@ -47,13 +49,13 @@ class DampingCheck {
   /// Half a step of each field of the drive's messages: zero lies between two codes of an MIT drive's.
   static Bounds bounds(const drives::MotorSetup& motor, double kd_Nm_s_per_rad) {
     drives::MotorCommand step;
-    if (const auto* ranges = std::get_if<drives::MitRanges>(&motor.drive)) {
-      const drives::MitProtocol protocol(*ranges);
+    if (const drives::MitDrive* mit = drives::as_mit(motor.drive)) {
+      const drives::MitProtocol& protocol = mit->codec();
       step.torque_Nm = protocol.torque().step();
       step.dq_rad_s = protocol.velocity().step();
-      step.kd_Nm_s_per_rad = drives::FixedPoint(0.0, ranges->kd_Nm_s_per_rad, 12).step();
+      step.kd_Nm_s_per_rad = drives::FixedPoint(0.0, mit->ranges().kd_Nm_s_per_rad, 12).step();
     } else {
-      const auto& settings = std::get<drives::Cia402Settings>(motor.drive);
+      const auto& settings = *drives::as_cia402(motor.drive);
       step.torque_Nm = 1e-3 * settings.rated_torque_Nm;
       step.dq_rad_s = settings.velocity_unit_rad_s;
     }

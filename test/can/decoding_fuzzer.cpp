@@ -22,7 +22,7 @@ using test::require;
 struct Robot {
   Robot()
       : model(model::load_robot(pmg::test::project_folder() + "/config/robots/z1")),
-        setup(drives::load_drives(model)),
+        setup(can::load_drives(model)),
         mixed(test::mixed_drives(model)) {
     command.q = model.q_upper();
     const Eigen::Index n = command.q.size();
@@ -32,7 +32,7 @@ struct Robot {
     command.tau_ff = JointVector::Constant(n, -1e6);
   }
   model::RobotModel model;
-  drives::DriveSetup setup, mixed;
+  can::DriveSetup setup, mixed;
   model::JointCommand command;
 };
 
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Robot robot;
   can::from_line(std::string_view(reinterpret_cast<const char*>(data), size));
 
-  const drives::DriveSetup& setup = size > 0 && (data[size - 1] & 1U) != 0 ? robot.mixed : robot.setup;
+  const can::DriveSetup& setup = size > 0 && (data[size - 1] & 1U) != 0 ? robot.mixed : robot.setup;
   std::vector<std::unique_ptr<can::Link>> links, far;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     auto [here, there] = test::MemoryLink::pair();
@@ -66,7 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     frame.length = data[at + 1] & 0x3FU;
     frame.id = static_cast<std::uint32_t>(data[at + 2] << 8U | data[at + 3]);
     std::memcpy(frame.data.data(), data + at + 4, 8);
-    can::canopen::sdo_answer(frame);
+    drives::canopen::sdo_answer(frame);
     far[data[at] % far.size()]->send(std::span(&frame, 1));
     if ((data[at] & 0x80U) == 0) continue;
     hal.send((data[at] & 0x40U) != 0 ? limp : robot.command);

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "can/bus_setup.hpp"
 #include "can/frame.hpp"
-#include "drives/drive_setup.hpp"
 
 namespace pmg::test {
 
@@ -51,7 +51,8 @@ class DriveEmulator {
   double speed_rad_s = 0.0, torque_Nm = 0.0;  ///< added to what the drive reads
   double temperature_degC = 35.0;
   drives::DriveFault fault = drives::DriveFault::kNone;
-  int node;  ///< that it answers as; another than its own: a wrong id
+  bool fault_passed = false;  ///< its cause is gone: the message that clears faults clears it
+  int node;                   ///< that it answers as; another than its own: a wrong id
 
   int heard = 0;   ///< frames that it answers: a command, or SYNC
   int obeyed = 0;  ///< commands of a CANopen drive

@@ -12,6 +12,7 @@
 #include "can/link.hpp"
 #include "can/mit_emulator.hpp"
 #include "can/xsens_imu.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "model/robot_io.hpp"
 
 namespace pmg::test {
@@ -19,12 +20,12 @@ namespace pmg::test {
 class EmulatedDrives {
  public:
   /// One link a bus, in the order of setup.buses. Keeps a reference to setup.
-  EmulatedDrives(const drives::DriveSetup& setup, std::vector<std::unique_ptr<can::Link>> links)
+  EmulatedDrives(const can::DriveSetup& setup, std::vector<std::unique_ptr<can::Link>> links)
       : setup_(setup), links_(std::move(links)) {
-    for (const drives::BusSetup& bus : setup.buses) {
+    for (const can::BusSetup& bus : setup.buses) {
       auto& drives = buses_.emplace_back();
       for (const drives::MotorSetup& motor : bus.motors) {
-        if (std::holds_alternative<drives::MitRanges>(motor.drive)) {
+        if (drives::as_mit(motor.drive) != nullptr) {
           drives.push_back(std::make_unique<MitEmulator>(motor));
         } else {
           drives.push_back(std::make_unique<Cia402Emulator>(motor));
@@ -123,7 +124,7 @@ class EmulatedDrives {
   Eigen::Quaterniond imu_lean = Eigen::Quaterniond::Identity();  ///< of the world's axes, beside the true orientation
 
  private:
-  const drives::DriveSetup& setup_;
+  const can::DriveSetup& setup_;
   std::vector<std::unique_ptr<can::Link>> links_;
   std::vector<std::vector<std::unique_ptr<DriveEmulator>>> buses_;
   model::RobotState sensed_;

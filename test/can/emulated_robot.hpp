@@ -8,6 +8,7 @@
 #include "can/can_hal.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/robot_behind_drives.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "io/clock.hpp"
 
 namespace pmg::test {
@@ -18,7 +19,7 @@ using Links = std::vector<std::unique_ptr<can::Link>>;
 /// sample k acts from sample k + 1 on.
 class EmulatedRobot final : public RobotBehindDrives {
  public:
-  EmulatedRobot(const drives::DriveSetup& setup, const model::RobotModel& robot, sim::World& world, Links host,
+  EmulatedRobot(const can::DriveSetup& setup, const model::RobotModel& robot, sim::World& world, Links host,
                 Links drives)
       : RobotBehindDrives(setup, robot, world),
         drives_(setup, std::move(drives)),
@@ -26,7 +27,7 @@ class EmulatedRobot final : public RobotBehindDrives {
     for (std::size_t b = 0; b < drives_.buses(); ++b) {
       motors_ += static_cast<long>(drives_.motors(b));
       for (const drives::MotorSetup& motor : setup.buses[b].motors)
-        canopen_ += std::holds_alternative<drives::Cia402Settings>(motor.drive) ? 1 : 0;
+        canopen_ += drives::as_cia402(motor.drive) != nullptr ? 1 : 0;
     }
     feel();
   }
@@ -54,7 +55,7 @@ class EmulatedRobot final : public RobotBehindDrives {
     return status;
   }
   /// CANopen drives are set up before the first cycle.
-  Links set_up(const drives::DriveSetup& setup, Links host) {
+  Links set_up(const can::DriveSetup& setup, Links host) {
     can::set_up_nodes(setup, host,
                       [this] {
                         drives_.wait_ms(1);

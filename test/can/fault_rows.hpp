@@ -10,6 +10,7 @@
 
 #include "can/canopen_setup.hpp"
 #include "can/robot_stage.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::sil {
 
@@ -31,7 +32,7 @@ using FaultRow = FaultRowOf<Stage>;
 /// Cycles after the last one that a deaf drive heard, until its watchdog has acted. A CANopen drive counts from the
 /// last heartbeat, which came in the last cycle or some before.
 inline int watchdog_cycles(const drives::MotorSetup& motor) {
-  if (std::holds_alternative<drives::MitRanges>(motor.drive)) return test::DriveEmulator::kWatchdogCycles - 1;
+  if (drives::as_mit(motor.drive) != nullptr) return test::DriveEmulator::kWatchdogCycles - 1;
   return static_cast<int>(can::kHeartbeatTimeout_ms) / 2 - 2;
 }
 

@@ -12,6 +12,7 @@
 #include "can/emulated_robot.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "model/hanging_load.hpp"
 #include "model/robots.hpp"
 #include "sil/simulated_robot.hpp"
@@ -24,9 +25,9 @@ namespace {
 class FirstLight : public testing::Test {
  protected:
   explicit FirstLight(std::optional<drives::Cia402Mode> mode = {})
-      : setup_(drives::load_drives(test::z1())), world_(test::z1(), sil::world_with_noise(1, true)) {
+      : setup_(can::load_drives(test::z1())), world_(test::z1(), sil::world_with_noise(1, true)) {
     drives::MotorSetup& motor = setup_.buses[0].motors[3];
-    if (mode) motor.drive = test::cia402_for(motor, test::z1(), *mode);
+    if (mode) motor.drive = drives::cia402_drive(test::cia402_for(motor, test::z1(), *mode));
     auto [host, far] = test::link_pairs<test::MemoryLink>(setup_.buses.size());
     host_ = std::move(host);
     drives_.emplace(setup_, std::move(far));
@@ -46,7 +47,7 @@ class FirstLight : public testing::Test {
   }
   const drives::MotorSetup& knee() const { return setup_.buses[0].motors[3]; }
 
-  drives::DriveSetup setup_;
+  can::DriveSetup setup_;
   sim::World world_;
   test::Links host_;
   std::optional<test::EmulatedDrives> drives_;
@@ -170,11 +171,11 @@ TEST_F(FirstLight, AnInvertedDirectionAndAWrongGearAreNamed) {
 // docs/how-to/hal.md names them.
 TEST_F(FirstLight, TheDirectionsOfSevenHangingJointsOfZ1CanBeTold) {
   std::set<std::string> told;
-  for (const drives::BusSetup& bus : setup_.buses) {
+  for (const can::BusSetup& bus : setup_.buses) {
     for (const drives::MotorSetup& motor : bus.motors) {
       const model::HangingLoad load = model::hanging_load(test::z1(), motor.joint, sensed_.q);
       const double friction_Nm = test::z1().joints[static_cast<std::size_t>(motor.index)].friction_Nm,
-                   step_Nm = drives::MitProtocol(std::get<drives::MitRanges>(motor.drive)).torque().step();
+                   step_Nm = motor.drive->torque_step_Nm();
       if (2.0 * load.gravity_Nm * std::abs(std::sin(load.hangs_at_rad)) >= friction_Nm + step_Nm)
         told.insert(motor.joint);
     }

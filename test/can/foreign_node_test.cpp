@@ -16,10 +16,12 @@
 #include <vector>
 
 #include "../sim/robots.hpp"
+#include "can/bus_ids.hpp"
 #include "can/can_hal.hpp"
 #include "can/canopen_setup.hpp"
 #include "can/first_light.hpp"
 #include "can/socket_link.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -88,38 +90,39 @@ class Watcher {
     }
   }
   void hear(const Frame& frame) {
-    constexpr std::array kOurs = {std::uint32_t{canopen::kNetworkManagement}, std::uint32_t{canopen::kSync},
-                                  canopen::kReceive1 + kNode, canopen::kSdoRequest + kNode,
-                                  canopen::kHeartbeat + canopen::kHostNode};
+    constexpr std::array kOurs = {std::uint32_t{drives::canopen::kNetworkManagement},
+                                  std::uint32_t{drives::canopen::kSync}, drives::canopen::kReceive1 + kNode,
+                                  drives::canopen::kSdoRequest + kNode,
+                                  drives::canopen::kHeartbeat + drives::canopen::kHostNode};
     if (std::ranges::find(kOurs, frame.id) != kOurs.end()) ++counts_.ours;
     drives::Cia402Inputs inputs;
     switch (frame.id) {
-      case canopen::kSdoRequest + kNode:
+      case drives::canopen::kSdoRequest + kNode:
         ++counts_.requests;
         break;
-      case canopen::kSdoAnswer + kNode:
+      case drives::canopen::kSdoAnswer + kNode:
         ++counts_.answers;
         break;
-      case canopen::kSync:
+      case drives::canopen::kSync:
         ++counts_.syncs;
         break;
-      case canopen::kReceive1 + kNode:
+      case drives::canopen::kReceive1 + kNode:
         ++counts_.commands;
         target_ = static_cast<std::int32_t>(frame.data[2] | frame.data[3] << 8U | frame.data[4] << 16U |
                                             static_cast<std::uint32_t>(frame.data[5]) << 24U);
         on_ = (frame.data[0] & 0xFU) == 0xFU;
         break;
-      case canopen::kTransmit1 + kNode:
+      case drives::canopen::kTransmit1 + kNode:
         ++counts_.firsts;
-        canopen::take_transmit1(frame, inputs);
+        drives::canopen::take_transmit1(frame, inputs);
         position_ = inputs.position;
         if (compares_ && on_ && drives::cia402_state(inputs.status_word) == drives::Cia402State::kOperationEnabled)
           counts_.astray += position_ == target_ ? 0 : 1;
         break;
-      case canopen::kTransmit2 + kNode:
+      case drives::canopen::kTransmit2 + kNode:
         ++counts_.seconds;
         break;
-      case canopen::kEmergency + kNode:
+      case drives::canopen::kEmergency + kNode:
         ++counts_.emergencies;
         break;
       default:
@@ -147,7 +150,7 @@ class ForeignNode : public testing::Test {
   void TearDown() override {
     if (!watcher_) return;
     // Its answer comes after it has taken the last command.
-    SocketLink last("can0", {canopen::kSdoAnswer + kNode}, false);
+    SocketLink last("can0", {drives::canopen::kSdoAnswer + kNode}, false);
     const Watcher::Watched watched(*watcher_, last);
     EXPECT_TRUE(SdoClient(kNode, last, wait_).read(drives::object::kDeviceType));
     const Watcher::Counts& c = watcher_->counts();
@@ -156,22 +159,22 @@ class ForeignNode : public testing::Test {
     EXPECT_EQ(c.seconds, c.syncs);
     fmt::print("counts: {} SYNCs, {} commands\n", c.syncs, c.commands);
   }
-  drives::DriveSetup setup(Cia402Mode mode) const {
-    drives::DriveSetup setup = drives::load_drives(z1());
+  can::DriveSetup setup(Cia402Mode mode) const {
+    can::DriveSetup setup = can::load_drives(z1());
     setup.buses.resize(1);
-    drives::BusSetup& bus = setup.buses[0];
+    can::BusSetup& bus = setup.buses[0];
     bus.motors = {bus.motors[3]};
     const model::Joint& joint = z1().joints[static_cast<std::size_t>(bus.motors[0].index)];
-    bus.motors[0].drive = drives::Cia402Settings{.mode = mode,
-                                                 .counts_per_turn = 65536.0,
-                                                 .velocity_unit_rad_s = 1e-3,
-                                                 .rated_torque_Nm = 40.0,
-                                                 .largest_torque_Nm = 120.0,
-                                                 .kp_Nm_per_rad = joint.kp_Nm_per_rad,
-                                                 .kd_Nm_s_per_rad = joint.kd_Nm_s_per_rad};
+    bus.motors[0].drive = drives::cia402_drive({.mode = mode,
+                                                .counts_per_turn = 65536.0,
+                                                .velocity_unit_rad_s = 1e-3,
+                                                .rated_torque_Nm = 40.0,
+                                                .largest_torque_Nm = 120.0,
+                                                .kp_Nm_per_rad = joint.kp_Nm_per_rad,
+                                                .kd_Nm_s_per_rad = joint.kd_Nm_s_per_rad});
     return setup;
   }
-  Wiggle wiggle(const drives::DriveSetup& setup, const WiggleOptions& options) {
+  Wiggle wiggle(const can::DriveSetup& setup, const WiggleOptions& options) {
     return can::wiggle(z1(), z1().q_stand(), setup.buses[0], setup.buses[0].motors[0], *link_, options, wait_, {});
   }
 
@@ -202,7 +205,7 @@ TEST_F(ForeignNode, InTorqueModeTheClientsLoopMovesItsInertia) {
 /// The bus thread's own cycle: follows a sine in position mode, is told a fault in the cycle in which the node reports
 /// it, and drives again after the reset.
 TEST_F(ForeignNode, TheBusCycleFollowsItAndNamesItsFaultInTheSameCycle) {
-  const drives::DriveSetup drives = setup(Cia402Mode::kPosition);
+  const can::DriveSetup drives = setup(Cia402Mode::kPosition);
   const io::SimulationClock clock;
   std::optional<CanHal> bus;
   std::vector<std::unique_ptr<Link>> links;
@@ -234,7 +237,7 @@ TEST_F(ForeignNode, TheBusCycleFollowsItAndNamesItsFaultInTheSameCycle) {
   EXPECT_EQ(hal.motor(0, 0).lost() + hal.motor(0, 0).uncalled() + hal.motor(0, 0).refused(), 0u);
   EXPECT_EQ(hal.unreadable() + hal.strangers(), 0u);
 
-  SocketLink other("can0", {canopen::kSdoAnswer + kNode}, false);
+  SocketLink other("can0", {drives::canopen::kSdoAnswer + kNode}, false);
   const Watcher::Watched also(*watcher_, other);
   SdoClient objects(kNode, other, wait_);
   constexpr drives::ObjectId kErrorToReport{0x2000, 0, 2};

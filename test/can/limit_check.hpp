@@ -7,9 +7,12 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "can/canopen.hpp"
-#include "drives/drive_setup.hpp"
-#include "drives/mit_protocol.hpp"
+#include "can/bus_setup.hpp"
+#include "can/frame.hpp"
+#include "drive_protocols/canopen.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 
 namespace pmg::test {
 
@@ -18,17 +21,17 @@ inline void require(bool promise) {
 }
 
 /// A frame to a drive: its targets lie within its motor's limits.
-inline void check_limits(const can::Frame& frame, const drives::BusSetup& bus) {
+inline void check_limits(const can::Frame& frame, const can::BusSetup& bus) {
   constexpr double kRounding = 1e-9;
-  const auto node = static_cast<int>(frame.id & can::canopen::kNodeBits);
+  const auto node = static_cast<int>(frame.id & drives::canopen::kNodeBits);
   const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
   if (frame.length != 8 || motor == bus.motors.end()) return;
   const drives::MotorLimits& limits = motor->limits;
   const auto within = [&](double q_rad) {
     require(q_rad >= limits.q_lower_rad - kRounding && q_rad <= limits.q_upper_rad + kRounding);
   };
-  if (const auto* settings = std::get_if<drives::Cia402Settings>(&motor->drive)) {
-    if (frame.id - static_cast<std::uint32_t>(node) != can::canopen::kReceive1) return;
+  if (const auto* settings = drives::as_cia402(motor->drive)) {
+    if (frame.id - static_cast<std::uint32_t>(node) != drives::canopen::kReceive1) return;
     std::int32_t position = 0;
     std::int16_t torque = 0;
     std::memcpy(&position, frame.data.data() + 2, sizeof position);
@@ -39,7 +42,7 @@ inline void check_limits(const can::Frame& frame, const drives::BusSetup& bus) {
   }
   drives::MitFrame bytes{};
   std::memcpy(bytes.data(), frame.data.data(), 8);
-  const auto command = drives::MitProtocol(std::get<drives::MitRanges>(motor->drive)).command(bytes);
+  const auto command = drives::MitProtocol(drives::as_mit(motor->drive)->ranges()).command(bytes);
   if (!command) return;
   within(command->q_rad);
   require(std::abs(command->dq_rad_s) <= limits.dq_rad_s + kRounding);

@@ -1,19 +1,17 @@
-// An MIT drive.
+// A drive of the MIT protocol, in the dialect of its kind.
 #pragma once
 
 #include <algorithm>
 
 #include "can/drive_emulator.hpp"
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/mit_drive.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 
 namespace pmg::test {
 
 class MitEmulator final : public DriveEmulator {
  public:
-  explicit MitEmulator(const drives::MotorSetup& setup)
-      : DriveEmulator(setup),
-        protocol_(std::get<drives::MitRanges>(setup.drive)),
-        reply_id_(std::get<drives::MitRanges>(setup.drive).reply_id) {}
+  explicit MitEmulator(const drives::MotorSetup& setup) : DriveEmulator(setup), type_(drives::as_mit(setup.drive)) {}
 
   int hear(const can::Frame& frame, Replies& replies) noexcept override {
     if (silent || frame.extended || frame.id != static_cast<std::uint32_t>(setup().node) || frame.length != 8) return 0;
@@ -27,16 +25,18 @@ class MitEmulator final : public DriveEmulator {
       command_ = {};
     } else if (bytes == drives::kMitDisable) {
       enabled_ = false;
+    } else if (type_->clearing() != nullptr && bytes == *type_->clearing()) {
+      if (fault_passed) fault = drives::DriveFault::kNone;
     } else if (bytes == drives::kMitZero) {
       set_zero();
     } else if (enabled_) {
-      command_ = *protocol_.command(bytes);
+      command_ = *type_->codec().command(bytes);
     }
-    replies[0] = can::Frame::of(reply_id_, protocol_.reply({static_cast<std::uint8_t>(node), shown()}), frame.fd);
+    replies[0] = reply(shown(), frame.fd);
     if (!twice) return 1;
     drives::MotorReading second = shown();
     second.q_rad += 0.01;
-    replies[1] = can::Frame::of(reply_id_, protocol_.reply({static_cast<std::uint8_t>(node), second}), frame.fd);
+    replies[1] = reply(second, frame.fd);
     return 2;
   }
 
@@ -44,6 +44,9 @@ class MitEmulator final : public DriveEmulator {
     if (++silent_cycles_ <= patience * kWatchdogCycles || !enabled_) return;
     enabled_ = false;
     tripped_ = true;
+    if (type_->clearing() == nullptr) return;
+    fault = drives::DriveFault::kCommunication;  // such drives keep it as a fault
+    fault_passed = true;
   }
 
   drives::MotorCommand command() const noexcept override {
@@ -54,8 +57,14 @@ class MitEmulator final : public DriveEmulator {
   bool tripped() const noexcept override { return tripped_; }
 
  private:
-  drives::MitProtocol protocol_;
-  std::uint32_t reply_id_;
+  can::Frame reply(drives::MotorReading reading, bool fd) const noexcept {
+    reading.follows = enabled_ ? drives::Follows::kYes : drives::Follows::kNo;
+    can::Frame frame = type_->reply({type_->named(node), reading});
+    frame.fd = fd;
+    return frame;
+  }
+
+  const drives::MitDrive* type_;
   drives::MotorCommand command_;
   bool enabled_ = false, tripped_ = false;
   int silent_cycles_ = 0;

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "can/bus_load.hpp"
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::test {
@@ -38,10 +39,10 @@ inline drives::Cia402Settings cia402_for(const drives::MotorSetup& motor, const 
 
 /// Every bus of robot.yaml becomes two: three CiA 402 motors each, then the rest as they are. Legs and waist are in
 /// torque mode, the others in position mode. One bus has both protocols.
-inline drives::DriveSetup mixed_drives(const model::RobotModel& robot) {
-  drives::DriveSetup setup = drives::load_drives(robot), mixed;
-  for (drives::BusSetup& bus : setup.buses) {
-    drives::BusSetup canopen = bus, rest = bus;
+inline can::DriveSetup mixed_drives(const model::RobotModel& robot) {
+  can::DriveSetup setup = can::load_drives(robot), mixed;
+  for (can::BusSetup& bus : setup.buses) {
+    can::BusSetup canopen = bus, rest = bus;
     canopen.imu = false;
     canopen.name += "a";
     rest.name += "b";
@@ -49,12 +50,13 @@ inline drives::DriveSetup mixed_drives(const model::RobotModel& robot) {
     rest.motors.assign(bus.motors.begin() + 3, bus.motors.end());
     for (drives::MotorSetup& motor : canopen.motors) {
       const bool arm = bus.name == "can2" || bus.name == "can3";
-      motor.drive = cia402_for(motor, robot, arm ? drives::Cia402Mode::kPosition : drives::Cia402Mode::kTorque);
+      motor.drive = drives::cia402_drive(
+          cia402_for(motor, robot, arm ? drives::Cia402Mode::kPosition : drives::Cia402Mode::kTorque));
     }
     if (bus.name == "can0") {
       canopen.motors.push_back(rest.motors.front());
       rest.motors.erase(rest.motors.begin());
-      std::get<drives::MitRanges>(canopen.motors.back().drive).reply_id = kMixedReplyId;
+      canopen.motors.back().drive = canopen.motors.back().drive->replying_as(kMixedReplyId);
     }
     mixed.buses.push_back(std::move(canopen));
     mixed.buses.push_back(std::move(rest));

@@ -192,7 +192,7 @@ class WhatCountsAsDamping : public testing::Test {
     felt_.dq[hip_] = -0.5;
   }
   bool damps(int joint) const { return check_.damps(joint, given_, felt_); }
-  drives::DriveSetup setup_ = test::mixed_drives(test::z1());
+  can::DriveSetup setup_ = test::mixed_drives(test::z1());
   test::DampingCheck check_{setup_, test::z1()};
   int hip_ = setup_.buses[kLeg].motors[kTorque].index, knee_ = setup_.buses[kLeg].motors[kMit].index;
   double kd_ = test::z1().joints[static_cast<std::size_t>(hip_)].kd_Nm_s_per_rad;

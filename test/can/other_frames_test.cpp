@@ -13,6 +13,7 @@
 #include "../sim/robots.hpp"
 #include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
+#include "drive_protocols/mit_drive.hpp"
 
 namespace pmg::can {
 namespace {
@@ -31,7 +32,7 @@ class OtherDialects : public testing::Test {
       const std::size_t count = there->receive(frames);
       for (const Frame& asked : std::span(frames).first(count)) {
         const auto motor = std::ranges::find(bus_.motors, static_cast<int>(asked.id), &drives::MotorSetup::node);
-        const drives::MitProtocol protocol(std::get<drives::MitRanges>(motor->drive));
+        const drives::MitProtocol protocol(drives::as_mit(motor->drive)->ranges());
         const Frame right = Frame::of(
             0, protocol.reply({.node = static_cast<std::uint8_t>(asked.id), .reading = {.temperature_degC = 31.0}}));
         if (const auto frame = answer(static_cast<int>(asked.id), right)) there->send(std::span(&*frame, 1));
@@ -42,7 +43,7 @@ class OtherDialects : public testing::Test {
     return others.lines(bus_);
   }
 
-  drives::BusSetup bus_ = drives::load_drives(z1()).buses[0];
+  can::BusSetup bus_ = can::load_drives(z1()).buses[0];
   std::vector<std::string> problems_;
 };
 
@@ -69,7 +70,9 @@ TEST_F(OtherDialects, ADaMiaoIsNamedByItsTemperatureAndByItsState) {
                 if (node == 4) right.data[7] = 29;  // rotor's temperature; switched off: state 0
                 return right;
               }),
-              ElementsAre(HasSubstr("a DaMiao's answer of left_knee: 29 would be no fault code, but a temperature")));
+              ElementsAre(HasSubstr(
+                  "a DaMiao's answer of left_knee, or a RobStride's: 29 would be no fault code, but a temperature; "
+                  "robot.yaml has `protocol: mit`: expected `protocol: damiao` or `protocol: robstride`")));
   EXPECT_THAT(problems_, ElementsAre(HasSubstr("reports a fault that the protocol doesn't name")));
   EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
                 if (node == 4) right.data[0] = 0x84;  // over-voltage

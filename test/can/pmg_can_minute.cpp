@@ -46,9 +46,9 @@ void sleep_until(std::int64_t time_ns) noexcept {
 /// Drives without physics, in a thread of their own: joints stand in the standing posture.
 class DrivesThread {
  public:
-  DrivesThread(const drives::DriveSetup& setup, const model::RobotModel& robot) {
+  DrivesThread(const can::DriveSetup& setup, const model::RobotModel& robot) {
     std::vector<std::unique_ptr<can::Link>> links;
-    for (const drives::BusSetup& bus : setup.buses) {
+    for (const can::BusSetup& bus : setup.buses) {
       links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
       polled_.push_back({.fd = links.back()->descriptor(), .events = POLLIN, .revents = 0});
     }
@@ -103,7 +103,7 @@ struct Record {
   std::vector<std::uint64_t> lost;  // answers given up in it, and frames not sent
 };
 
-std::uint64_t lost(const can::CanHal& hal, const drives::DriveSetup& setup) {
+std::uint64_t lost(const can::CanHal& hal, const can::DriveSetup& setup) {
   std::uint64_t sum = 0;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     sum += hal.link(b).counts().not_sent;
@@ -118,7 +118,7 @@ double quantile_us(std::vector<std::int64_t> values_ns, double share) {
          static_cast<double>(values_ns[static_cast<std::size_t>(share * static_cast<double>(values_ns.size() - 1))]);
 }
 
-int report(const Record& record, const can::CanHal& hal, const drives::DriveSetup& setup, double cpu_share) {
+int report(const Record& record, const can::CanHal& hal, const can::DriveSetup& setup, double cpu_share) {
   std::uint64_t sent = 0, received = 0, in_late = 0, others = 0;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
     sent += hal.link(b).counts().sent;
@@ -141,8 +141,8 @@ int report(const Record& record, const can::CanHal& hal, const drives::DriveSetu
   return others == 0 ? kOk : kLost;
 }
 
-int measure(can::CanHal& hal, const drives::DriveSetup& setup, const model::RobotModel& robot,
-            const DrivesThread& drives, double seconds) {
+int measure(can::CanHal& hal, const can::DriveSetup& setup, const model::RobotModel& robot, const DrivesThread& drives,
+            double seconds) {
   const auto cycles = static_cast<std::size_t>(seconds * 1e9 / kPeriod_ns);
   Record record;
   record.costs_ns.reserve(cycles);
@@ -190,7 +190,7 @@ int measure(can::CanHal& hal, const drives::DriveSetup& setup, const model::Robo
 
 int run(const std::string& name, double seconds) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
-  const drives::DriveSetup setup = drives::load_drives(robot);
+  const can::DriveSetup setup = can::load_drives(robot);
   std::unique_ptr<DrivesThread> drives;
   try {
     drives = std::make_unique<DrivesThread>(setup, robot);

@@ -21,10 +21,10 @@ constexpr std::int64_t kPeriod_ns = test::HoistedRobot::kPeriod_ns;
 
 int run(const std::string& name, bool gantry, int patience) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
-  const drives::DriveSetup setup = drives::load_drives(robot);
+  const can::DriveSetup setup = can::load_drives(robot);
   std::vector<std::unique_ptr<can::Link>> links;
   std::vector<pollfd> polled;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     links.push_back(std::make_unique<can::SocketLink>(bus.name, std::vector<std::uint32_t>{}, bus.data_bitrate != 0));
     polled.push_back({.fd = links.back()->descriptor(), .events = POLLIN, .revents = 0});
   }

@@ -184,7 +184,7 @@ TEST(Queues, AfterACableWasOutTheStateIsFreshAgainThoughCommandsWentOn) {
 TEST(Queues, ARollCallCountsNoLateAnswerTwice) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Disturbances disturbances(seed);
-    drives::BusSetup setup = drives::load_drives(z1()).buses[0];
+    can::BusSetup setup = can::load_drives(z1()).buses[0];
     test::QueuedBus bus(setup, static_cast<std::size_t>(disturbances.spread(10, 1000)));
     bus.drive(2).twice = seed % 2 == 0;
     std::int64_t now_ns = 0, back_ns = 0;
@@ -205,7 +205,7 @@ TEST(Queues, ARollCallCountsNoLateAnswerTwice) {
 /// A bus whose answers are there only for whoever waits for its descriptor, which is ready all the time.
 class AwaitedLink final : public Link {
  public:
-  explicit AwaitedLink(const drives::BusSetup& bus) : bus_(bus, 64), ready_(eventfd(1, EFD_CLOEXEC)) {}
+  explicit AwaitedLink(const can::BusSetup& bus) : bus_(bus, 64), ready_(eventfd(1, EFD_CLOEXEC)) {}
   ~AwaitedLink() override { close(ready_); }
   AwaitedLink(const AwaitedLink&) = delete;
   AwaitedLink& operator=(const AwaitedLink&) = delete;
@@ -230,13 +230,13 @@ class AwaitedLink final : public Link {
 
 TEST(Queues, EveryBusOfManyIsWaitedFor) {
   constexpr std::size_t kBuses = 20;
-  const drives::DriveSetup z1_drives = drives::load_drives(z1());
-  drives::DriveSetup setup;
+  const can::DriveSetup z1_drives = can::load_drives(z1());
+  can::DriveSetup setup;
   std::vector<drives::MotorSetup> motors;
-  for (const drives::BusSetup& bus : z1_drives.buses) motors.insert(motors.end(), bus.motors.begin(), bus.motors.end());
+  for (const can::BusSetup& bus : z1_drives.buses) motors.insert(motors.end(), bus.motors.begin(), bus.motors.end());
   std::vector<std::unique_ptr<Link>> links;
   for (std::size_t b = 0; b < kBuses; ++b) {
-    drives::BusSetup bus;
+    can::BusSetup bus;
     bus.name = "can" + std::to_string(b);
     bus.bitrate = 1'000'000;
     bus.motors.push_back(motors[b]);

@@ -20,7 +20,7 @@ class QueuedBus final : public can::Link {
   static constexpr std::int64_t kReply_ns = 60'000;   ///< from a command's end until the drive has its answer ready
 
   /// MIT drives. room: of the interface's queue [frames].
-  QueuedBus(const drives::BusSetup& bus, std::size_t room) : room_(room) {
+  QueuedBus(const can::BusSetup& bus, std::size_t room) : room_(room) {
     for (const drives::MotorSetup& motor : bus.motors) drives_.push_back({std::make_unique<MitEmulator>(motor), {}});
   }
 

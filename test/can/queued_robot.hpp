@@ -20,9 +20,9 @@ class QueuedRobot {
   static constexpr int kDampedCycles = 25;  ///< good ones, before it stands again
 
   QueuedRobot(std::size_t motors, std::size_t room) {
-    setup_ = drives::load_drives(z1());
+    setup_ = can::load_drives(z1());
     std::erase_if(setup_.buses,
-                  [](const drives::BusSetup& other) { return other.name != "can2"; });  // an arm: seven motors
+                  [](const can::BusSetup& other) { return other.name != "can2"; });  // an arm: seven motors
     setup_.buses[0].motors.erase(setup_.buses[0].motors.begin() + static_cast<std::ptrdiff_t>(motors),
                                  setup_.buses[0].motors.end());
     auto link = std::make_unique<QueuedBus>(setup_.buses[0], room);
@@ -64,7 +64,7 @@ class QueuedRobot {
   bool stands = false;
 
  private:
-  drives::DriveSetup setup_;
+  can::DriveSetup setup_;
   io::SimulationClock clock_;
   model::JointCommand standing_, damping_;
   std::int64_t now_ns_ = kPeriod_ns;

@@ -40,7 +40,7 @@ class RobotBehindDrives : public hal::Hal {
 
  protected:
   /// Keeps a reference to world. setup: read in the constructor alone.
-  RobotBehindDrives(const drives::DriveSetup& setup, const model::RobotModel& robot, sim::World& world)
+  RobotBehindDrives(const can::DriveSetup& setup, const model::RobotModel& robot, sim::World& world)
       : world_(world), damping_(setup, robot) {
     acting_.q = acting_.dq = acting_.kp = acting_.kd = acting_.tau_ff = JointVector::Zero(robot.joint_index.size());
   }

@@ -28,10 +28,10 @@ namespace pmg::sil {
 
 inline bool over_sockets() { return std::getenv("PMG_CAN_SOCKETS") != nullptr; }
 
-inline std::pair<test::Links, test::Links> links(const drives::DriveSetup& setup) {
+inline std::pair<test::Links, test::Links> links(const can::DriveSetup& setup) {
   if (!over_sockets()) return test::link_pairs<test::MemoryLink>(setup.buses.size());
   std::pair<test::Links, test::Links> ends;
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     ends.first.push_back(std::make_unique<can::SocketLink>(
         bus.name, std::vector<std::uint32_t>{0, can::kImuQuaternion, can::kImuRateOfTurn, can::kImuAcceleration},
         false));
@@ -97,7 +97,7 @@ struct StageOf {
   control::LoadedControl loaded;
   BreakingPolicy* policy = nullptr;
   std::optional<sim::World> world;
-  drives::DriveSetup setup;
+  can::DriveSetup setup;
   std::optional<Robot> robot;
   bool control_frozen = false;  ///< the control thread gives nothing
   faults::FaultCode fault = faults::FaultCode::kNone;
@@ -108,7 +108,7 @@ struct Stage : StageOf<test::EmulatedRobot> {
   explicit Stage(std::uint64_t seed, bool over_can, bool mixed = false)
       : StageOf(seed, over_can ? std::optional(can::limits()) : std::nullopt) {
     if (!over_can) return;
-    setup = mixed ? test::mixed_drives(loaded.robot) : drives::load_drives(loaded.robot);
+    setup = mixed ? test::mixed_drives(loaded.robot) : can::load_drives(loaded.robot);
     auto [host, far] = links(setup);
     for (const auto& link : host) wires.push_back(dynamic_cast<test::MemoryLink*>(link.get()));
     robot.emplace(setup, loaded.robot, *world, std::move(host), std::move(far));

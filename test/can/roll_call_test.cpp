@@ -66,7 +66,7 @@ class RollCall : public testing::Test {
     return problems(setup_.buses[0], ask_bus(setup_.buses[0], *link_, wait, {}));
   }
 
-  drives::DriveSetup setup_ = test::mixed_drives(z1());
+  can::DriveSetup setup_ = test::mixed_drives(z1());
   std::unique_ptr<test::MemoryLink> here_;
   std::optional<test::EmulatedDrives> drives_;
   std::optional<BunchingLink> link_;

@@ -24,7 +24,7 @@ class SocketsSlcan : public testing::Test {
  protected:
   void SetUp() override {
     if (adapter_.interface().empty()) GTEST_SKIP() << "this kernel has no slcan: run test/can/canrun";
-    setup_ = drives::load_drives(z1());
+    setup_ = can::load_drives(z1());
     setup_.buses.resize(1);
     setup_.buses[0].name = adapter_.interface();
     std::vector<std::unique_ptr<Link>> links;
@@ -71,7 +71,7 @@ class SocketsSlcan : public testing::Test {
   const Link& link() const { return hal_->link(0); }
 
   test::SlcanAdapter adapter_;
-  drives::DriveSetup setup_;
+  can::DriveSetup setup_;
   io::SimulationClock clock_;
   std::optional<SocketLink> watcher_;
   std::optional<CanHal> hal_;

@@ -15,8 +15,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-drives::BusSetup bus() {
-  drives::BusSetup setup;
+can::BusSetup bus() {
+  can::BusSetup setup;
   setup.name = "can0";
   setup.bitrate = 1'000'000;
   return setup;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "doctor/checks.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "patient.hpp"
 #include "said.hpp"
 #include "seal/key_files.hpp"
@@ -75,8 +76,8 @@ TEST(DoctorOfACard, ItsInterruptsKeepAwayFromTheControlThread) {
   EXPECT_EQ(line(), "ok: on CPU 0") << "its device tells its interrupts better than their names";
 }
 
-drives::BusSetup fd_bus() {
-  drives::BusSetup bus;
+can::BusSetup fd_bus() {
+  can::BusSetup bus;
   bus.name = "can0";
   bus.bitrate = 1'000'000;
   bus.data_bitrate = 5'000'000;
@@ -84,7 +85,7 @@ drives::BusSetup fd_bus() {
     bus.motors.push_back({.joint = "j",
                           .index = i,
                           .node = i + 1,
-                          .drive = drives::MitRanges{},
+                          .drive = drives::mit_drive({}),
                           .transmission = drives::Transmission({}),
                           .limits = {}});
   return bus;
@@ -123,7 +124,7 @@ TEST(DoctorOfACanBus, BothBitRatesAreRobotYamls) {
 
 TEST(DoctorOfACanBus, TheSamplePointIsRobotYamlsOrTheRecommendedOne) {
   Patient patient;
-  drives::BusSetup bus = fd_bus();
+  can::BusSetup bus = fd_bus();
   const auto line = [&] { return said(check_can_bus(patient, bus, {}), "can0 sample point"); };
   EXPECT_EQ(line(), "ok: 75.0 %");
   patient.can->arbitration.sample_permille = 800;

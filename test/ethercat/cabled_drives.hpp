@@ -30,19 +30,18 @@ class CabledDrives {
   static constexpr std::size_t kLegs = 2;
 
   /// Where robot.yaml has the bus's bridge, the bridge has that place and alias.
-  explicit CabledDrives(const model::RobotModel& robot, const CableForm& form = {})
-      : setup(drives::load_drives(robot)) {
+  explicit CabledDrives(const model::RobotModel& robot, const CableForm& form = {}) : setup(can::load_drives(robot)) {
     std::vector<std::unique_ptr<MemoryLink>> near;
     std::vector<std::unique_ptr<can::Link>> far;
     int slave = 0;
     for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-      drives::BusSetup& bus = setup.buses[b];
+      can::BusSetup& bus = setup.buses[b];
       if (form.imu) bus.imu = false;
       if (form.leg_drives && b < kLegs) {
         bus.first_slave = slave + 1;
         bus.first_alias = kFirstAlias + bus.first_slave;
         for (drives::MotorSetup& motor : bus.motors)
-          motor.drive = cia402_for(motor, robot, drives::Cia402Mode::kTorque);
+          motor.drive = drives::cia402_drive(cia402_for(motor, robot, drives::Cia402Mode::kTorque));
         slave += static_cast<int>(bus.motors.size());
       } else if (bus.bridge_slave == 0) {
         bus.bridge_slave = ++slave;
@@ -61,7 +60,7 @@ class CabledDrives {
       places[at] = std::move(made);
     };
     for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-      const drives::BusSetup& bus = setup.buses[b];
+      const can::BusSetup& bus = setup.buses[b];
       if (bus.first_slave == 0) {
         place(bus.bridge_slave, bus.bridge_alias,
               std::make_unique<EmulatedBridge>(kFramesOut, kFramesIn, std::move(near[b]), form.clocks));
@@ -93,7 +92,7 @@ class CabledDrives {
   }
 
   ethercat::EthercatSetup cable{.interface = "eth9", .frames_out = kFramesOut, .frames_in = kFramesIn};
-  drives::DriveSetup setup;
+  can::DriveSetup setup;
   MemoryWire wire;
   std::optional<EmulatedDrives> drives;
   EmulatedImu* imu = nullptr;

@@ -58,7 +58,7 @@ constexpr ethercat::StartTiming kShort = {.answer_us = 20, .mailbox_us = 100, .s
 
 /// A frame to the slaves: if it has outputs, what the drives are told. image: outputs in the cable's order, which is
 /// the buses'.
-void check_outputs(std::span<const std::uint8_t> frame, const drives::DriveSetup& setup) {
+void check_outputs(std::span<const std::uint8_t> frame, const can::DriveSetup& setup) {
   constexpr std::size_t kData = ethercat::FrameWriter::kHeader + 10;
   if (frame.size() < kData ||
       frame[ethercat::FrameWriter::kHeader] != static_cast<std::uint8_t>(ethercat::Command::kLogicalWrite))
@@ -69,14 +69,14 @@ void check_outputs(std::span<const std::uint8_t> frame, const drives::DriveSetup
     image = image.subspan(bytes);
     return part;
   };
-  for (const drives::BusSetup& bus : setup.buses) {
+  for (const can::BusSetup& bus : setup.buses) {
     if (bus.first_slave == 0) {
       ethercat::for_frames(next(ethercat::block_bytes(test::CabledDrives::kFramesOut)),
                            [&](const can::Frame& sent) { test::check_limits(sent, bus); });
       continue;
     }
     for (const drives::MotorSetup& motor : bus.motors)
-      test::check_limits(can::Frame::of(can::canopen::kReceive1 + static_cast<std::uint32_t>(motor.node),
+      test::check_limits(can::Frame::of(drives::canopen::kReceive1 + static_cast<std::uint32_t>(motor.node),
                                         next(ethercat::kDriveOutputs)),
                          bus);
   }

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 #include "ethercat/emulated_slave.hpp"
 #include "model/robot_io.hpp"
 
@@ -13,7 +13,7 @@ class EmulatedImu final : public EmulatedSlave {
  public:
   static constexpr int kInputBytes = 44;
   static constexpr std::uint32_t kVendor = 0x4321, kProduct = 0x8765;
-  static drives::ImuSlave model(int slave, int alias) {
+  static can::ImuSlave model(int slave, int alias) {
     return {.slave = slave,
             .alias = alias,
             .vendor_id = kVendor,

@@ -39,7 +39,7 @@ TEST(DiagnosisOverEthercat, ACommandActsSoLongAfterItsStateAsTheBackendSays) {
   for (const test::CableForm& form : {kBridges, kSlaves}) {
     sim::World world(z1(), world_to_excite("hanging", {}));
     test::EthercatRobot robot(z1(), world, form);
-    const drives::DriveSetup& setup = robot.cabled().setup;
+    const can::DriveSetup& setup = robot.cabled().setup;
     const int cycles = test::command_delay_cycles(robot, world, test::joints_of(setup.buses[kArm]));
     const hal::BackendDescription said = ethercat::description(setup);
     EXPECT_EQ(cycles * model::kBusPeriod_s, *said.command_delay_s + said.older_by_s) << form.leg_drives;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "drive_protocols/mit_drive.hpp"
 #include "ethercat/lockstep_cable.hpp"
 #include "ethercat/packet_wire.hpp"
 #include "generator_core/allocation_count.hpp"
@@ -132,7 +133,7 @@ TEST_F(Bridges, OldAnswersInABridgeAreNoneToANewController) {
   for (std::size_t b = 0; b < cabled.setup.buses.size(); ++b) {
     for (int k = 0; k < 20; ++k) {
       for (const drives::MotorSetup& motor : cabled.setup.buses[b].motors) {
-        const auto& ranges = std::get<drives::MitRanges>(motor.drive);
+        const auto& ranges = drives::as_mit(motor.drive)->ranges();
         const can::Frame old = can::Frame::of(
             ranges.reply_id, drives::MitProtocol(ranges).reply({static_cast<std::uint8_t>(motor.node), {}}));
         cabled.drives->link(b).send(std::span(&old, 1));

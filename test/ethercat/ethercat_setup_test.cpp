@@ -31,7 +31,7 @@ class BridgeSetup : public testing::Test {
 
   test::TemporaryFolder folder_;
   model::RobotModel robot_ = z1();
-  drives::DriveSetup drives_ = test::CabledDrives(z1()).setup;
+  can::DriveSetup drives_ = test::CabledDrives(z1()).setup;
 };
 
 TEST_F(BridgeSetup, EachBusHasAChannelOfItsOwn) {
@@ -52,8 +52,8 @@ TEST_F(BridgeSetup, SlavesThatCannotBeToldApartAreRefused) {
 }
 
 TEST_F(BridgeSetup, WhatABridgeCannotCarryIsRefused) {
-  const auto with = [this](const std::function<void(drives::BusSetup&)>& change) {
-    const drives::BusSetup kept = drives_.buses[1];
+  const auto with = [this](const std::function<void(can::BusSetup&)>& change) {
+    const can::BusSetup kept = drives_.buses[1];
     change(drives_.buses[1]);
     const std::string said = refusal();
     drives_.buses[1] = kept;

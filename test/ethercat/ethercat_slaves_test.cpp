@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/lockstep_cable.hpp"
 #include "generator_core/allocation_count.hpp"
 
@@ -33,7 +34,7 @@ TEST_F(DriveSlaves, AnswerInTheSameCycleAndGetTheTorqueOfTheLoop) {
     }
   }
   const model::Joint& joint = z1().joints[static_cast<std::size_t>(knee().setup().index)];
-  const auto& settings = std::get<drives::Cia402Settings>(knee().setup().drive);
+  const auto& settings = *drives::as_cia402(knee().setup().drive);
   EXPECT_NEAR(acting.tau_ff[knee().setup().index], -0.01 * joint.kp_Nm_per_rad - 0.1 * joint.kd_Nm_s_per_rad,
               1e-3 * settings.rated_torque_Nm + joint.kp_Nm_per_rad * 1e-4 + joint.kd_Nm_s_per_rad * 1e-3)
       << "steps of torque, position and speed";

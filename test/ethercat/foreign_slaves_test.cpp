@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "../sim/robots.hpp"
+#include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/datagrams.hpp"
 #include "ethercat/ethercat_hal.hpp"
 #include "ethercat/packet_wire.hpp"
@@ -157,9 +158,9 @@ class ForeignSlaves : public testing::Test {
     simulator_.emplace(program(), slaves);
   }
   void expect(Cia402Mode mode, int count = 1) {
-    setup_ = drives::load_drives(z1());
+    setup_ = can::load_drives(z1());
     setup_.buses.resize(1);
-    drives::BusSetup& bus = setup_.buses[0];
+    can::BusSetup& bus = setup_.buses[0];
     bus.motors.erase(bus.motors.begin(), bus.motors.begin() + 3);
     bus.motors.erase(bus.motors.begin() + count, bus.motors.end());
     bus.first_slave = 1;
@@ -168,20 +169,28 @@ class ForeignSlaves : public testing::Test {
     for (drives::MotorSetup& motor : bus.motors) {
       motor.node = ++node;
       const model::Joint& joint = z1().joints[static_cast<std::size_t>(motor.index)];
-      motor.drive = drives::Cia402Settings{.mode = mode,
-                                           .counts_per_turn = kCounts,
-                                           .velocity_unit_rad_s = kCount_rad,  // KickCAT's motor: counts a second
-                                           .rated_torque_Nm = 40.0,
-                                           .largest_torque_Nm = 120.0,
-                                           .kp_Nm_per_rad = joint.kp_Nm_per_rad,
-                                           .kd_Nm_s_per_rad = joint.kd_Nm_s_per_rad,
-                                           .vendor_id = 0x1234,
-                                           .product_code = 0x0402};
+      motor.drive = drives::cia402_drive({.mode = mode,
+                                          .counts_per_turn = kCounts,
+                                          .velocity_unit_rad_s = kCount_rad,  // KickCAT's motor: counts a second
+                                          .rated_torque_Nm = 40.0,
+                                          .largest_torque_Nm = 120.0,
+                                          .kp_Nm_per_rad = joint.kp_Nm_per_rad,
+                                          .kd_Nm_s_per_rad = joint.kd_Nm_s_per_rad,
+                                          .vendor_id = 0x1234,
+                                          .product_code = 0x0402});
     }
     knee_ = bus.motors[0].index;
     holding_ = limp_ = standing_command(z1());
     limp_.kp.setZero();
     limp_.kd.setZero();
+  }
+  /// robot.yaml says something else of a motor's drive.
+  template <typename Edit>
+  void change(std::size_t motor, Edit edit) {
+    drives::DriveKind& drive = setup_.buses[0].motors[motor].drive;
+    drives::Cia402Settings settings = *drives::as_cia402(drive);
+    edit(settings);
+    drive = drives::cia402_drive(settings);
   }
   void connect() {
     hal_.reset();
@@ -223,7 +232,7 @@ class ForeignSlaves : public testing::Test {
   test::TemporaryFolder folder_;
   std::optional<Simulator> simulator_;
   EthercatSetup cable_{.interface = "ecat0"};
-  drives::DriveSetup setup_;
+  can::DriveSetup setup_;
   io::WallClock clock_;
   std::optional<LockstepWire> wire_;
   std::optional<EthercatHal> hal_;
@@ -269,10 +278,10 @@ TEST_F(ForeignSlaves, WhatIsNotAsInRobotYamlIsRefusedInOneLine) {
   EXPECT_EQ(refusal(), "ecat0: 2 slaves answer; expected 1 as in robot.yaml");
   begin({drive(kAlias), drive(kAlias + 1)});
   expect(Cia402Mode::kPosition, 2);
-  std::get<drives::Cia402Settings>(setup_.buses[0].motors[1].drive).rated_torque_Nm = 41.0;
+  change(1, [](drives::Cia402Settings& settings) { settings.rated_torque_Nm = 41.0; });
   EXPECT_THAT(refusal(), HasSubstr("ecat0: slave 2, left_ankle_pitch (can0, node 2) object 0x6076 (rated torque) is 40 "
                                    "Nm; expected rated_torque_Nm 41 as in robot.yaml"));
-  std::get<drives::Cia402Settings>(setup_.buses[0].motors[1].drive).rated_torque_Nm = 40.0;
+  change(1, [](drives::Cia402Settings& settings) { settings.rated_torque_Nm = 40.0; });
   EXPECT_EQ(refusal(), "connected") << "after one that was refused";
 }
 
@@ -283,10 +292,9 @@ TEST_F(ForeignSlaves, TheirSdoAbortsAreReadAsTheStandardMeansThem) {
             "ecat0: slave 1, left_knee (can0, node 1) has no object 0x6072 (largest torque); expected a drive that has "
             "it");
   begin({drive(kAlias)});
-  auto& settings = std::get<drives::Cia402Settings>(setup_.buses[0].motors[0].drive);
-  settings.temperature_index = 0x2030;
+  change(0, [](drives::Cia402Settings& settings) { settings.temperature_index = 0x2030; });
   EXPECT_THAT(refusal(), HasSubstr("has no object 0x2030 (temperature)"));
-  settings.temperature_index = 0;
+  change(0, [](drives::Cia402Settings& settings) { settings.temperature_index = 0; });
   const std::string most = "<Info><DefaultValue>1000</DefaultValue></Info><Flags><Access>";
   begin({drive(kAlias, most + "rw", most + "ro")});
   EXPECT_THAT(refusal(), HasSubstr("refuses object 0x6072 with SDO abort 0x06010002")) << "read-only";
@@ -359,19 +367,18 @@ TEST_F(ForeignSlaves, OneThatIsKilledIsLostInItsSecondCycleAndNeedsANewStart) {
 TEST_F(ForeignSlaves, KickcatsOwnSlavesAreFoundAndRefusedInOneLine) {
   expect(Cia402Mode::kPosition);
   setup_.buses[0].first_alias = 0;
-  auto& settings = std::get<drives::Cia402Settings>(setup_.buses[0].motors[0].drive);
   const std::vector<std::pair<const char*, const char*>> slaves = {
       {"freedom-k64f.json", "object 0x1000 (device type) is profile 0; expected profile 402"},
       {"xmc4800.json", "object 0x1000 (device type) is profile 0; expected profile 402"},
       {"ecat402-drive.json", "has no object 0x608F:1 (encoder counts); expected a drive that has it"}};
-  settings.rated_torque_Nm = 1.0;
+  change(0, [](drives::Cia402Settings& settings) { settings.rated_torque_Nm = 1.0; });
   for (const auto& [name, said] : slaves) {
     begin({kickcat_ / "simulation/slave_configs" / name});
-    settings.vendor_id = 0x1234;
+    change(0, [](drives::Cia402Settings& settings) { settings.vendor_id = 0x1234; });
     EXPECT_THAT(refusal(), testing::MatchesRegex("ecat0: slave 1 \\(.*\\) has vendor 0x.*; expected 0x1234 as in "
                                                  "robot.yaml"))
         << name;
-    settings.vendor_id = settings.product_code = 0;
+    change(0, [](drives::Cia402Settings& settings) { settings.vendor_id = settings.product_code = 0; });
     EXPECT_THAT(refusal(), HasSubstr(said)) << name;
   }
 }

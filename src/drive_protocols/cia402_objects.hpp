@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drives/cia402.hpp"
+#include "drive_protocols/cia402.hpp"
 
 namespace pmg::drives {
 

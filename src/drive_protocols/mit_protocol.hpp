@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "drives/fixed_point.hpp"
+#include "drive_protocols/fixed_point.hpp"
 #include "drives/motor.hpp"
 
 namespace pmg::drives {
@@ -22,6 +22,12 @@ struct MitRanges {
 
 using MitFrame = std::array<std::uint8_t, 8>;
 
+/// Which frames of ones a dialect takes for something else than a command.
+struct MitSpecials {
+  std::uint8_t lowest = 0xFC;  ///< last byte of seven bytes of ones and this one, up to 0xFE
+  bool six_bytes = false;      ///< six bytes of ones are enough, whatever the others are
+};
+
 inline constexpr MitFrame kMitEnable = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
 inline constexpr MitFrame kMitDisable = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD};
 /// The drive takes its present position as zero and keeps that over power cycles.
@@ -34,18 +40,18 @@ struct MitReply {
 
 class MitProtocol {
  public:
-  explicit MitProtocol(const MitRanges& ranges) noexcept;
+  explicit MitProtocol(const MitRanges& ranges, MitSpecials specials = {}) noexcept;
 
   /// Bits 63..0: position 16, velocity 12, kp 12, kd 12, torque 12. Each value is the nearest that the field has within
-  /// limits and ranges; values that aren't finite give a command without torque. No command is one of the three frames
-  /// above: see the definition.
+  /// limits and ranges; values that aren't finite give a command without torque. No command is one of the dialect's
+  /// special frames: see the definition.
   MitFrame command(const MotorCommand& command, const MotorLimits& limits) const noexcept;
   /// The same for a command that is sent again and again. Zero lies between two codes of velocity and torque: rounded
   /// alike each time, a joint at rest would get a torque that nobody asked for. So the torque takes what the steps of
   /// position and velocity leave, and left_Nm carries what its own step leaves, half of it at most, to the next frame:
   /// the mean torque is the asked one. What a limit cuts is not made up for.
   MitFrame command(const MotorCommand& command, const MotorLimits& limits, double& left_Nm) const noexcept;
-  /// What the drive reads from a command. Nullopt: one of the three frames above.
+  /// What the drive reads from a command. Nullopt: one of its dialect's special frames.
   std::optional<MotorCommand> command(const MitFrame& frame) const noexcept;
 
   /// Bytes: node, position 16 bits, velocity 12, torque 12, temperature + 40 degC, fault code. Nullopt: not 8 bytes.
@@ -57,7 +63,10 @@ class MitProtocol {
   const FixedPoint& torque() const noexcept { return torque_; }
 
  private:
+  bool special(const MitFrame& frame) const noexcept;
+
   FixedPoint position_, velocity_, kp_, kd_, torque_;
+  MitSpecials specials_;
 };
 
 }  // namespace pmg::drives

@@ -1,13 +1,14 @@
-// Frames of CANopen (CiA 301): identifiers, network management, SYNC, heartbeat, emergencies, expedited SDO transfers.
+// Messages of CANopen (CiA 301): identifiers, network management, SYNC, heartbeat, emergencies, expedited SDO
+// transfers.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "can/frame.hpp"
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/cia402_objects.hpp"
+#include "drives/message.hpp"
 
-namespace pmg::can::canopen {
+namespace pmg::drives::canopen {
 
 /// This computer's node number, which its heartbeat carries.
 inline constexpr std::uint32_t kHostNode = 127;
@@ -29,27 +30,30 @@ inline constexpr std::uint32_t kNodeBits = 0x7F;
 enum class NodeCommand : std::uint8_t { kStart = 0x01, kStop = 0x02, kPreOperational = 0x80, kResetNode = 0x81 };
 inline constexpr std::uint8_t kBootUp = 0x00, kOperational = 0x05;  // states in a heartbeat
 
-Frame node_command(NodeCommand command, int node) noexcept;
-Frame sync() noexcept;
-Frame heartbeat() noexcept;  ///< this computer's, operational
+/// The node whose message of the bus cycle this is: TPDO1, TPDO2, an emergency or a heartbeat.
+std::optional<int> sender(const Message& message) noexcept;
+
+Message node_command(NodeCommand command, int node) noexcept;
+Message sync() noexcept;
+Message heartbeat() noexcept;  ///< this computer's, operational
 
 /// An SDO answer, as its request's sender needs it.
 struct SdoAnswer {
-  drives::ObjectId id;  ///< bytes: of an upload's value
+  ObjectId id;  ///< bytes: of an upload's value
   bool aborted = false, upload = false;
   bool expedited = true;    ///< false: a segmented transfer, of more than 4 bytes
   std::uint32_t value = 0;  ///< of an upload; the abort code if aborted
 };
 inline constexpr std::uint32_t kAbortNoObject = 0x06020000, kAbortNoSubindex = 0x06090011;
 
-Frame sdo_read(int node, const drives::ObjectId& id) noexcept;
-Frame sdo_write(int node, const drives::ObjectId& id, std::uint32_t value) noexcept;
+Message sdo_read(int node, const ObjectId& id) noexcept;
+Message sdo_write(int node, const ObjectId& id, std::uint32_t value) noexcept;
 /// Nullopt: not 8 bytes, or no answer to a read or write.
-std::optional<SdoAnswer> sdo_answer(const Frame& frame) noexcept;
+std::optional<SdoAnswer> sdo_answer(const Message& message) noexcept;
 
-Frame targets_frame(int node, const drives::Cia402Targets& targets) noexcept;  ///< RPDO1
+Message targets_frame(int node, const Cia402Targets& targets) noexcept;  ///< RPDO1
 /// Take a TPDO's values into inputs. False: another length.
-bool take_transmit1(const Frame& frame, drives::Cia402Inputs& inputs) noexcept;
-bool take_transmit2(const Frame& frame, drives::Cia402Inputs& inputs) noexcept;
+bool take_transmit1(const Message& message, Cia402Inputs& inputs) noexcept;
+bool take_transmit2(const Message& message, Cia402Inputs& inputs) noexcept;
 
-}  // namespace pmg::can::canopen
+}  // namespace pmg::drives::canopen

@@ -1,4 +1,4 @@
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "drives/cia402.hpp"
+#include "drive_protocols/cia402.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "drives/cia402_objects.hpp"
+#include "drive_protocols/cia402_objects.hpp"
 
 namespace pmg::drives {
 namespace {

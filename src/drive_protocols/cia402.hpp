@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "drives/motor.hpp"
+#include "drives/protocol.hpp"
 
 namespace pmg::drives {
 
@@ -62,9 +63,6 @@ struct Cia402Targets {
   std::int32_t position = 0;  ///< [counts]
   std::int16_t torque = 0;    ///< [0.001 rated torque]
 };
-
-/// How new the reading is from which a cycle's command is computed.
-enum class Freshness : std::uint8_t { kFresh, kLate, kNone };
 
 /// One drive's way through the state machine. No heap, no lock.
 class Cia402Axis {

@@ -1,4 +1,4 @@
-#include "drives/mit_protocol.hpp"
+#include "drive_protocols/mit_protocol.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "drives/cia402.hpp"
+#include "drive_protocols/cia402.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,41 +1,18 @@
-// The drives of a robot, from robot.yaml: `drives` (kinds of drives), `buses`, and each joint's `bus`.
+// The buses of a robot and the motors on them, from robot.yaml's `buses`: bit rates, bridges, where the IMU speaks.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "drives/drive_kind.hpp"
-#include "drives/motor.hpp"
-#include "drives/rod_linkage.hpp"
-#include "drives/transmission.hpp"
-#include "model/robot_model.hpp"
+#include "drive_protocols/standard_drives.hpp"
+#include "drives/motor_group.hpp"
 
-namespace pmg::drives {
+namespace pmg::can {
 
-struct MotorSetup {
-  std::string joint;
-  int index = 0;  ///< in joint order
-  int node = 0;
-  DriveKind drive;
-  Transmission transmission;
-  MotorLimits limits;  ///< the joint's, at the motor
-};
-
-/// Motors that turn their joints through cranks and rods. A motor's transmission then leads from its crank to its
-/// drive.
-template <int N>
-struct LinkedMotors {
-  std::array<std::size_t, static_cast<std::size_t>(N)>
-      motors{};  ///< in the bus's motors; the i-th has the i-th joint's bus address
-  RodLinkage<N> linkage;
-};
-
-struct BusSetup {
-  std::string name;                                    ///< of the network interface
+/// Its name is that of the network interface.
+struct BusSetup : drives::MotorGroup {
   int bitrate = 0;                                     ///< [bit/s]
   int data_bitrate = 0;                                ///< of CAN FD frames' data phase [bit/s]; 0: classic CAN
   double sample_point = 0.0, data_sample_point = 0.0;  ///< share of a bit; 0: not said
@@ -44,11 +21,10 @@ struct BusSetup {
   int bridge_alias = 0;                      ///< configured station alias of that slave; 0: any
   int first_slave = 0;  ///< its drives are EtherCAT slaves: node n is slave first_slave + n - 1; 0: no
   int first_alias = 0;  ///< alias of node 1, that of node n being first_alias + n - 1; 0: any
-  std::vector<MotorSetup> motors;
-  std::vector<LinkedMotors<1>> four_bars;
-  std::vector<LinkedMotors<2>> parallel;
 
   bool has_canopen() const;  ///< some motor's drive is a CiA 402 one
+  /// For a monitor of one of its motors: see drives::MotorMonitor.
+  int fresh_cycles() const noexcept;
 };
 
 /// An IMU that is an EtherCAT slave (src/ethercat). Numbers are low byte first; offsets in bytes within its inputs.
@@ -69,11 +45,9 @@ struct DriveSetup {
   std::optional<ImuSlave> imu_slave;  ///< nullopt: the IMU speaks on a bus, or has a line of its own
 };
 
-/// Reads robot.directory/robot.yaml. Throws files::ConfigError when a joint has no drive, when its drive doesn't cover
-/// the joint's range, speed, effort or gains, when a bus isn't described or can't carry its drives' protocols together,
-/// when the number of buses with the IMU isn't one (none with `imu.serial`), when the joints of a linkage have drives
-/// on two buses or drives that can't be told any gains, or when a linkage is close to a singularity within its joints'
-/// ranges.
-DriveSetup load_drives(const model::RobotModel& robot);
+/// Reads robot.directory/robot.yaml. Throws files::ConfigError as drives::read_motor_groups() does, when a bus can't
+/// carry its drives' protocols together, or when the number of buses with the IMU isn't one (none with `imu.serial`).
+DriveSetup load_drives(const model::RobotModel& robot,
+                       const drives::DriveCatalogue& catalogue = drives::standard_drives());
 
-}  // namespace pmg::drives
+}  // namespace pmg::can

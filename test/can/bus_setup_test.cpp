@@ -1,4 +1,4 @@
-#include "drives/drive_setup.hpp"
+#include "can/bus_setup.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,11 @@
 #include <string>
 
 #include "../model/robots.hpp"
+#include "drive_protocols/canopen_drive.hpp"
+#include "drive_protocols/mit_drive.hpp"
 #include "files/config_error.hpp"
 
-namespace pmg::drives {
+namespace pmg::can {
 namespace {
 
 /// A copy of Z1 whose robot.yaml can be changed.
@@ -100,8 +102,8 @@ TEST_F(DriveSetupFile, AJointsDriveMayReplyWithAnIdentifierOfItsOwn) {
   replace("node: 4, drive: leg", "node: 4, reply_id: 0x104, drive: leg");
   EXPECT_EQ(refusal(), "taken");
   const DriveSetup setup = load_drives(model::load_robot(folder_));
-  EXPECT_EQ(std::get<MitRanges>(setup.buses[0].motors[3].drive).reply_id, 0x104u);
-  EXPECT_EQ(std::get<MitRanges>(setup.buses[0].motors[2].drive).reply_id, 0u) << "as its entry in `drives` has it";
+  EXPECT_EQ(drives::as_mit(setup.buses[0].motors[3].drive)->ranges().reply_id, 0x104u);
+  EXPECT_EQ(drives::as_mit(setup.buses[0].motors[2].drive)->ranges().reply_id, 0u) << "as its entry in `drives` has it";
   replace("reply_id: 0x104", "reply_id: 0x800");
   EXPECT_THAT(refusal(), testing::HasSubstr("expected"));
 }
@@ -118,8 +120,8 @@ TEST_F(DriveSetupFile, ACia402DriveIsReadAndRefusedWhereItDoesNotFit) {
   replace("reply_id: 5", "reply_id: 126");
   EXPECT_EQ(refusal(), "taken");
   const DriveSetup setup = load_drives(model::load_robot(folder_));
-  const auto& settings = std::get<Cia402Settings>(setup.buses[0].motors[3].drive);
-  EXPECT_EQ(settings.mode, Cia402Mode::kTorque);
+  const auto& settings = *drives::as_cia402(setup.buses[0].motors[3].drive);
+  EXPECT_EQ(settings.mode, drives::Cia402Mode::kTorque);
   EXPECT_EQ(settings.temperature_index, 0x2030);
   EXPECT_TRUE(setup.buses[0].has_canopen());
   EXPECT_FALSE(setup.buses[1].has_canopen());
@@ -177,4 +179,4 @@ TEST_F(DriveSetupFile, AnAnkleOfTwoMotorsHasItsLinkageAndItsMotorsNeeds) {
 }
 
 }  // namespace
-}  // namespace pmg::drives
+}  // namespace pmg::can
