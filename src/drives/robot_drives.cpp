@@ -9,7 +9,8 @@ namespace pmg::drives {
 
 namespace {
 
-constexpr auto kCycle_ns = static_cast<std::int64_t>(1e9 * model::kBusPeriod_s + 0.5);
+constexpr std::int64_t kCycle_ns = 2'000'000;
+static_assert(kCycle_ns == 1e9 * model::kBusPeriod_s);
 
 MotorCommand joint_command(const model::JointCommand& command, int joint) noexcept {
   if (joint >= command.q.size()) return {};

@@ -33,7 +33,7 @@ class RobotDrives {
 
   /// Motors that are reached the same way, and for how many cycles their readings count as fresh (MotorMonitor).
   struct Way {
-    const MotorGroup* group;
+    const MotorGroup* group = nullptr;
     int fresh_cycles = MotorMonitor::kFreshCycles;
   };
   /// joints: of the robot. Keeps references to the groups.
@@ -77,7 +77,7 @@ class RobotDrives {
     bool solved = true;  // the joint angles belong to the last motor angles
   };
   struct Motor {
-    const MotorSetup* setup;
+    const MotorSetup* setup = nullptr;
     MotorMonitor monitor;
     MotorCommand wanted{};
     MotorReading joint{};  // what it said, at the joint
