@@ -98,7 +98,8 @@ void print_table(const std::vector<generator::ClipReport>& clips, const std::vec
   }
   for (const generator::NormReport& norm : norms) {
     std::cout << "forward " << norm.curve << ": correlation " << std::setprecision(3) << norm.correlation << ", RMS "
-              << std::setprecision(1) << norm.rms_deg << " degrees from the norm\n";
+              << std::setprecision(1) << norm.rms_deg << " degrees from the norm, at contact " << norm.at_contact_deg
+              << "\n";
   }
 }
 
@@ -127,7 +128,8 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
     }
   }
   for (const generator::NormReport& norm : norms) {
-    out["norms"][norm.curve] = {{"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}};
+    out["norms"][norm.curve] = {
+        {"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}, {"contact_deg", norm.at_contact_deg}};
   }
   apps::print_json(out);
 }
@@ -138,9 +140,7 @@ int show(const ShowOptions& options) {
       model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
   const std::vector<generator::ClipReport> clips = generator::report(robot, library);
   std::vector<generator::NormReport> norms;
-  if (!options.norms.empty() && library.positive[kVx]) {
-    norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
-  }
+  if (library.positive[kVx]) norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
   options.json ? print_json(clips, norms) : print_table(clips, norms);
   for (const generator::ClipReport& clip : clips) {
     if (!clip.failure.empty()) {

@@ -33,14 +33,16 @@ struct ClipReport {
 /// swing; soles closer than 2 cm; a joint faster than 60 % of its limit.
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
 
-/// Agreement of the forward clip with a published mean.
+/// Agreement of a walking clip's left leg with a published mean; the offset counts.
 struct NormReport {
   std::string curve;
   double correlation = 0.0, rms_deg = 0.0;
+  double at_contact_deg = 0.0;  ///< flexion at initial contact
 };
 
-/// norms: CSV of 101 rows (0 .. 100 % of the cycle) with columns hip_flexion_mean, knee_flexion_mean,
-/// ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean, in degrees. Throws files::ConfigError.
+/// norms: empty for the means that the forward clip is made from (published_gait.hpp), or a CSV of 101 rows (0 .. 100 %
+/// of the cycle) with columns hip_flexion_mean, knee_flexion_mean, ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean,
+/// in degrees. Throws files::ConfigError.
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms);
 

@@ -95,6 +95,16 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeans) {
   }
 }
 
+TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeansOffsetIncludedAndLandsOnANearlyStraightKnee) {
+  for (const NormReport& norm : compare_with_norms(*robot_, *library_->positive[kVx], {})) {
+    EXPECT_GE(norm.correlation, 0.95) << norm.curve;
+    EXPECT_LE(norm.rms_deg, 8.0) << norm.curve;
+    if (norm.curve == "knee") {
+      EXPECT_LE(norm.at_contact_deg, 15.0);
+    }
+  }
+}
+
 TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
   const JointRoles roles = find_joint_roles(*robot_);
   const DynamicClip& forward = *library_->positive[kVx];
