@@ -34,9 +34,9 @@ GaitTask forward_task(const Making& making) {
   task.reference = published_reference(making.legs);
   task.shape = {{kHipPitch, 0.965, 4.8 * kRadPerDegree},
                 {kKnee, 0.970, 4.8 * kRadPerDegree},
-                {kAnklePitch, 0.966, 5.3 * kRadPerDegree, 0.8}};
-  task.weights.reference << 0.5, 6.0, 6.0, 0.5, 0.5, 2.0;
-  task.weights.bias << 1.0, 6.0, 6.0, 1.0, 1.0, 6.0;
+                {kAnklePitch, 0.966, 5.3 * kRadPerDegree, 0.84}};
+  task.weights.reference << 0.5, 40.0, 60.0, 0.5, 0.5, 2.0;
+  task.weights.bias << 1.0, 6.0, 20.0, 1.0, 1.0, 6.0;
   task.weights.slip = 38.0;
   task.weights.step_height = 2000.0;
   task.weights.step_height_free_m = 0.006;
