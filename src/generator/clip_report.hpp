@@ -30,14 +30,19 @@ struct ClipReport {
 /// Every dynamic clip at gains 0.1 to 1. A clip fails if one of these holds: double-support slip over 3 cm/s on average
 /// or 10 cm/s at the 95th percentile; stance feet more than 1 cm apart in height; mean velocity off by more than 0.05
 /// (m/s, rad/s); a swinging sole more than 6 mm below the ground, or at full gain less than 2.5 cm above it in mid
-/// swing; soles closer than 2 cm; a joint faster than 60 % of its limit.
+/// swing or 1 cm from 0.7 to 0.85 of it (lower, a leg that sags a little lands early); soles closer than 2 cm; a joint
+/// faster than 60 % of its limit.
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
 
-/// Agreement of the forward clip with a published mean.
+/// Agreement of a walking clip's left leg with a published mean; the offset counts.
 struct NormReport {
   std::string curve;
   double correlation = 0.0, rms_deg = 0.0;
+  double at_contact_deg = 0.0, published_at_contact_deg = 0.0;  ///< flexion at initial contact
 };
+
+/// Against the means that the forward clip is made from (published_gait.hpp).
+std::vector<NormReport> compare_with_published(const model::RobotModel& robot, const DynamicClip& forward);
 
 /// norms: CSV of 101 rows (0 .. 100 % of the cycle) with columns hip_flexion_mean, knee_flexion_mean,
 /// ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean, in degrees. Throws files::ConfigError.
