@@ -105,7 +105,9 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeansOffsetIncludedAndLandsOnANearly
   for (const NormReport& norm : compare_with_published(*robot_, *library_->positive[kVx])) {
     EXPECT_GE(norm.correlation, 0.95) << norm.curve;
     EXPECT_LE(norm.rms_deg, 8.0) << norm.curve;
-    if (norm.curve == "knee") EXPECT_LE(norm.at_contact_deg, 15.0);
+    if (norm.curve == "knee") {
+      EXPECT_LE(norm.at_contact_deg, 15.0);
+    }
   }
 }
 
