@@ -17,6 +17,7 @@
 #include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
 #include "operator/robot_board.hpp"
+#include "operator/way_up.hpp"
 #include "operator/words.hpp"
 #include "program.hpp"
 #include "send_arguments.hpp"
@@ -97,8 +98,24 @@ class Session {
           {.robot = "", .mode = "unknown", .text = fmt::format("no controller is heard on {}", link_.url())});
     }
     const bool reached = progress == ops::Progress::kReached;
+    for (ops::Answer& answer : answers)
+      if (!every_robot && (!reached || request.goal == ops::Goal::kReset) && listened(answer.robot))
+        answer.text += (answer.text.empty() ? "" : ": ") + way_up(answer.robot);
     report(answers, reached, wish.elapsed_s());
     return apps::interrupt_requested != 0 ? kInterrupted : reached ? kOk : kNotReached;
+  }
+
+  /// Its answer wasn't that somebody else asks, or that this user has no key.
+  bool listened(const std::string& robot) const {
+    const ops::HeardRobot* heard = source_.heard(robot);
+    return heard != nullptr && heard->ack &&
+           (heard->ack->verdict == pmg_msgs::ack_t::TAKEN || heard->ack->verdict == pmg_msgs::ack_t::TILTED);
+  }
+  /// What comes next so that the robot stands; empty: it does.
+  std::string way_up(const std::string& robot) const {
+    const ops::HeardRobot* heard = source_.heard(robot);
+    if (heard == nullptr) return "";
+    return ops::way_up(ops::posture(*heard, news_of(robot), clock_.now_ns()), ops::shell_manner());
   }
 
   int hoist() {
@@ -110,7 +127,8 @@ class Session {
       link_.receive(10);
       progress = wish.step();
     }
-    return conclude(robot, progress, wish.text(), wish.elapsed_s());
+    const std::string way = progress == ops::Progress::kFailed ? way_up(robot) : "";
+    return conclude(robot, progress, wish.text() + (way.empty() ? "" : ": " + way), wish.elapsed_s());
   }
 
   int drive() {

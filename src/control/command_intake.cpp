@@ -116,12 +116,12 @@ CommandIntake::Standing CommandIntake::standing(const ModeRequest& request, std:
   return request.sequence == record->last_request && same_wish ? Standing::kRepeated : Standing::kOverdue;
 }
 
-CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::int64_t now_ns) noexcept {
+CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::int64_t now_ns, bool down) noexcept {
   const std::int64_t received_ns = receipt_ns(request.received_ns, now_ns);
   Judgement judgement;
   switch (standing(request, received_ns, now_ns)) {
     case Standing::kNew:
-      judgement = judge_new(request, received_ns, now_ns);
+      judgement = judge_new(request, received_ns, now_ns, down);
       break;
     case Standing::kRepeated:
       judgement.verdict = sources_.hear(request.source, driving(now_ns), received_ns)->verdict;
@@ -134,8 +134,10 @@ CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::i
       break;
   }
   if (request.stops()) judgement.verdict = Verdict::kTaken;
-  // One that names no mode is told so and counted by whoever decodes messages.
-  if (judgement.verdict != Verdict::kNoMode) {
+  // One that names no mode is told so and counted by whoever decodes messages; one of a robot that lies was heard.
+  if (judgement.verdict == Verdict::kTilted) {
+    ++ignored_.accepted;
+  } else if (judgement.verdict != Verdict::kNoMode) {
     ++(ignored_.*kRequestCounters[static_cast<std::size_t>(judgement.verdict)]);
   }
   if (request.stops()) stop(received_ns);
@@ -143,10 +145,10 @@ CommandIntake::Judgement CommandIntake::judge(const ModeRequest& request, std::i
 }
 
 CommandIntake::Judgement CommandIntake::judge_new(const ModeRequest& request, std::int64_t received_ns,
-                                                  std::int64_t now_ns) noexcept {
+                                                  std::int64_t now_ns, bool down) noexcept {
   SourceRecord* record = sources_.hear(request.source, driving(now_ns), received_ns);
   if (record == nullptr) return {.verdict = Verdict::kNotYours};
-  const Judgement judgement = decide(request, *record, received_ns, now_ns);
+  const Judgement judgement = decide(request, *record, received_ns, now_ns, down);
   record->last_request = request.sequence;
   record->asked_mode = request.mode;
   record->asked_reset = request.reset_fault;
@@ -162,14 +164,17 @@ CommandIntake::Judgement CommandIntake::judge_new(const ModeRequest& request, st
 }
 
 CommandIntake::Judgement CommandIntake::decide(const ModeRequest& request, const SourceRecord& record,
-                                               std::int64_t received_ns, std::int64_t now_ns) const noexcept {
+                                               std::int64_t received_ns, std::int64_t now_ns,
+                                               bool down) const noexcept {
   if (request.mode >= Mode::kFault) return {.verdict = Verdict::kNoMode};
   if (before_stop(request, received_ns) || SourceMemory::late(record, request.stamp_ns, received_ns)) {
     return {.verdict = Verdict::kLate};
   }
   const bool takes_over = received_ns - moved_ns_ >= kAtRest_ns;
   const bool mine = !leased(now_ns) || request.source == last_.source || takes_over;
-  return request.stops() || mine ? Judgement{.fresh = true} : Judgement{.verdict = Verdict::kNotYours};
+  if (!request.stops() && !mine) return {.verdict = Verdict::kNotYours};
+  if (down && upright(request.mode) && !request.reset_fault) return {.verdict = Verdict::kTilted};
+  return {.fresh = true};
 }
 
 double CommandIntake::age_s(std::int64_t now_ns) const noexcept {

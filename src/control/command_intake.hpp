@@ -66,8 +66,9 @@ class CommandIntake {
 
   /// (mode request, time) => (verdict). A request is judged once; repetitions get the same verdict. Anyone may stop at
   /// any time. Only the driving source may climb or reset; anyone
-  /// may when none drives, or when the driver only renews its lease: then the request takes over.
-  Judgement judge(const ModeRequest& request, std::int64_t now_ns) noexcept;
+  /// may when none drives, or when the driver only renews its lease: then the request takes over. down: the robot lies,
+  /// so nobody makes it stand up.
+  Judgement judge(const ModeRequest& request, std::int64_t now_ns, bool down = false) noexcept;
 
   /// The stop line was pulled. The stop overtakes climbs and resets that were received until now, wherever they still
   /// wait.
@@ -111,8 +112,8 @@ class CommandIntake {
   Standing standing(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) const noexcept;
   /// Of a new request. record: its source's.
   Judgement decide(const ModeRequest& request, const SourceRecord& record, std::int64_t received_ns,
-                   std::int64_t now_ns) const noexcept;
-  Judgement judge_new(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns) noexcept;
+                   std::int64_t now_ns, bool down) const noexcept;
+  Judgement judge_new(const ModeRequest& request, std::int64_t received_ns, std::int64_t now_ns, bool down) noexcept;
   /// Its sender didn't know of the last stop, or it was received before it.
   bool before_stop(const ModeRequest& request, std::int64_t received_ns) const noexcept {
     return !request.stops() && (received_ns <= stopped_ns_ || request.heard_ns < stopped_ns_);

@@ -198,6 +198,9 @@ nlohmann::ordered_json control_json(const LoadedControl& loaded) {
                                  {"bus_period_s", static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9}};
   if (loaded.policy_name != "none") json["variant"] = to_string(loaded.variant);
   json.update(tick_json(loaded.options));
+  // Operators say by it how far the robot leans: "up" of the IMU's link, in the IMU's frame.
+  const Eigen::Vector3d up_I = faults::up_of_link(loaded.robot.imu);
+  json["imu"]["up"] = {up_I.x(), up_I.y(), up_I.z()};
   // Operators say by it why a command is cut. The paper's blend has no such bound: it halves two that ask for half
   // each.
   const Blend blend = *loaded.options.generator.blend;

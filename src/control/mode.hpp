@@ -89,6 +89,7 @@ enum class Verdict : std::uint8_t {
   kLate = 3,
   kNoMode = 4,
   kNoKey = 5,  ///< no tick's answer: its gate's
+  kTilted = 6,
 };
 
 /// The tick's answer to one request.

@@ -49,6 +49,11 @@ class Supervisor {
     return detector_.robot_is_sound(evidence);
   }
 
+  /// From here the robot would not stand up: it leans so far that Stand would end in a fault at once.
+  bool robot_is_down(const model::RobotState& state) const noexcept {
+    return mode_ <= Mode::kDamping && detector_.leans_too_far(state);
+  }
+
   Mode mode() const noexcept { return mode_; }
   const faults::Fault& fault() const noexcept { return fault_; }  ///< kNone unless the mode is kFault
   /// (user's command) => (command for the generator): all channels in Walk, posture alone while the robot comes to a

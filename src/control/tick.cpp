@@ -150,8 +150,9 @@ void Tick::take_messages(const TickInput& input) noexcept {
   result_.arms.refused = intake_.arms_refused();
   result_.arms.refusal = intake_.arms_refusal();
   result_.ack_count = 0;
+  const bool down = supervisor_.robot_is_down(input.state);
   for (const ModeRequest& request : input.requests.first(std::min(input.requests.size(), kMaxRequests))) {
-    const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns);
+    const CommandIntake::Judgement judgement = intake_.judge(request, input.now_ns, down);
     const bool refused = excites() && request.mode == Mode::kWalk && !request.reset_fault;
     if (judgement.fresh && !refused) supervisor_.request(request);
     // Before what else this tick was asked for; and a stop that isn't fresh asks for no more than this.

@@ -19,13 +19,17 @@ constexpr bool is_fault(const Fault& fault) noexcept { return fault.code != Faul
 
 }  // namespace
 
+Eigen::Vector3d up_of_link(const model::ImuModel& imu) noexcept {
+  return imu.T_LI.linear().transpose() * Eigen::Vector3d::UnitZ();
+}
+
 FaultDetector::FaultDetector(const model::RobotModel& robot, const FaultLimits& limits)
     : limits_(limits),
       q_lower_(robot.q_lower()),
       q_upper_(robot.q_upper()),
       velocity_limit_(q_lower_.size()),
       effort_limit_(q_lower_.size()),
-      up_I_(robot.imu.T_LI.linear().transpose() * Eigen::Vector3d::UnitZ()),
+      up_I_(up_of_link(robot.imu)),
       torso_(robot) {
   for (int i = 0; i < static_cast<int>(q_lower_.size()); ++i) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(i)];
@@ -164,11 +168,18 @@ Fault FaultDetector::check_joints(FaultCode code, const model::RobotState& state
   return {};
 }
 
+double FaultDetector::tilt_rad(const model::RobotState& state) const noexcept {
+  return std::acos(std::clamp((state.orientation_WI * up_I_).z(), -1.0, 1.0));
+}
+
+bool FaultDetector::leans_too_far(const model::RobotState& state) const noexcept {
+  return tilt_rad(state) > limits_.tilt_rad;
+}
+
 Fault FaultDetector::check_tilt(const model::RobotState& state) const noexcept {
-  const double cosine = (state.orientation_WI * up_I_).z();
-  const double tilt_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
-  if (tilt_rad <= limits_.tilt_rad) return {};
-  return {.code = FaultCode::kTilt, .value = tilt_rad, .limit = limits_.tilt_rad};
+  const double tilt = tilt_rad(state);
+  if (tilt <= limits_.tilt_rad) return {};
+  return {.code = FaultCode::kTilt, .value = tilt, .limit = limits_.tilt_rad};
 }
 
 Fault FaultDetector::check_torso(const FaultEvidence& evidence) noexcept {

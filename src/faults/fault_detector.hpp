@@ -46,6 +46,9 @@ struct FaultEvidence {
       std::nullopt;  ///< the commanded attitude of the torso; nullopt while none is commanded
 };
 
+/// "Up" of the IMU's link, in the IMU's frame.
+Eigen::Vector3d up_of_link(const model::ImuModel& imu) noexcept;
+
 class FaultDetector {
  public:
   enum class Scope {
@@ -62,6 +65,9 @@ class FaultDetector {
   /// is within the tilt limit. Remembers nothing.
   bool robot_is_sound(const FaultEvidence& evidence) const noexcept;
 
+  /// The IMU's link leans beyond the tilt limit. False for an orientation that isn't finite: that is another fault.
+  bool leans_too_far(const model::RobotState& state) const noexcept;
+
   /// Forgets what earlier ticks found.
   void reset() noexcept {
     held_ticks_.fill(0);
@@ -77,6 +83,7 @@ class FaultDetector {
   Fault check_timing(const FaultEvidence& evidence) noexcept;
   Fault check_motion(const FaultEvidence& evidence) noexcept;
   Fault check_joints(FaultCode code, const model::RobotState& state) const noexcept;
+  double tilt_rad(const model::RobotState& state) const noexcept;
   Fault check_tilt(const model::RobotState& state) const noexcept;
   Fault check_torso(const FaultEvidence& evidence) noexcept;
   /// The fault, if it was found so many times in a row; this time counts as `counts`.

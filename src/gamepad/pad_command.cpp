@@ -36,6 +36,8 @@ ops::DeviceManner PadCommand::manner() const {
           .resets = rows[first + 1][0] + " resets it",
           .drives = deadman + " and a stick drive it",
           .starts = raises,
+          .lifts = rows[first + 3][0] + " lifts it",
+          .sets_down = rows[first + 4][0] + " sets it down",
           .anew = "Press " + deadman + " anew, with neutral sticks"};
 }
 

@@ -24,7 +24,8 @@ Sign sign(const ops::DrivingStation& station) {
   if (driver == nullptr || robot == nullptr || driver->silent()) return Sign::kLinkLost;
   if (robot->status.fault_code != 0) return Sign::kFault;
   if (!driver->driving()) return Sign::kRest;
-  const bool limited = robot->status.limited_torque > 0 || (robot->reference && robot->reference->command_limited);
+  const pmg_msgs::reference_t* reference = ops::reference_in_force(*robot);
+  const bool limited = robot->status.limited_torque > 0 || (reference != nullptr && reference->command_limited);
   return limited ? Sign::kLimited : Sign::kDriving;
 }
 

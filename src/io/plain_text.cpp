@@ -64,6 +64,23 @@ std::string plain_text(std::string_view text) {
   return plain;
 }
 
+std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::size_t indent) {
+  std::vector<std::string> lines;
+  while (true) {
+    const std::string lead(lines.empty() ? 0 : indent, ' ');
+    const std::size_t room = width > lead.size() ? width - lead.size() : 1;
+    std::size_t end = text.size();
+    if (end > room) {
+      end = text.rfind(' ', room);
+      if (end == std::string_view::npos || text.find_first_not_of(' ') >= end) end = std::min(text.find(' ', room), text.size());
+    }
+    lines.push_back(lead + std::string(text.substr(0, end)));
+    const std::size_t next = text.find_first_not_of(' ', end);
+    if (next == std::string_view::npos) return lines;
+    text.remove_prefix(next);
+  }
+}
+
 std::string csv_text(std::string_view text) {
   std::string plain = plain_text(text);
   const bool formula = !plain.empty() && std::string_view("=+-@").find(plain.front()) != std::string_view::npos;

@@ -75,6 +75,8 @@ DeviceManner KeyCommand::manner() const {
           .resets = "R resets it",
           .drives = "a key drives it",
           .starts = "a key makes it stand up and walk",
+          .lifts = "H lifts it",
+          .sets_down = "G sets it down",
           .anew = "Press a key anew"};
 }
 

@@ -8,6 +8,9 @@ namespace {
 
 ops::DeviceManner joined_manner(ops::DeviceManner manner) {
   manner.drives = "a finger on the stick, or a squeezed grip and a step, drives it";
+  manner.resets = "Reset fault on the page resets it";  // the headset's hands have no buttons for these
+  manner.lifts = "Lift on the page lifts it";
+  manner.sets_down = "Set down on the page sets it down";
   manner.anew = "Let go, and touch the stick or squeeze the grip anew";
   return manner;
 }

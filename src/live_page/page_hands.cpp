@@ -49,6 +49,8 @@ ops::DeviceManner PageHands::manner() const {
           .resets = "Reset resets it",
           .drives = "a finger on the stick drives it",
           .starts = "Stand makes it stand up",
+          .lifts = "Lift lifts it",
+          .sets_down = "Set down sets it down",
           .anew = "Let go of the stick and touch it anew"};
 }
 

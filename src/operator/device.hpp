@@ -48,6 +48,8 @@ struct DeviceManner {
   std::string resets;       ///< how a fault is reset: "R resets it"
   std::string drives;       ///< how it is driven from Stand: "a key drives it"
   std::string starts;       ///< the same from a mode below Stand
+  std::string lifts = "pmg_send lift lifts it";             ///< how a simulated robot's hoist takes it up
+  std::string sets_down = "pmg_send lower sets it down";  ///< likewise
   std::string anew;         ///< what to do after it came to rest by itself: "Press a key anew"
   double timeout_s = 10.0;  ///< for each request
 };

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "operator/way_up.hpp"
+
 namespace pmg::ops {
 
 void Script::begin() noexcept {
@@ -10,15 +12,9 @@ void Script::begin() noexcept {
 }
 
 DeviceManner Script::manner() const {
-  return {.name = "script",
-          .command_raises = false,
-          .at_once = false,
-          .raises = "pmg_send stand makes it stand up",
-          .resets = "pmg_send reset resets it",
-          .drives = "pmg_send walk drives it",
-          .starts = "pmg_send walk makes it stand up and walk",
-          .anew = "Ask again",
-          .timeout_s = options_.timeout_s};
+  DeviceManner manner = shell_manner();
+  manner.timeout_s = options_.timeout_s;
+  return manner;
 }
 
 std::span<const Hold> Script::holds(std::int64_t now_ns) noexcept {

@@ -75,7 +75,7 @@ Progress HoistWish::judge() {
   const std::int8_t mode = *heard->mode();
   const bool stands = mode == pmg_msgs::mode_t::STAND || mode == pmg_msgs::mode_t::WALK;
   if (!lift_ && !stands) {
-    text_ += ", and sets it down when it stands: pmg_send stand";
+    text_ += ", and sets it down when it stands";
     if (hoist.state == State::HOLDING) return Progress::kFailed;
   }
   return Progress::kPending;

@@ -95,15 +95,17 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
 
 std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<std::string> lines;
+  constexpr std::size_t kWidth = 79, kIndent = 4;  // what a terminal cuts off isn't read
   for (const Row& row : head_rows(driver, news, silence_s))
-    lines.push_back(io::plain_text(row.label + "   " + row.value));
+    for (std::string& line : io::wrapped(io::plain_text(row.label + "   " + row.value), kWidth, kIndent))
+      lines.push_back(std::move(line));
   if (news == nullptr) return lines;
   lines.push_back(fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "forwards", "left", "turn", "bend",
                               "lean", "height"));
   lines.push_back(
       fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
   lines.push_back(command_row("asked", driver.asked().u.data()));
-  if (news->reference) lines.push_back(command_row("taken", news->reference->command));
+  if (const auto* reference = reference_in_force(*news)) lines.push_back(command_row("taken", reference->command));
   for (const Row& row : status_rows(*news, silence_s))
     lines.push_back(io::plain_text(fmt::format("{:<10}{}", row.label, row.value)));
 
@@ -117,8 +119,9 @@ DrivingTable driving_table(const RobotDriver& driver, const RobotNews* news, dou
     constexpr std::array kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
     for (std::size_t i = 0; i < kChannels; ++i) {
       const std::size_t channel = kOrder[i];
+      const pmg_msgs::reference_t* reference = reference_in_force(*news);
       const std::string taken =
-          news->reference ? fmt::format("{:+.2f} {} taken", news->reference->command[channel], kUnits[i]) : "";
+          reference != nullptr ? fmt::format("{:+.2f} {} taken", reference->command[channel], kUnits[i]) : "";
       rows.push_back({kLabels[i], fmt::format("{:+.2f} asked   {}", driver.asked().u[channel], taken)});
     }
     for (const Row& row : status_rows(*news, silence_s)) rows.push_back(row);

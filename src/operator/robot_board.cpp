@@ -1,10 +1,44 @@
 #include "operator/robot_board.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "operator/words.hpp"
+
 namespace pmg::ops {
+
+namespace {
+
+std::optional<UprightRule> upright_rule(const pmg_msgs::robot_info_t& info) {
+  const auto options = nlohmann::json::parse(info.options, nullptr, false);
+  const nlohmann::json::json_pointer up("/imu/up"), most("/faults/tilt_rad");
+  if (!options.is_object() || !options.contains(up) || !options.contains(most)) return std::nullopt;
+  if (!options[up].is_array() || options[up].size() != 3 || !options[most].is_number()) return std::nullopt;
+  UprightRule rule{.most_tilt_rad = options[most].get<double>()};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!options[up][i].is_number()) return std::nullopt;
+    rule.up_I.at(i) = options[up][i].get<double>();
+  }
+  return rule;
+}
+
+}  // namespace
+
+std::optional<double> tilt_rad(const RobotNews& news) {
+  if (!news.upright || !news.state) return std::nullopt;
+  const double(&q)[4] = news.state->orientation_WI;
+  const Eigen::Quaterniond R_WI(q[0], q[1], q[2], q[3]);
+  const Eigen::Vector3d up_I = Eigen::Map<const Eigen::Vector3d>(news.upright->up_I.data());
+  if (!(std::abs(R_WI.norm() - 1.0) < 0.1) || !(std::abs(up_I.norm() - 1.0) < 0.01)) return std::nullopt;
+  return std::acos(std::clamp((R_WI.normalized() * up_I).z(), -1.0, 1.0));
+}
+
+const pmg_msgs::reference_t* reference_in_force(const RobotNews& news) noexcept {
+  return news.reference && is_upright(news.status.mode) ? &*news.reference : nullptr;
+}
 
 void RecentValues::add(double value) {
   if (values_.size() < kKept) {
@@ -29,7 +63,10 @@ RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::Operator
   link.subscribe("STATUS", [this](io::Bytes bytes) { hear_status(bytes); });
   link.subscribe("ROBOT_INFO", [this](io::Bytes bytes) {
     const auto info = io::decode_message<pmg_msgs::robot_info_t>(bytes);
-    if (info && robots_.contains(info->robot)) robots_[info->robot].info = info;
+    if (!info || !robots_.contains(info->robot)) return;
+    RobotNews& news = robots_[info->robot];
+    if (!news.info || news.info->options != info->options) news.upright = upright_rule(*info);
+    news.info = info;
   });
   link.subscribe("LINK", [this](io::Bytes bytes) {
     const auto counts = io::decode_message<pmg_msgs::link_t>(bytes);
@@ -46,6 +83,13 @@ RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::Operator
     news.timing = timing;
     news.wake_us.add(static_cast<double>(timing->wake_ns) * 1e-3);
     news.tick_us.add(static_cast<double>(timing->tick_ns) * 1e-3);
+  });
+  link.subscribe("HOIST_STATE", [this](io::Bytes bytes) {
+    const auto hoist = seal::decode_sealed<pmg_msgs::hoist_state_t, pmg_msgs::proof_t>(bytes);
+    if (!hoist || !robots_.contains(hoist->message.robot)) return;
+    RobotNews& news = robots_[hoist->message.robot];
+    news.hoist = hoist->message;
+    news.hoist_heard_ns = clock_.now_ns();
   });
   link.subscribe("STATE", [this](io::Bytes bytes) {
     const auto state = io::decode_message<pmg_msgs::robot_state_t>(bytes);

@@ -1,6 +1,7 @@
 // The robots on an LCM address: the newest message of each kind, and timing over the last seconds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "operator/status_order.hpp"
+#include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
@@ -34,19 +36,34 @@ class RecentValues {
   std::size_t next_ = 0;
 };
 
+/// What tells how far a robot leans (ROBOT_INFO's options).
+struct UprightRule {
+  std::array<double, 3> up_I{};  ///< "up" of the IMU's link, in the IMU's frame
+  double most_tilt_rad = 0.0;    ///< a robot that leans farther has a fault and doesn't stand up
+};
+
 struct RobotNews {
   pmg_msgs::status_t status{};
   StatusOrder order{};        ///< of its STATUS
   std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
+  std::optional<UprightRule> upright{};  ///< nothing: the controller doesn't tell it
   std::optional<pmg_msgs::link_t> link{};
   std::optional<pmg_msgs::reference_t> reference{};
   std::optional<pmg_msgs::robot_state_t> state{};
   std::optional<pmg_msgs::timing_t> timing{};
+  std::optional<pmg_msgs::hoist_state_t> hoist{};
+  std::int64_t hoist_heard_ns = 0;  ///< by the board's clock
   RecentValues wake_us{}, tick_us{};
   int sessions =
       1;  ///< changes of the session since the first message, plus 1: restarts, or several controllers with one name
 };
+
+/// Of the IMU's link from upright [rad], by the newest STATE. Nothing: not known.
+std::optional<double> tilt_rad(const RobotNews& news);
+
+/// The reference in force. Null: none is, as the robot neither stands nor walks; a controller sends its last one on.
+const pmg_msgs::reference_t* reference_in_force(const RobotNews& news) noexcept;
 
 /// For one thread. Receives only within link.receive().
 class RobotBoard {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "operator/keyboard_text.hpp"
+#include "operator/way_up.hpp"
 #include "operator/words.hpp"
 
 namespace pmg::ops {
@@ -23,7 +24,7 @@ RobotDriver::RobotDriver(OperatorSource& source, std::string robot, Device& devi
 void RobotDriver::stop() {
   errand_.reset();
   stop_.emplace(source_, robot_, Goal::kStop, manner_.timeout_s);
-  hold_back("stopped: " + manner_.raises);
+  hold_back("stopped");
 }
 
 void RobotDriver::heed() {
@@ -65,13 +66,13 @@ void RobotDriver::rise(Goal to) {
 void RobotDriver::reset() {
   hold_back("asks for a reset");
   errand_.emplace(source_, robot_, Goal::kReset, manner_.timeout_s);
-  errand_done_ = "reset: " + manner_.raises;
+  errand_done_ = "reset";
 }
 
 void RobotDriver::limp() {
   hold_back("asks it to go limp");
   errand_.emplace(source_, robot_, Goal::kPassive, manner_.timeout_s);
-  errand_done_ = "limp: " + manner_.raises;
+  errand_done_ = "limp";
 }
 
 void RobotDriver::hoist(bool lift) {
@@ -142,11 +143,12 @@ void RobotDriver::descend() {
   descent_.emplace(source_, robot_, Goal::kStand, manner_.timeout_s);
 }
 
-void RobotDriver::idle(const std::string& text) {
+void RobotDriver::idle(const std::string& text, bool needs_way) {
   const bool drove = doing_ != Doing::kIdle && source_.heard(robot_) != nullptr;
   enter(Doing::kIdle);
   if (drove) source_.send_command(robot_, Command{}, kLastLease_s);  // so that the next source need not wait
   text_ = text;
+  needs_way_ = needs_way;
 }
 
 void RobotDriver::rest() {
@@ -158,7 +160,7 @@ void RobotDriver::hold_back(const std::string& text) {
   rest();
   device_.upright();
   held_back_ = true;
-  idle(text);
+  idle(text, true);
 }
 
 void RobotDriver::watch_mode() {
@@ -172,34 +174,41 @@ void RobotDriver::watch_mode() {
   const bool low = *mode_ == Modes::DAMPING || *mode_ == Modes::FAULT;
   if (held_back_ || is_upright(*mode_)) return;
   if (*mode_ == Modes::FAULT) {
-    hold_back("fault: " + heard->status->fault + "; " + manner_.resets + ", then " + manner_.raises);
+    hold_back("fault: " + heard->status->fault);
   } else if (restarted) {
-    hold_back("its controller was started anew: " + manner_.raises);
+    hold_back("its controller was started anew");
   } else if (fell || (first && low)) {
-    hold_back(fmt::format("somebody stopped it, mode is {}: {}", mode_name(*mode_), manner_.raises));
+    hold_back(fmt::format("somebody stopped it, mode is {}", mode_name(*mode_)));
   }
 }
 
 void RobotDriver::follow_errands() {
   if (stop_) {
     const Progress progress = stop_->step();
-    if (progress == Progress::kFailed) text_ = "THE STOP IS NOT ANSWERED: " + stop_->answers().front().text;
+    if (progress == Progress::kFailed) {
+      text_ = "THE STOP IS NOT ANSWERED: " + stop_->answers().front().text;
+      needs_way_ = false;
+    }
     if (progress != Progress::kPending) stop_.reset();
   }
   if (errand_ && silent()) {
     errand_.reset();  // nor must one for limp drives
     text_ = silence_words();
+    needs_way_ = false;
   }
   if (errand_) {
     const Progress progress = errand_->step();
-    if (progress == Progress::kReached) text_ = errand_done_;
-    if (progress == Progress::kFailed) text_ = errand_->answers().front().text;
-    if (progress != Progress::kPending) errand_.reset();
+    if (progress != Progress::kPending) {
+      text_ = progress == Progress::kReached ? errand_done_ : errand_->answers().front().text;
+      needs_way_ = listened();
+      errand_.reset();
+    }
   }
   if (hoist_) {
     const Progress progress = hoist_->step();
     if (doing_ == Doing::kIdle) text_ = hoist_->text();
     if (progress == Progress::kReached && doing_ == Doing::kIdle) text_.clear();
+    needs_way_ = progress == Progress::kFailed;
     if (progress != Progress::kPending) hoist_.reset();
   }
 }
@@ -234,7 +243,7 @@ void RobotDriver::follow_climb() {
   }
   const Progress progress = climb_->step();
   text_ = climb_->text();
-  if (progress == Progress::kFailed) return idle(text_.empty() ? "no answer" : text_);
+  if (progress == Progress::kFailed) return idle(text_.empty() ? "no answer" : text_, listened());
   if (progress == Progress::kPending) return;
   if (source_.heard(robot_)->mode() == Modes::WALK) {
     enter(Doing::kDriving);
@@ -347,7 +356,26 @@ void RobotDriver::send_if_due() {
   if (doing_ == Doing::kDriving && hold_.armed() && palms != nullptr) arms_.send(robot_, *palms, kArmsLease_s);
 }
 
-std::string RobotDriver::text() const { return doing_ == Doing::kIdle && text_.empty() ? idle_text() : text_; }
+std::string RobotDriver::text() const { return doing_ == Doing::kIdle && text_.empty() ? idle_text() : whole_text(); }
+
+bool RobotDriver::listened() const {
+  const HeardRobot* heard = source_.heard(robot_);
+  if (heard == nullptr || !heard->ack) return false;
+  return heard->ack->verdict == pmg_msgs::ack_t::TAKEN || heard->ack->verdict == pmg_msgs::ack_t::TILTED;
+}
+
+std::string RobotDriver::whole_text() const {
+  if (doing_ != Doing::kIdle || text_.empty() || !needs_way_ || errand_ || hoist_ || silent()) return text_;
+  const std::string way = this->way();
+  return way.empty() ? text_ : text_ + ": " + way;
+}
+
+std::string RobotDriver::way() const {
+  const HeardRobot* heard = source_.heard(robot_);
+  if (heard == nullptr || !heard->status) return "";
+  const std::string way = way_up(posture(*heard, news_, now_ns()), manner_);
+  return way.empty() && held_back_ ? manner_.raises : way;
+}
 
 std::string RobotDriver::idle_text() const {
   if (silent()) return silence_words();
@@ -355,8 +383,12 @@ std::string RobotDriver::idle_text() const {
   if (!status.driving_source.empty() && !source_.drives(status)) {
     return "another source drives: " + status.driving_source;
   }
-  if (held_back_) return manner_.raises;
-  return is_upright(*mode_) ? "stands; " + manner_.drives : manner_.starts;
+  const Posture now = posture(*source_.heard(robot_), news_, now_ns());
+  const std::vector<Step> steps = steps_up(now);
+  if (held_back_ && steps.empty()) return manner_.raises;
+  if (steps.empty()) return "stands; " + manner_.drives;
+  const bool one = steps.size() == 1 && steps.front() == Step::kStand;
+  return one && !held_back_ ? manner_.starts : way_up(now, manner_);
 }
 
 }  // namespace pmg::ops

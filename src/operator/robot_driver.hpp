@@ -60,7 +60,7 @@ class RobotDriver {
   bool driving() const noexcept { return doing_ == Doing::kDriving; }
   bool idle() const noexcept { return doing_ == Doing::kIdle; }
   /// While idle(): why it no longer drives. Empty: nobody asks for more.
-  const std::string& why_idle() const noexcept { return text_; }
+  std::string why_idle() const { return whole_text(); }
   /// The source whose lease must end first: it drove, fell silent and did not let go. Empty: none.
   std::string waits_for() const;
   /// What the controller follows in place of the newest command, and why. Empty: it follows the command.
@@ -82,7 +82,8 @@ class RobotDriver {
   void hoist(bool lift);
 
   void climb(Goal to);
-  void idle(const std::string& text);
+  /// needs_way: the way up belongs behind the text.
+  void idle(const std::string& text, bool needs_way = false);
   void rest();
   void hold_back(const std::string& text);
 
@@ -101,6 +102,10 @@ class RobotDriver {
   bool bent() const noexcept;
   void send_if_due();
   std::string idle_text() const;
+  bool listened() const;  ///< the last request was this operator's to make
+  /// text_, and the way up where the robot waits for it.
+  std::string whole_text() const;
+  std::string way() const;
   std::string silence_words() const;
 
   OperatorSource& source_;
@@ -125,6 +130,7 @@ class RobotDriver {
   std::optional<HoistWish> hoist_;
   std::optional<TakenCommand> taken_;
   std::string text_, limited_;
+  bool needs_way_ = false;  // as idle() has it
 };
 
 }  // namespace pmg::ops

@@ -8,8 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "io/clock.hpp"
 #include "io/plain_text.hpp"
 #include "operator/taken_command.hpp"
+#include "operator/way_up.hpp"
 #include "operator/words.hpp"
 #include "pmg/command.hpp"
 #include "pmg/types.hpp"
@@ -88,6 +90,11 @@ std::optional<double> state_age_s(const RobotNews& news) {
   return 1e-9 * static_cast<double>(news.status.stamp_ns - news.state->stamp_ns);
 }
 
+/// What somebody at a shell does next so that the robot stands; empty: nothing.
+std::string next_text(const RobotNews& news, double silence_s) {
+  return way_up(posture(news, news.heard_ns + io::nanoseconds(silence_s)), shell_manner());
+}
+
 nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
   nlohmann::ordered_json json;
   for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = u[i];
@@ -100,8 +107,9 @@ std::string limits_text(const RobotNews& news) {
   const pmg_msgs::status_t& status = news.status;
   std::string text = fmt::format("range {}  speed {}  torque {} joints", status.limited_position, status.limited_rate,
                                  status.limited_torque);
-  if (news.reference && news.reference->command_limited) {
-    const std::string why = beyond_reach(news.reference->user, news);
+  const pmg_msgs::reference_t* reference = reference_in_force(news);
+  if (reference != nullptr && reference->command_limited) {
+    const std::string why = beyond_reach(reference->user, news);
     text += why.empty() ? "; command" : fmt::format("; command: {}", why);
   }
   if (status.gco_held) text += "; ground-aware optimisation held";
@@ -112,9 +120,9 @@ std::string limits_text(const RobotNews& news) {
 std::string one_line(const RobotNews& news, double silence_s) {
   const pmg_msgs::status_t& status = news.status;
   std::string line = fmt::format("{:<12} {:<8} driven by {:<16}", status.robot, mode_text(status), driver(status));
-  if (news.reference) {
-    line += fmt::format(" vx {:+.2f} vy {:+.2f} omega {:+.2f}", news.reference->command[kVx],
-                        news.reference->command[kVy], news.reference->command[kOmega]);
+  if (const pmg_msgs::reference_t* reference = reference_in_force(news)) {
+    line += fmt::format(" vx {:+.2f} vy {:+.2f} omega {:+.2f}", reference->command[kVx], reference->command[kVy],
+                        reference->command[kOmega]);
   }
   if (!news.tick_us.empty()) line += fmt::format(" tick p99 {:.0f} us", news.tick_us.percentile(99));
   if (!status.fault.empty()) line += "  FAULT " + status.fault;
@@ -142,16 +150,18 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
   add("mode", fmt::format("{}{}", mode_text(status),
                           silence_s > kGone_s ? fmt::format("   NOT HEARD for {:.0f} s", silence_s) : ""));
   add("fault", status.fault.empty() ? "none" : status.fault);
+  if (const std::string next = next_text(news, silence_s); !next.empty())
+    for (std::string& line : io::wrapped(io::plain_text(fmt::format("{:<11}{}", "next", next)), 79, 11))
+      lines.push_back(std::move(line));
   add("driven by", status.command_age_s < 0.0
                        ? driver(status) + "   no command yet"
                        : fmt::format("{}   last command {:.2f} s ago", driver(status), status.command_age_s));
-  if (news.reference) {
-    const pmg_msgs::reference_t& reference = *news.reference;
-    add("asked", command_text(reference.user));
-    add("u", command_text(reference.command));
-    add("u'", command_text(reference.optimised));
-    add("gait", fmt::format("phase {:.2f}   left {}   right {}", reference.phase, reference.contact[0] ? "##" : "..",
-                            reference.contact[1] ? "##" : ".."));
+  if (const pmg_msgs::reference_t* reference = reference_in_force(news)) {
+    add("asked", command_text(reference->user));
+    add("u", command_text(reference->command));
+    add("u'", command_text(reference->optimised));
+    add("gait", fmt::format("phase {:.2f}   left {}   right {}", reference->phase, reference->contact[0] ? "##" : "..",
+                            reference->contact[1] ? "##" : ".."));
   }
   if (status.foot_load[kLeft] != kNotEstimated) {
     add("feet carry", fmt::format("left {:.0f} %  right {:.0f} % of the weight{}", 100.0 * status.foot_load[kLeft],
@@ -193,18 +203,20 @@ nlohmann::ordered_json news_json(const RobotNews& news, double silence_s) {
       {"footing_unknown", status.footing_unknown != 0},
       {"limited",
        {{"position", status.limited_position}, {"rate", status.limited_rate}, {"torque", status.limited_torque}}}};
+  if (const std::string next = next_text(news, silence_s); !next.empty()) json["next"] = next;
+  if (const auto tilt = tilt_rad(news)) json["tilt_rad"] = *tilt;
   if (const auto age_s = state_age_s(news)) json["state_age_s"] = *age_s;
   if (news.info) {
     json["info"] = {{"model", news.info->model},      {"software", news.info->software}, {"policy", news.info->policy},
                     {"variant", variant(*news.info)}, {"backend", news.info->backend},   {"bundle", news.info->bundle},
                     {"refused", news.info->refused}};
   }
-  if (news.reference) {
-    json["user"] = command_json(news.reference->user);
-    json["command"] = command_json(news.reference->command);
-    json["optimised"] = command_json(news.reference->optimised);
-    json["phase"] = news.reference->phase;
-    json["contact"] = {news.reference->contact[0] != 0, news.reference->contact[1] != 0};
+  if (const pmg_msgs::reference_t* reference = reference_in_force(news)) {
+    json["user"] = command_json(reference->user);
+    json["command"] = command_json(reference->command);
+    json["optimised"] = command_json(reference->optimised);
+    json["phase"] = reference->phase;
+    json["contact"] = {reference->contact[0] != 0, reference->contact[1] != 0};
   }
   if (status.foot_load[kLeft] != kNotEstimated) json["foot_load"] = {status.foot_load[kLeft], status.foot_load[kRight]};
   if (const auto hot = hottest(news)) {

@@ -38,6 +38,8 @@ const char* verdict_words(std::int8_t verdict) noexcept {
       return "no mode that can be asked for";
     case pmg_msgs::ack_t::NO_KEY:
       return kNoKey;
+    case pmg_msgs::ack_t::TILTED:
+      return "it lies, or leans too far to stand up";
     default:
       return "unknown answer";
   }

@@ -34,6 +34,15 @@ TEST(PlainText, LettersOfEveryLanguageStayAndNothingUnseen) {
   EXPECT_EQ(plain_text("\xe2\x82"), "\\xe2\\x82") << "cut short";
 }
 
+TEST(PlainText, LinesAreBrokenBetweenWords) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(wrapped("", 5, 2), Lines{""});
+  EXPECT_EQ(wrapped("a bc", 4, 2), Lines{"a bc"});
+  EXPECT_EQ(wrapped("one two three", 7, 2), (Lines{"one two", "  three"}));
+  EXPECT_EQ(wrapped("one  two", 5, 2), (Lines{"one ", "  two"}));
+  EXPECT_EQ(wrapped("longer than it", 4, 1), (Lines{"longer", " than", " it"})) << "no word is broken";
+}
+
 TEST(PlainText, NoCellIsAFormula) {
   for (const char* formula : {"=1+1", "+1", "-1", "@sum"}) EXPECT_EQ(csv_text(formula), std::string("'") + formula);
   EXPECT_EQ(csv_text("=a,\"b\""), "\"'=a,\"\"b\"\"\"");

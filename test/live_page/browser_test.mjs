@@ -2,6 +2,7 @@
 // Usage: node browser_test.mjs FOLDER_OF_PROGRAMS FOLDER_OF_PACKAGES; exit codes: 0 passed, 1 not, 77 no Chromium
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
+import dgram from 'node:dgram';
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import os from 'node:os';
@@ -23,6 +24,24 @@ function start(name, ...args) {
   children.push(child);
   return child;
 }
+/// Calls heard(time [ms], vx [m/s]) for each COMMAND on the network.
+function hearCommands(heard) {
+  const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
+  socket.on('message', (bytes) => {
+    const end = bytes.indexOf(0, 8);                       // magic, number, channel
+    if (bytes.toString('latin1', 8, end) !== 'COMMAND') return;
+    let at = end + 1 + 8 + 4;                              // fingerprint, version
+    const pass = () => { at += 4 + bytes.readInt32BE(at); };
+    pass();                                                // robot
+    at += 8;
+    pass();                                                // source
+    heard(performance.timeOrigin + performance.now(), bytes.readDoubleBE(at + 8 + 8 + 8));
+  });
+  socket.bind(port, () => socket.addMembership('239.255.76.67'));
+  return socket;
+}
+/// Nearest rank.
+const percentile = (values, percent) => values.toSorted((a, b) => a - b)[Math.ceil(values.length * percent / 100) - 1];
 let tellMore = async () => '';
 async function until(what, condition, seconds = 60) {
   const end = Date.now() + 1000 * seconds;
@@ -153,6 +172,31 @@ async function run(browser, token) {
     await pause(500);
     return /at its target|on the way/.test(await rightArm());
   });
+
+  step('poses reach LCM (times are reported, not judged)');
+  const changes = [];                                      // [time, vx] of each COMMAND with another velocity
+  const listener = hearCommands((time, vx) => { if (!changes.length || Math.abs(changes.at(-1)[1] - vx) > 0.01) changes.push([time, vx]); });
+  const sent = await vr.evaluate(() => new Promise((resolve) => {
+    const times = [], {say} = connection;
+    let ahead = null, steps = 0;
+    connection.say = (text) => {
+      const {head} = JSON.parse(text), moved = head && ahead !== null && Math.abs(head[2] - ahead) > 0.02;
+      if (head) ahead = head[2];
+      if (moved) times.push(performance.timeOrigin + performance.now());
+      return say.call(connection, text);
+    };
+    const timer = setInterval(() => {
+      quest.position.z += steps % 2 ? 0.04 : -0.04;
+      if (++steps < 200) return;
+      clearInterval(timer);
+      connection.say = say;
+      resolve(times);
+    }, 100);
+  }));
+  listener.close();
+  const delays_ms = sent.map((time) => changes.find(([heard]) => heard >= time)?.[0] - time).filter((delay) => delay < 95);
+  assert.ok(delays_ms.length > 50, `only ${delays_ms.length} of 200 steps of the head were seen on the network`);
+  step(`pose to LCM: p50 ${percentile(delays_ms, 50).toFixed(1)} ms, p99 ${percentile(delays_ms, 99).toFixed(1)} ms over ${delays_ms.length} steps of the head`);
 
   step('a lost controller holds its palm and nothing else');
   await vr.evaluate(() => { quest.controllers.right.connected = false; });

@@ -1,0 +1,272 @@
+// No dead end: whatever happens to a simulated robot, somebody who only does what the screen says has it on its feet again.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "control/control_cycle.hpp"
+#include "control/control_setup.hpp"
+#include "control/controller_outbox.hpp"
+#include "control/fixtures.hpp"
+#include "hal/bus_cycle.hpp"
+#include "keyboard/key_command.hpp"
+#include "operator/mode_wish.hpp"
+#include "operator/robot_driver.hpp"
+#include "operator/robot_text.hpp"
+#include "runtime/comms.hpp"
+#include "sil/simulated_robot.hpp"
+
+namespace pmg::sil {
+namespace {
+
+/// Drives whose command and whose sensors something may spoil.
+class SpoiltDrives final : public hal::Hal {
+ public:
+  explicit SpoiltDrives(hal::Hal& drives) : drives_(drives) {}
+  hal::BusStatus exchange(const model::JointCommand& command, model::RobotState& state) noexcept override {
+    if (!limp) return spoilt(drives_.exchange(command, state), state);
+    released_ = command;
+    released_.kp.setZero();
+    released_.kd.setZero();
+    released_.tau_ff.setZero();
+    return spoilt(drives_.exchange(released_, state), state);
+  }
+  bool limp = false;  ///< the power is off
+  std::function<hal::BusStatus(model::RobotState&)> spoil;
+
+ private:
+  hal::BusStatus spoilt(hal::BusStatus status, model::RobotState& state) const noexcept {
+    return spoil ? spoil(state) : status;
+  }
+  hal::Hal& drives_;
+  model::JointCommand released_;
+};
+
+/// Controller, simulated robot on its hoist, network and keyboard in one thread, on a clock that the simulation moves.
+class Driven {
+ public:
+  Driven() {
+    tick_ = control::make_tick(loaded_, clock_);
+    cycle_ = std::make_unique<control::ControlCycle>(*tick_, bus_link_, inbox_, clock_);
+    bus_ = std::make_unique<hal::BusCycle>(drives, bus_link_, loaded_.robot, clock_);
+    run_.robot = "z1";
+    run_.session = 1;
+    run_.options = control::control_json(loaded_).dump();
+    comms_ = std::make_unique<runtime::Comms>(link_, inbox_, outbox_, loaded_.robot, run_, 100.0, clock_);
+    comms_->work(robot.hoist_line());
+    bus_->run();
+  }
+  const control::TickResult& result() const { return cycle_->record().result; }
+  const ops::RobotNews* news() const {
+    const auto found = board_.robots().find("z1");
+    return found == board_.robots().end() ? nullptr : &found->second;
+  }
+
+  void step() {  // 10 ms
+    cycle_->run(clock_.now_ns());
+    for (std::size_t i = 0; i < result().ack_count; ++i) outbox_.acks.push(result().acks[i]);
+    outbox_.newest.put(cycle_->record());
+    for (int k = 0; k < 5; ++k) {
+      clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
+      bus_->run();
+      comms_->step(0);
+      link_.receive(0);
+    }
+    driver.step(news());
+  }
+  void run(double seconds) {
+    for (double t_s = 0.0; t_s < seconds; t_s += 0.01) step();
+  }
+  void press(const char* key) { keys.press(key, false, clock_.now_ns()); }
+  /// A key that is held for so long.
+  void hold(const char* key, double seconds) {
+    for (double t_s = 0.0; t_s < seconds; t_s += 0.1) {
+      if (t_s == 0.0) press(key);
+      keys.repeat(key, false, clock_.now_ns());
+      run(0.1);
+    }
+    keys.release(key, clock_.now_ns());
+  }
+  /// Another operator's, as by pmg_send.
+  void ask(ops::Goal goal) {
+    ops::ModeWish wish(other_, "z1", goal, 2.0);
+    for (int k = 0; k < 300 && wish.step() == ops::Progress::kPending; ++k) step();
+    answer = wish.answers().front();
+  }
+  double lean_rad() const {
+    return std::acos(std::clamp((world.truth().q_WT * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
+  }
+  bool stands_alone() {
+    return control::upright(result().mode) && robot.hoist_line()->state() == hal::CraneState::kFree && lean_rad() < 0.2 &&
+           world.torso_height_m() > -0.1;
+  }
+
+  /// Presses what the screen says first, as long as it says something. Returns the texts that it read.
+  std::vector<std::string> do_what_the_screen_says(double at_most_s = 60.0) {
+    static constexpr std::array<std::pair<const char*, const char*>, 5> kSaid = {
+        {{"H lifts it", "h"},
+         {"G sets it down", "g"},
+         {"R resets it", "r"},
+         {"Enter makes it stand up", "enter"},
+         {"the hoist takes it up", ""}}};
+    std::vector<std::string> read;
+    for (double t_s = 0.0; t_s < at_most_s; t_s += 0.5) {
+      run(0.5);
+      const std::string text = driver.text();
+      if (read.empty() || read.back() != text) read.push_back(fmt::format("{:.1f} s: {}", t_s, text));
+      if (text.starts_with("stands;") && robot.hoist_line()->state() == hal::CraneState::kFree) break;
+      const auto* first = std::ranges::min_element(kSaid, {}, [&](const auto& said) { return text.find(said.first); });
+      if (text.find(first->first) != std::string::npos && *first->second != '\0') press(first->second);
+    }
+    run(1.0);
+    return read;
+  }
+
+  io::SimulationClock clock_;
+  io::LcmLink link_{"memq://"};
+  control::LoadedControl loaded_ = control::load_control({});
+  sim::World world{test::z1(), world_with_noise(7, true)};
+  SimulatedRobot robot{world, HoistedBy::kCrane, false};
+  SpoiltDrives drives{robot};
+  hal::BusLink bus_link_;
+  control::OperatorInbox inbox_{bus_link_.stop};
+  control::ControllerOutbox outbox_;
+  recording::RunInfo run_;
+  std::unique_ptr<control::Tick> tick_;
+  std::unique_ptr<control::ControlCycle> cycle_;
+  std::unique_ptr<hal::BusCycle> bus_;
+  std::unique_ptr<runtime::Comms> comms_;
+  ops::OperatorSource source_{link_, "keyboard", 1, clock_}, other_{link_, "other", 1, clock_};
+  ops::RobotBoard board_{link_, clock_};
+  ops::KeyCommand keys{ops::KeyReport::kPressAndRelease};
+  ops::RobotDriver driver{source_, "z1", keys};
+  ops::Answer answer;
+};
+
+struct Mishap {
+  const char* name;
+  void (*happens)(Driven&);
+};
+
+void PrintTo(const Mishap& mishap, std::ostream* out) { *out << mishap.name; }
+
+void spoil_for(Driven& driven, double seconds, std::function<hal::BusStatus(model::RobotState&)> spoil) {
+  driven.drives.spoil = std::move(spoil);
+  driven.run(seconds);
+  driven.drives.spoil = nullptr;
+}
+
+constexpr std::array kMishaps = {
+    Mishap{"NothingAtAll", [](Driven&) {}},
+    Mishap{"StoppedAMomentAgo",
+           [](Driven& driven) {
+             driven.press("escape");
+             driven.run(0.1);
+           }},
+    Mishap{"StoppedAndLies",
+           [](Driven& driven) {
+             driven.press("escape");
+             driven.run(3.0);
+           }},
+    Mishap{"StoppedByAnotherAsItWalks",
+           [](Driven& driven) {
+             driven.hold("w", 2.0);
+             driven.ask(ops::Goal::kDamping);
+             driven.run(3.0);
+           }},
+    Mishap{"LimpByAnother",
+           [](Driven& driven) {
+             driven.ask(ops::Goal::kDamping);
+             driven.run(1.0);
+             driven.ask(ops::Goal::kPassive);
+             driven.run(2.0);
+             EXPECT_EQ(driven.result().mode, control::Mode::kPassive);
+           }},
+    Mishap{"PowerOffAndTilted",
+           [](Driven& driven) {
+             driven.drives.limp = true;
+             driven.run(3.0);
+             driven.drives.limp = false;
+             EXPECT_EQ(driven.result().mode, control::Mode::kFault);
+           }},
+    Mishap{"TooHot",
+           [](Driven& driven) {
+             spoil_for(driven, 2.0, [](model::RobotState& state) {
+               state.temperature_degC[3] = 200.0;
+               return hal::BusStatus::kOk;
+             });
+             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kTemperature);
+           }},
+    Mishap{"BusLostInTheAir",
+           [](Driven& driven) {
+             driven.press("h");
+             driven.run(6.0);
+             spoil_for(driven, 0.1, [](model::RobotState&) { return hal::BusStatus::kLost; });
+             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kBusLost);
+           }},
+    Mishap{"LiftedAsItWalks",
+           [](Driven& driven) {
+             driven.hold("w", 2.0);
+             driven.press("h");
+             driven.run(1.0);
+           }},
+    Mishap{"KeysThatItRefuses",
+           [](Driven& driven) {
+             driven.press("escape");
+             driven.run(3.0);
+             for (const char* key : {"enter", "r", "w", "enter", "g"}) {
+               driven.press(key);
+               driven.run(0.5);
+             }
+             EXPECT_EQ(driven.result().mode, control::Mode::kDamping) << "a lying robot's request for Stand is no fault";
+           }},
+};
+
+class WayUp : public testing::TestWithParam<Mishap> {};
+
+TEST_P(WayUp, WhatTheScreenSaysEndsOnItsFeet) {
+  Driven driven;
+  driven.run(1.5);  // the robot's name and limits are known
+  driven.press("enter");
+  driven.do_what_the_screen_says(20.0);
+  ASSERT_TRUE(driven.stands_alone()) << driven.driver.text();
+  GetParam().happens(driven);
+  const std::vector<std::string> read = driven.do_what_the_screen_says();
+  EXPECT_TRUE(driven.stands_alone()) << testing::PrintToString(read);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mishaps, WayUp, testing::ValuesIn(kMishaps),
+                         [](const auto& mishap) { return std::string(mishap.param.name); });
+
+TEST(WayUpText, ALyingRobotsRequestIsRefusedWithTheWayAndNothingElse) {
+  Driven driven;
+  driven.run(1.5);
+  driven.press("enter");
+  driven.do_what_the_screen_says(20.0);
+  driven.press("escape");
+  driven.run(3.0);
+  driven.ask(ops::Goal::kStand);
+  EXPECT_EQ(driven.answer.progress, ops::Progress::kFailed);
+  EXPECT_THAT(driven.answer.text, testing::HasSubstr("lies"));
+  driven.press("enter");
+  driven.run(0.2);
+  EXPECT_THAT(driven.driver.text(),
+              testing::MatchesRegex(
+                  "it lies, or leans too far to stand up: lies \\(1\\.[0-9]+ rad from upright\\): H lifts it, then Enter "
+                  "makes it stand up"));
+  EXPECT_EQ(driven.result().mode, control::Mode::kDamping);
+  const std::vector<std::string> screen = ops::screen(*driven.news(), 0.0);
+  EXPECT_THAT(screen, testing::Contains(testing::MatchesRegex("next +lies .*: pmg_send lift lifts it, then .*")));
+  EXPECT_THAT(screen, testing::Not(testing::Contains(testing::StartsWith("asked")))) << "no command is in force";
+}
+
+}  // namespace
+}  // namespace pmg::sil
