@@ -72,7 +72,8 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::
     std::size_t end = text.size();
     if (end > room) {
       end = text.rfind(' ', room);
-      if (end == std::string_view::npos || text.find_first_not_of(' ') >= end) end = std::min(text.find(' ', room), text.size());
+      if (end == std::string_view::npos || text.find_first_not_of(' ') >= end)
+        end = std::min(text.find(' ', room), text.size());
     }
     lines.push_back(lead + std::string(text.substr(0, end)));
     const std::size_t next = text.find_first_not_of(' ', end);

@@ -1,4 +1,5 @@
-// How much longer a message travelled than the fastest one of its sender: the order of messages says nothing of their age.
+// How much longer a message travelled than the fastest one of its sender: the order of messages says nothing of their
+// age.
 #pragma once
 
 #include <cstdint>

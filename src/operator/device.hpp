@@ -41,14 +41,14 @@ struct Requests {
 
 /// How a kind of device drives, and the words for it.
 struct DeviceManner {
-  std::string name;         ///< in the source's name: "keyboard"
-  bool command_raises;      ///< a command takes the robot from any mode to Walk; otherwise from Stand only
-  bool at_once;             ///< a command that changes is sent at once; otherwise the rate is fixed
-  std::string raises;       ///< how the robot is made to stand up: "Enter makes it stand up"
-  std::string resets;       ///< how a fault is reset: "R resets it"
-  std::string drives;       ///< how it is driven from Stand: "a key drives it"
-  std::string starts;       ///< the same from a mode below Stand
-  std::string lifts = "pmg_send lift lifts it";             ///< how a simulated robot's hoist takes it up
+  std::string name;     ///< in the source's name: "keyboard"
+  bool command_raises;  ///< a command takes the robot from any mode to Walk; otherwise from Stand only
+  bool at_once;         ///< a command that changes is sent at once; otherwise the rate is fixed
+  std::string raises;   ///< how the robot is made to stand up: "Enter makes it stand up"
+  std::string resets;   ///< how a fault is reset: "R resets it"
+  std::string drives;   ///< how it is driven from Stand: "a key drives it"
+  std::string starts;   ///< the same from a mode below Stand
+  std::string lifts = "pmg_send lift lifts it";           ///< how a simulated robot's hoist takes it up
   std::string sets_down = "pmg_send lower sets it down";  ///< likewise
   std::string anew;         ///< what to do after it came to rest by itself: "Press a key anew"
   double timeout_s = 10.0;  ///< for each request

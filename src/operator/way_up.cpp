@@ -89,8 +89,7 @@ std::vector<Step> steps_up(const Posture& posture) {
 
 std::string way_up(const Posture& posture, const DeviceManner& manner) {
   std::string text;
-  for (const Step step : steps_up(posture))
-    text += (text.empty() ? where(posture) : ", then ") + words(step, manner);
+  for (const Step step : steps_up(posture)) text += (text.empty() ? where(posture) : ", then ") + words(step, manner);
   return text;
 }
 

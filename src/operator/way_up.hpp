@@ -14,11 +14,11 @@ namespace pmg::ops {
 
 /// What is known of a robot, as far as it decides the way up.
 struct Posture {
-  std::int8_t mode = 0;                     ///< of pmg_msgs::mode_t
-  std::optional<double> tilt_rad{};         ///< of the IMU's link from upright; nothing: not known
-  bool down = false;                        ///< it leans farther than a robot may that is to stand up
-  std::optional<std::int8_t> hoist{};       ///< of pmg_msgs::hoist_state_t; nothing: there is no hoist, or it is silent
-  bool stays_up = false, hanging = false;   ///< as hoist_state_t and status_t have them
+  std::int8_t mode = 0;                    ///< of pmg_msgs::mode_t
+  std::optional<double> tilt_rad{};        ///< of the IMU's link from upright; nothing: not known
+  bool down = false;                       ///< it leans farther than a robot may that is to stand up
+  std::optional<std::int8_t> hoist{};      ///< of pmg_msgs::hoist_state_t; nothing: there is no hoist, or it is silent
+  bool stays_up = false, hanging = false;  ///< as hoist_state_t and status_t have them
 };
 
 /// news: null: STATE and ROBOT_INFO aren't known, so nothing tells how far the robot leans.
@@ -27,9 +27,9 @@ Posture posture(const RobotNews& news, std::int64_t now_ns);
 
 /// One thing to do, or to wait for.
 enum class Step : std::uint8_t {
-  kLift,       ///< by the hoist
-  kPutUp,      ///< by people or a crane that listens to nobody
-  kAwaitHoist, ///< it is on its way up
+  kLift,        ///< by the hoist
+  kPutUp,       ///< by people or a crane that listens to nobody
+  kAwaitHoist,  ///< it is on its way up
   kReset,
   kStand,
   kSetDown,

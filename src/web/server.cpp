@@ -75,6 +75,11 @@ struct Board {
   Counts counts;
   std::int32_t last_id = 0;
 
+  void count_state(std::size_t bytes) {
+    const std::lock_guard lock(mutex);
+    ++counts.states;
+    counts.state_bytes += bytes;
+  }
   void count(std::uint64_t Counts::*what) {
     const std::lock_guard lock(mutex);
     ++(counts.*what);
@@ -217,6 +222,7 @@ class OpenPage : public std::enable_shared_from_this<OpenPage> {
     writing_ = true;
     text_ = std::move(*next_);
     next_.reset();
+    board_.count_state(text_.size());
     socket_.text(true);
     socket_.async_write(asio::buffer(text_), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->end();

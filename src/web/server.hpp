@@ -47,6 +47,7 @@ struct Said {
 /// Since the start.
 struct Counts {
   std::uint64_t connections = 0, pages = 0, messages = 0;
+  std::uint64_t states = 0, state_bytes = 0;  // given to sockets; at most kMostOnTheWay of a page aren't confirmed
   // Refused:
   std::uint64_t host = 0, origin = 0, token = 0, path = 0, method = 0, malformed = 0, full = 0, slow = 0;
   // Dropped, or their page closed:

@@ -51,8 +51,8 @@ std::string small_urdf() {
            "iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link>\n";
   };
   const auto joint = [](const std::string& parent, const std::string& child, const char* type, const char* xyz) {
-    return "<joint name=\"" + child + "_joint\" type=\"" + type + "\"><parent link=\"" + parent +
-           "\"/><child link=\"" + child + "\"/><origin xyz=\"" + xyz + "\"/><axis xyz=\"0 1 0\"/>" +
+    return "<joint name=\"" + child + "_joint\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" +
+           child + "\"/><origin xyz=\"" + xyz + "\"/><axis xyz=\"0 1 0\"/>" +
            "<limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\n";
   };
   std::string text = "<robot name=\"small\">\n" + link("torso");

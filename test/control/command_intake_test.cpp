@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace pmg::control {
 namespace {
@@ -33,18 +34,19 @@ class Intake : public testing::Test {
     return intake_.accept(message, now_ns);
   }
   CommandIntake::Judgement request(const char* source, std::int64_t session, std::int64_t sequence, Mode mode,
-                                   std::int64_t now_ns, bool reset = false) {
-    return request_sent(now_ns, source, session, sequence, mode, now_ns, reset);
+                                   std::int64_t now_ns, bool reset = false, bool down = false) {
+    return request_sent(now_ns, source, session, sequence, mode, now_ns, reset, down);
   }
   CommandIntake::Judgement request_sent(std::int64_t stamp_ns, const char* source, std::int64_t session,
-                                        std::int64_t sequence, Mode mode, std::int64_t now_ns, bool reset = false) {
+                                        std::int64_t sequence, Mode mode, std::int64_t now_ns, bool reset = false,
+                                        bool down = false) {
     return intake_.judge({.source = Source::make(source, session),
                           .sequence = sequence,
                           .stamp_ns = stamp_ns,
                           .received_ns = now_ns,
                           .mode = mode,
                           .reset_fault = reset},
-                         now_ns);
+                         now_ns, down);
   }
 
   CommandIntake intake_;
@@ -243,6 +245,23 @@ TEST_F(Intake, LateRequestsAreRefused) {
   EXPECT_EQ(request_sent(kSecond_ns, "vr", 1, 2, Mode::kWalk, 2 * kSecond_ns + 210'000'000).verdict, Verdict::kLate);
   EXPECT_EQ(request_sent(3 * kSecond_ns, "vr", 1, 2, Mode::kWalk, 3 * kSecond_ns).verdict, Verdict::kLate) << "as told";
   EXPECT_EQ(request_sent(3 * kSecond_ns, "vr", 1, 3, Mode::kWalk, 4 * kSecond_ns).verdict, Verdict::kTaken);
+}
+
+TEST_F(Intake, ALyingRobotIsNotAskedToRiseAndARepetitionGetsTheSameAnswer) {
+  const auto ask = [&](std::int64_t sequence, Mode mode, bool down, bool reset = false) {
+    return request("gamepad", 1, sequence, mode, sequence, reset, down);
+  };
+  for (const auto& [sequence, mode] : {std::pair{1, Mode::kStand}, std::pair{2, Mode::kWalk}}) {
+    EXPECT_EQ(ask(sequence, mode, true).verdict, Verdict::kTilted);
+    EXPECT_FALSE(ask(sequence, mode, false).fresh) << "a repetition raises no robot that was lifted meanwhile";
+    EXPECT_EQ(ask(sequence, mode, false).verdict, Verdict::kTilted);
+  }
+  EXPECT_TRUE(ask(3, Mode::kStand, false).fresh);
+  EXPECT_TRUE(ask(4, Mode::kPassive, true).fresh);
+  EXPECT_TRUE(ask(5, Mode::kDamping, true).fresh);
+  EXPECT_TRUE(ask(6, Mode::kDamping, true, true).fresh) << "a reset";
+  drive("vr", 1, 1, 7);
+  EXPECT_EQ(ask(8, Mode::kStand, true).verdict, Verdict::kNotYours) << "whose robot it is comes first";
 }
 
 TEST_F(Intake, AStopIsTakenHoweverOldRepeatedOrForeignItIs) {

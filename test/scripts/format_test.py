@@ -9,7 +9,14 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-USED = (".clang-format", "ruff.toml", "scripts/format", "third_party/pinned_folder.bash", "third_party/python-packages", "third_party/python/tools.txt")
+USED = (
+    ".clang-format",
+    "ruff.toml",
+    "scripts/format",
+    "third_party/pinned_folder.bash",
+    "third_party/python-packages",
+    "third_party/python/tools.txt",
+)
 GOOD = {"a.cpp": "int f() { return 1; }\n", "a.py": '"""A module."""\n', "tool": '#!/usr/bin/env python3\n"""A script without a suffix."""\n'}
 
 

@@ -1,4 +1,5 @@
-// No dead end: whatever happens to a simulated robot, somebody who only does what the screen says has it on its feet again.
+// No dead end: whatever happens to a simulated robot, somebody who only does what the screen says has it on its feet
+// again.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -105,18 +106,17 @@ class Driven {
     return std::acos(std::clamp((world.truth().q_WT * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
   }
   bool stands_alone() {
-    return control::upright(result().mode) && robot.hoist_line()->state() == hal::CraneState::kFree && lean_rad() < 0.2 &&
-           world.torso_height_m() > -0.1;
+    return control::upright(result().mode) && robot.hoist_line()->state() == hal::CraneState::kFree &&
+           lean_rad() < 0.2 && world.torso_height_m() > -0.1;
   }
 
   /// Presses what the screen says first, as long as it says something. Returns the texts that it read.
   std::vector<std::string> do_what_the_screen_says(double at_most_s = 60.0) {
-    static constexpr std::array<std::pair<const char*, const char*>, 5> kSaid = {
-        {{"H lifts it", "h"},
-         {"G sets it down", "g"},
-         {"R resets it", "r"},
-         {"Enter makes it stand up", "enter"},
-         {"the hoist takes it up", ""}}};
+    static constexpr std::array<std::pair<const char*, const char*>, 5> kSaid = {{{"H lifts it", "h"},
+                                                                                  {"G sets it down", "g"},
+                                                                                  {"R resets it", "r"},
+                                                                                  {"Enter makes it stand up", "enter"},
+                                                                                  {"the hoist takes it up", ""}}};
     std::vector<std::string> read;
     for (double t_s = 0.0; t_s < at_most_s; t_s += 0.5) {
       run(0.5);
@@ -226,7 +226,8 @@ constexpr std::array kMishaps = {
                driven.press(key);
                driven.run(0.5);
              }
-             EXPECT_EQ(driven.result().mode, control::Mode::kDamping) << "a lying robot's request for Stand is no fault";
+             EXPECT_EQ(driven.result().mode, control::Mode::kDamping)
+                 << "a lying robot's request for Stand is no fault";
            }},
 };
 
@@ -258,10 +259,11 @@ TEST(WayUpText, ALyingRobotsRequestIsRefusedWithTheWayAndNothingElse) {
   EXPECT_THAT(driven.answer.text, testing::HasSubstr("lies"));
   driven.press("enter");
   driven.run(0.2);
-  EXPECT_THAT(driven.driver.text(),
-              testing::MatchesRegex(
-                  "it lies, or leans too far to stand up: lies \\(1\\.[0-9]+ rad from upright\\): H lifts it, then Enter "
-                  "makes it stand up"));
+  EXPECT_THAT(
+      driven.driver.text(),
+      testing::MatchesRegex(
+          "it lies, or leans too far to stand up: lies \\(1\\.[0-9]+ rad from upright\\): H lifts it, then Enter "
+          "makes it stand up"));
   EXPECT_EQ(driven.result().mode, control::Mode::kDamping);
   const std::vector<std::string> screen = ops::screen(*driven.news(), 0.0);
   EXPECT_THAT(screen, testing::Contains(testing::MatchesRegex("next +lies .*: pmg_send lift lifts it, then .*")));

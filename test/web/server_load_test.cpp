@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "web/server_fixture.hpp"
@@ -15,6 +17,7 @@ namespace pmg::web {
 namespace {
 
 using ServerLoad = ServerTest;
+using SlowLink = ServerTest;
 
 TEST_F(ServerLoad, AFloodIsDroppedAndAStopPassesIt) {
   const auto paired = page();
@@ -87,6 +90,50 @@ TEST_F(ServerLoad, ASlowPageMissesStatesAndGetsTheNewest) {
     at_quick = next;
   }
   EXPECT_EQ(at_quick, kStates);
+}
+
+TEST_F(ServerLoad, APageThatReadsNothingHasNoMoreThanThreeStatesQueued) {
+  const auto deaf = page(), other = page();
+  const std::vector<Page> pages = server_.pages();
+  constexpr std::size_t kState_bytes = 20'000;
+  constexpr int kStates = 3000;  // a minute of them at fifty a second
+  for (int k = 0; k < kStates; ++k) server_.show(pages[0].id, std::string(kState_bytes, 's'));
+  server_.show(pages[1].id, "after them all");
+  EXPECT_EQ(other->hear(), "after them all");
+  const Counts counts = server_.counts();
+  EXPECT_LE(counts.states, Server::kMostOnTheWay + 1);
+  EXPECT_LE(counts.state_bytes, Server::kMostOnTheWay * kState_bytes + 14);
+}
+
+/// The page confirms one state in so long as ten are shown, for as long as a person waits for a link to come back.
+TEST_F(SlowLink, AMinuteAtATenthOfTheRateGivesTheNewestAndQueuesNothing) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kPeriod = std::chrono::milliseconds(50), kReads = 10 * kPeriod;
+  const auto slow = page();
+  const std::int32_t id = server_.pages().front().id;
+  const auto begin = Clock::now();
+  std::thread shower([&] {
+    for (int k = 0; k < 1200; ++k) {
+      server_.show(id, fmt::format("{:>8000}", k));
+      std::this_thread::sleep_until(begin + (k + 1) * kPeriod);
+    }
+  });
+  int heard = 0, behind_most = 0, before = -1;
+  for (auto at = begin + kReads; at < begin + std::chrono::seconds(60); at += kReads) {
+    std::this_thread::sleep_until(at);
+    const auto text = slow->hear();  // answers the ping of the state before
+    if (!text) break;
+    const int state = std::stoi(*text), newest = static_cast<int>((Clock::now() - begin) / kPeriod);
+    EXPECT_GT(state, before);
+    before = state;
+    ++heard;
+    behind_most = std::max(behind_most, newest - state);
+  }
+  shower.join();
+  EXPECT_GT(heard, 100);
+  // Each of those on the way was the newest when it was sent, one reading after the other.
+  EXPECT_LE(behind_most, 10 * static_cast<int>(Server::kMostOnTheWay + 1));
+  EXPECT_LE(server_.counts().states, static_cast<std::uint64_t>(heard) + Server::kMostOnTheWay + 1);
 }
 
 TEST_F(ServerLoad, TwoHundredIdleConnectionsHinderNobody) {
