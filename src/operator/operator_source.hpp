@@ -8,8 +8,8 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "operator/asked_request.hpp"
-#include "operator/status_order.hpp"
+#include "seal/asked_request.hpp"
+#include "seal/status_order.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
@@ -24,7 +24,7 @@ namespace pmg::ops {
 /// The newest messages of one controller.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
-  StatusOrder order{};                             ///< of its STATUS
+  seal::StatusOrder order{};                             ///< of its STATUS
   std::int64_t status_heard_ns = 0;                ///< by the source's clock
   std::int64_t first_heard_ns = 0;                 ///< likewise
   std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
@@ -107,7 +107,7 @@ class OperatorSource {
   std::map<std::string, HeardRobot> heard_;
   pmg_msgs::command_t command_{};
   pmg_msgs::mode_t mode_{};
-  AskedRequest asked_;
+  seal::AskedRequest asked_;
   pmg_msgs::hoist_t hoist_{};
 };
 

@@ -10,7 +10,7 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "operator/status_order.hpp"
+#include "seal/status_order.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
@@ -44,7 +44,7 @@ struct UprightRule {
 
 struct RobotNews {
   pmg_msgs::status_t status{};
-  StatusOrder order{};        ///< of its STATUS
+  seal::StatusOrder order{};        ///< of its STATUS
   std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
   std::optional<UprightRule> upright{};  ///< nothing: the controller doesn't tell it

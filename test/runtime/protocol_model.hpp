@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "control/command_intake.hpp"
-#include "operator/asked_request.hpp"
+#include "seal/asked_request.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
@@ -36,7 +36,7 @@ struct Sender {
   pmg_msgs::mode_t mode{};
   pmg_msgs::command_t command{};
   pmg_msgs::hoist_t hoist{};
-  ops::AskedRequest asked;
+  seal::AskedRequest asked;
   seal::Peer peer;
 };
 

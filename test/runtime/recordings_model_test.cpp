@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "operator/status_order.hpp"
+#include "seal/status_order.hpp"
 #include "runtime/name_contest.hpp"
 #include "sequence_search.hpp"
 
@@ -125,7 +125,7 @@ class Knowledge {
         pass_ms(600);
     }
     const bool drives = now_ns_ - drives_ns_ < kBelieved_ns;
-    if (drives && now_ns_ - spoke_ns_ > kBelieved_ns + ops::StatusOrder::kLate_ns) violation_ = "a dead robot drives";
+    if (drives && now_ns_ - spoke_ns_ > kBelieved_ns + seal::StatusOrder::kLate_ns) violation_ = "a dead robot drives";
   }
   const std::string& violation() const { return violation_; }
 
@@ -141,7 +141,7 @@ class Knowledge {
     if (status.session == session_) drives_ns_ = now_ns_;
   }
 
-  ops::StatusOrder order_;
+  seal::StatusOrder order_;
   std::vector<Status> said_;
   std::int64_t now_ns_ = 0, session_ = 1, spoke_ns_ = kNever, drives_ns_ = kNever;
   bool alive_ = true, heard_ = false;

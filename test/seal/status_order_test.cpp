@@ -1,11 +1,11 @@
 // No recorded STATUS is news.
-#include "operator/status_order.hpp"
+#include "seal/status_order.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-namespace pmg::ops {
+namespace pmg::seal {
 namespace {
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
@@ -72,4 +72,4 @@ TEST_F(StatusOrderTest, StampsMayBeAnything) {
 }
 
 }  // namespace
-}  // namespace pmg::ops
+}  // namespace pmg::seal

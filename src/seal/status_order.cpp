@@ -1,9 +1,9 @@
-#include "operator/status_order.hpp"
+#include "seal/status_order.hpp"
 
 #include <algorithm>
 #include <span>
 
-namespace pmg::ops {
+namespace pmg::seal {
 
 bool StatusOrder::news(std::int64_t boot, std::int64_t stamp_ns, std::int64_t now_ns) const noexcept {
   if (!any_) return true;
@@ -29,4 +29,4 @@ bool StatusOrder::is_earlier(std::int64_t boot, std::int64_t stamp_ns) const noe
                              [&](const Start& start) { return start.boot == boot && stamp_ns <= start.newest_ns; });
 }
 
-}  // namespace pmg::ops
+}  // namespace pmg::seal

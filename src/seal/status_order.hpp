@@ -6,7 +6,7 @@
 
 #include "io/transit.hpp"
 
-namespace pmg::ops {
+namespace pmg::seal {
 
 /// For the believed STATUS of one robot. A message is news if it is later than all before it of the same start of the
 /// controller, and hasn't waited. While one start of the controller speaks, another one's messages are recordings, or
@@ -37,4 +37,4 @@ class StatusOrder {
   std::size_t earlier_count_ = 0;
 };
 
-}  // namespace pmg::ops
+}  // namespace pmg::seal

@@ -9,7 +9,7 @@
 #include "pmg_msgs/ack_t.hpp"
 #include "seal/authentication.hpp"
 
-namespace pmg::ops {
+namespace pmg::seal {
 
 /// Knows the messages by which its source asked: an answer names one of them, or is another request's.
 class AskedRequest {
@@ -17,16 +17,16 @@ class AskedRequest {
   static constexpr std::size_t kRemembered = 32;  ///< repetitions, 50 ms apart
 
   void begin() noexcept { count_ = 0; }  ///< another request
-  void sent(const seal::Digest& digest) noexcept { sent_[count_++ % kRemembered] = digest; }
+  void sent(const Digest& digest) noexcept { sent_[count_++ % kRemembered] = digest; }
 
   bool answered_by(const pmg_msgs::ack_t& ack) const noexcept {
     return std::ranges::any_of(std::span(sent_).first(std::min(count_, kRemembered)),
-                               [&](const seal::Digest& digest) { return std::ranges::equal(digest, ack.digest); });
+                               [&](const Digest& digest) { return std::ranges::equal(digest, ack.digest); });
   }
 
  private:
-  std::array<seal::Digest, kRemembered> sent_{};  // a ring
+  std::array<Digest, kRemembered> sent_{};  // a ring
   std::size_t count_ = 0;
 };
 
-}  // namespace pmg::ops
+}  // namespace pmg::seal
