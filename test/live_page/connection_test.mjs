@@ -14,7 +14,7 @@ class Browser {
     this.now = 1000;
     this.timers = [];
     this.sockets = [];
-    this.answers = true;                                 // the server gives out pages
+    this.answers = {ok: true};                           // the server gives out pages
     this.storage = {'pmg.token': kept};
     this.elements = {};
     const browser = this;
@@ -31,7 +31,7 @@ class Browser {
     this.context = vm.createContext({
       WebSocket, document, location: {host: 'robot:8443', hash, pathname: '/'}, history: {replaceState: (_, __, path) => { this.address = path; }},
       localStorage: {getItem: (key) => this.storage[key], setItem: (key, value) => { this.storage[key] = value; }},
-      fetch: () => this.answers ? Promise.resolve({ok: true}) : Promise.reject(new Error('no network')),
+      fetch: () => this.answers ? Promise.resolve(this.answers) : Promise.reject(new Error('no network')),
       performance: {now: () => this.now}, Date: {now: () => this.now},
       setTimeout: (call, ms) => this.timers.push({at: this.now + ms, call}), heard: 0, lostTimes: 0});
     vm.runInContext(source + '\nconst connection = new Connection({hear: () => { heard += 1; }, lost: () => { lostTimes += 1; }});', this.context);
@@ -138,15 +138,39 @@ test('after two refusals the token is tried no more, the page looks, and says so
 
 test('a server that is away is no refusal', async () => {
   const browser = paired();
-  browser.answers = false;
-  for (let k = 0; k < 5; ++k) await browser.isRefused();
+  for (const answer of [null, {ok: false}]) {
+    browser.answers = answer;
+    for (let k = 0; k < 5; ++k) await browser.isRefused();
+    assert.equal(browser.socket.protocols.length, 2);
+  }
+});
+
+test('two refusals count in a row alone', async () => {
+  const browser = paired();
+  browser.socket.close();
+  await browser.passes(500);
+  for (let k = 0; k < 3; ++k) {
+    await browser.isRefused();
+    browser.opens();
+    browser.socket.close();
+    await browser.passes(500);
+  }
   assert.equal(browser.socket.protocols.length, 2);
+});
+
+test('a stop that a dead connection swallowed is said when it is too old to be sent again', async () => {
+  const browser = paired();
+  browser.connection.stop();
+  await browser.dropsAndIsBackAfter(11000);
+  browser.hears();
+  assert.match(browser.connection.alarm(), /NOT SENT in time: press it again/);
 });
 
 test('one connection at a time: an earlier one says nothing and brings no second', async () => {
   const browser = paired(), first = browser.socket;
   browser.connection.open();
   assert.equal(first.readyState, 3);
+  assert.equal(browser.context.lostTimes, 0, 'the page itself left it');
   browser.opens();
   browser.hears();
   const heard = browser.context.heard;
