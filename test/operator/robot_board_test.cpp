@@ -77,6 +77,7 @@ TEST_F(RobotBoardTest, NewsOfTwoRobotsAreNotMixed) {
   pmg_msgs::reference_t reference{};
   for (const auto& [name, vx_m_s] : {std::pair{"biped", 0.1}, {"second", 0.2}}) {
     status.robot = reference.robot = name;
+    status.mode = pmg_msgs::mode_t::WALK;
     reference.command[kVx] = vx_m_s;
     network_.link.publish("STATUS", status);
     network_.link.publish("REFERENCE", reference);
