@@ -8,8 +8,6 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "seal/asked_request.hpp"
-#include "seal/status_order.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
@@ -17,14 +15,16 @@
 #include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/status_t.hpp"
+#include "seal/asked_request.hpp"
 #include "seal/operator_seal.hpp"
+#include "seal/status_order.hpp"
 
 namespace pmg::ops {
 
 /// The newest messages of one controller.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
-  seal::StatusOrder order{};                             ///< of its STATUS
+  seal::StatusOrder order{};                       ///< of its STATUS
   std::int64_t status_heard_ns = 0;                ///< by the source's clock
   std::int64_t first_heard_ns = 0;                 ///< likewise
   std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request

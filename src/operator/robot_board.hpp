@@ -10,7 +10,6 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
-#include "seal/status_order.hpp"
 #include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
@@ -19,6 +18,7 @@
 #include "pmg_msgs/status_t.hpp"
 #include "pmg_msgs/timing_t.hpp"
 #include "seal/operator_seal.hpp"
+#include "seal/status_order.hpp"
 
 namespace pmg::ops {
 
@@ -44,7 +44,7 @@ struct UprightRule {
 
 struct RobotNews {
   pmg_msgs::status_t status{};
-  seal::StatusOrder order{};        ///< of its STATUS
+  seal::StatusOrder order{};  ///< of its STATUS
   std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
   std::optional<UprightRule> upright{};  ///< nothing: the controller doesn't tell it

@@ -44,8 +44,8 @@ const char* words(Step step, const DeviceManner& manner) {
 std::string where(const Posture& posture) {
   const bool held = posture.hoist && posture.hoist != Hoist::FREE;
   if (held && posture.hoist == Hoist::HOLDING) return "hangs on the hoist: ";
-  if (held || !posture.down) return "";
-  return posture.tilt_rad ? fmt::format("lies ({:.2f} rad from upright): ", *posture.tilt_rad) : "lies: ";
+  if (held || !posture.down || !posture.tilt_rad) return "";
+  return fmt::format("lies ({:.2f} rad from upright): ", *posture.tilt_rad);
 }
 
 }  // namespace

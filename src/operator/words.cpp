@@ -39,7 +39,7 @@ const char* verdict_words(std::int8_t verdict) noexcept {
     case pmg_msgs::ack_t::NO_KEY:
       return kNoKey;
     case pmg_msgs::ack_t::TILTED:
-      return "it lies, or leans too far to stand up";
+      return "it leans too far to stand up";
     default:
       return "unknown answer";
   }

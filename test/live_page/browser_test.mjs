@@ -122,7 +122,8 @@ async function run(browser, token) {
   await phone.mouse.up();
 
   step('a page that is hidden lets go');
-  await press(phone, 'button[data-request=lift]');  // a damped robot lies down
+  await until('a damped robot lies, and the page says the way up', async () => /lies .*Lift on the page lifts it, then Stand/.test(await phone.textContent('#text')));
+  await press(phone, 'button[data-request=lift]');
   await until('the hoist lifts', async () => (await phone.textContent('#text')).includes('hoist'));
   await until('it is lifted', async () => !(await phone.textContent('#text')).includes('hoist'));
   await stand();

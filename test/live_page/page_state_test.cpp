@@ -50,11 +50,25 @@ TEST_F(PageStateTest, HasWhatThePageReadsAndTellsEachPageWhoItIs) {
   EXPECT_TRUE(json["heard"].get<bool>());
   EXPECT_EQ(json["news"]["mode"], "passive");
   EXPECT_EQ(json["asked"].size(), kChannels);
-  for (const char* key : {"driving_source", "command_age_s", "realtime", "messages", "info", "command", "optimised"})
+  for (const char* key : {"driving_source", "command_age_s", "realtime", "messages", "info"})
     EXPECT_TRUE(json["news"].contains(key)) << key;
   EXPECT_EQ(json["you"]["paired"], "phone");
   EXPECT_EQ(other["you"]["paired"], "");
   EXPECT_FALSE(json["you"]["drives"].get<bool>());
+}
+
+TEST_F(PageStateTest, ACommandIsTakenWhileTheRobotStandsAndNoneAfterAStop) {
+  network_.add_robot("biped");
+  devices_.look(std::array{phone_}, network_.clock.now_ns());
+  run(1.5);
+  devices_.take({.page = phone_.id, .text = R"({"request":"stand"})"}, network_.clock.now_ns());
+  run(3.0);
+  ASSERT_EQ(state(phone_)["news"]["mode"], "stand");
+  for (const char* key : {"command", "optimised"}) EXPECT_TRUE(state(phone_)["news"].contains(key)) << key;
+  devices_.take({.page = phone_.id, .text = std::string(web::Server::kStop)}, network_.clock.now_ns());
+  run(0.2);
+  ASSERT_EQ(state(phone_)["news"]["mode"], "damping");
+  for (const char* key : {"command", "optimised"}) EXPECT_FALSE(state(phone_)["news"].contains(key)) << key;
 }
 
 TEST_F(PageStateTest, ForeignTextIsNoMarkupAndBreaksNothing) {
@@ -63,6 +77,16 @@ TEST_F(PageStateTest, ForeignTextIsNoMarkupAndBreaksNothing) {
   const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
   for (const char c : shared) EXPECT_TRUE(c >= ' ' && c < 127) << static_cast<int>(c);
   EXPECT_FALSE(state(phone_).is_discarded());
+}
+
+TEST_F(PageStateTest, BothPagesHaveTheOneConnectionAndNoneOfTheirOwn) {
+  for (const web::Asset& asset : assets()) {
+    if (asset.type == "text/html") {
+      EXPECT_THAT(asset.text, HasSubstr("<script src=\"/connection.js\"></script>"));
+    }
+    const bool has = asset.text.find("new WebSocket") != std::string::npos;
+    EXPECT_EQ(has, asset.path == "/connection.js") << asset.path;
+  }
 }
 
 TEST_F(PageStateTest, ThePageNeedsNothingFromOutsideAndWritesNoMarkup) {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "control/command_intake.hpp"
-#include "seal/asked_request.hpp"
 #include "pmg_msgs/command_t.hpp"
 #include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "runtime/hoist_gate.hpp"
 #include "runtime/operator_gate.hpp"
+#include "seal/asked_request.hpp"
 #include "seal/operator_seal.hpp"
 #include "sequence_search.hpp"
 

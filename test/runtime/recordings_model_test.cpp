@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "seal/status_order.hpp"
 #include "runtime/name_contest.hpp"
+#include "seal/status_order.hpp"
 #include "sequence_search.hpp"
 
 namespace pmg::runtime::model {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <utility>
 
@@ -139,9 +140,11 @@ std::optional<Browser::Frame> Browser::frame() {
 }
 
 std::optional<std::string> Browser::hear() {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);  // pings alone are no answer
   while (auto next = frame()) {
     if (next->opcode == 1) return next->text;
     if (next->opcode == 9) say(next->text, 10);
+    if (next->opcode != 8 && std::chrono::steady_clock::now() > end) return std::nullopt;
     if (next->opcode != 8) continue;
     if (next->text.size() >= 2)
       close_code_ = static_cast<unsigned char>(next->text[0]) << 8 | static_cast<unsigned char>(next->text[1]);
