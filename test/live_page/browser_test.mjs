@@ -35,7 +35,7 @@ function hearCommands(heard) {
     pass();                                                // robot
     at += 8;
     pass();                                                // source
-    heard(performance.timeOrigin + performance.now(), bytes.readDoubleBE(at + 8 + 8 + 8));
+    heard(Date.now(), bytes.readDoubleBE(at + 8 + 8 + 8));
   });
   socket.bind(port, () => socket.addMembership('239.255.76.67'));
   return socket;
@@ -95,8 +95,12 @@ async function run(browser, token) {
   assert.equal(new URL(phone.url()).hash, '', 'the token is not left in the address');
   const press = async (page, selector) => { await page.hover(selector); await page.mouse.down(); await pause(1200); await page.mouse.up(); };
   const stand = async () => {
-    await press(phone, 'button[data-request=stand]');
-    await until('stands', async () => (await phone.textContent('#text')).startsWith('stands;'));
+    await until('stands', async () => {
+      if ((await phone.textContent('#text')).startsWith('stands;')) return true;
+      // A browser that the computer held up may have seen the button let go too early.
+      if (/passive|damping/.test(await mode(phone))) { await press(phone, 'button[data-request=stand]'); await pause(300); }
+      return false;
+    });
   };
   await stand();
   const box = await phone.locator('#main-stick').boundingBox();
@@ -123,9 +127,13 @@ async function run(browser, token) {
 
   step('a page that is hidden lets go');
   await until('a damped robot lies, and the page says the way up', async () => /lies .*Lift on the page lifts it, then Stand/.test(await phone.textContent('#text')));
-  await press(phone, 'button[data-request=lift]');
-  await until('the hoist lifts', async () => (await phone.textContent('#text')).includes('hoist'));
-  await until('it is lifted', async () => !(await phone.textContent('#text')).includes('hoist'));
+  await until('the hoist lifts', async () => {
+    if ((await phone.textContent('#text')).includes('hoist')) return true;
+    await press(phone, 'button[data-request=lift]');
+    await pause(300);
+    return false;
+  });
+  await until('it is lifted', async () => (await phone.textContent('#text')).startsWith('hangs on the hoist: Stand'));
   await stand();
   await until('it walks', walks);
   await phone.evaluate(() => window.dispatchEvent(new Event('blur')));
@@ -183,7 +191,7 @@ async function run(browser, token) {
     connection.say = (text) => {
       const {head} = JSON.parse(text), moved = head && ahead !== null && Math.abs(head[2] - ahead) > 0.02;
       if (head) ahead = head[2];
-      if (moved) times.push(performance.timeOrigin + performance.now());
+      if (moved) times.push(Date.now());
       return say.call(connection, text);
     };
     const timer = setInterval(() => {
@@ -196,7 +204,7 @@ async function run(browser, token) {
   }));
   listener.close();
   const delays_ms = sent.map((time) => changes.find(([heard]) => heard >= time)?.[0] - time).filter((delay) => delay < 95);
-  assert.ok(delays_ms.length > 50, `only ${delays_ms.length} of 200 steps of the head were seen on the network`);
+  assert.ok(delays_ms.length > 50, `of ${sent.length} steps of the head ${changes.length} were seen on the network, ${delays_ms.length} in time`);
   step(`pose to LCM: p50 ${percentile(delays_ms, 50).toFixed(1)} ms, p99 ${percentile(delays_ms, 99).toFixed(1)} ms over ${delays_ms.length} steps of the head`);
 
   step('a lost controller holds its palm and nothing else');
