@@ -40,7 +40,8 @@ void map(drives::ObjectDictionary& dictionary, std::uint16_t assigned, std::uint
 }  // namespace
 
 // SOEM's own SDO transfers write what a slave sends in segments beyond the end of the caller's number.
-std::optional<drives::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& request, const drives::ObjectId& id) {
+std::optional<drives::canopen::SdoAnswer> CoeDictionary::ask(const drives::Message& request,
+                                                             const drives::ObjectId& id) {
   ec_mbxbuft mail{};
   ecx_mbxreceive(&context_, slave_, &mail, 0);  // what is left of an earlier start
   std::uint8_t& counter = context_.slavelist[slave_].mbx_cnt;
@@ -59,7 +60,7 @@ std::optional<drives::canopen::SdoAnswer> CoeDictionary::ask(const can::Frame& r
     // An abort is a request to end the transfer; some slaves send it as a response.
     if ((mail[5] & 0x0FU) != kCoe || (service != kSdoResponse && service != kSdoRequest) || length < 2 + kSdoBytes)
       continue;
-    const auto answer = drives::canopen::sdo_answer(can::Frame::of(0, std::span(mail + kSdo, kSdoBytes)));
+    const auto answer = drives::canopen::sdo_answer(drives::Message::of(0, std::span(mail + kSdo, kSdoBytes)));
     if (!answer || answer->id.index != id.index || answer->id.subindex != id.subindex) continue;
     if (!answer->aborted) return answer;
     if (answer->value == drives::canopen::kAbortNoObject || answer->value == drives::canopen::kAbortNoSubindex)

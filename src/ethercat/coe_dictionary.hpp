@@ -16,13 +16,13 @@ class CoeDictionary final : public drives::ObjectDictionary {
 
  private:
   /// An expedited transfer. Nullopt: there is no such object.
-  std::optional<drives::canopen::SdoAnswer> ask(const can::Frame& request, const drives::ObjectId& id);
+  std::optional<drives::canopen::SdoAnswer> ask(const drives::Message& request, const drives::ObjectId& id);
 
   ecx_contextt& context_;
   std::uint16_t slave_;
 };
 
-/// Maps a drive's process data as can::canopen's PDOs: RPDO1, and TPDO1 with TPDO2's objects behind it. Throws
+/// Maps a drive's process data as drives::canopen's PDOs: RPDO1, and TPDO1 with TPDO2's objects behind it. Throws
 /// std::runtime_error.
 void map_process_data(drives::ObjectDictionary& dictionary, const drives::Cia402Settings& settings);
 

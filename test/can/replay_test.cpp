@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../sim/robots.hpp"
+#include "can/canopen_setup.hpp"
 #include "can/emulated_drives.hpp"
 #include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"

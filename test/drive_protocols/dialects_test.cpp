@@ -43,9 +43,9 @@ int ones(const MitFrame& frame) {
 }
 
 struct ForeignReading {
-  MitFrame bytes;
-  int node;
-  MotorReading reading;
+  MitFrame bytes{};
+  int node = 0;
+  MotorReading reading{};
 };
 void expect_read(const MitDrive& drive, const ForeignReading& expected, std::size_t length = 8) {
   const auto reply = drive.read(std::span(expected.bytes).first(length));
@@ -60,8 +60,8 @@ void expect_read(const MitDrive& drive, const ForeignReading& expected, std::siz
 }
 
 struct ForeignCommand {
-  MotorCommand asked;
-  MitFrame frame;
+  MotorCommand asked{};
+  MitFrame frame{};
 };
 /// The other packs to the code below, this project to the nearest: a step at most.
 void expect_command(const MitDrive& drive, const ForeignCommand& packed) {

@@ -43,8 +43,8 @@ constexpr MitRanges kAk80 = {
 
 TEST(MitProtocol, CommandsThatAForeignHostPackedAreReadAsItMeantThem) {
   struct Packed {
-    MotorCommand asked;
-    MitFrame frame;
+    MotorCommand asked{};
+    MitFrame frame{};
   };
   const MitProtocol protocol(kAk80);
   for (const Packed& packed :
