@@ -56,50 +56,50 @@ class SpoiltDrives final : public hal::Hal {
 class Driven {
  public:
   Driven() {
-    tick_ = control::make_tick(loaded_, clock_);
-    cycle_ = std::make_unique<control::ControlCycle>(*tick_, bus_link_, inbox_, clock_);
-    bus_ = std::make_unique<hal::BusCycle>(drives, bus_link_, loaded_.robot, clock_);
-    run_.robot = "z1";
-    run_.session = 1;
-    run_.options = control::control_json(loaded_).dump();
-    comms_ = std::make_unique<runtime::Comms>(link_, inbox_, outbox_, loaded_.robot, run_, 100.0, clock_);
-    comms_->work(robot.hoist_line());
-    bus_->run();
+    tick = control::make_tick(loaded, clock);
+    cycle = std::make_unique<control::ControlCycle>(*tick, bus_link, inbox, clock);
+    bus = std::make_unique<hal::BusCycle>(drives, bus_link, loaded.robot, clock);
+    run_info.robot = "z1";
+    run_info.session = 1;
+    run_info.options = control::control_json(loaded).dump();
+    comms = std::make_unique<runtime::Comms>(link, inbox, outbox, loaded.robot, run_info, 100.0, clock);
+    comms->work(robot.hoist_line());
+    bus->run();
   }
-  const control::TickResult& result() const { return cycle_->record().result; }
+  const control::TickResult& result() const { return cycle->record().result; }
   const ops::RobotNews* news() const {
-    const auto found = board_.robots().find("z1");
-    return found == board_.robots().end() ? nullptr : &found->second;
+    const auto found = board.robots().find("z1");
+    return found == board.robots().end() ? nullptr : &found->second;
   }
 
   void step() {  // 10 ms
-    cycle_->run(clock_.now_ns());
-    for (std::size_t i = 0; i < result().ack_count; ++i) outbox_.acks.push(result().acks[i]);
-    outbox_.newest.put(cycle_->record());
+    cycle->run(clock.now_ns());
+    for (std::size_t i = 0; i < result().ack_count; ++i) outbox.acks.push(result().acks[i]);
+    outbox.newest.put(cycle->record());
     for (int k = 0; k < 5; ++k) {
-      clock_.advance_to(clock_.now_ns() + hal::BusCycle::kPeriod_ns);
-      bus_->run();
-      comms_->step(0);
-      link_.receive(0);
+      clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
+      bus->run();
+      comms->step(0);
+      link.receive(0);
     }
     driver.step(news());
   }
   void run(double seconds) {
     for (double t_s = 0.0; t_s < seconds; t_s += 0.01) step();
   }
-  void press(const char* key) { keys.press(key, false, clock_.now_ns()); }
+  void press(const char* key) { keys.press(key, false, clock.now_ns()); }
   /// A key that is held for so long.
   void hold(const char* key, double seconds) {
     for (double t_s = 0.0; t_s < seconds; t_s += 0.1) {
       if (t_s == 0.0) press(key);
-      keys.repeat(key, false, clock_.now_ns());
+      keys.repeat(key, false, clock.now_ns());
       run(0.1);
     }
-    keys.release(key, clock_.now_ns());
+    keys.release(key, clock.now_ns());
   }
   /// Another operator's, as by pmg_send.
   void ask(ops::Goal goal) {
-    ops::ModeWish wish(other_, "z1", goal, 2.0);
+    ops::ModeWish wish(other, "z1", goal, 2.0);
     for (int k = 0; k < 300 && wish.step() == ops::Progress::kPending; ++k) step();
     answer = wish.answers().front();
   }
@@ -133,24 +133,24 @@ class Driven {
     return read;
   }
 
-  io::SimulationClock clock_;
-  io::LcmLink link_{"memq://"};
-  control::LoadedControl loaded_ = control::load_control({});
+  io::SimulationClock clock;
+  io::LcmLink link{"memq://"};
+  control::LoadedControl loaded = control::load_control({});
   sim::World world{test::z1(), world_with_noise(7, true)};
   SimulatedRobot robot{world, HoistedBy::kCrane, false};
   SpoiltDrives drives{robot};
-  hal::BusLink bus_link_;
-  control::OperatorInbox inbox_{bus_link_.stop};
-  control::ControllerOutbox outbox_;
-  recording::RunInfo run_;
-  std::unique_ptr<control::Tick> tick_;
-  std::unique_ptr<control::ControlCycle> cycle_;
-  std::unique_ptr<hal::BusCycle> bus_;
-  std::unique_ptr<runtime::Comms> comms_;
-  ops::OperatorSource source_{link_, "keyboard", 1, clock_}, other_{link_, "other", 1, clock_};
-  ops::RobotBoard board_{link_, clock_};
+  hal::BusLink bus_link;
+  control::OperatorInbox inbox{bus_link.stop};
+  control::ControllerOutbox outbox;
+  recording::RunInfo run_info;
+  std::unique_ptr<control::Tick> tick;
+  std::unique_ptr<control::ControlCycle> cycle;
+  std::unique_ptr<hal::BusCycle> bus;
+  std::unique_ptr<runtime::Comms> comms;
+  ops::OperatorSource source{link, "keyboard", 1, clock}, other{link, "other", 1, clock};
+  ops::RobotBoard board{link, clock};
   ops::KeyCommand keys{ops::KeyReport::kPressAndRelease};
-  ops::RobotDriver driver{source_, "z1", keys};
+  ops::RobotDriver driver{source, "z1", keys};
   ops::Answer answer;
 };
 
