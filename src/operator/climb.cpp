@@ -17,10 +17,8 @@ constexpr double kHoistAnswer_s = 0.5;
 
 std::optional<pmg_msgs::hoist_state_t> carrying_hoist(const OperatorSource& source, const std::string& robot) {
   const HeardRobot* heard = source.heard(robot);
-  if (heard == nullptr || !heard->hoist) return std::nullopt;
-  const bool silent = source.clock().now_ns() - heard->hoist_heard_ns > HoistWish::kSilent_ns;
-  if (silent || heard->hoist->state == pmg_msgs::hoist_state_t::FREE) return std::nullopt;
-  return heard->hoist;
+  const auto hoist = heard != nullptr ? heard->hoist.speaking(source.clock().now_ns()) : std::nullopt;
+  return hoist && hoist->state != pmg_msgs::hoist_state_t::FREE ? hoist : std::nullopt;
 }
 
 Climb::Climb(OperatorSource& source, std::string robot, Goal to, double timeout_s)
@@ -45,7 +43,7 @@ Progress Climb::step() {
     const std::int64_t since_ns = heard != nullptr ? heard->first_heard_ns : part_since_ns_;
     if (carrying_hoist(source_, robot_)) {
       enter(Part::kStanding);
-    } else if ((heard != nullptr && heard->hoist) || now_ns - since_ns >= kLook_ns) {
+    } else if ((heard != nullptr && heard->hoist.state) || now_ns - since_ns >= kLook_ns) {
       enter(Part::kLast);
     } else {
       return Progress::kPending;

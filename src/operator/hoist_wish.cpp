@@ -45,7 +45,7 @@ Progress HoistWish::step() {
   if (progress != Progress::kPending) return progress;
   if (elapsed_s() >= timeout_s_) return Progress::kFailed;
   const HeardRobot* heard = source_.heard(robot_);
-  const bool waits = heard == nullptr || !heard->hoist || !source_.hoist_answer(*heard->hoist);
+  const bool waits = heard == nullptr || !heard->hoist.state || !source_.hoist_answer(*heard->hoist.state);
   if (waits && source_.clock().now_ns() >= repeat_at_ns_) {
     repeat_at_ns_ = source_.clock().now_ns() + ModeWish::kRepeat_ns;
     source_.repeat_hoist();
@@ -59,12 +59,12 @@ Progress HoistWish::judge() {
     text_ = fmt::format("no controller of this name answers on {}", source_.url());
     return Progress::kPending;
   }
-  const std::int64_t silent_ns = source_.clock().now_ns() - std::max(heard->hoist_heard_ns, begin_ns_);
-  if (!heard->hoist || silent_ns > kSilent_ns) {
+  const std::int64_t silent_ns = source_.clock().now_ns() - std::max(heard->hoist.heard_ns, begin_ns_);
+  if (!heard->hoist.state || silent_ns > HeardHoist::kSilent_ns) {
     text_ = "it has no hoist that could be worked: only a simulated robot has, and not with --gantry";
-    return silent_ns > kSilent_ns ? Progress::kFailed : Progress::kPending;
+    return silent_ns > HeardHoist::kSilent_ns ? Progress::kFailed : Progress::kPending;
   }
-  const State& hoist = *heard->hoist;
+  const State& hoist = *heard->hoist.state;
   text_ = std::string("the hoist ") + hoist_words(hoist.state);
   if (!source_.hoist_answer(hoist)) return Progress::kPending;
   if (hoist.stays_up != (lift_ ? 1 : 0)) {

@@ -15,9 +15,6 @@ const char* hoist_words(std::int8_t state) noexcept;
 
 class HoistWish {
  public:
-  /// A hoist sends its state ten times a second. After this time without one there is no hoist.
-  static constexpr std::int64_t kSilent_ns = 1'000'000'000;
-
   /// Keeps a reference and sends the first request.
   HoistWish(OperatorSource& source, std::string robot, bool lift, double timeout_s);
 

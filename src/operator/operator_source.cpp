@@ -5,12 +5,6 @@
 
 namespace pmg::ops {
 
-namespace {
-
-std::int64_t boot_of(const std::optional<pmg_msgs::proof_t>& proof) noexcept { return proof ? proof->boot : 0; }
-
-}  // namespace
-
 std::optional<std::int8_t> HeardRobot::mode() const {
   if (ack && (!status || status->stamp_ns < ack->stamp_ns)) return ack->mode;
   if (status) return status->mode;
@@ -103,7 +97,7 @@ void OperatorSource::hear_status(io::Bytes bytes) {
   auto peer = seal_.believe("STATUS", heard->message_bytes, heard->seal, now_ns);
   HeardRobot* robot = peer ? place_of(status.robot) : nullptr;
   if (robot == nullptr || !robot->order.take(peer->boot, status.stamp_ns, now_ns)) return;
-  if (robot->peer && robot->peer->boot != peer->boot) robot->hoist.reset();  // an earlier start's
+  if (robot->peer && robot->peer->boot != peer->boot) robot->hoist = {};  // an earlier start's
   peer->heard_ns = status.stamp_ns;
   robot->peer = peer;
   robot->status = status;
@@ -122,12 +116,7 @@ void OperatorSource::hear_hoist(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::hoist_state_t, pmg_msgs::proof_t>(bytes);
   const auto known = heard ? heard_.find(heard->message.robot) : heard_.end();  // without STATUS it is no controller's
   if (known == heard_.end() || !known->second.peer) return;
-  HeardRobot& robot = known->second;
-  const bool recorded =
-      boot_of(heard->seal) != robot.peer->boot || (robot.hoist && heard->message.stamp_ns < robot.hoist->stamp_ns);
-  if (recorded || !seal_.believe("HOIST_STATE", heard->message_bytes, heard->seal, clock_.now_ns())) return;
-  robot.hoist = heard->message;
-  robot.hoist_heard_ns = clock_.now_ns();
+  known->second.hoist.hear(*heard, known->second.peer->boot, seal_, clock_.now_ns());
 }
 
 HeardRobot* OperatorSource::place_of(const std::string& robot) {

@@ -9,11 +9,11 @@
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
 #include "operator/asked_request.hpp"
+#include "operator/heard_hoist.hpp"
 #include "operator/status_order.hpp"
 #include "pmg/command.hpp"
 #include "pmg_msgs/ack_t.hpp"
 #include "pmg_msgs/command_t.hpp"
-#include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/hoist_t.hpp"
 #include "pmg_msgs/mode_t.hpp"
 #include "pmg_msgs/status_t.hpp"
@@ -28,8 +28,7 @@ struct HeardRobot {
   std::int64_t status_heard_ns = 0;                ///< by the source's clock
   std::int64_t first_heard_ns = 0;                 ///< likewise
   std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
-  std::optional<pmg_msgs::hoist_state_t> hoist{};  ///< only from a simulated robot with a hoist
-  std::int64_t hoist_heard_ns = 0;                 ///< by the source's clock
+  HeardHoist hoist{};
   std::optional<seal::Peer> peer{};                ///< sender of the status
 
   /// The controller has keys, and none of ours is one of them.

@@ -86,10 +86,8 @@ RobotBoard::RobotBoard(io::LcmLink& link, const io::Clock& clock, seal::Operator
   });
   link.subscribe("HOIST_STATE", [this](io::Bytes bytes) {
     const auto hoist = seal::decode_sealed<pmg_msgs::hoist_state_t, pmg_msgs::proof_t>(bytes);
-    if (!hoist || !robots_.contains(hoist->message.robot)) return;
-    RobotNews& news = robots_[hoist->message.robot];
-    news.hoist = hoist->message;
-    news.hoist_heard_ns = clock_.now_ns();
+    const auto known = hoist ? robots_.find(hoist->message.robot) : robots_.end();
+    if (known != robots_.end()) known->second.hoist.hear(*hoist, known->second.boot, seal_, clock_.now_ns());
   });
   link.subscribe("STATE", [this](io::Bytes bytes) {
     const auto state = io::decode_message<pmg_msgs::robot_state_t>(bytes);
@@ -105,7 +103,7 @@ void RobotBoard::hear_status(io::Bytes bytes) {
   const auto heard = seal::decode_sealed<pmg_msgs::status_t, pmg_msgs::proof_t>(bytes);
   if (!heard) return;
   const pmg_msgs::status_t& status = heard->message;
-  const std::int64_t now_ns = clock_.now_ns(), boot = heard->seal ? heard->seal->boot : 0;
+  const std::int64_t now_ns = clock_.now_ns(), boot = boot_of(heard->seal);
   const auto known = robots_.find(status.robot);
   if (known == robots_.end() ? robots_.size() >= kMostRobots
                              : !known->second.order.news(boot, status.stamp_ns, now_ns)) {
@@ -115,6 +113,8 @@ void RobotBoard::hear_status(io::Bytes bytes) {
   RobotNews& news = robots_[status.robot];
   if (news.heard_ns != 0 && news.status.session != status.session) ++news.sessions;
   news.order.take(boot, status.stamp_ns, now_ns);
+  if (news.boot != boot) news.hoist = {};  // an earlier start's
+  news.boot = boot;
   news.status = status;
   news.heard_ns = now_ns;
 }

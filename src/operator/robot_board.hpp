@@ -10,8 +10,8 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
+#include "operator/heard_hoist.hpp"
 #include "operator/status_order.hpp"
-#include "pmg_msgs/hoist_state_t.hpp"
 #include "pmg_msgs/link_t.hpp"
 #include "pmg_msgs/reference_t.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
@@ -45,6 +45,7 @@ struct UprightRule {
 struct RobotNews {
   pmg_msgs::status_t status{};
   StatusOrder order{};        ///< of its STATUS
+  std::int64_t boot = 0;      ///< of the start that sent it
   std::int64_t heard_ns = 0;  ///< time of the newest status, by the board's clock
   std::optional<pmg_msgs::robot_info_t> info{};
   std::optional<UprightRule> upright{};  ///< nothing: the controller doesn't tell it
@@ -52,8 +53,7 @@ struct RobotNews {
   std::optional<pmg_msgs::reference_t> reference{};
   std::optional<pmg_msgs::robot_state_t> state{};
   std::optional<pmg_msgs::timing_t> timing{};
-  std::optional<pmg_msgs::hoist_state_t> hoist{};
-  std::int64_t hoist_heard_ns = 0;  ///< by the board's clock
+  HeardHoist hoist{};
   RecentValues wake_us{}, tick_us{};
   int sessions =
       1;  ///< changes of the session since the first message, plus 1: restarts, or several controllers with one name

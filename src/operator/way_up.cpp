@@ -12,8 +12,9 @@ namespace {
 using Hoist = pmg_msgs::hoist_state_t;
 using Modes = pmg_msgs::mode_t;
 
-void see_hoist(const std::optional<Hoist>& hoist, std::int64_t heard_ns, std::int64_t now_ns, Posture& posture) {
-  if (!hoist || now_ns - heard_ns > HoistWish::kSilent_ns) return;
+void see_hoist(const HeardHoist& heard, std::int64_t now_ns, Posture& posture) {
+  const auto hoist = heard.speaking(now_ns);
+  if (!hoist) return;
   posture.hoist = hoist->state;
   posture.stays_up = hoist->stays_up != 0;
 }
@@ -55,7 +56,7 @@ Posture posture(const HeardRobot& heard, const RobotNews* news, std::int64_t now
   if (!heard.status) return posture;
   posture.mode = heard.mode().value_or(heard.status->mode);
   posture.hanging = heard.status->hanging != 0;
-  see_hoist(heard.hoist, heard.hoist_heard_ns, now_ns, posture);
+  see_hoist(heard.hoist, now_ns, posture);
   if (news != nullptr) see_tilt(*news, posture);
   if (!posture.tilt_rad) posture.down = heard.ack && heard.ack->verdict == pmg_msgs::ack_t::TILTED;
   return posture;
@@ -63,7 +64,7 @@ Posture posture(const HeardRobot& heard, const RobotNews* news, std::int64_t now
 
 Posture posture(const RobotNews& news, std::int64_t now_ns) {
   Posture posture{.mode = news.status.mode, .hanging = news.status.hanging != 0};
-  see_hoist(news.hoist, news.hoist_heard_ns, now_ns, posture);
+  see_hoist(news.hoist, now_ns, posture);
   see_tilt(news, posture);
   return posture;
 }

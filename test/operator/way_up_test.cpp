@@ -40,10 +40,10 @@ RobotNews news(std::int8_t mode, double tilt_rad) {
 std::vector<Step> steps(const RobotNews& news) { return steps_up(posture(news, kNow_ns)); }
 
 RobotNews on_hoist(RobotNews news, std::int8_t state, bool stays_up = false) {
-  news.hoist.emplace();
-  news.hoist->state = state;
-  news.hoist->stays_up = stays_up ? 1 : 0;
-  news.hoist_heard_ns = kNow_ns;
+  news.hoist.state.emplace();
+  news.hoist.state->state = state;
+  news.hoist.state->stays_up = stays_up ? 1 : 0;
+  news.hoist.heard_ns = kNow_ns;
   return news;
 }
 
@@ -78,7 +78,7 @@ TEST(WayUp, WithAHoistWhatNobodyHoldsIsLiftedFirst) {
   EXPECT_THAT(steps(on_hoist(news(Modes::STAND, 0.0), Hoist::HOLDING, true)), ElementsAre(Step::kSetDown));
   EXPECT_THAT(steps(on_hoist(news(Modes::STAND, 0.0), Hoist::LOWERING)), IsEmpty());
   RobotNews silent = on_hoist(news(Modes::DAMPING, 0.1), Hoist::FREE);
-  silent.hoist_heard_ns = kNow_ns - 1'100'000'000;
+  silent.hoist.heard_ns = kNow_ns - 1'100'000'000;
   EXPECT_THAT(steps(silent), ElementsAre(Step::kStand)) << "a hoist that says nothing lifts nothing";
 }
 

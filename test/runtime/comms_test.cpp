@@ -1,5 +1,4 @@
 // Comms: the controller's messages on the network, and other senders under its name.
-// Longer than 300 lines: every channel and every stranger, over one pair of links.
 #include "runtime/comms.hpp"
 
 #include <gmock/gmock.h>
@@ -330,6 +329,36 @@ TEST_F(CommsTest, AnotherControllerOfOurNameThatComesLaterIsSaidOnce) {
   }
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("another controller (session 18)")));
   EXPECT_EQ(comms_.impostors_heard(), 3) << "asked once a second, and it answered";
+}
+
+TEST_F(CommsTest, AFloodOfQuestionsForTheNameIsAnsweredAtABoundedRate) {
+  tick();
+  int claims = 0;
+  link_.subscribe("CLAIM", [&](io::Bytes) { ++claims; });
+  constexpr int kPerTick = 100, kTicks = 20;
+  for (int k = 0; k < kTicks; ++k) {
+    for (int n = 0; n < kPerTick; ++n) {
+      seal::ControllerSeal asks;
+      link_.send("CLAIM", asks.prove("CLAIM", pmg_msgs::claim_t{.stamp_ns = clock_.now_ns(),
+                                                                .robot = "biped",
+                                                                .session = n,
+                                                                .held = 0,
+                                                                .answers = pmg_msgs::claim_t::NOBODY}));
+    }
+    tick();
+  }
+  const int answers = claims - kTicks * kPerTick;
+  EXPECT_EQ(answers, kTicks) << "those of one step come at one time";
+}
+
+TEST_F(CommsTest, WhoIsToldThatARequestWasTakenHasHeardTheStateOfIt) {
+  std::vector<std::string> order;
+  for (const char* channel : {"STATUS", "ACK"}) {
+    link_.subscribe(channel, [&order, channel](io::Bytes) { order.emplace_back(channel); });
+  }
+  outbox_.acks.push(control::ModeAck{});
+  tick();
+  EXPECT_THAT(order, ElementsAre("STATUS", "ACK"));
 }
 
 TEST_F(CommsTest, AStopIsTakenWithoutWaitingForTheNextTick) {

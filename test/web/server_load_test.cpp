@@ -116,9 +116,9 @@ TEST_F(SlowLink, AMinuteAtATenthOfTheRateGivesTheNewestAndQueuesNothing) {
   const auto slow = page();
   const std::int32_t id = server_.pages().front().id;
   const auto begin = Clock::now();
-  std::thread shower([&] {
+  std::jthread shower([&] {
     for (int k = 0; k < 1200; ++k) {
-      server_.show(id, fmt::format("{:>8000}", k));
+      server_.show(id, fmt::format("{:>4000}", k));
       std::this_thread::sleep_until(begin + (k + 1) * kPeriod);
     }
   });
