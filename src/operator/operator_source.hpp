@@ -24,12 +24,12 @@ namespace pmg::ops {
 /// The newest messages of one controller.
 struct HeardRobot {
   std::optional<pmg_msgs::status_t> status;
-  StatusOrder order{};                             ///< of its STATUS
-  std::int64_t status_heard_ns = 0;                ///< by the source's clock
-  std::int64_t first_heard_ns = 0;                 ///< likewise
-  std::optional<pmg_msgs::ack_t> ack{};            ///< newest answer to the current request
+  StatusOrder order{};                   ///< of its STATUS
+  std::int64_t status_heard_ns = 0;      ///< by the source's clock
+  std::int64_t first_heard_ns = 0;       ///< likewise
+  std::optional<pmg_msgs::ack_t> ack{};  ///< newest answer to the current request
   HeardHoist hoist{};
-  std::optional<seal::Peer> peer{};                ///< sender of the status
+  std::optional<seal::Peer> peer{};  ///< sender of the status
 
   /// The controller has keys, and none of ours is one of them.
   bool lacks_key() const noexcept { return peer && peer->wants_key && !peer->key; }

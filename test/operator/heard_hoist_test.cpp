@@ -59,8 +59,8 @@ TEST_F(HeardHoistTest, NoStrangersWordCounts) {
   EXPECT_FALSE(heard_.state) << "without a seal";
   hear(proven(next_start_, "HOIST_STATE", said(10, Hoist::HOLDING)));
   EXPECT_FALSE(heard_.state) << "of another start, recorded or not";
-  const auto forged = seal::decode_sealed<Hoist, pmg_msgs::proof_t>(
-      proven(impostor_, "HOIST_STATE", said(10, Hoist::HOLDING)));
+  const auto forged =
+      seal::decode_sealed<Hoist, pmg_msgs::proof_t>(proven(impostor_, "HOIST_STATE", said(10, Hoist::HOLDING)));
   ASSERT_TRUE(forged && forged->seal);
   std::vector<std::uint8_t> bytes;
   seal::append(bytes, forged->message);
