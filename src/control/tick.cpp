@@ -1,4 +1,3 @@
-// Longer than 300 lines: the stages of one tick in their order, over one set of members.
 #include "control/tick.hpp"
 
 #include <algorithm>
@@ -109,7 +108,7 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   if (result_.mode != Mode::kWalk) result_.arms.order = ArmsOrder::kNotWalking;
   result_.fault = supervisor_.fault();
   sit_down(input, before);
-  if (!upright(result_.mode) && !result_.sitting) release(input.state, input.now_ns);
+  if (!upright(result_.mode) && !sitting_down(result_.maker)) release(input.state, input.now_ns);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   see_excitation();
 
@@ -186,7 +185,7 @@ SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
                         .entry_done = entry_.done(),
                         .at_rest = motion_.reference().gain == 0.0,
                         .gco_held_ticks = gco_held_ticks_,
-                        .policy_waits = policy_waits()};
+                        .policy_waits = policy_waits(result_.maker)};
   // On its way from the posture in which it was found the torso may be anywhere.
   if (upright(result_.mode) && entry_.done()) {
     const Command& aim = result_.reference.command;
@@ -200,15 +199,21 @@ void Tick::watch_feet(const model::RobotState& state) noexcept {
   if (!feet_ || !upright(result_.mode)) return;
   result_.foot_load.reset();
   // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
-  if (result_.hanging && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
+  if (hanging(result_.maker) && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
   feet_->update(state, result_.command);
   result_.foot_load = feet_->share();
-  if (feet_->footing() != footing()) change_over();
+  if (feet_->footing() == faults::Footing::kUnknown) return;
+  const bool carry = feet_->footing() == faults::Footing::kStands;
+  if (take(carry ? TargetEvent::kFeetCarry : TargetEvent::kFeetCarryNothing)) change_over();
+}
+
+bool Tick::take(TargetEvent event) noexcept {
+  const TargetMaker before = std::exchange(result_.maker, next(result_.maker, event));
+  return result_.maker != before;
 }
 
 void Tick::change_over() noexcept {
-  take_footing();
-  if (result_.hanging) {
+  if (hanging(result_.maker)) {
     motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
     gco_held_ticks_ = 0;
   } else {
@@ -219,16 +224,6 @@ void Tick::change_over() noexcept {
   change_over_.start(result_.command.q, motion_.reference().q);
 }
 
-void Tick::take_footing() noexcept {
-  result_.hanging = feet_->footing() == faults::Footing::kHangs;
-  result_.footing_unknown = feet_->footing() == faults::Footing::kUnknown;
-}
-
-faults::Footing Tick::footing() const noexcept {
-  if (result_.hanging) return faults::Footing::kHangs;
-  return result_.footing_unknown ? faults::Footing::kUnknown : faults::Footing::kStands;
-}
-
 void Tick::begin_policy() noexcept {
   policy_->reset();
   action_monitor_.reset();
@@ -237,7 +232,7 @@ void Tick::begin_policy() noexcept {
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
   motion_.reset();
-  without_policy_ = false;
+  take(feet_ ? TargetEvent::kStandBeginsOnTheGround : TargetEvent::kStandBegins);
   target_ = motion_.reference().q;
   fallback_.stop();
   if (arms_) arms_->reset(target_);
@@ -249,7 +244,6 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   if (robot_excitation_) robot_excitation_->start();
   if (feet_) {
     feet_->start();
-    take_footing();
   } else {
     begin_policy();
   }
@@ -263,7 +257,7 @@ faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   } else if (arms_) {
     result_.arms.arm = arms_->keep(result_.reference.q);
   }
-  if (policy_waits() || without_policy_) {
+  if (!runs_policy(result_.maker)) {
     target_ = result_.reference.q;
   } else if (const faults::Fault fault = ask_policy(state); fault.code != faults::FaultCode::kNone) {
     return fault;
@@ -316,7 +310,7 @@ faults::Fault Tick::make_reference() noexcept {
 
 void Tick::lead_arms() noexcept {
   if (!arms_) return;
-  if (supervisor_.mode() != Mode::kWalk || policy_waits()) result_.arms.order = ArmsOrder::kNotWalking;
+  if (supervisor_.mode() != Mode::kWalk || policy_waits(result_.maker)) result_.arms.order = ArmsOrder::kNotWalking;
   const bool in_force = result_.arms.order == ArmsOrder::kInForce;
   result_.arms.arm = arms_->step(in_force ? &intake_.arms() : nullptr, result_.reference);
 }
@@ -350,27 +344,28 @@ faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
 }
 
 void Tick::sit_down(const TickInput& input, Mode before) noexcept {
-  result_.sitting = false;
   if (result_.mode != Mode::kFault) {
     sit_down_.stop();
+    if (!upright(result_.mode)) take(TargetEvent::kReleased);
     return;
   }
   const bool sound = !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
-  if (sound && upright(before) && entry_.done() && !policy_waits() && faults::allows_sit_down(result_.fault.code)) {
+  if (sound && upright(before) && entry_.done() && result_.maker == TargetMaker::kPolicy &&
+      faults::allows_sit_down(result_.fault.code)) {
     begin_sit_down(input);
   } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != faults::FaultCode::kJointTorque) {
     feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
   }
-  if (!sit_down_.active(input.now_ns)) return;
-  if (!sound || feet_->footing() == faults::Footing::kHangs) {
-    sit_down_.stop();
+  if (sit_down_.active(input.now_ns) && (!sound || feet_->footing() == faults::Footing::kHangs)) sit_down_.stop();
+  if (!sit_down_.active(input.now_ns)) {
+    take(TargetEvent::kReleased);
     return;
   }
-  result_.sitting = true;
   if (sit_down_.stage(input.now_ns) == SitDown::Stage::kReference) {
     if (lower_reference(input)) return;
     sit_down_.lower_joints(input.state.q, limiter_.last(), gains_in_use().kp_Nm_per_rad, input.now_ns);
     set_limiter_gains(sit_down_.gains());
+    take(TargetEvent::kReferenceIsDown);
   }
   sit_down_.step(input.now_ns, result_.command);
   if (arms_) result_.arms.arm = arms_->keep(result_.command.q);
@@ -380,12 +375,14 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
 void Tick::begin_sit_down(const TickInput& input) noexcept {
   motion_.set_rate(kHeight, sit_down_.options().height_rate_m_s);
   sit_down_.start(input.now_ns);
-  if (!faults::policy_is_sound_after(result_.fault.code)) leave_policy(input.state);
+  const bool policy_is_sound = faults::policy_is_sound_after(result_.fault.code);
+  take(policy_is_sound ? TargetEvent::kFaultWithAPolicy : TargetEvent::kFaultWithoutAPolicy);
+  if (!policy_is_sound) leave_policy(input.state);
 }
 
 bool Tick::lower_reference(const TickInput& input) noexcept {
   // Without the policy a robot at rest is lowered at once: nothing but its stiffness balances it.
-  const bool useful = !without_policy_ || motion_.reference().gain > 0.0;
+  const bool useful = runs_policy(result_.maker) || motion_.reference().gain > 0.0;
   if (!useful || !sit_down_.reference_is_due(input.now_ns)) return false;
   // A reference that failed is asked again in the next tick: a stop in mid-stride would fell the robot.
   const bool failed_now = input.now_ns == result_.fault.stamp_ns;
@@ -398,13 +395,12 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
     result_.user[kHeight] = sit_down_.lowest_m();
   }
   if (drive(input.state).code == faults::FaultCode::kNone) return true;
-  if (without_policy_) return false;
+  if (!take(TargetEvent::kPolicyFails)) return false;
   leave_policy(input.state);  // it failed meanwhile; the reference goes on alone
   return lower_reference(input);
 }
 
 void Tick::leave_policy(const model::RobotState& state) noexcept {
-  without_policy_ = true;
   change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), result_.reference.q);
   set_limiter_gains(sit_down_.gains());
 }
@@ -416,7 +412,7 @@ void Tick::set_limiter_gains(const policy::DriveGains& gains) noexcept {
 }
 
 void Tick::release(const model::RobotState& state, std::int64_t now_ns) noexcept {
-  result_.hanging = result_.footing_unknown = false;
+  take(TargetEvent::kReleased);
   result_.foot_load.reset();
   const bool sat = sit_down_.stage(now_ns) == SitDown::Stage::kDamped;
   const JointVector& brake_kd = sat ? sit_down_.brake_kd() : brake_kd_;

@@ -18,6 +18,7 @@
 #include "control/robot_excitation_player.hpp"
 #include "control/sit_down.hpp"
 #include "control/supervisor.hpp"
+#include "control/target_maker.hpp"
 #include "faults/action_monitor.hpp"
 #include "faults/foot_load_watch.hpp"
 #include "gco/motion_composition.hpp"
@@ -107,21 +108,15 @@ inline bool led(const ArmsState& state) noexcept {
 struct TickResult {
   model::JointCommand command;  ///< acts from the next bus cycle on
   Mode mode = Mode::kPassive;
-  faults::Fault fault;            ///< kNone unless mode is kFault
-  ArmsState arms;                 ///< what an operator's targets do
-  Command user;                   ///< the driving source's command as far as the mode admits it
-  Reference reference;            ///< of this tick in Stand and Walk; otherwise of the last such tick
-  gco::Result optimised;          ///< likewise; its command is what the policy observes
-  ExcitationProgress excitation;  ///< the run and sample of the command
-  bool entering = false;          ///< in Stand: the ramp from the measured posture is not over
-  bool policy_held = false;       ///< the policy gave no result for this tick: its last target is in force
-  /// The feet carry nothing (docs/reference/safety.md): the policy isn't run, the reference alone drives. Only in
-  /// Stand.
-  bool hanging = false;
-  /// Stand has begun, and the feet are not judged yet: as in hanging, the reference alone drives.
-  bool footing_unknown = false;
-  /// In Fault: the robot is lowered before the drives damp.
-  bool sitting = false;
+  faults::Fault fault;                       ///< kNone unless mode is kFault
+  ArmsState arms;                            ///< what an operator's targets do
+  Command user;                              ///< the driving source's command as far as the mode admits it
+  Reference reference;                       ///< of this tick in Stand and Walk; otherwise of the last such tick
+  gco::Result optimised;                     ///< likewise; its command is what the policy observes
+  ExcitationProgress excitation;             ///< the run and sample of the command
+  bool entering = false;                     ///< in Stand: the ramp from the measured posture is not over
+  bool policy_held = false;                  ///< the policy gave no result for this tick: its last target is in force
+  TargetMaker maker = TargetMaker::kNobody;  ///< who made the command's positions
   /// Load of each foot over the robot's weight; nullopt before Stand, and with a policy that needs no ground.
   std::optional<PerFoot<double>> foot_load;
   LimitReport limited;
@@ -154,9 +149,8 @@ class Tick {
   void watch_feet(const model::RobotState& state) noexcept;
   void enter_stand(const model::RobotState& state) noexcept;
   void change_over() noexcept;
-  void take_footing() noexcept;
-  faults::Footing footing() const noexcept;
-  bool policy_waits() const noexcept { return result_.hanging || result_.footing_unknown; }
+  /// True if it changes the maker.
+  bool take(TargetEvent event) noexcept;
   void begin_policy() noexcept;
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   /// Called again in a tick whose policy failed: the reference goes on once a tick.
@@ -177,9 +171,11 @@ class Tick {
   void begin_sit_down(const TickInput& input) noexcept;
   /// One tick of the sit-down's first stage; false when it is over or can't go on.
   bool lower_reference(const TickInput& input) noexcept;
-  /// From now on the reference drives alone, under robot.yaml's gains, until Stand is entered again.
+  /// The reference goes on alone, under robot.yaml's gains.
   void leave_policy(const model::RobotState& state) noexcept;
-  const policy::DriveGains& gains_in_use() const noexcept { return without_policy_ ? sit_down_.gains() : gains_; }
+  const policy::DriveGains& gains_in_use() const noexcept {
+    return result_.maker == TargetMaker::kLoweredByReference ? sit_down_.gains() : gains_;
+  }
   faults::FaultEvidence evidence(const TickInput& input) const noexcept;
   void set_limiter_gains(const policy::DriveGains& gains) noexcept;
   void release(const model::RobotState& state, std::int64_t now_ns) noexcept;
@@ -206,7 +202,6 @@ class Tick {
   FallbackReference fallback_;      // in a sit-down whose generator has failed
   Reference good_reference_;        // the last finite one
   Command good_observed_;           // u' with it
-  bool without_policy_ = false;     // in a sit-down whose policy isn't sound
   bool stop_asked_ = false;         // in this tick, by anybody
   bool reference_is_made_ = false;  // in this tick, with led arms
   JointVector target_;              // the policy's last good one, before ramp and limits

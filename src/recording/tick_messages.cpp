@@ -154,7 +154,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
   if (result.fault.code == faults::FaultCode::kNone) {
     message.fault.clear();
   } else {
-    message.fault = (result.sitting ? "sitting down; " : "") + describe(result.fault, robot);
+    message.fault = (control::sitting_down(result.maker) ? "sitting down; " : "") + describe(result.fault, robot);
   }
   copy(result.driving, message.driving_source, message.driving_session);
   message.command_age_s = std::isfinite(result.command_age_s) ? result.command_age_s : -1.0;
@@ -163,8 +163,8 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
   message.limited_torque = result.limited.torque;
   message.gco_held = result.optimised.status == gco::Status::kNotConverged;
   message.policy_held = result.policy_held;
-  message.hanging = result.hanging;
-  message.footing_unknown = result.footing_unknown;
+  message.hanging = control::hanging(result.maker);
+  message.footing_unknown = result.maker == control::TargetMaker::kReferenceUnjudged;
   copy(result.foot_load.value_or(PerFoot<double>{-1.0, -1.0}), message.foot_load);
   message.realtime = run.realtime;
 }

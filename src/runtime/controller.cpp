@@ -69,8 +69,8 @@ void Controller::run_control(const control::CycleTiming& timing) noexcept {
   const control::TickResult& result = record_.result;
   news_.put({.now_ns = record_.now_ns,
              .mode = result.mode,
-             .hanging = result.hanging,
-             .sitting = result.sitting,
+             .hanging = control::hanging(result.maker),
+             .sitting = control::sitting_down(result.maker),
              .fault = result.fault,
              .driving = result.driving});
   mode_.store(result.mode, std::memory_order_release);

@@ -217,7 +217,7 @@ void FailingTick::spoil(Reference& reference) noexcept {
 
 void FailingTick::spoil(control::TickResult& result) noexcept {
   if (acting(FailureKind::kCommandNotFinite) != nullptr) result.command.q.setConstant(kNan);
-  if (!result.sitting) {
+  if (!control::sitting_down(result.maker)) {
     clock_.sits_from_sample.store(0);
   } else if (clock_.sits_from_sample.load() == 0) {
     clock_.sits_from_sample.store(result.command.bus_sample);

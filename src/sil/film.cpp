@@ -23,9 +23,9 @@ void Film::after_tick(const RunProgress& progress) {
 }
 
 void Film::shoot(const RunProgress& progress) {
-  const std::string text =
-      fmt::format("{:6.1f} s  {}\n{}", progress.time_s,
-                  control::mode_text(progress.result.mode, progress.result.hanging), progress.step.text);
+  const std::string text = fmt::format(
+      "{:6.1f} s  {}\n{}", progress.time_s,
+      control::mode_text(progress.result.mode, control::hanging(progress.result.maker)), progress.step.text);
   writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
 }
 

@@ -52,8 +52,8 @@ void LiveView::draw(SimulatedRobot& robot) {
 std::string LiveView::text(const RunProgress& progress) const {
   const std::string fault =
       progress.result.mode == control::Mode::kFault ? describe(progress.result.fault, robot_) : std::string();
-  return fmt::format("{:6.1f} s  {}\n{}\n{}", progress.time_s, mode_text(progress.result.mode, progress.result.hanging),
-                     progress.step.text, fault);
+  return fmt::format("{:6.1f} s  {}\n{}\n{}", progress.time_s,
+                     mode_text(progress.result.mode, hanging(progress.result.maker)), progress.step.text, fault);
 }
 
 }  // namespace pmg::sil

@@ -19,7 +19,7 @@ void RunMeasure::add(const control::TickResult& result, const model::GroundTruth
 
 void RunMeasure::add_reference(const control::TickResult& result) {
   ++ticks_;
-  if (result.hanging) sums_.hanging_s += control::ControlCycle::kPeriod_s;
+  if (control::hanging(result.maker)) sums_.hanging_s += control::ControlCycle::kPeriod_s;
   if (result.mode == control::Mode::kFault && last_mode_ != control::Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 

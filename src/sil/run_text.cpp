@@ -12,7 +12,8 @@ namespace pmg::sil {
 std::string progress_text(const RunProgress& progress) {
   const std::string of = std::isfinite(progress.duration_s) ? fmt::format(" / {:.1f}", progress.duration_s) : "";
   return fmt::format("{:6.1f}{} s  {:8} {}", progress.time_s, of,
-                     control::mode_text(progress.result.mode, progress.result.hanging), progress.step.text);
+                     control::mode_text(progress.result.mode, control::hanging(progress.result.maker)),
+                     progress.step.text);
 }
 
 std::string run_text(const RunOutcome& outcome, const nlohmann::ordered_json& summary) {

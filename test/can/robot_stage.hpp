@@ -87,7 +87,7 @@ struct StageOf {
     Lockstep lockstep(loaded.robot, bus, plant, *tick, scenario, nullptr, {.balanced_by_policy = true});
     lockstep.after_tick = [&](const RunProgress& progress) {
       if (progress.result.mode == control::Mode::kFault) fault = progress.result.fault.code;
-      sat_down |= progress.result.sitting;
+      sat_down |= control::sitting_down(progress.result.maker);
     };
     lockstep.control_sleeps = [this] { return control_frozen; };
     return lockstep.run();

@@ -141,7 +141,7 @@ class ControlRig {
   /// The drives' last command lowers the robot.
   bool sits() const {
     const control::TickResult& result = tick.result();
-    return result.sitting && bus.last_command.bus_sample == result.command.bus_sample;
+    return control::sitting_down(result.maker) && bus.last_command.bus_sample == result.command.bus_sample;
   }
 
   control::Mode mode() const { return tick.result().mode; }

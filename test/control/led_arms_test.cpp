@@ -162,8 +162,8 @@ TEST_F(LedArmsTest, ARobotThatBeginsToHangKeepsThemWithoutAJump) {
   walk_and_reach();
   const std::vector<double> reached = arm_targets();
   driven_.carried = {0.0, 0.0};
-  for (int k = 0; k < 300 && !result().hanging; ++k) EXPECT_LE(largest_step(1), kStep_rad + 1e-12);
-  ASSERT_TRUE(result().hanging);
+  for (int k = 0; k < 300 && !hanging(result().maker); ++k) EXPECT_LE(largest_step(1), kStep_rad + 1e-12);
+  ASSERT_TRUE(hanging(result().maker));
   for (const Foot arm : {kLeft, kRight}) driven_.arms.arm[arm].wish = ArmWish::kHandBack;
   EXPECT_LE(largest_step(300), kStep_rad + 1e-12);
   EXPECT_EQ(activity(), ArmActivity::kHeld);
@@ -171,7 +171,7 @@ TEST_F(LedArmsTest, ARobotThatBeginsToHangKeepsThemWithoutAJump) {
   for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], reached[i], 1e-9) << i;
   driven_.carried = {0.5, 0.5};
   EXPECT_LE(largest_step(300), kStep_rad + 1e-12);
-  EXPECT_FALSE(result().hanging);
+  EXPECT_FALSE(hanging(result().maker));
   ASSERT_EQ(result().mode, Mode::kStand);
   EXPECT_EQ(activity(), ArmActivity::kHeld);
 }
@@ -239,9 +239,9 @@ TEST_F(LedArmsTest, ASitDownKeepsTheArmsWhereTheyAre) {
         driven.policy->how = how;
       }
       int sitting = 0;
-      while (!driven.step().sitting && sitting < 50) ++sitting;
-      ASSERT_TRUE(driven.tick.result().sitting);
-      for (sitting = 0; driven.tick.result().sitting; ++sitting) {
+      while (!sitting_down(driven.step().maker) && sitting < 50) ++sitting;
+      ASSERT_TRUE(sitting_down(driven.tick.result().maker));
+      for (sitting = 0; sitting_down(driven.tick.result().maker); ++sitting) {
         for (const int joint : joints_)
           ASSERT_LE(std::abs(driven.tick.result().command.q[joint] - before[joint]), kStep_rad + 1e-12) << sitting;
         EXPECT_EQ(driven.tick.result().arms.arm[kLeft].activity, ArmActivity::kHeld);

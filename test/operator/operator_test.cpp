@@ -316,7 +316,8 @@ TEST_F(OperatorTest, AControllerThatFallsSilentEndsTheDrive) {
 
 TEST_F(OperatorTest, AFaultIsSaidInItsOwnWordsUntilItIsReset) {
   EXPECT_EQ(ask(Goal::kStand), Progress::kReached);
-  while (robot_.result().footing_unknown) network_.advance();  // its feet are not judged within one tick
+  while (robot_.result().maker == control::TargetMaker::kReferenceUnjudged)
+    network_.advance();  // its feet are not judged within one tick
   robot_.policy->how = test::BreakablePolicy::Break::kNotANumber;
   for (int k = 0; k < 3; ++k) network_.advance();
   ASSERT_EQ(robot_.result().mode, Mode::kFault);

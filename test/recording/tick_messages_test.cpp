@@ -125,10 +125,10 @@ TEST_F(TickMessages, AStatusSaysThatTheRobotSitsDownUntilTheDrivesDamp) {
   pmg_msgs::status_t status;
   record_->result.fault.code = faults::FaultCode::kTemperature;
   record_->result.fault.joint = 2;
-  record_->result.sitting = true;
+  record_->result.maker = control::TargetMaker::kLoweredByPolicy;
   fill(*record_, run_, robot_, status);
   EXPECT_TRUE(status.fault.starts_with("sitting down; temperature")) << status.fault;
-  record_->result.sitting = false;
+  record_->result.maker = control::TargetMaker::kNobody;
   fill(*record_, run_, robot_, status);
   EXPECT_TRUE(status.fault.starts_with("temperature")) << status.fault;
 }

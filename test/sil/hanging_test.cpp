@@ -196,7 +196,7 @@ Ride ride(const Scenario& scenario, const RopeAt& rope, const RideOptions& optio
     const model::RobotState& state = record.state;
     ride.seen.push_back({.time_s = static_cast<double>(record.tick) * kTick_s,
                          .mode = result.mode,
-                         .hanging = result.hanging,
+                         .hanging = control::hanging(result.maker),
                          .policy_calls = calls,
                          .carried = (truth.foot_force_N[0] + truth.foot_force_N[1]) / weight_N,
                          .farthest_rad = (state.q - result.reference.q).cwiseAbs().maxCoeff(),

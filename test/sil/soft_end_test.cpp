@@ -83,7 +83,7 @@ End end_of(std::uint64_t seed, FaultCode code, bool walks, bool sits) {
       end.code = record.result.fault.code;
       end.fault_s = now_s - at_s;
     }
-    if (!record.result.sitting && end.damped_s < 0.0) end.damped_s = now_s - fault_at_s;
+    if (!control::sitting_down(record.result.maker) && end.damped_s < 0.0) end.damped_s = now_s - fault_at_s;
     if (now_s > fault_at_s) end.peak_m_s = std::max(end.peak_m_s, speed_m_s);
   };
   lockstep.run();
