@@ -71,7 +71,7 @@ void CanHal::send(std::size_t b) noexcept {
     synced = synced && !motor.pauses_sync();
   }
   std::size_t count = 0;
-  const auto put = [&](const Frame& frame, int asked) {
+  const auto put = [&](const drives::Message& frame, int asked) {
     bus.outgoing[count] = frame;
     bus.asked[count++] = asked;
   };
@@ -80,7 +80,8 @@ void CanHal::send(std::size_t b) noexcept {
     drives::MotorChannel& motor = bus.motors[m];
     drives::Outbox out;
     motor.ask(drives_.wanted(b, m), {.stiff = drives_.stiff(), .urgent = drives_.urgent(), .synced = synced}, out);
-    for (const Frame& frame : out.messages()) put(frame, motor.asked_by_sync() ? kNobody : static_cast<int>(m));
+    for (const drives::Message& frame : out.messages())
+      put(frame, motor.asked_by_sync() ? kNobody : static_cast<int>(m));
   }
   if (bus.synced && cycles_ % kHeartbeatCycles == 0) put(drives::canopen::heartbeat(), kNobody);
   for (std::size_t k = bus.link->send(std::span(bus.outgoing).first(count)); k < count; ++k) {
@@ -114,7 +115,7 @@ void CanHal::send_targets(Bus& bus) noexcept {
   for (drives::MotorChannel& motor : bus.motors) {
     drives::Outbox out;
     motor.follow_up(out);
-    for (const Frame& frame : out.messages()) bus.outgoing[count++] = frame;
+    for (const drives::Message& frame : out.messages()) bus.outgoing[count++] = frame;
   }
   if (count > 0) bus.link->send(std::span(bus.outgoing).first(count));
 }
@@ -138,7 +139,7 @@ void CanHal::drain(Bus& bus) noexcept {
   }
 }
 
-void CanHal::hear(Bus& bus, const Frame& frame) noexcept {
+void CanHal::hear(Bus& bus, const drives::Message& frame) noexcept {
   if (bus.setup->imu && imu_.hear(frame)) return;
   for (drives::MotorChannel& motor : bus.motors) {
     if (motor.hear(frame)) return;

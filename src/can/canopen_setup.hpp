@@ -28,7 +28,7 @@ class SdoClient final : public drives::ObjectDictionary {
 
  private:
   /// Nullopt: no such object.
-  std::optional<drives::canopen::SdoAnswer> ask(const Frame& request, const drives::ObjectId& id);
+  std::optional<drives::canopen::SdoAnswer> ask(const drives::Message& request, const drives::ObjectId& id);
 
   int node_;
   Link& link_;

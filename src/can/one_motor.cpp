@@ -34,12 +34,13 @@ OneMotor::~OneMotor() {
     return;
   }
   if (drives::as_cia402(setup_.drive) == nullptr) return;
-  const Frame quiet = drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, setup_.node);
+  const drives::Message quiet =
+      drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, setup_.node);
   link_.send(std::span(&quiet, 1));
 }
 
 void OneMotor::cycle(const std::function<void(bool synced, drives::Outbox&)>& ask) {
-  const auto send = [this](const Frame& frame) { return link_.send(std::span(&frame, 1)) == 1; };
+  const auto send = [this](const drives::Message& frame) { return link_.send(std::span(&frame, 1)) == 1; };
   monitor_.begin();
   const bool synced = bus_.has_canopen() && !motor_.pauses_sync();
   bool asked = synced && send(drives::canopen::sync());
@@ -55,9 +56,9 @@ void OneMotor::cycle(const std::function<void(bool synced, drives::Outbox&)>& as
   for (int k = 0; k < kPatience && (k == 0 || monitor_.age_cycles() > 0); ++k) {
     tick_();
     ++ticks_;
-    std::array<Frame, 32> frames;
+    std::array<drives::Message, 32> frames;
     while (const std::size_t count = link_.receive(frames)) {
-      for (const Frame& got : std::span(frames).first(count)) motor_.hear(got);
+      for (const drives::Message& got : std::span(frames).first(count)) motor_.hear(got);
     }
   }
   drives::Outbox follow_up;
@@ -87,7 +88,7 @@ bool OneMotor::set_zero() {
   if (!motor_.zero(out)) return false;
   link_.send(out.messages());
   tick_();
-  std::array<Frame, 32> answers;
+  std::array<drives::Message, 32> answers;
   while (link_.receive(answers) > 0) {
   }
   monitor_ = drives::MotorMonitor(setup_.limits, bus_.fresh_cycles());  // the position jumps

@@ -25,8 +25,8 @@ class SocketLink final : public Link {
   SocketLink(const SocketLink&) = delete;
   SocketLink& operator=(const SocketLink&) = delete;
 
-  std::size_t send(std::span<const Frame> frames) noexcept override;
-  std::size_t receive(std::span<Frame> frames) noexcept override;
+  std::size_t send(std::span<const drives::Message> frames) noexcept override;
+  std::size_t receive(std::span<drives::Message> frames) noexcept override;
   BusHealth health() const noexcept override { return health_; }
   const LinkCounts& counts() const noexcept override { return counts_; }
   int descriptor() const noexcept override { return socket_; }

@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // Records of 12 bytes: bus, flags and length, identifier (2), data (8). A set high bit of the bus ends the cycle, the
   // next bit makes it limp.
   for (std::size_t at = 0; at + 12 <= size; at += 12) {
-    can::Frame frame;
+    drives::Message frame;
     frame.extended = (data[at + 1] & 0x80U) != 0;
     frame.fd = (data[at + 1] & 0x40U) != 0;
     frame.length = data[at + 1] & 0x3FU;
@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (hal.receive(state) == hal::BusStatus::kOk)
       require(state.q.allFinite() && state.dq.allFinite() && state.tau.allFinite());
     for (std::size_t b = 0; b < far.size(); ++b) {
-      std::array<can::Frame, 64> sent;
+      std::array<drives::Message, 64> sent;
       const std::size_t count = far[b]->receive(sent);
       for (std::size_t i = 0; i < count; ++i) check_limits(sent[i], setup.buses[b]);
     }

@@ -41,9 +41,9 @@ class EmulatedDrives {
   }
   void answer() noexcept {
     for (std::size_t b = 0; b < buses_.size(); ++b) {
-      std::array<can::Frame, 32> frames;
+      std::array<drives::Message, 32> frames;
       while (const std::size_t count = links_[b]->receive(frames)) {
-        for (const can::Frame& frame : std::span(frames).first(count)) {
+        for (const drives::Message& frame : std::span(frames).first(count)) {
           for (const auto& drive : buses_[b]) {
             Replies replies;
             const int answers = drive->hear(frame, replies);

@@ -40,7 +40,7 @@ class SocketsSlcan : public testing::Test {
   BusStatus cycle(const model::JointCommand& command, const std::string& said = {}, bool wire = true) {
     hal_->send(command);
     std::size_t awaited = 0;
-    for (const Frame& frame : adapter_.sent(wire ? drives_.size() : 0)) {
+    for (const drives::Message& frame : adapter_.sent(wire ? drives_.size() : 0)) {
       for (const auto& drive : drives_) {
         test::Replies replies;
         const int count = drive->hear(frame, replies);
@@ -56,7 +56,7 @@ class SocketsSlcan : public testing::Test {
     const std::uint64_t wanted_frames = watcher_->counts().received + frames,
                         wanted_errors = watcher_->counts().error_frames + errors;
     pollfd polled{.fd = watcher_->descriptor(), .events = POLLIN, .revents = 0};
-    std::array<Frame, 64> buffer;
+    std::array<drives::Message, 64> buffer;
     for (int wait = 0; wait < 100; ++wait) {
       watcher_->receive(buffer);
       if (watcher_->counts().received >= wanted_frames && watcher_->counts().error_frames >= wanted_errors) return;
