@@ -73,9 +73,10 @@ class CanHal final : public hal::Hal {
     const BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
     std::vector<drives::MotorChannel> motors;
-    bool synced = false;                    // SYNC asks some motor's drive
-    std::vector<drives::Message> outgoing;  // room for all of its motors' and the network's two
-    std::vector<int> asked;                 // one a frame: the motor that it asks; kAllSynced, kNobody
+    std::unique_ptr<drives::Network> network;  // null: nothing is for all of its drives together
+    bool synced = false;                       // the network asks some motor's drive
+    std::vector<drives::Message> outgoing;     // room for all of its motors' and the network's
+    std::vector<int> asked;                    // one a frame: the motor that it asks; kAllSynced, kNobody
   };
   static constexpr int kAllSynced = -1, kNobody = -2;
   void send(std::size_t b) noexcept;

@@ -131,7 +131,7 @@ void set_up_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& lin
     drives::check_drive(node, settings);
     drives::set_up_drive(node, settings, motor.limits);
     set_up_pdos(node, static_cast<std::uint32_t>(motor.node), settings);
-    must_write(node, {0x1016, 1, 4}, drives::canopen::kHostNode << 16U | kHeartbeatTimeout_ms);
+    must_write(node, {0x1016, 1, 4}, drives::canopen::kHostNode << 16U | drives::canopen::kHeartbeatTimeout_ms);
     node.write({0x1029, 1, 1}, 1);  // a silent computer stops the motor, not the node's PDOs; not every drive has it
     command(drives::canopen::NodeCommand::kStart);
   } catch (const std::runtime_error& error) {

@@ -435,7 +435,7 @@ TEST_F(CanopenDrives, AKilledHostLeavesTheDrivesToTheirWatchdogs) {
     ++cycles;
   }
   EXPECT_LE(cycles, 15) << "30 ms after the last heartbeat";
-  EXPECT_GE(cycles, 15 - kHeartbeatCycles);
+  EXPECT_GE(cycles, 15 - drives::canopen::kHeartbeatCycles);
   EXPECT_FALSE(shoulder().enabled());
   EXPECT_GT(acting_.kd[shoulder_index()], 0.0) << "braked";
   EXPECT_EQ(acting_.tau_ff[hip_index()], 0.0);
