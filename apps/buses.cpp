@@ -86,9 +86,9 @@ Overhearing::Overhearing(Buses& buses) : buses_(buses) {
 
 void Overhearing::listen() {
   for (std::size_t b = 0; b < heard_.size(); ++b) {
-    std::array<can::Frame, 64> frames;
+    std::array<drives::Message, 64> frames;
     while (const std::size_t count = buses_.links[b]->receive(frames)) {
-      for (const can::Frame& frame : std::span(frames).first(count)) {
+      for (const drives::Message& frame : std::span(frames).first(count)) {
         for (Heard& heard : heard_[b]) {
           const drives::Heard said = heard.protocol->hear(frame);
           if (said.what != drives::Heard::What::kReading) continue;

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -52,7 +53,7 @@ Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that c
 docs/how-to/hal.md has the order of a bring-up.)";
 
 struct Arguments {
-  std::string robot = "z1", joint, recording;
+  std::string robot = "z1", joint, recording, held;
   double by_deg = 0.0, for_s = 0.0, gain_share = 0.3;
   bool yes = false;
 };
@@ -177,6 +178,32 @@ JointVector posture(Buses& buses, std::vector<std::string>& silent) {
   return q;
 }
 
+/// Where down is, before anything moves.
+model::Hanging hangs(Buses& buses, const OneMotor& one, const JointVector& q, can::Plumb* plumb,
+                     const std::function<void()>& tick, const std::string& held) {
+  model::Hanging hanging{.held_link = held.empty() ? buses.robot.torso_link : held};
+  if (!buses.robot.tree.getSegments().contains(hanging.held_link))
+    throw std::invalid_argument(fmt::format("'{}' isn't a link; expected --held LINK of the URDF", hanging.held_link));
+  std::optional<can::Plumb::Sample> sample;
+  constexpr int kImuCycles = 50;  // 0.1 s
+  for (int k = 0; plumb != nullptr && k < kImuCycles && !sample; ++k) {
+    tick();
+    std::array<drives::Message, 64> messages;
+    while (const std::size_t count = one.bus.imu ? one.link.receive(messages) : 0) {
+      for (const drives::Message& message : std::span(messages).first(count)) plumb->hear(message);
+    }
+    sample = plumb->sample(q);
+  }
+  if (!sample) {
+    std::cout << "no IMU on a bus speaks: the base counts as upright, and how it leans is not seen\n";
+    return hanging;
+  }
+  hanging.down_B = sample->down_B;
+  std::cout << fmt::format("the base leans by {:.1f} deg\n",
+                           std::acos(std::clamp(-hanging.down_B.z(), -1.0, 1.0)) / kRadPerDegree);
+  return hanging;
+}
+
 int wiggle(const Arguments& arguments) {
   Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
@@ -187,14 +214,21 @@ int wiggle(const Arguments& arguments) {
     std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
                              silent.size(), silent.front());
   }
-  const double by_rad =
-      arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree : can::telling_way_rad(buses.robot, q, arguments.joint);
+  const std::function<void()> tick = bus_tick();
+  std::optional<can::Plumb> plumb;
+  for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
+    const can::BusSetup& bus = buses.setup.buses[b];
+    if (bus.imu) plumb.emplace(buses.robot, &bus == &one.bus ? nullptr : buses.links[b].get());
+  }
+  const model::Hanging hanging = hangs(buses, one, q, plumb ? &*plumb : nullptr, tick, arguments.held);
+  const double by_rad = arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree
+                                               : can::telling_way_rad(buses.robot, q, arguments.joint, hanging);
   std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
                            by_rad / kRadPerDegree, can::way_of(buses.robot, q, arguments.joint, by_rad))
             << std::flush;
-  const std::function<void()> tick = bus_tick();
-  const can::Wiggle result = can::wiggle(buses.robot, q, one.bus, one.motor, one.link,
-                                         {.by_rad = by_rad, .gain_share = arguments.gain_share}, tick, interrupted);
+  const can::Wiggle result =
+      can::wiggle(buses.robot, q, one.bus, one.motor, one.link, {.by_rad = by_rad, .gain_share = arguments.gain_share},
+                  tick, interrupted, hanging, plumb ? &*plumb : nullptr);
   const can::Verdict verdict = can::verdict(result);
   std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
                            result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
@@ -242,6 +276,7 @@ int main(int argc, char** argv) {
   wiggling->add_option("--gains", arguments.gain_share, "share of robot.yaml's gains")
       ->check(apps::in_range(0.05, 1.0))
       ->capture_default_str();
+  wiggling->add_option("--held", arguments.held, "the link that the gantry holds; not given: robot.yaml's torso_link");
   command("replay", "what the backend says of a recording in candump's format", replay)
       ->add_option("recording", arguments.recording, "a file that dump or candump -L wrote")
       ->required();

@@ -71,7 +71,7 @@ std::vector<std::uint32_t> awaited_ids(const BusSetup& bus) {
   return ids;
 }
 
-std::optional<int> stranger(const BusSetup& bus, const Frame& frame) noexcept {
+std::optional<int> stranger(const BusSetup& bus, const drives::Message& frame) noexcept {
   for (const drives::MotorSetup& motor : bus.motors) {
     const auto node = motor.drive->sender(frame);
     if (node && !known(bus, *node)) return node;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "can/bus_setup.hpp"
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::can {
 
@@ -30,6 +30,6 @@ std::vector<std::uint32_t> awaited_ids(const BusSetup& bus);
 
 /// The node of a drive that the bus isn't to have, if it sent this frame, which is none of the bus's motors': an answer
 /// as its drives give them, or one of a CANopen drive's messages of the cycle. No heap.
-std::optional<int> stranger(const BusSetup& bus, const Frame& frame) noexcept;
+std::optional<int> stranger(const BusSetup& bus, const drives::Message& frame) noexcept;
 
 }  // namespace pmg::can

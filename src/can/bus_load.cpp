@@ -34,7 +34,7 @@ BusLoad planned_load(const BusSetup& bus) {
   }
   if (bus.has_canopen()) {
     add(1, 0, 0);                // SYNC
-    add(1, kHeartbeatBytes, 0);  // in one cycle of kHeartbeatCycles
+    add(1, kHeartbeatBytes, 0);  // in one cycle of drives::canopen::kHeartbeatCycles
   }
   if (bus.imu) add(kImuFrames, kFrameBytes, 0);  // the IMU sends classic frames
   load.share = load.time_s / kPeriod_s;

@@ -21,6 +21,10 @@ namespace {
 /// Nine cycles without a command, then damping: the drives damp in the tenth. A control tick may be 8 ms late.
 constexpr int kHoldCycles = 9;
 
+/// Frames of so many cycles wait for a wire that is out; newer commands are then dropped. When the wire is back, the
+/// old ones go first: none is older than the time that it was out, and new ones follow within as many cycles.
+constexpr int kWaitingCycles = 4;
+
 class CanBackend final : public hal::Backend {
  public:
   explicit CanBackend(const hal::BackendSetup& setup)
@@ -53,7 +57,8 @@ class CanBackend final : public hal::Backend {
     std::vector<std::unique_ptr<Link>> links;
     for (const BusSetup& bus : setup_.buses) claims_.emplace_back(bus.name);
     for (const BusSetup& bus : setup_.buses)
-      links.push_back(std::make_unique<SocketLink>(bus.name, awaited_ids(bus), bus.data_bitrate != 0));
+      links.push_back(std::make_unique<SocketLink>(bus.name, awaited_ids(bus), bus.data_bitrate != 0,
+                                                   kWaitingCycles * planned_load(bus).frames));
     call_roll(setup_, links, sleeping(), interrupted);
     set_up_nodes(setup_, links, sleeping(), interrupted);
     hal_ = std::make_unique<CanHal>(setup_, robot_, clock_, std::move(links));

@@ -6,7 +6,6 @@
 #include <ctime>
 
 #include "can/bus_ids.hpp"
-#include "can/canopen_setup.hpp"
 
 namespace pmg::can {
 
@@ -42,8 +41,9 @@ CanHal::CanHal(const DriveSetup& setup, const model::RobotModel& robot, const io
     bus.link = std::move(links.at(b));
     for (std::size_t m = 0; m < setup.buses[b].motors.size(); ++m)
       bus.motors.emplace_back(setup.buses[b].motors[m], drives_.monitor(b, m), setup.buses[b].data_bitrate != 0);
-    bus.synced = std::ranges::any_of(bus.motors, &drives::MotorChannel::asked_by_sync);
-    bus.outgoing.resize(bus.motors.size() * drives::Outbox::kMost + 2);
+    bus.network = drives::network_of(setup.buses[b]);
+    bus.synced = bus.network && std::ranges::any_of(bus.motors, &drives::MotorChannel::asked_by_sync);
+    bus.outgoing.resize((bus.motors.size() + 1) * drives::Outbox::kMost + 1);
     bus.asked.resize(bus.outgoing.size());
     polled_.push_back({.fd = bus.link->descriptor(), .events = POLLIN, .revents = 0});
     waits_ = waits_ || polled_.back().fd >= 0;
@@ -71,18 +71,23 @@ void CanHal::send(std::size_t b) noexcept {
     synced = synced && !motor.pauses_sync();
   }
   std::size_t count = 0;
-  const auto put = [&](const Frame& frame, int asked) {
+  const auto put = [&](const drives::Message& frame, int asked) {
     bus.outgoing[count] = frame;
     bus.asked[count++] = asked;
   };
-  if (synced) put(drives::canopen::sync(), kAllSynced);  // first: what it asks for is worth most when it is new
+  if (synced) put(bus.network->sync(), kAllSynced);  // first: what it asks for is worth most when it is new
   for (std::size_t m = 0; m < bus.motors.size(); ++m) {
     drives::MotorChannel& motor = bus.motors[m];
     drives::Outbox out;
     motor.ask(drives_.wanted(b, m), {.stiff = drives_.stiff(), .urgent = drives_.urgent(), .synced = synced}, out);
-    for (const Frame& frame : out.messages()) put(frame, motor.asked_by_sync() ? kNobody : static_cast<int>(m));
+    for (const drives::Message& frame : out.messages())
+      put(frame, motor.asked_by_sync() ? kNobody : static_cast<int>(m));
   }
-  if (bus.synced && cycles_ % kHeartbeatCycles == 0) put(drives::canopen::heartbeat(), kNobody);
+  if (bus.network) {
+    drives::Outbox out;
+    bus.network->sign_of_life(1, out);
+    for (const drives::Message& frame : out.messages()) put(frame, kNobody);
+  }
   for (std::size_t k = bus.link->send(std::span(bus.outgoing).first(count)); k < count; ++k) {
     if (bus.asked[k] >= 0) bus.motors[static_cast<std::size_t>(bus.asked[k])].not_asked();
     if (bus.asked[k] != kAllSynced) continue;
@@ -114,7 +119,7 @@ void CanHal::send_targets(Bus& bus) noexcept {
   for (drives::MotorChannel& motor : bus.motors) {
     drives::Outbox out;
     motor.follow_up(out);
-    for (const Frame& frame : out.messages()) bus.outgoing[count++] = frame;
+    for (const drives::Message& frame : out.messages()) bus.outgoing[count++] = frame;
   }
   if (count > 0) bus.link->send(std::span(bus.outgoing).first(count));
 }
@@ -138,7 +143,7 @@ void CanHal::drain(Bus& bus) noexcept {
   }
 }
 
-void CanHal::hear(Bus& bus, const Frame& frame) noexcept {
+void CanHal::hear(Bus& bus, const drives::Message& frame) noexcept {
   if (bus.setup->imu && imu_.hear(frame)) return;
   for (drives::MotorChannel& motor : bus.motors) {
     if (motor.hear(frame)) return;

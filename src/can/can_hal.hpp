@@ -73,16 +73,17 @@ class CanHal final : public hal::Hal {
     const BusSetup* setup = nullptr;
     std::unique_ptr<Link> link;
     std::vector<drives::MotorChannel> motors;
-    bool synced = false;          // SYNC asks some motor's drive
-    std::vector<Frame> outgoing;  // room for all of its motors' and the network's two
-    std::vector<int> asked;       // one a frame: the motor that it asks; kAllSynced, kNobody
+    std::unique_ptr<drives::Network> network;  // null: nothing is for all of its drives together
+    bool synced = false;                       // the network asks some motor's drive
+    std::vector<drives::Message> outgoing;     // room for all of its motors' and the network's
+    std::vector<int> asked;                    // one a frame: the motor that it asks; kAllSynced, kNobody
   };
   static constexpr int kAllSynced = -1, kNobody = -2;
   void send(std::size_t b) noexcept;
   static void send_targets(Bus& bus) noexcept;
   void drain() noexcept;
   void drain(Bus& bus) noexcept;
-  void hear(Bus& bus, const Frame& frame) noexcept;
+  void hear(Bus& bus, const drives::Message& frame) noexcept;
   bool wait(std::int64_t deadline_ns) noexcept;
   BusTrouble judge() const noexcept;
   void tell() noexcept;
@@ -90,7 +91,7 @@ class CanHal final : public hal::Hal {
   const io::Clock& clock_;
   drives::RobotDrives drives_;
   std::vector<Bus> buses_;
-  std::vector<Frame> incoming_;
+  std::vector<drives::Message> incoming_;
   std::vector<pollfd> polled_;  // one a bus
   XsensImu imu_;
   bool waits_ = false;

@@ -34,7 +34,7 @@ bool take(std::string_view& text, std::string_view what) {
 }  // namespace
 
 std::string to_line(const RecordedFrame& recorded) {
-  const Frame& frame = recorded.frame;
+  const drives::Message& frame = recorded.frame;
   std::string text = fmt::format("({}.{:06}) {} ", recorded.stamp_ns / kNsPerS, recorded.stamp_ns % kNsPerS / kNsPerUs,
                                  recorded.interface);
   if (recorded.kind == Kind::kError) {
@@ -61,7 +61,7 @@ std::optional<RecordedFrame> from_line(std::string_view line) {
   recorded.interface = line.substr(0, space);
   line.remove_prefix(space + 1);
 
-  Frame& frame = recorded.frame;
+  drives::Message& frame = recorded.frame;
   const std::size_t hash = line.find('#');
   if (hash != 3 && hash != 8) return std::nullopt;
   auto id = take_number(line, 16, hash);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::can {
 
@@ -19,7 +19,7 @@ struct RecordedFrame {
   };
   std::int64_t stamp_ns = 0;  ///< since 1970
   std::string interface {};
-  Frame frame{};
+  drives::Message frame{};
   Kind kind = Kind::kData;
 };
 

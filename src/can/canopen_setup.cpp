@@ -76,8 +76,8 @@ Wait sleeping() {
   return [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
 }
 
-std::optional<drives::canopen::SdoAnswer> SdoClient::ask(const Frame& request, const drives::ObjectId& id) {
-  std::array<Frame, 64> frames;
+std::optional<drives::canopen::SdoAnswer> SdoClient::ask(const drives::Message& request, const drives::ObjectId& id) {
+  std::array<drives::Message, 64> frames;
   while (link_.receive(frames) > 0) {
   }
   for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -86,7 +86,7 @@ std::optional<drives::canopen::SdoAnswer> SdoClient::ask(const Frame& request, c
     for (int wait = 0; wait < kWaits && !found; ++wait) {
       wait_();
       const std::size_t count = link_.receive(frames);
-      for (const Frame& frame : std::span(frames).first(count)) {
+      for (const drives::Message& frame : std::span(frames).first(count)) {
         if (frame.extended || frame.id != drives::canopen::kSdoAnswer + static_cast<std::uint32_t>(node_)) continue;
         const auto answer = drives::canopen::sdo_answer(frame);
         if (!answer || answer->id.index != id.index || answer->id.subindex != id.subindex) continue;
@@ -121,7 +121,7 @@ bool SdoClient::write(const drives::ObjectId& id, std::uint32_t value) {
 void set_up_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait) {
   const auto& settings = *drives::as_cia402(motor.drive);
   const auto command = [&](drives::canopen::NodeCommand what) {
-    const Frame frame = drives::canopen::node_command(what, motor.node);
+    const drives::Message frame = drives::canopen::node_command(what, motor.node);
     link.send(std::span(&frame, 1));
     for (int k = 0; k < kStartWaits; ++k) wait();
   };
@@ -131,7 +131,7 @@ void set_up_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& lin
     drives::check_drive(node, settings);
     drives::set_up_drive(node, settings, motor.limits);
     set_up_pdos(node, static_cast<std::uint32_t>(motor.node), settings);
-    must_write(node, {0x1016, 1, 4}, drives::canopen::kHostNode << 16U | kHeartbeatTimeout_ms);
+    must_write(node, {0x1016, 1, 4}, drives::canopen::kHostNode << 16U | drives::canopen::kHeartbeatTimeout_ms);
     node.write({0x1029, 1, 1}, 1);  // a silent computer stops the motor, not the node's PDOs; not every drive has it
     command(drives::canopen::NodeCommand::kStart);
   } catch (const std::runtime_error& error) {

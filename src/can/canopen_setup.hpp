@@ -28,17 +28,12 @@ class SdoClient final : public drives::ObjectDictionary {
 
  private:
   /// Nullopt: no such object.
-  std::optional<drives::canopen::SdoAnswer> ask(const Frame& request, const drives::ObjectId& id);
+  std::optional<drives::canopen::SdoAnswer> ask(const drives::Message& request, const drives::ObjectId& id);
 
   int node_;
   Link& link_;
   Wait wait_;
 };
-
-/// The time without this computer's heartbeat after which the drives stop by themselves [ms], and the bus cycles
-/// between two heartbeats: three may be lost.
-inline constexpr std::uint32_t kHeartbeatTimeout_ms = 30;
-inline constexpr int kHeartbeatCycles = 4;
 
 /// Puts the node into pre-operational, checks it against robot.yaml, sets it up, and starts it; it stays switched off.
 /// RPDO1 acts when it comes; TPDO1 and TPDO2 come with every SYNC; all other PDOs are off. Throws std::runtime_error:

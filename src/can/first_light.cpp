@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "can/one_motor.hpp"
@@ -28,72 +30,170 @@ constexpr double kSure = 3.0, kSureOfMean = 1.0;
 constexpr double kWayMargin =
     1.5;  // soft gains don't reach the end, and a step of the drive's torque counts as friction
 
+constexpr double kLeanWay_rad = 10.0 * kRadPerDegree;   // of a leg: the base leans by a degree or more
+constexpr double kLeastLean_rad = 0.5 * kRadPerDegree;  // sway and the steps of an IMU's values are less
+constexpr double kSureOfLean = 2.0;   // times what the base lacks when the joint is back: friction holds it there
+constexpr double kOnStop_rad = 0.02;  // a limp joint that lies on its stop
+constexpr double kNoWay_rad = 0.4 * kRadPerDegree;  // less than can be asked for: it lies on its stop
+// Share of the way that a base turns which a joint turns. Less, and something else than --held holds the robot.
+constexpr double kLeastTurn = 0.3;
+
+/// At rest at one end of the way: means over half of the time there.
+struct End {
+  double q_rad = 0.0, torque_Nm = 0.0;
+  Eigen::Vector3d down_B = Eigen::Vector3d::Zero();
+  Eigen::Vector4d base_WB = Eigen::Vector4d::Zero();  // coefficients, summed
+  bool plumbed = true;
+};
+
+/// The joint's motion alone.
+class Motion {
+ public:
+  Motion(const model::RobotModel& robot, const JointVector& q, const model::Joint& joint, int index)
+      : robot_(robot), q_(q), joint_(joint), index_(index) {}
+  JointVector at(double q_rad) const {
+    JointVector q = q_;
+    q[index_] = q_rad;
+    return q;
+  }
+  /// The model's torque that holds the joint at this end.
+  double holding_Nm(const End& end, model::Hanging hanging) const {
+    return holding_Nm(end, std::move(hanging), end.q_rad);
+  }
+  /// The same, told by a motor that turns the other way round.
+  double inverted_Nm(const End& end, model::Hanging hanging) const {
+    return -holding_Nm(end, std::move(hanging), -end.q_rad);
+  }
+
+ private:
+  double holding_Nm(const End& end, model::Hanging hanging, double q_rad) const {
+    if (end.plumbed) hanging.down_B = end.down_B.normalized();
+    const model::GravityLoad load = model::gravity_load(robot_, joint_.name, at(q_rad), hanging);
+    return load.holding_Nm(q_rad);
+  }
+  const model::RobotModel& robot_;
+  const JointVector& q_;
+  const model::Joint& joint_;
+  int index_;
+};
+
+/// Of the base, from one end to another, in its own axes [rad].
+Eigen::Vector3d turned_rad(const End& from, const End& to) {
+  const Eigen::Quaterniond a(Eigen::Vector4d(from.base_WB.normalized())), b(Eigen::Vector4d(to.base_WB.normalized()));
+  const Eigen::AngleAxisd turn(a.conjugate() * b);
+  const double angle_rad = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
+  return angle_rad * turn.axis();
+}
+
+/// The way that the base leans when the joint turns by +: a unit vector in the base's axes. A base that the joint turns
+/// goes against its axis. Any other leans until the robot's centre of mass is below what holds it again, so against the
+/// limb's: along d x down with the limb's way d. Nullopt: the limb's centre of mass stays, or the IMU is on the limb.
+std::optional<Eigen::Vector3d> leans(const model::RobotModel& robot, const JointVector& q, const std::string& joint,
+                                     const model::Hanging& hanging) {
+  const model::HangingLoad limb = model::hanging_load(robot, joint, q);
+  if (model::turns_base(robot, joint, hanging)) return -limb.axis;
+  constexpr double kLeastShift_m = 0.01;  // of the robot's centre of mass, per rad
+  const Eigen::Vector3d way = (limb.mass_kg / robot.total_mass_kg * limb.center_m_per_rad).cross(hanging.down_B);
+  if (way.norm() < kLeastShift_m || model::beyond(robot, joint, robot.imu.link)) return std::nullopt;
+  return way.normalized();
+}
+
 }  // namespace
 
-double telling_way_rad(const model::RobotModel& robot, const JointVector& q, const std::string& joint) {
-  const model::HangingLoad load = model::hanging_load(robot, joint, q);
+double telling_way_rad(const model::RobotModel& robot, const JointVector& q, const std::string& joint,
+                       const model::Hanging& hanging) {
+  const model::GravityLoad load = model::gravity_load(robot, joint, q, hanging);
   const double friction_Nm = robot.joints[static_cast<std::size_t>(robot.joint_index.at(joint))].friction_Nm;
   const double share = kWayMargin * kSure * friction_Nm / std::max(load.gravity_Nm, 1e-9);
-  return std::clamp(std::asin(std::min(share, 1.0)), kLeastWay_rad, kMostWay_rad);
+  const double gear_rad = std::clamp(std::asin(std::min(share, 1.0)), kLeastWay_rad, kMostWay_rad);
+  const bool load_tells =
+      2.0 * load.gravity_Nm * std::abs(std::sin(load.hangs_at_rad)) > kWayMargin * kSureOfMean * friction_Nm;
+  return load_tells ? gear_rad : std::max(gear_rad, kLeanWay_rad);
 }
 
 Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSetup& bus,
               const drives::MotorSetup& motor, Link& link, const WiggleOptions& options,
-              const std::function<void()>& tick, const std::function<bool()>& interrupted) {
+              const std::function<void()>& tick, const std::function<bool()>& interrupted,
+              const model::Hanging& hanging, Plumb* plumb) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
-  OneMotor one(bus, motor, link, tick);
+  const Motion motion(robot, q, joint, motor.index);
+  OneMotor one(bus, motor, link, tick, [plumb](const drives::Message& message) {
+    if (plumb != nullptr) plumb->hear(message);
+  });
   const double start_rad = one.joint().q_rad;
-  if (start_rad < joint.lower_rad || start_rad > joint.upper_rad) {
+  const auto in_range = [&joint](double q_rad) {
+    return q_rad >= joint.lower_rad - kOnStop_rad && q_rad <= joint.upper_rad + kOnStop_rad;
+  };
+  if (!in_range(start_rad)) {
     throw std::runtime_error(
-        fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: set its zero first",
-                    name_of(bus, motor), start_rad, joint.lower_rad, joint.upper_rad));
+        fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: {}", name_of(bus, motor),
+                    start_rad, joint.lower_rad, joint.upper_rad,
+                    in_range(-start_rad) ? "`direction` in robot.yaml is wrong, or the zero" : "set its zero first"));
   }
   one.switch_on();
   const bool own_gains = motor.drive->loop() == drives::LoopPlace::kOwnGains;
   const double share = own_gains ? 1.0 : options.gain_share;
+  const double by_rad = options.by_rad.value_or(telling_way_rad(robot, q, motor.joint, hanging));
+  const double up = std::min(start_rad + by_rad, joint.upper_rad), low = std::max(start_rad - by_rad, joint.lower_rad);
+  const model::GravityLoad expected = model::gravity_load(robot, motor.joint, q, hanging);
+  const double most_Nm = options.effort_share * joint.effort_limit_Nm +
+                         2.0 * std::max(std::abs(expected.holding_Nm(up)), std::abs(expected.holding_Nm(low)));
 
   double target_rad = start_rad;
-  const auto go_to = [&](double end_rad, double& q_rad, double& torque_Nm) {
-    double q_sum = 0.0, torque_sum = 0.0;
-    const double end = std::clamp(end_rad, joint.lower_rad, joint.upper_rad);
+  const auto go_to = [&](double end_rad) {
+    constexpr int kRestCycles = kSettleCycles / 2;
+    End end;
     for (int settled = 0; settled < kSettleCycles;) {
       if (interrupted && interrupted()) throw std::runtime_error("interrupted; the motor is switched off");
-      target_rad += std::clamp(end - target_rad, -options.speed_rad_s * kCycle_s, options.speed_rad_s * kCycle_s);
+      target_rad += std::clamp(end_rad - target_rad, -options.speed_rad_s * kCycle_s, options.speed_rad_s * kCycle_s);
       one.exchange({.q_rad = target_rad,
                     .kp_Nm_per_rad = share * joint.kp_Nm_per_rad,
                     .kd_Nm_s_per_rad = share * joint.kd_Nm_s_per_rad});
-      if (target_rad != end) continue;
+      if (std::abs(one.joint().torque_Nm) > most_Nm)
+        throw std::runtime_error(
+            fmt::format("{} meets {:.1f} Nm; expected {:.1f} Nm at most on this way: something blocks it, or gear or "
+                        "zero are wrong; it is switched off",
+                        name_of(bus, motor), std::abs(one.joint().torque_Nm), most_Nm));
+      const auto plumbed = plumb != nullptr ? plumb->sample(motion.at(one.joint().q_rad)) : std::nullopt;
+      if (target_rad != end_rad) continue;
       ++settled;
-      if (2 * settled <= kSettleCycles) continue;  // the second half is at rest
-      q_sum += one.joint().q_rad;
-      torque_sum += one.joint().torque_Nm;
+      if (settled <= kSettleCycles - kRestCycles) continue;  // the second half is at rest
+      end.q_rad += one.joint().q_rad / kRestCycles;
+      end.torque_Nm += one.joint().torque_Nm / kRestCycles;
+      end.plumbed = end.plumbed && plumbed.has_value();
+      if (!plumbed) continue;
+      end.down_B += plumbed->down_B;
+      const Eigen::Vector4d coefficients = plumbed->base_WB.coeffs();
+      end.base_WB += end.base_WB.dot(coefficients) < 0.0 ? Eigen::Vector4d(-coefficients) : coefficients;
     }
-    constexpr int kRestCycles = kSettleCycles / 2;
-    q_rad = q_sum / kRestCycles;
-    torque_Nm = torque_sum / kRestCycles;
+    return end;
   };
-  double q_up = 0.0, q_down = 0.0, q_back = 0.0, torque_up = 0.0, torque_down = 0.0, torque_back = 0.0;
-  const double by_rad = options.by_rad.value_or(telling_way_rad(robot, q, motor.joint));
-  const double up = std::min(start_rad + by_rad, joint.upper_rad);
-  go_to(up, q_up, torque_up);
-  go_to(start_rad - by_rad, q_down, torque_down);
-  go_to(start_rad, q_back, torque_back);
+  const End begin = go_to(start_rad), highest = go_to(up), lowest = go_to(low), back = go_to(start_rad);
 
-  const model::HangingLoad load = model::hanging_load(robot, motor.joint, q);
+  const double model_up_Nm = motion.holding_Nm(highest, hanging), model_low_Nm = motion.holding_Nm(lowest, hanging);
+  const bool up_pulls_more = std::abs(model_up_Nm) > std::abs(model_low_Nm);
   Wiggle result;
   result.asked_rad = up - start_rad;
-  result.moved_rad = q_up - start_rad;
-  result.held_Nm = 0.5 * (torque_up + torque_down);  // dry friction takes opposite signs on the two ways
-  const double middle_rad = 0.5 * (q_up + q_down);
-  result.model_Nm = load.gravity_Nm * std::sin(middle_rad - load.hangs_at_rad);
-  // The joint is at -q then, and its torque has the other sign, too.
-  result.model_inverted_Nm = load.gravity_Nm * std::sin(middle_rad + load.hangs_at_rad);
-  const double model_up_Nm = load.gravity_Nm * std::sin(q_up - load.hangs_at_rad),
-               model_down_Nm = load.gravity_Nm * std::sin(q_down - load.hangs_at_rad);
-  const bool up_pulls_more = std::abs(model_up_Nm) > std::abs(model_down_Nm);
-  result.held_end_Nm = up_pulls_more ? torque_up : torque_down;
-  result.model_end_Nm = up_pulls_more ? model_up_Nm : model_down_Nm;
+  result.moved_rad = highest.q_rad - start_rad;
+  result.asked_down_rad = start_rad - low;
+  result.moved_down_rad = start_rad - lowest.q_rad;
+  // Dry friction takes opposite signs on the two ways.
+  result.held_Nm = 0.5 * (highest.torque_Nm + lowest.torque_Nm);
+  result.model_Nm = 0.5 * (model_up_Nm + model_low_Nm);
+  result.model_inverted_Nm = 0.5 * (motion.inverted_Nm(highest, hanging) + motion.inverted_Nm(lowest, hanging));
+  result.held_end_Nm = up_pulls_more ? highest.torque_Nm : lowest.torque_Nm;
+  result.model_end_Nm = up_pulls_more ? model_up_Nm : model_low_Nm;
+  result.inverted_end_Nm = motion.inverted_Nm(up_pulls_more ? highest : lowest, hanging);
   result.friction_Nm = joint.friction_Nm + motor.drive->torque_step_Nm();
+  if (!highest.plumbed || !lowest.plumbed || !begin.plumbed || !back.plumbed) return result;
+  model::Hanging now = hanging;
+  now.down_B = begin.down_B.normalized();
+  const auto way = leans(robot, motion.at(start_rad), motor.joint, now);
+  if (!way) return result;
+  result.leaned_rad = turned_rad(lowest, highest).dot(*way);
+  result.least_lean_rad = std::max(kLeastLean_rad, kSureOfLean * std::abs(turned_rad(begin, back).dot(*way)));
+  if (model::turns_base(robot, motor.joint, hanging))
+    result.least_lean_rad = std::max(result.least_lean_rad, kLeastTurn * (highest.q_rad - lowest.q_rad));
   return result;
 }
 
@@ -140,29 +240,51 @@ std::string way_of(const model::RobotModel& robot, const JointVector& q, const s
 
 Verdict verdict(const Wiggle& wiggle) {
   using Tells = Verdict::Tells;
-  if (wiggle.moved_rad < kLeastShare * wiggle.asked_rad) {
+  constexpr const char* kLeastAsked =
+      "it moved less than half the way: a brake, a stop, another limb, too much friction, "
+      "or another joint's motor";
+  // Where a joint lies on its stop, a way has no length.
+  const bool up_short = wiggle.asked_rad > kNoWay_rad && wiggle.moved_rad < kLeastShare * wiggle.asked_rad;
+  const bool down_short =
+      wiggle.asked_down_rad > kLeastWay_rad && wiggle.moved_down_rad < kLeastShare * wiggle.asked_down_rad;
+  if (up_short && wiggle.moved_rad < 0.0)
     return {Tells::kWrong,
-            wiggle.moved_rad < 0.0
-                ? "it moved the other way than its own drive was told: position and torque of the drive have opposite "
-                  "signs"
-                : "it moved less than half the way: a brake, a stop, too much friction, or another joint's motor"};
-  }
-  // An end's torque has the friction in it, once.
-  const double least_Nm = 0.5 * wiggle.model_end_Nm - wiggle.friction_Nm,
-               most_Nm = 2.0 * wiggle.model_end_Nm + wiggle.friction_Nm;
+            "it moved the other way than its own drive was told: position and torque of the drive have "
+            "opposite signs"};
+  if (up_short || down_short) return {Tells::kWrong, kLeastAsked};
+  // Where load and lean both tell the direction, they must agree.
+  const double apart_Nm = std::abs(wiggle.model_Nm - wiggle.model_inverted_Nm);
+  const bool load_tells = apart_Nm >= kSureOfMean * wiggle.friction_Nm;
+  const bool load_agrees =
+      std::abs(wiggle.held_Nm - wiggle.model_inverted_Nm) >= std::abs(wiggle.held_Nm - wiggle.model_Nm);
+  const bool lean_tells = wiggle.leaned_rad && std::abs(*wiggle.leaned_rad) >= wiggle.least_lean_rad;
+  const bool lean_agrees = lean_tells && *wiggle.leaned_rad > 0.0;
+  if (load_tells && lean_tells && load_agrees != lean_agrees)
+    return {Tells::kNotAll,
+            fmt::format("its load says that `direction` is {}, the base that leans says the opposite: compare the way "
+                        "with the eye",
+                        load_agrees ? "right" : "wrong")};
+  if (lean_tells && !lean_agrees)
+    return {Tells::kWrong, "the base leans the other way than the model's: `direction` in robot.yaml is wrong"};
   const bool gear_known = std::abs(wiggle.model_end_Nm) >= kSure * wiggle.friction_Nm;
-  const auto [lower_Nm, upper_Nm] = std::minmax({least_Nm, most_Nm});
-  if (gear_known && (wiggle.held_end_Nm < lower_Nm || wiggle.held_end_Nm > upper_Nm))
+  // An end's torque has the friction in it, once.
+  const auto carries = [&wiggle](double end_Nm) {
+    const auto [lower_Nm, upper_Nm] =
+        std::minmax({0.5 * end_Nm - wiggle.friction_Nm, 2.0 * end_Nm + wiggle.friction_Nm});
+    return wiggle.held_end_Nm >= lower_Nm && wiggle.held_end_Nm <= upper_Nm;
+  };
+  const bool inverted = load_tells && !load_agrees && carries(wiggle.inverted_end_Nm);
+  if (gear_known && !carries(wiggle.model_end_Nm) && !inverted)
     return {
         Tells::kWrong,
         fmt::format("the drive holds {:.1f} times the model's load: look at `gear`, at the drive's torque constant, "
                     "and at the joint's zero",
                     wiggle.held_end_Nm / wiggle.model_end_Nm)};
-  const double apart_Nm = std::abs(wiggle.model_Nm - wiggle.model_inverted_Nm);
-  const bool direction_known = apart_Nm >= kSureOfMean * wiggle.friction_Nm;
-  if (direction_known &&
-      std::abs(wiggle.held_Nm - wiggle.model_inverted_Nm) < std::abs(wiggle.held_Nm - wiggle.model_Nm))
+  const bool direction_known = load_tells || lean_tells;
+  if (load_tells && !load_agrees)
     return {Tells::kWrong, "the load pulls the other way than the model's: `direction` in robot.yaml is wrong"};
+  if (lean_tells && !lean_agrees)
+    return {Tells::kWrong, "the base leans the other way than the model's: `direction` in robot.yaml is wrong"};
   if (direction_known && gear_known) return {Tells::kAgrees, "direction and gear agree with the model"};
   if (gear_known)
     return {Tells::kNotAll,

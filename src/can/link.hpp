@@ -4,9 +4,16 @@
 #include <cstdint>
 #include <span>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::can {
+
+/// What the CAN controller of this computer says of its bus.
+enum class BusHealth : std::uint8_t {
+  kGood,
+  kPassive,  ///< error-passive: every frame meets errors, or nobody acknowledges it
+  kOff,      ///< bus-off, or the interface is down: nothing is sent
+};
 
 /// Counts since the link was opened.
 struct LinkCounts {
@@ -24,9 +31,9 @@ class Link {
   virtual ~Link() = default;
   /// Frames in the order in which they go out => how many of them there was room for; the others are counted and
   /// dropped.
-  virtual std::size_t send(std::span<const Frame> frames) noexcept = 0;
+  virtual std::size_t send(std::span<const drives::Message> frames) noexcept = 0;
   /// What has arrived, at most as many as there is room for; 0: nothing more.
-  virtual std::size_t receive(std::span<Frame> frames) noexcept = 0;
+  virtual std::size_t receive(std::span<drives::Message> frames) noexcept = 0;
   virtual BusHealth health() const noexcept = 0;
   virtual const LinkCounts& counts() const noexcept = 0;
   virtual int descriptor() const noexcept { return -1; }  ///< for poll(); -1: none

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "can/canopen_setup.hpp"
 #include "drive_protocols/canopen_drive.hpp"
@@ -14,13 +15,16 @@ constexpr int kAnswerCycles = 250;  // 0.5 s: some nodes take their time to star
 constexpr int kPatience = 5;        // ticks: 10 ms, which some adapters take; drives let go after 20 ms
 }  // namespace
 
-OneMotor::OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick)
+OneMotor::OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick,
+                   std::function<void(const drives::Message&)> others)
     : bus_(bus),
       setup_(motor),
       monitor_(motor.limits, bus.fresh_cycles()),
       motor_(motor, monitor_, bus.data_bitrate != 0),
       link_(link),
-      tick_(tick) {
+      tick_(tick),
+      others_(std::move(others)),
+      network_(drives::network_of(bus)) {
   if (drives::as_cia402(motor.drive) != nullptr) set_up_node(bus, motor, link, tick);
   for (int k = 0; k < kAnswerCycles && !monitor_.answered(); ++k) exchange_off();
   if (!monitor_.answered())
@@ -34,18 +38,20 @@ OneMotor::~OneMotor() {
     return;
   }
   if (drives::as_cia402(setup_.drive) == nullptr) return;
-  const Frame quiet = drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, setup_.node);
+  const drives::Message quiet =
+      drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, setup_.node);
   link_.send(std::span(&quiet, 1));
 }
 
 void OneMotor::cycle(const std::function<void(bool synced, drives::Outbox&)>& ask) {
-  const auto send = [this](const Frame& frame) { return link_.send(std::span(&frame, 1)) == 1; };
+  const auto send = [this](const drives::Message& frame) { return link_.send(std::span(&frame, 1)) == 1; };
   monitor_.begin();
-  const bool synced = bus_.has_canopen() && !motor_.pauses_sync();
-  bool asked = synced && send(drives::canopen::sync());
-  if (bus_.has_canopen() && ticks_ >= kHeartbeatCycles) {
-    ticks_ = 0;
-    send(drives::canopen::heartbeat());
+  const bool synced = network_ && !motor_.pauses_sync();
+  bool asked = synced && send(network_->sync());
+  if (network_) {
+    drives::Outbox life;
+    network_->sign_of_life(std::exchange(ticks_, 0), life);
+    if (!life.messages().empty()) link_.send(life.messages());
   }
   drives::Outbox out;
   ask(synced, out);
@@ -55,9 +61,11 @@ void OneMotor::cycle(const std::function<void(bool synced, drives::Outbox&)>& as
   for (int k = 0; k < kPatience && (k == 0 || monitor_.age_cycles() > 0); ++k) {
     tick_();
     ++ticks_;
-    std::array<Frame, 32> frames;
+    std::array<drives::Message, 32> frames;
     while (const std::size_t count = link_.receive(frames)) {
-      for (const Frame& got : std::span(frames).first(count)) motor_.hear(got);
+      for (const drives::Message& got : std::span(frames).first(count)) {
+        if (!motor_.hear(got) && others_) others_(got);
+      }
     }
   }
   drives::Outbox follow_up;
@@ -87,7 +95,7 @@ bool OneMotor::set_zero() {
   if (!motor_.zero(out)) return false;
   link_.send(out.messages());
   tick_();
-  std::array<Frame, 32> answers;
+  std::array<drives::Message, 32> answers;
   while (link_.receive(answers) > 0) {
   }
   monitor_ = drives::MotorMonitor(setup_.limits, bus_.fresh_cycles());  // the position jumps

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "can/bus_setup.hpp"
 #include "can/canopen_setup.hpp"
@@ -14,9 +15,10 @@ namespace pmg::can {
 class OneMotor {
  public:
   /// Sets a CANopen drive up and waits for the first answer, drive off. tick is called every 2 ms and waits; emulators
-  /// answer in it. Throws std::runtime_error: the motor doesn't answer, or its drive isn't as robot.yaml has it. Keeps
-  /// references.
-  OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick);
+  /// answer in it. others: gets what isn't the motor's; empty: nobody wants to know. Throws std::runtime_error: the
+  /// motor doesn't answer, or its drive isn't as robot.yaml has it. Keeps references.
+  OneMotor(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const std::function<void()>& tick,
+           std::function<void(const drives::Message&)> others = {});
   ~OneMotor();  ///< switches it off
   OneMotor(const OneMotor&) = delete;
   OneMotor& operator=(const OneMotor&) = delete;
@@ -41,7 +43,9 @@ class OneMotor {
   drives::MotorChannel motor_;
   Link& link_;
   const std::function<void()>& tick_;
-  int ticks_ = kHeartbeatCycles;  // since the last heartbeat
+  std::function<void(const drives::Message&)> others_;
+  std::unique_ptr<drives::Network> network_;  // of its bus; null: there is none
+  int ticks_ = 0;                             // since its last sign of life
 };
 
 }  // namespace pmg::can

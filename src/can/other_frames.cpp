@@ -33,7 +33,7 @@ std::string says(const drives::MotorSetup& motor) {
 }
 
 /// "a DaMiao's answer of left_knee; robot.yaml has ..."; empty: it may be anything.
-std::string guess(const BusSetup& bus, const Frame& frame, bool a_reply) {
+std::string guess(const BusSetup& bus, const drives::Message& frame, bool a_reply) {
   if (frame.extended)
     return "a protocol with 29-bit identifiers, as RobStride's, CyberGear's and CubeMars' servo mode have; robot.yaml "
            "has none of them";
@@ -67,7 +67,7 @@ std::string guess(const BusSetup& bus, const Frame& frame, bool a_reply) {
 
 }  // namespace
 
-void OtherFrames::note(const Frame& frame) {
+void OtherFrames::note(const drives::Message& frame) {
   Seen& seen = seen_[{frame.id, frame.extended, frame.fd, frame.length}];
   ++seen.count;
   seen.last = frame;
@@ -77,7 +77,7 @@ std::vector<std::string> OtherFrames::lines(const BusSetup& bus) const {
   const std::vector<SentId> ids = sent_ids(bus);
   std::vector<std::string> lines;
   for (const auto& [key, seen] : seen_) {
-    const Frame& frame = seen.last;
+    const drives::Message& frame = seen.last;
     const auto sent = std::ranges::find(ids, frame.id, &SentId::id);
     const bool ours = !frame.extended && sent != ids.end();
     const bool a_reply = ours && sent->shared_by != nullptr;

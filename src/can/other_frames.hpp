@@ -15,7 +15,7 @@ namespace pmg::can {
 class OtherFrames {
  public:
   /// A frame that no drive of the bus answers with, or one whose last byte can't be a fault code.
-  void note(const Frame& frame);
+  void note(const drives::Message& frame);
   /// One line for each identifier and length: how often, and what it may be. Ours are not among them: the IMU's
   /// messages and what CANopen drives of this bus send.
   std::vector<std::string> lines(const BusSetup& bus) const;
@@ -23,7 +23,7 @@ class OtherFrames {
  private:
   struct Seen {
     int count = 0;
-    Frame last;
+    drives::Message last;
   };
   std::map<std::tuple<std::uint32_t, bool, bool, int>, Seen> seen_;  // identifier, extended, fd, bytes
 };

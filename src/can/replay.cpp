@@ -20,7 +20,7 @@ constexpr std::int64_t kHole_ns = 5 * kPeriod_ns;
 constexpr std::uint64_t kFirstCycles = XsensImu::kSilentCycles + 2;
 
 /// This computer's own on a bus with CANopen drives.
-bool network(const Frame& frame) {
+bool network(const drives::Message& frame) {
   using namespace drives::canopen;
   return !frame.extended && (frame.id == kNetworkManagement || frame.id == kHeartbeat + kHostNode) && frame.length <= 2;
 }
@@ -30,8 +30,8 @@ bool network(const Frame& frame) {
 /// One bus: what was pushed is received; what is sent goes nowhere.
 class Replay::RecordedLink final : public Link {
  public:
-  std::size_t send(std::span<const Frame> frames) noexcept override { return frames.size(); }
-  std::size_t receive(std::span<Frame> frames) noexcept override {
+  std::size_t send(std::span<const drives::Message> frames) noexcept override { return frames.size(); }
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     const std::size_t count = std::min(frames.size(), waiting_.size());
     std::copy_n(waiting_.begin(), count, frames.begin());
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
@@ -39,10 +39,10 @@ class Replay::RecordedLink final : public Link {
   }
   BusHealth health() const noexcept override { return BusHealth::kGood; }
   const LinkCounts& counts() const noexcept override { return counts_; }
-  void push(const Frame& frame) { waiting_.push_back(frame); }
+  void push(const drives::Message& frame) { waiting_.push_back(frame); }
 
  private:
-  std::deque<Frame> waiting_;
+  std::deque<drives::Message> waiting_;
   LinkCounts counts_;
 };
 
@@ -61,7 +61,7 @@ Replay::Replay(const DriveSetup& setup, const model::RobotModel& robot, Tell tel
 
 Replay::~Replay() = default;
 
-bool Replay::asks(std::size_t bus, const Frame& frame) const {
+bool Replay::asks(std::size_t bus, const drives::Message& frame) const {
   if (frame.extended) return false;
   const BusSetup& setup = setup_.buses[bus];
   if (setup.has_canopen() && frame.id == drives::canopen::kSync) return true;
@@ -100,14 +100,14 @@ void Replay::take(const RecordedFrame& recorded) {
 }
 
 void Replay::begin(std::int64_t stamp_ns) {
-  finish();
+  end();
   begin_ns_ = stamp_ns;
   clock_.advance_to(std::max(clock_.now_ns(), stamp_ns - *first_ns_ + 1));
   hal_->send(limp_);
   running_ = true;
 }
 
-void Replay::finish() {
+void Replay::end() {
   if (!running_) return;
   hal_->receive(state_);
   running_ = false;
@@ -122,8 +122,6 @@ void Replay::finish() {
   if (change.status != hal::BusStatus::kOk) ++troubles_;
   if (tell_) tell_(1e-9 * static_cast<double>(begin_ns_ - *first_ns_), describe(change, setup_));
 }
-
-void Replay::end() { finish(); }
 
 void feed(Replay& replay, std::istream& recording, const std::string& name) {
   std::string line;

@@ -31,7 +31,7 @@ class Replay {
 
   /// In the order of the recording. Frames of other interfaces, remote frames and error reports are counted.
   void take(const RecordedFrame& recorded);
-  void end();  ///< the last cycle
+  void end();  ///< the recording is over: so is its last cycle
 
   const CanHal& hal() const noexcept { return *hal_; }
   std::uint64_t frames() const noexcept { return frames_; }      ///< of the robot's buses
@@ -41,9 +41,8 @@ class Replay {
 
  private:
   class RecordedLink;
-  bool asks(std::size_t bus, const Frame& frame) const;
+  bool asks(std::size_t bus, const drives::Message& frame) const;
   void begin(std::int64_t stamp_ns);
-  void finish();
 
   const DriveSetup& setup_;
   Tell tell_;

@@ -26,7 +26,7 @@ constexpr double kBeyondRange_rad =
 using Answers = std::map<int, Answer>;
 
 /// A drive that the bus isn't to have and that answers as those do that their messages ask.
-std::optional<int> asked_stranger(const BusSetup& bus, const Frame& frame) {
+std::optional<int> asked_stranger(const BusSetup& bus, const drives::Message& frame) {
   for (const drives::MotorSetup& motor : bus.motors) {
     if (drives::as_cia402(motor.drive) != nullptr) continue;
     const auto node = motor.drive->sender(frame);
@@ -50,9 +50,9 @@ void take_asked(const BusSetup& bus, const std::vector<Asked>& motors, Link& lin
     ++answer.count;
     return answer;
   };
-  std::array<Frame, 64> frames;
+  std::array<drives::Message, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
-    for (const Frame& frame : std::span(frames).first(count)) {
+    for (const drives::Message& frame : std::span(frames).first(count)) {
       bool fault_code = false;
       if (const auto node = asked_stranger(bus, frame)) count_one(*node);
       for (const Asked& motor : motors) {
@@ -69,9 +69,9 @@ void take_asked(const BusSetup& bus, const std::vector<Asked>& motors, Link& lin
 
 /// What has arrived from SDO servers.
 void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
-  std::array<Frame, 64> frames;
+  std::array<drives::Message, 64> frames;
   while (const std::size_t count = link.receive(frames)) {
-    for (const Frame& frame : std::span(frames).first(count)) {
+    for (const drives::Message& frame : std::span(frames).first(count)) {
       const std::uint32_t node = frame.id & drives::canopen::kNodeBits;
       if (frame.extended || frame.id - node != drives::canopen::kSdoAnswer || !drives::canopen::sdo_answer(frame)) {
         if (others != nullptr) others->note(frame);
@@ -88,12 +88,12 @@ void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
 struct Roll {
   Link& link;
   const Wait& wait;
-  std::function<void(int node, std::vector<Frame>& frames)> request;
+  std::function<void(int node, std::vector<drives::Message>& frames)> request;
   std::function<void(Answers&)> take;
 
   void ask(const std::vector<int>& nodes, Answers& answers) const {
     for (std::size_t at = 0; at < nodes.size(); at += kBatch) {
-      std::vector<Frame> frames;
+      std::vector<drives::Message> frames;
       const auto batch = std::span(nodes).subspan(at, std::min(kBatch, nodes.size() - at));
       for (const int node : batch) request(node, frames);
       const int all = heard(answers) + static_cast<int>(batch.size());
@@ -157,7 +157,8 @@ void find_and_count(const Roll& roll, const std::vector<int>& nodes, const std::
 void read_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait, Answer& answer) {
   const auto& settings = *drives::as_cia402(motor.drive);
   try {
-    const Frame quiet = drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, motor.node);
+    const drives::Message quiet =
+        drives::canopen::node_command(drives::canopen::NodeCommand::kPreOperational, motor.node);
     link.send(std::span(&quiet, 1));
     SdoClient node(motor.node, link, wait);
     node.write(drives::object::kControlWord, 0);
@@ -173,7 +174,7 @@ void ask_canopen(const BusSetup& bus, Link& link, const Wait& wait, const std::f
   const Roll roll{.link = link,
                   .wait = wait,
                   .request =
-                      [](int node, std::vector<Frame>& frames) {
+                      [](int node, std::vector<drives::Message>& frames) {
                         frames.push_back(drives::canopen::sdo_read(node, drives::object::kDeviceType));
                       },
                   .take = [&](Answers& into) { take_canopen(link, into, others); }};
@@ -212,7 +213,7 @@ std::vector<Answer> ask_bus(const BusSetup& bus, Link& link, const Wait& wait, c
     nodes.push_back(motor.node);
     motors.push_back({.setup = &motor, .protocol = std::move(protocol)});
   }
-  const auto off = [&motors](int node, std::vector<Frame>& frames) {
+  const auto off = [&motors](int node, std::vector<drives::Message>& frames) {
     const auto motor = std::ranges::find(motors, node, [](const Asked& asked) { return asked.setup->node; });
     drives::Outbox out;
     motor->protocol->off(out);

@@ -54,7 +54,7 @@ void set(int socket, const std::string& interface, int option, const T& value, c
 
 }  // namespace
 
-SocketLink::SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd)
+SocketLink::SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd, int most_waiting)
     : interface_(interface) {
   for (Batch* batch : {&out_, &in_}) {
     for (std::size_t i = 0; i < kBatch; ++i) {
@@ -65,6 +65,7 @@ SocketLink::SocketLink(const std::string& interface, const std::vector<std::uint
   }
   try {
     open(interface, ids, fd);
+    if (most_waiting > 0) bound_waiting(most_waiting);
   } catch (...) {
     if (socket_ >= 0) close(socket_);
     throw;
@@ -111,12 +112,20 @@ void SocketLink::open(const std::string& interface, const std::vector<std::uint3
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) refuse(interface, "bind");
 }
 
-std::size_t SocketLink::send(std::span<const Frame> frames) noexcept {
+// A kernel charges a socket for each frame that waits with the memory of its sk_buff: 704 to 832 bytes, classic and FD
+// alike (Linux 5.10 to 6.12, 64 bits). It doubles what it is told, and takes one frame more once it is beyond it.
+void SocketLink::bound_waiting(int frames) {
+  constexpr int kCharge_bytes = 768;
+  const int half = frames * kCharge_bytes / 2;
+  if (setsockopt(socket_, SOL_SOCKET, SO_SNDBUF, &half, sizeof half) != 0) refuse(interface_, "room of the send queue");
+}
+
+std::size_t SocketLink::send(std::span<const drives::Message> frames) noexcept {
   const std::size_t all = frames.size();
   while (!frames.empty()) {
     const std::size_t count = std::min(frames.size(), kBatch);
     for (std::size_t i = 0; i < count; ++i) {
-      const Frame& frame = frames[i];
+      const drives::Message& frame = frames[i];
       canfd_frame& raw = out_.frames[i];
       raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U);
       raw.len = frame.length;
@@ -138,7 +147,7 @@ std::size_t SocketLink::send(std::span<const Frame> frames) noexcept {
   return all - frames.size();
 }
 
-std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {
+std::size_t SocketLink::receive(std::span<drives::Message> frames) noexcept {
   std::size_t taken = 0;
   while (taken < frames.size()) {
     const unsigned count = static_cast<unsigned>(std::min(frames.size() - taken, kBatch));
@@ -157,7 +166,7 @@ std::size_t SocketLink::receive(std::span<Frame> frames) noexcept {
       if ((raw.can_id & CAN_RTR_FLAG) != 0) continue;
       health_ = BusHealth::kGood;
       ++counts_.received;
-      Frame& frame = frames[taken++];
+      drives::Message& frame = frames[taken++];
       frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
       frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
       frame.fd = size == CANFD_MTU;
@@ -196,7 +205,7 @@ bool SocketLink::record(RecordedFrame& recorded) noexcept {
                   : (raw.can_id & CAN_RTR_FLAG) != 0 ? Kind::kRemote
                                                      : Kind::kData;
   if (recorded.kind == Kind::kError) heed(raw);
-  Frame& frame = recorded.frame;
+  drives::Message& frame = recorded.frame;
   frame.fd = got == static_cast<ssize_t>(CANFD_MTU);
   frame.extended = recorded.kind != Kind::kError && (raw.can_id & CAN_EFF_FLAG) != 0;
   frame.id = raw.can_id & (frame.extended || recorded.kind == Kind::kError ? CAN_EFF_MASK : CAN_SFF_MASK);

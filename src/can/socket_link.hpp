@@ -18,15 +18,17 @@ class SocketLink final : public Link {
  public:
   static constexpr std::size_t kBatch = 32;  ///< frames a system call
 
-  /// ids: the only ones to be received; empty: all. fd: the interface must carry CAN FD. Throws std::runtime_error, one
+  /// ids: the only ones to be received; empty: all. fd: the interface must carry CAN FD. most_waiting: frames of this
+  /// socket that wait for the wire at most, whatever the interface's queue has room for; 0: as many as the kernel
+  /// takes. Throws std::runtime_error, one
   /// line: the kernel has no CAN, no permission, no such interface, an interface that is down or isn't CAN's.
-  SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd);
+  SocketLink(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd, int most_waiting = 0);
   ~SocketLink() override;
   SocketLink(const SocketLink&) = delete;
   SocketLink& operator=(const SocketLink&) = delete;
 
-  std::size_t send(std::span<const Frame> frames) noexcept override;
-  std::size_t receive(std::span<Frame> frames) noexcept override;
+  std::size_t send(std::span<const drives::Message> frames) noexcept override;
+  std::size_t receive(std::span<drives::Message> frames) noexcept override;
   BusHealth health() const noexcept override { return health_; }
   const LinkCounts& counts() const noexcept override { return counts_; }
   int descriptor() const noexcept override { return socket_; }
@@ -42,6 +44,7 @@ class SocketLink final : public Link {
     std::array<mmsghdr, kBatch> messages{};
   };
   void open(const std::string& interface, const std::vector<std::uint32_t>& ids, bool fd);
+  void bound_waiting(int frames);
   void heed(const canfd_frame& error) noexcept;
 
   std::string interface_;

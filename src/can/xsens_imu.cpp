@@ -9,18 +9,18 @@ namespace {
 
 constexpr double kQuaternionStep = 0x1p-15, kRateStep_rad_s = 0x1p-9, kAccelerationStep_m_s2 = 0x1p-8;
 
-double word(const Frame& frame, std::size_t index) noexcept {
+double word(const drives::Message& frame, std::size_t index) noexcept {
   const auto bits = static_cast<std::uint16_t>(frame.data[2 * index] << 8U | frame.data[2 * index + 1]);
   return static_cast<std::int16_t>(bits);
 }
 
-Eigen::Vector3d vector(const Frame& frame, double step) noexcept {
+Eigen::Vector3d vector(const drives::Message& frame, double step) noexcept {
   return step * Eigen::Vector3d(word(frame, 0), word(frame, 1), word(frame, 2));
 }
 
 template <typename Values>
-Frame frame_of(std::uint32_t id, const Values& values, double step) noexcept {
-  Frame frame;
+drives::Message frame_of(std::uint32_t id, const Values& values, double step) noexcept {
+  drives::Message frame;
   frame.id = id;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const auto code = static_cast<std::uint16_t>(std::lround(std::clamp(values[i] / step, -32768.0, 32767.0)));
@@ -37,7 +37,7 @@ void XsensImu::begin_cycle() noexcept {
   age_ = *std::ranges::max_element(ages_);
 }
 
-bool XsensImu::hear(const Frame& frame) noexcept {
+bool XsensImu::hear(const drives::Message& frame) noexcept {
   if (frame.extended) return false;
   if (frame.id == kImuQuaternion && frame.length == 8) {
     const Eigen::Quaterniond read(word(frame, 0), word(frame, 1), word(frame, 2), word(frame, 3));
@@ -64,7 +64,7 @@ void XsensImu::read(model::RobotState& state) const noexcept {
   state.acceleration_m_s2 = acceleration_m_s2_;
 }
 
-std::array<Frame, 3> imu_frames(const model::RobotState& state) noexcept {
+std::array<drives::Message, 3> imu_frames(const model::RobotState& state) noexcept {
   const Eigen::Quaterniond& q = state.orientation_WI;
   return {frame_of(kImuQuaternion, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()), kQuaternionStep),
           frame_of(kImuRateOfTurn, state.gyro_rad_s, kRateStep_rad_s),

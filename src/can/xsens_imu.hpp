@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 #include "model/robot_io.hpp"
 
 namespace pmg::can {
@@ -21,7 +21,7 @@ class XsensImu {
   static constexpr int kLateCycles = 5, kSilentCycles = 10;
 
   void begin_cycle() noexcept;
-  bool hear(const Frame& frame) noexcept;  ///< false: not the IMU's, or not believed
+  bool hear(const drives::Message& frame) noexcept;  ///< false: not the IMU's, or not believed
   void read(model::RobotState& state) const noexcept;
   int age_cycles() const noexcept { return age_; }
 
@@ -34,6 +34,6 @@ class XsensImu {
 };
 
 /// The IMU's own three frames of a state.
-std::array<Frame, 3> imu_frames(const model::RobotState& state) noexcept;
+std::array<drives::Message, 3> imu_frames(const model::RobotState& state) noexcept;
 
 }  // namespace pmg::can

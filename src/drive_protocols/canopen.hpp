@@ -27,6 +27,11 @@ enum Function : std::uint32_t {
 };
 inline constexpr std::uint32_t kNodeBits = 0x7F;
 
+/// The time without this computer's heartbeat after which the drives stop by themselves [ms], and the bus cycles
+/// between two heartbeats: three may be lost.
+inline constexpr std::uint32_t kHeartbeatTimeout_ms = 30;
+inline constexpr int kHeartbeatCycles = 4;
+
 enum class NodeCommand : std::uint8_t { kStart = 0x01, kStop = 0x02, kPreOperational = 0x80, kResetNode = 0x81 };
 inline constexpr std::uint8_t kBootUp = 0x00, kOperational = 0x05;  // states in a heartbeat
 

@@ -77,7 +77,24 @@ class CanopenNode final : public Protocol {
   int since_start_ = 0;  // cycles
 };
 
+/// SYNC asks all of its nodes; this computer's heartbeat keeps them on.
+class CanopenNetwork final : public Network {
+ public:
+  Message sync() const noexcept override { return canopen::sync(); }
+  void sign_of_life(int cycles, Outbox& out) noexcept override {
+    since_ += cycles;
+    if (since_ < canopen::kHeartbeatCycles) return;
+    since_ = 0;
+    out.put(canopen::heartbeat());
+  }
+
+ private:
+  int since_ = canopen::kHeartbeatCycles;  // cycles
+};
+
 }  // namespace
+
+std::unique_ptr<Network> CanopenDrive::network() const { return std::make_unique<CanopenNetwork>(); }
 
 std::unique_ptr<Protocol> CanopenDrive::protocol(int node, const MotorLimits& limits, bool /*fd*/) const {
   return std::make_unique<CanopenNode>(settings_, node, limits);

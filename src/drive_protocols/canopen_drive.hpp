@@ -11,6 +11,7 @@ class CanopenDrive final : public DriveType {
   explicit CanopenDrive(const Cia402Settings& settings) noexcept : settings_(settings) {}
   const Cia402Settings& settings() const noexcept { return settings_; }
 
+  std::unique_ptr<Network> network() const override;
   std::unique_ptr<Protocol> protocol(int node, const MotorLimits& limits, bool fd) const override;
   void check_covers(const DriveNeeds& needs, const std::string& joint, const std::string& drive,
                     const files::ConfigReader& reader) const override;

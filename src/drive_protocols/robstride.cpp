@@ -7,11 +7,17 @@ namespace pmg::drives {
 
 namespace {
 constexpr double kDegree = 0.1;  // of a count of temperature [degC]
+
+/// A drive gives it to whoever asks for faults: bytes 1 and 2 are bits of faults, the others zero. As a reading it
+/// would be full speed and full torque at 0 degC.
+bool fault_message(std::span<const std::uint8_t> bytes) noexcept {
+  return std::ranges::all_of(bytes.subspan(3), [](std::uint8_t byte) { return byte == 0; });
 }
+}  // namespace
 
 std::optional<MitReply> RobstrideDrive::read(std::span<const std::uint8_t> bytes) const noexcept {
   auto reply = codec().reply(bytes);
-  if (!reply) return std::nullopt;
+  if (!reply || fault_message(bytes)) return std::nullopt;
   reply->reading.temperature_degC = kDegree * (bytes[6] << 8U | bytes[7]);
   reply->reading.fault = DriveFault::kNone;
   return reply;

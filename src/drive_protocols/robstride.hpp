@@ -6,8 +6,9 @@
 
 namespace pmg::drives {
 
-/// Reply: node, position 16 bits, velocity 12, torque 12, temperature 16 [0.1 degC].
-/// Six bytes of ones begin messages that set identifiers, modes and protocols: no command has them.
+/// Reply: node, position 16 bits, velocity 12, torque 12, temperature 16 [0.1 degC]. The answer to a question for
+/// faults, which this project doesn't ask, has the same identifier and length: it is no reading. Six bytes of ones
+/// begin messages that set identifiers, modes and protocols: no command has them.
 class RobstrideDrive final : public MitDrive {
  public:
   static constexpr std::uint32_t kReplyId = 0xFD;  ///< the host's, as delivered

@@ -48,6 +48,9 @@ class DriveType {
   /// One motor's way to speak. node: its number. fd: its bus has CAN FD.
   virtual std::unique_ptr<Protocol> protocol(int node, const MotorLimits& limits, bool fd) const = 0;
 
+  /// What a bus with such a drive carries for all of them; null: nothing.
+  virtual std::unique_ptr<Network> network() const { return nullptr; }
+
   /// Throws files::ConfigError at reader's `bus` when the drive doesn't cover these needs: a field of its messages is
   /// too short, its torque too small, or its own loop has other gains. drive: its name in `drives`.
   virtual void check_covers(const DriveNeeds& needs, const std::string& joint, const std::string& drive,

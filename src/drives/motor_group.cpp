@@ -147,6 +147,13 @@ bool linked(const MotorGroup& bus, std::size_t motor) {
 
 }  // namespace
 
+std::unique_ptr<Network> network_of(const MotorGroup& group) {
+  for (const MotorSetup& motor : group.motors) {
+    if (auto network = motor.drive->network()) return network;
+  }
+  return nullptr;
+}
+
 std::string name_of(const MotorGroup& group, const MotorSetup& motor) {
   return fmt::format("{} ({}, node {})", motor.joint, group.name, motor.node);
 }

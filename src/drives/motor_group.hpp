@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ struct MotorGroup {
   std::vector<LinkedMotors<1>> four_bars{};
   std::vector<LinkedMotors<2>> parallel{};
 };
+
+/// Of the drives that have one; null: none has. Drives of different networks don't share a bus (can::load_drives()).
+std::unique_ptr<Network> network_of(const MotorGroup& group);
 
 /// "left_knee (can0, node 4)"
 std::string name_of(const MotorGroup& group, const MotorSetup& motor);

@@ -81,4 +81,15 @@ class Protocol {
   virtual std::uint16_t emergency() const noexcept { return 0; }
 };
 
+/// What a bus carries for all of its drives together, beside each motor's own messages. One a bus; no heap after
+/// construction, no lock.
+class Network {
+ public:
+  virtual ~Network() = default;
+  /// Asks every drive that is asked by it (Protocol::AskedBy::kSync).
+  virtual Message sync() const noexcept = 0;
+  /// This computer lives: its drives stop by themselves when they miss this for long. cycles: since the last call.
+  virtual void sign_of_life(int cycles, Outbox& out) noexcept = 0;
+};
+
 }  // namespace pmg::drives

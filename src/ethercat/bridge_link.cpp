@@ -4,11 +4,11 @@
 
 namespace pmg::ethercat {
 
-std::size_t put_frames(std::span<const can::Frame> frames, std::span<std::uint8_t> block) noexcept {
+std::size_t put_frames(std::span<const drives::Message> frames, std::span<std::uint8_t> block) noexcept {
   if (block.size() < kBlockHeader) return 0;
   const std::size_t room = (block.size() - kBlockHeader) / kFrameBytes, count = std::min(frames.size(), room);
   for (std::size_t i = 0; i < count; ++i) {
-    const can::Frame& frame = frames[i];
+    const drives::Message& frame = frames[i];
     const std::uint32_t id = frame.id | (frame.extended ? 0x80000000U : 0U);
     std::uint8_t* at = &block[kBlockHeader + i * kFrameBytes];
     for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<std::uint8_t>(id >> 8U * k);
@@ -19,7 +19,7 @@ std::size_t put_frames(std::span<const can::Frame> frames, std::span<std::uint8_
   return count;
 }
 
-std::size_t BridgeLink::send(std::span<const can::Frame> frames) noexcept {
+std::size_t BridgeLink::send(std::span<const drives::Message> frames) noexcept {
   std::size_t taken = 0;
   for (; taken < frames.size() && out_count_ < kRoom && !frames[taken].fd && frames[taken].length <= 8; ++taken)
     out_[out_count_++] = frames[taken];
@@ -27,7 +27,7 @@ std::size_t BridgeLink::send(std::span<const can::Frame> frames) noexcept {
   return taken;
 }
 
-std::size_t BridgeLink::receive(std::span<can::Frame> frames) noexcept {
+std::size_t BridgeLink::receive(std::span<drives::Message> frames) noexcept {
   const std::size_t count = std::min(frames.size(), in_count_ - in_first_);
   std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(in_first_), count, frames.begin());
   in_first_ += count;
@@ -45,7 +45,7 @@ bool BridgeLink::take(std::span<const std::uint8_t> inputs) noexcept {
             in_.begin());
   in_count_ -= in_first_;
   in_first_ = 0;
-  for_frames(inputs, [this](const can::Frame& frame) {
+  for_frames(inputs, [this](const drives::Message& frame) {
     if (in_count_ < kRoom) in_[in_count_++] = frame;
   });
   return inputs[2] >= (inputs.size() - kBlockHeader) / kFrameBytes;

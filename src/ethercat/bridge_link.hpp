@@ -19,7 +19,7 @@ inline constexpr std::size_t kBlockHeader = 4, kFrameBytes = 13;
 constexpr std::size_t block_bytes(int frames) { return kBlockHeader + kFrameBytes * static_cast<std::size_t>(frames); }
 
 /// Classic frames into a block, as many as there is room for; returns how many.
-std::size_t put_frames(std::span<const can::Frame> frames, std::span<std::uint8_t> block) noexcept;
+std::size_t put_frames(std::span<const drives::Message> frames, std::span<std::uint8_t> block) noexcept;
 /// Calls hear(frame) for each frame of a block that has the form of one.
 template <typename Hear>
 void for_frames(std::span<const std::uint8_t> block, Hear&& hear) noexcept {
@@ -30,7 +30,7 @@ void for_frames(std::span<const std::uint8_t> block, Hear&& hear) noexcept {
     if (at[4] > 8) continue;
     const std::uint32_t id = static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8U |
                              static_cast<std::uint32_t>(at[2]) << 16U | static_cast<std::uint32_t>(at[3]) << 24U;
-    can::Frame frame = can::Frame::of(id & 0x1FFFFFFFU, std::span(at + 5, at[4]));
+    drives::Message frame = drives::Message::of(id & 0x1FFFFFFFU, std::span(at + 5, at[4]));
     frame.extended = (id & 0x80000000U) != 0;
     hear(frame);
   }
@@ -42,8 +42,8 @@ class BridgeLink final : public can::Link {
   /// Frames: while drives are asked one by one, nobody fetches for 20 exchanges, in each of which an IMU sends three.
   static constexpr std::size_t kRoom = 128;
 
-  std::size_t send(std::span<const can::Frame> frames) noexcept override;
-  std::size_t receive(std::span<can::Frame> frames) noexcept override;
+  std::size_t send(std::span<const drives::Message> frames) noexcept override;
+  std::size_t receive(std::span<drives::Message> frames) noexcept override;
   can::BusHealth health() const noexcept override { return health_; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }
 
@@ -54,7 +54,7 @@ class BridgeLink final : public can::Link {
   void fill(std::span<std::uint8_t> outputs) noexcept;
 
  private:
-  std::array<can::Frame, kRoom> out_{}, in_{};
+  std::array<drives::Message, kRoom> out_{}, in_{};
   std::size_t out_count_ = 0, in_first_ = 0, in_count_ = 0;
   std::uint8_t sequence_ = 0, taken_ = 0;
   can::BusHealth health_ = can::BusHealth::kGood;

@@ -8,8 +8,8 @@ DriveLink::DriveLink(const std::vector<int>& nodes) : in_(2 * nodes.size()) {
   for (const int node : nodes) drives_.push_back({.node = static_cast<std::uint32_t>(node)});
 }
 
-std::size_t DriveLink::send(std::span<const can::Frame> frames) noexcept {
-  for (const can::Frame& frame : frames) {
+std::size_t DriveLink::send(std::span<const drives::Message> frames) noexcept {
+  for (const drives::Message& frame : frames) {
     ++counts_.sent;
     if (frame.id == drives::canopen::kSync && frame.length == 0) {
       in_first_ = in_count_ = 0;
@@ -24,7 +24,7 @@ std::size_t DriveLink::send(std::span<const can::Frame> frames) noexcept {
   return frames.size();
 }
 
-std::size_t DriveLink::receive(std::span<can::Frame> frames) noexcept {
+std::size_t DriveLink::receive(std::span<drives::Message> frames) noexcept {
   const std::size_t count = std::min(frames.size(), in_count_ - in_first_);
   std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(in_first_), count, frames.begin());
   in_first_ += count;
@@ -36,8 +36,8 @@ void DriveLink::take(std::size_t at, std::span<const std::uint8_t> inputs) noexc
   Drive& drive = drives_[at];
   if (!drive.asked || inputs.size() <= kFirstInputs || in_count_ + 2 > in_.size()) return;
   drive.asked = false;
-  in_[in_count_++] = can::Frame::of(drives::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
-  in_[in_count_++] = can::Frame::of(drives::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));
+  in_[in_count_++] = drives::Message::of(drives::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
+  in_[in_count_++] = drives::Message::of(drives::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));
 }
 
 void DriveLink::fill(std::size_t at, std::span<std::uint8_t> outputs) const noexcept {

@@ -22,8 +22,8 @@ class DriveLink final : public can::Link {
   /// In the order of the slaves.
   explicit DriveLink(const std::vector<int>& nodes);
 
-  std::size_t send(std::span<const can::Frame> frames) noexcept override;
-  std::size_t receive(std::span<can::Frame> frames) noexcept override;
+  std::size_t send(std::span<const drives::Message> frames) noexcept override;
+  std::size_t receive(std::span<drives::Message> frames) noexcept override;
   can::BusHealth health() const noexcept override { return can::BusHealth::kGood; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }
 
@@ -38,7 +38,7 @@ class DriveLink final : public can::Link {
     std::array<std::uint8_t, kDriveOutputs> targets{};
   };
   std::vector<Drive> drives_;
-  std::vector<can::Frame> in_;  // room for two of each drive
+  std::vector<drives::Message> in_;  // room for two of each drive
   std::size_t in_first_ = 0, in_count_ = 0;
   can::LinkCounts counts_;
 };

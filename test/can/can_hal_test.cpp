@@ -14,12 +14,10 @@
 #include <optional>
 #include <random>
 
-#include "../sim/robots.hpp"
 #include "can/can_backend.hpp"
-#include "can/emulated_drives.hpp"
 #include "can/flood.hpp"
-#include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
+#include "can/still_robot.hpp"
 #include "drive_protocols/mit_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 #include "hal/bus_cycle.hpp"
@@ -30,63 +28,15 @@ namespace {
 using hal::BusStatus;
 using test::MemoryLink;
 
-const can::DriveSetup& z1_drives() {
-  static const can::DriveSetup setup = can::load_drives(z1());
-  return setup;
-}
-
-/// Z1's drives without physics: joints stand in the standing posture unless a test moves them.
-class Drives : public testing::Test {
+/// Z1's drives stand in the standing posture unless a test moves them.
+class Drives : public testing::Test, protected test::StillRobot {
  protected:
-  Drives() {
-    std::vector<std::unique_ptr<Link>> host, far;
-    for (std::size_t b = 0; b < z1_drives().buses.size(); ++b) {
-      auto [here, there] = MemoryLink::pair();
-      host_.push_back(here.get());
-      host.push_back(std::move(here));
-      far.push_back(std::move(there));
-    }
-    hal_.emplace(z1_drives(), z1(), clock_, std::move(host));
-    drives_.emplace(z1_drives(), std::move(far));
-    truth_.q = z1().q_stand();
-    truth_.dq = truth_.tau = JointVector::Zero(truth_.q.size());
-    acting_ = limp();
-  }
-  static model::JointCommand limp() {
-    model::JointCommand command = standing_command(z1());
-    command.kp.setZero();
-    command.kd.setZero();
-    return command;
-  }
-  BusStatus cycle(const model::JointCommand& command) {
-    drives_->feel(truth_);
-    hal_->send(command);
-    drives_->serve();
-    const BusStatus status = hal_->receive(state_);
-    drives_->tick(acting_);
-    return status;
-  }
+  Drives() : StillRobot(load_drives(z1())) { connect(); }
   void stand() {
     cycle(limp());
-    for (int k = 0; k < 5; ++k) ASSERT_EQ(cycle(standing_), BusStatus::kOk) << describe(hal_->trouble(), z1_drives());
+    for (int k = 0; k < 5; ++k) ASSERT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   }
-  /// Cycles from the first one that carries the cause to the first that reports this.
-  int cycles_until(BusStatus wanted, int most = 400) {
-    for (int k = 0; k < most; ++k) {
-      if (cycle(standing_) == wanted) return k;
-    }
-    return -1;
-  }
-  std::string trouble() const { return describe(hal_->trouble(), z1_drives()); }
   test::DriveEmulator& knee() { return drives_->drive(0, 3); }
-
-  std::array<std::optional<drives::MotorCommand>, 2> last_;
-  io::SimulationClock clock_;
-  std::vector<MemoryLink*> host_;
-  std::optional<CanHal> hal_;
-  std::optional<test::EmulatedDrives> drives_;
-  model::RobotState truth_, state_;
-  model::JointCommand acting_, standing_ = standing_command(z1());
 };
 
 TEST_F(Drives, CommandsArriveAndStatesComeBackWithinAStepOfTheirFields) {
@@ -146,12 +96,12 @@ TEST_F(Drives, ALossAndItsEndAreToldOnce) {
   knee().silent = true;
   for (int k = 0; k < 20; ++k) cycle(standing_);
   ASSERT_TRUE(hal_->take_change(change));
-  EXPECT_EQ(describe(change, z1_drives()), "left_knee (can0, node 4) does not answer");
+  EXPECT_EQ(describe(change, setup_), "left_knee (can0, node 4) does not answer");
   EXPECT_FALSE(hal_->take_change(change));
   knee().silent = false;
   for (int k = 0; k < 3; ++k) cycle(limp());
   ASSERT_TRUE(hal_->take_change(change));
-  EXPECT_EQ(describe(change, z1_drives()), "the drives answer");
+  EXPECT_EQ(describe(change, setup_), "the drives answer");
 }
 
 TEST_F(Drives, AWrongIdIsASilentMotorAndAStranger) {
@@ -167,7 +117,7 @@ TEST_F(Drives, AReplyWithAnotherIdentifierThanItsDrivesIsNone) {
   knee().silent = true;
   hal_->send(standing_);
   const drives::MitProtocol protocol(drives::as_mit(knee().setup().drive)->ranges());
-  host_[0]->push(Frame::of(0x7E, protocol.reply({.node = 4, .reading = {.q_rad = 0.3}})));
+  host_[0]->push(drives::Message::of(0x7E, protocol.reply({.node = 4, .reading = {.q_rad = 0.3}})));
   hal_->receive(state_);
   EXPECT_EQ(hal_->motor(0, 3).age_cycles(), 1);
   EXPECT_EQ(hal_->unreadable(), 1u);
@@ -194,7 +144,7 @@ TEST_F(Drives, AnswersOneCycleLateAndOutOfOrderAreTaken) {
   // The answers of this cycle are held back and arrive in reverse order, after those of the next.
   hal_->send(standing_);
   drives_->serve();
-  std::array<Frame, 64> late;
+  std::array<drives::Message, 64> late;
   const std::size_t count = host_[0]->receive(late);
   EXPECT_EQ(hal_->receive(state_), BusStatus::kOk) << "one cycle old";
   hal_->send(standing_);
@@ -382,7 +332,8 @@ TEST_F(Drives, ACycleAllocatesNothing) {
 
 /// Z1's left ankle with two motors in the shank, as robot.yaml's `linkages` describes it.
 TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
-  can::DriveSetup setup = z1_drives();
+  can::DriveSetup setup = setup_;
+  std::array<std::optional<drives::MotorCommand>, 2> last;  // of each crank
   const auto rod = [](double y, double z) {
     return drives::CrankAndRod{.crank_centre_m = {0.0, y, z},
                                .axis = {0.0, 1.0, 0.0},
@@ -407,17 +358,17 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   Eigen::Vector2d dtheta = J * dq;
   const Eigen::Vector2d crank_torque = J.transpose().inverse() * torque;
   const auto answer = [&] {
-    std::array<Frame, 32> got;
+    std::array<drives::Message, 32> got;
     const std::size_t count = far->receive(got);
-    for (const Frame& frame : std::span(got).first(count)) {
+    for (const drives::Message& frame : std::span(got).first(count)) {
       drives::MitReply reply{.node = static_cast<std::uint8_t>(frame.id), .reading = {}};
       const int crank = static_cast<int>(frame.id) - 5;  // nodes 5 and 6
       if (crank >= 0)
         reply.reading = {.q_rad = theta[crank], .dq_rad_s = dtheta[crank], .torque_Nm = crank_torque[crank]};
-      const Frame sent = Frame::of(0, protocol.reply(reply));
+      const drives::Message sent = drives::Message::of(0, protocol.reply(reply));
       far->send(std::span(&sent, 1));
       if (crank >= 0)
-        last_[static_cast<std::size_t>(crank)] = protocol.command([&frame] {
+        last[static_cast<std::size_t>(crank)] = protocol.command([&frame] {
           drives::MitFrame bytes{};
           std::copy_n(frame.data.begin(), 8, bytes.begin());
           return bytes;
@@ -438,8 +389,8 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
   EXPECT_NEAR(state_.tau[pitch], torque[0], 0.1);
   Eigen::Vector2d given, wanted;
   for (int i = 0; i < 2; ++i) {
-    ASSERT_TRUE(last_[static_cast<std::size_t>(i)]);
-    const drives::MotorCommand& crank = *last_[static_cast<std::size_t>(i)];
+    ASSERT_TRUE(last[static_cast<std::size_t>(i)]);
+    const drives::MotorCommand& crank = *last[static_cast<std::size_t>(i)];
     given[i] = crank.kp_Nm_per_rad * (crank.q_rad - theta[i]) + crank.kd_Nm_s_per_rad * (crank.dq_rad_s - dtheta[i]) +
                crank.torque_Nm;
     const int joint = i == 0 ? pitch : roll;
@@ -453,7 +404,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
     theta += Eigen::Vector2d(0.001, 0.001);
     hal.send(standing_);
     if (k == 3 || k == 4) {
-      std::array<Frame, 32> lost;
+      std::array<drives::Message, 32> lost;
       far->receive(lost);
     } else {
       answer();
@@ -476,7 +427,7 @@ TEST_F(Drives, AParallelAnkleIsReadAndDrivenThroughItsLinkage) {
 }
 
 TEST_F(Drives, TheRollCallNamesEveryProblem) {
-  can::BusSetup bus = z1_drives().buses[0];
+  can::BusSetup bus = setup_.buses[0];
   const double stand = bus.motors[0].limits.q_lower_rad;
   std::vector<Answer> answers;
   for (const drives::MotorSetup& motor : bus.motors) {

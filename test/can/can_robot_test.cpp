@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "can/fault_rows.hpp"
 #include "can/robot_stage.hpp"
@@ -97,6 +98,55 @@ constexpr std::array kMitRows = {
         .name = "silent IMU", .inject = [](Stage& s) { s.robot->drives().imu_silent = true; }, .least = 11, .most = 15},
 };
 
+bool on_the_first_bus(std::size_t bus, std::size_t) { return bus == 0; }
+
+/// The other rows for MIT drives, at one moment each.
+constexpr std::array kMoreMitRows = {
+    FaultRow{.name = "frozen encoder",
+             .inject =
+                 [](Stage& s) {
+                   model::RobotState now;
+                   s.world->read(now);
+                   const drives::MotorSetup& motor = knee(s).setup();
+                   knee(s).stuck_q =
+                       motor.transmission.to_motor(drives::MotorReading{.q_rad = now.q[motor.index]}).q_rad;
+                 },
+             .least = 1,
+             .most = 5,
+             .from_loss = true},
+    FaultRow{.name = "wrapped turn",
+             .inject = [](Stage& s) { knee(s).turn_rad = -2.0 * std::numbers::pi; },
+             .least = 3,
+             .most = 7},
+    FaultRow{.name = "encoder fault",
+             .inject = [](Stage& s) { knee(s).fault = DriveFault::kEncoder; },
+             .least = 1,
+             .most = 5},
+    FaultRow{.name = "a fault that the protocol doesn't name",
+             .inject = [](Stage& s) { right_hip(s).fault = DriveFault::kOther; },
+             .least = 1,
+             .most = 5},
+    FaultRow{
+        .name = "old states", .inject = [](Stage& s) { s.robot->drives().late_cycles = 2; }, .least = 10, .most = 14},
+};
+/// Those that an end of a bus in memory brings about.
+constexpr std::array kWireRows = {
+    FaultRow{.name = "cable out",
+             .inject = [](Stage& s) { s.wires[0]->cut = true; },
+             .least = 6,
+             .most = 10,
+             .deaf = on_the_first_bus},
+    FaultRow{.name = "bus-off",
+             .inject =
+                 [](Stage& s) {
+                   s.wires[0]->state = can::BusHealth::kOff;
+                   s.wires[0]->cut = true;
+                 },
+             .least = 1,
+             .most = 5,
+             .deaf = on_the_first_bus},
+};
+
 void lean(Stage& stage, double angle_rad, const Eigen::Vector3d& axis) {
   stage.robot->drives().imu_lean = Eigen::AngleAxisd(angle_rad, axis);
 }
@@ -161,6 +211,8 @@ TEST(CanRobot, EachFaultOfTheGeneralTableActsBehindCanWithinItsCycles) {
 
 TEST(CanRobot, EachFaultDampsEveryDriveOrBeginsTheSitDownWithinItsCycles) {
   expect_reactions(std::span<const FaultRow>(kMitRows), over_sockets() ? 1 : 5, true);
+  expect_reactions(std::span<const FaultRow>(kMoreMitRows), 1, true);
+  if (!over_sockets()) expect_reactions(std::span<const FaultRow>(kWireRows), 1, true);
 }
 
 TEST(CanRobot, AKilledHostIsHeldByTheDrivesOwnWatchdogs) {

@@ -111,7 +111,8 @@ TEST(Candump, ARecordingIsReplayedIntoTheBackend) {
   for (int k = 0; k < 5; ++k) {
     const drives::MitFrame bytes =
         protocol.reply({.node = 4, .reading = {.q_rad = 0.3 + 0.001 * k, .dq_rad_s = 0.5, .temperature_degC = 40.0}});
-    recording += to_line({.stamp_ns = k * 2'000'000, .interface = "can0", .frame = Frame::of(0, bytes)}) + "\n";
+    recording +=
+        to_line({.stamp_ns = k * 2'000'000, .interface = "can0", .frame = drives::Message::of(0, bytes)}) + "\n";
   }
   model::JointCommand limp = standing_command(z1());
   limp.kp.setZero();
@@ -134,7 +135,7 @@ TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
   const can::DriveSetup setup = test::mixed_drives(z1());
   const drives::MotorSetup& motor = setup.buses[0].motors[0];
   test::Cia402Emulator drive(motor);
-  const auto say = [&](const Frame& frame, std::string& recording) {
+  const auto say = [&](const drives::Message& frame, std::string& recording) {
     test::Replies replies;
     const int count = drive.hear(frame, replies);
     for (int i = 0; i < count; ++i)
@@ -144,7 +145,7 @@ TEST(Candump, ARecordingOfACanopenDriveIsReplayedIntoTheBackend) {
   std::unique_ptr<Link> far;
   std::tie(host.emplace_back(), far) = test::MemoryLink::pair();
   const auto answer = [&] {
-    std::array<Frame, 8> asked;
+    std::array<drives::Message, 8> asked;
     while (const std::size_t count = far->receive(asked)) {
       for (std::size_t i = 0; i < count; ++i) {
         test::Replies replies;

@@ -9,15 +9,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "../sim/robots.hpp"
-#include "can/can_hal.hpp"
-#include "can/canopen_setup.hpp"
-#include "can/emulated_drives.hpp"
 #include "can/first_light.hpp"
 #include "can/flood.hpp"
-#include "can/memory_link.hpp"
 #include "can/mixed_drives.hpp"
 #include "can/roll_call.hpp"
+#include "can/still_robot.hpp"
 #include "drive_protocols/canopen_drive.hpp"
 #include "generator_core/allocation_count.hpp"
 
@@ -35,59 +31,14 @@ const can::DriveSetup& mixed() {
 }
 constexpr std::size_t kLeg = 0, kArm = 6;  // buses: CANopen in torque mode with one MIT drive, CANopen in position mode
 
-/// Z1's mixed drives without physics: joints stay where a test puts them.
-class CanopenDrives : public testing::Test {
+class CanopenDrives : public testing::Test, protected test::StillRobot {
  protected:
-  CanopenDrives() {
-    std::vector<std::unique_ptr<Link>> far;
-    for (std::size_t b = 0; b < mixed().buses.size(); ++b) {
-      auto [here, there] = MemoryLink::pair();
-      host_.push_back(here.get());
-      links_.push_back(std::move(here));
-      far.push_back(std::move(there));
-    }
-    drives_.emplace(mixed(), std::move(far));
-    truth_.q = z1().q_stand();
-    truth_.dq = truth_.tau = JointVector::Zero(truth_.q.size());
-    acting_ = limp();
-    drives_->feel(truth_);
-  }
-  void connect() {
-    set_up_nodes(mixed(), links_, wait_, {});
-    hal_.emplace(mixed(), z1(), clock_, std::move(links_));
-  }
-  static model::JointCommand limp() {
-    model::JointCommand command = standing_command(z1());
-    command.kp.setZero();
-    command.kd.setZero();
-    return command;
-  }
-  static model::JointCommand damping() {
-    model::JointCommand command = standing_command(z1());
-    command.kp.setZero();
-    return command;
-  }
-  BusStatus cycle(const model::JointCommand& command) {
-    drives_->feel(truth_);
-    hal_->send(command);
-    drives_->serve();
-    const BusStatus status = hal_->receive(state_);
-    drives_->answer();
-    drives_->tick(acting_);
-    return status;
-  }
+  CanopenDrives() : StillRobot(mixed()) {}
   void stand() {
     if (!hal_) connect();
     for (int k = 0; k < 8; ++k) cycle(limp());
     for (int k = 0; k < 5; ++k) ASSERT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   }
-  int cycles_until(BusStatus wanted, int most = 400) {
-    for (int k = 0; k < most; ++k) {
-      if (cycle(standing_) == wanted) return k;
-    }
-    return -1;
-  }
-  std::string trouble() const { return describe(hal_->trouble(), mixed()); }
   test::Cia402Emulator& hip() { return drives_->cia402(kLeg, 0); }
   test::Cia402Emulator& shoulder() { return drives_->cia402(kArm, 0); }
   int hip_index() const { return mixed().buses[kLeg].motors[0].index; }
@@ -100,15 +51,6 @@ class CanopenDrives : public testing::Test {
     }
     return "taken";
   }
-
-  io::SimulationClock clock_;
-  std::vector<MemoryLink*> host_;
-  std::vector<std::unique_ptr<Link>> links_;
-  std::optional<test::EmulatedDrives> drives_;
-  std::optional<CanHal> hal_;
-  Wait wait_ = [this] { drives_->answer(); };
-  model::RobotState truth_, state_;
-  model::JointCommand acting_, standing_ = standing_command(z1());
 };
 
 TEST_F(CanopenDrives, TheSetUpGivesEveryDriveItsModeItsPdosAndItsWatchdog) {
@@ -320,18 +262,18 @@ TEST_F(CanopenDrives, ADriveThatIsSwitchedOffFromOutsideIsLostAtOnceAndStaysOffU
 TEST_F(CanopenDrives, AnswersThatADelayBunchedAreNoSecondDrive) {
   stand();
   // What an adapter held back for four cycles arrives at once.
-  std::vector<Frame> held;
+  std::vector<drives::Message> held;
   for (int k = 0; k < 4; ++k) {
     drives_->feel(truth_);
     hal_->send(standing_);
     drives_->serve();
-    std::array<Frame, 64> frames;
+    std::array<drives::Message, 64> frames;
     const std::size_t count = host_[kLeg]->receive(frames);
     held.insert(held.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(count));
     hal_->receive(state_);
     drives_->answer();
   }
-  for (const Frame& frame : held) host_[kLeg]->push(frame);
+  for (const drives::Message& frame : held) host_[kLeg]->push(frame);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   EXPECT_EQ(hal_->motor(kLeg, 0).uncalled(), 0u);
   hip().twice = true;
@@ -360,7 +302,7 @@ TEST_F(CanopenDrives, TheSecondHalfOfAnAnswerAloneIsNone) {
   stand();
   hip().silent = true;
   hal_->send(standing_);
-  host_[kLeg]->push(Frame::of(0x281, std::array<std::uint8_t, 8>{}));
+  host_[kLeg]->push(drives::Message::of(0x281, std::array<std::uint8_t, 8>{}));
   hal_->receive(state_);
   EXPECT_EQ(hal_->motor(kLeg, 0).age_cycles(), 1) << "without a status word nothing says that the drive follows";
 }
@@ -405,8 +347,8 @@ TEST_F(CanopenDrives, AFrameOfCanFdIsNoneOfACanopenDrives) {
   stand();
   hip().silent = true;
   hal_->send(standing_);
-  host_[kLeg]->push(Frame::of(0x181, std::array<std::uint8_t, 8>{0x37, 0x02}, true));
-  host_[kLeg]->push(Frame::of(0x281, std::array<std::uint8_t, 8>{}, true));
+  host_[kLeg]->push(drives::Message::of(0x181, std::array<std::uint8_t, 8>{0x37, 0x02}, true));
+  host_[kLeg]->push(drives::Message::of(0x281, std::array<std::uint8_t, 8>{}, true));
   hal_->receive(state_);
   EXPECT_EQ(hal_->motor(kLeg, 0).age_cycles(), 1);
 }
@@ -415,7 +357,7 @@ TEST_F(CanopenDrives, ASetUpSurvivesALostAnswer) {
   int asked = 0;
   const Wait loses = [&] {
     drives_->answer();
-    std::array<Frame, 64> frames;
+    std::array<drives::Message, 64> frames;
     if (++asked == 8) host_[kLeg]->receive(frames);  // an answer to an SDO request
   };
   set_up_node(mixed().buses[kLeg], mixed().buses[kLeg].motors[0], *host_[kLeg], loses);
@@ -493,7 +435,7 @@ TEST_F(CanopenDrives, AKilledHostLeavesTheDrivesToTheirWatchdogs) {
     ++cycles;
   }
   EXPECT_LE(cycles, 15) << "30 ms after the last heartbeat";
-  EXPECT_GE(cycles, 15 - kHeartbeatCycles);
+  EXPECT_GE(cycles, 15 - drives::canopen::kHeartbeatCycles);
   EXPECT_FALSE(shoulder().enabled());
   EXPECT_GT(acting_.kd[shoulder_index()], 0.0) << "braked";
   EXPECT_EQ(acting_.tau_ff[hip_index()], 0.0);
@@ -501,13 +443,13 @@ TEST_F(CanopenDrives, AKilledHostLeavesTheDrivesToTheirWatchdogs) {
 
 TEST_F(CanopenDrives, AnEmergencyMessageNamesAFaultWithoutACode) {
   stand();
-  const Frame emergency = Frame::of(0x081, std::array<std::uint8_t, 8>{0x10, 0x43, 1});
+  const drives::Message emergency = drives::Message::of(0x081, std::array<std::uint8_t, 8>{0x10, 0x43, 1});
   host_[kLeg]->push(emergency);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << "the status word tells whether the drive follows";
   const double count_rad = drives::as_cia402(mixed().buses[kLeg].motors[0].drive)->count_rad();
   const auto counts = static_cast<std::uint32_t>(std::lround(hal_->motor(kLeg, 0).reading().q_rad / count_rad));
-  Frame first = Frame::of(0x181, std::array<std::uint8_t, 8>{0x18, 0x02}),
-        second = Frame::of(0x281, std::array<std::uint8_t, 8>{});
+  drives::Message first = drives::Message::of(0x181, std::array<std::uint8_t, 8>{0x18, 0x02}),
+                  second = drives::Message::of(0x281, std::array<std::uint8_t, 8>{});
   for (unsigned i = 0; i < 4; ++i) first.data[2 + i] = static_cast<std::uint8_t>(counts >> 8U * i);
   hip().silent = true;
   hal_->send(standing_);

@@ -70,13 +70,13 @@ class Cia402Emulator final : public DriveEmulator {
   void drop() noexcept { state_ = kDisabled; }  ///< switched off from outside
   void leave_operational() noexcept { network_state_ = kPreOperational; }
 
-  int hear(const can::Frame& frame, Replies& replies) noexcept override {
+  int hear(const drives::Message& frame, Replies& replies) noexcept override {
     if (silent || frame.extended || frame.fd) return 0;
     const auto own = static_cast<std::uint32_t>(setup().node), shown = static_cast<std::uint32_t>(node);
     std::size_t count = 0;
     if (!booted_) {
       booted_ = true;
-      replies[count++] = can::Frame::of(0x700 + shown, std::array<std::uint8_t, 1>{0});
+      replies[count++] = drives::Message::of(0x700 + shown, std::array<std::uint8_t, 1>{0});
     }
     refresh();
     if (frame.id == 0x000 && frame.length == 2 && (frame.data[1] == 0 || frame.data[1] == own)) {
@@ -84,7 +84,7 @@ class Cia402Emulator final : public DriveEmulator {
       if (frame.data[0] == 0x80) network_state_ = kPreOperational;
     } else if (frame.id == 0x600 + own && frame.length == 8) {
       for (int copy = twice ? 2 : 1; copy > 0; --copy)
-        replies[count++] = can::Frame::of(0x580 + shown, serve_objects(frame));
+        replies[count++] = drives::Message::of(0x580 + shown, serve_objects(frame));
     } else if (frame.id == (objects.value(0x1016, 1) >> 16U & 0x7FU) + 0x700 && frame.length == 1) {
       heartbeat_ms_ = 0;
     } else if (network_state_ == kOperational && frame.id == objects.value(0x1400, 1)) {
@@ -101,15 +101,15 @@ class Cia402Emulator final : public DriveEmulator {
     if (emergency_ != told_ && network_state_ == kOperational && count < replies.size()) {
       told_ = emergency_;
       replies[count++] =
-          can::Frame::of(0x080 + shown, std::array<std::uint8_t, 8>{static_cast<std::uint8_t>(told_ & 0xFFU),
-                                                                    static_cast<std::uint8_t>(told_ >> 8U), 1});
+          drives::Message::of(0x080 + shown, std::array<std::uint8_t, 8>{static_cast<std::uint8_t>(told_ & 0xFFU),
+                                                                         static_cast<std::uint8_t>(told_ >> 8U), 1});
     }
     return static_cast<int>(count);
   }
 
   // What EtherCAT carries without frames.
   /// (SDO request) => its answer.
-  std::array<std::uint8_t, 8> serve_objects(const can::Frame& request) noexcept {
+  std::array<std::uint8_t, 8> serve_objects(const drives::Message& request) noexcept {
     refresh();
     const std::array<std::uint8_t, 8> answer = objects.serve(request);
     objects.value(0x6061) = objects.value(0x6060);
@@ -240,8 +240,8 @@ class Cia402Emulator final : public DriveEmulator {
           bits(std::round(at.temperature_degC / settings_.temperature_unit_degC)) & 0xFFFFU;
   }
 
-  can::Frame pdo_frame(int map, std::uint32_t identifier) noexcept {
-    can::Frame frame;
+  drives::Message pdo_frame(int map, std::uint32_t identifier) noexcept {
+    drives::Message frame;
     frame.id = identifier;
     frame.length = static_cast<std::uint8_t>(pack(map, std::span(frame.data).first(8)));
     return frame;

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     for (std::size_t at = 0; at + 12 <= bytes.size(); at += 12) {  // most records are replies
       if (random() % 8 == 0) continue;
-      bytes[at + 1] = 8;
+      bytes[at + 1] = static_cast<std::uint8_t>(random() % 8 == 0 ? 6 + random() % 2 : 8);
       bytes[at + 2] = 0;
       bytes[at + 3] = random() % 6 == 0 ? 0x21 : 0;
       bytes[at + 4] = static_cast<std::uint8_t>(random() % 9);

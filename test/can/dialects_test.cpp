@@ -2,18 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "../sim/robots.hpp"
 #include "can/bus_ids.hpp"
-#include "can/can_hal.hpp"
-#include "can/emulated_drives.hpp"
-#include "can/memory_link.hpp"
 #include "can/roll_call.hpp"
+#include "can/still_robot.hpp"
 #include "drive_protocols/mit_drive.hpp"
 #include "files/config_error.hpp"
 #include "model/temporary_copy.hpp"
@@ -31,48 +26,16 @@ DriveSetup z1_speaking(const std::string& leg, const std::string& arm) {
   return load_drives(model::load_robot(copy.directory()));
 }
 
-class Dialect : public testing::TestWithParam<const char*> {
+class Dialect : public testing::TestWithParam<const char*>, protected test::StillRobot {
  protected:
-  Dialect() {
-    std::vector<std::unique_ptr<Link>> far;
-    for (std::size_t b = 0; b < setup_.buses.size(); ++b) {
-      auto [here, there] = test::MemoryLink::pair();
-      host_.push_back(std::move(here));
-      far.push_back(std::move(there));
-    }
-    drives_.emplace(setup_, std::move(far));
-    truth_.q = z1().q_stand();
-    truth_.dq = truth_.tau = JointVector::Zero(truth_.q.size());
-    drives_->feel(truth_);
-    limp_.kp.setZero();
-    limp_.kd.setZero();
-    acting_ = limp_;
-  }
-  void start() { hal_.emplace(setup_, z1(), clock_, std::move(host_)); }
-  BusStatus cycle(const model::JointCommand& command) {
-    clock_.advance_to(clock_.now_ns() + 2'000'000);
-    drives_->feel(truth_);
-    hal_->send(command);
-    drives_->serve();
-    const BusStatus status = hal_->receive(state_);
-    drives_->tick(acting_);
-    return status;
+  Dialect() : StillRobot(z1_speaking(GetParam(), GetParam())) {
+    clock_.advance_to(1'000'000);  // a first cycle at zero begins no pause
   }
   std::vector<std::string> scan(OtherFrames* others = nullptr) {
-    return problems(setup_.buses[0], ask_bus(
-                                         setup_.buses[0], *host_[0], [this] { drives_->answer(); }, {}, others));
+    return problems(setup_.buses[0], ask_bus(setup_.buses[0], *host_[0], wait_, {}, others));
   }
   test::DriveEmulator& knee() { return drives_->drive(0, 3); }
   bool is(const char* name) const { return std::string(GetParam()) == name; }
-  std::string trouble() const { return describe(hal_->trouble(), setup_); }
-
-  DriveSetup setup_ = z1_speaking(GetParam(), GetParam());
-  io::SimulationClock clock_;
-  std::vector<std::unique_ptr<Link>> host_;
-  std::optional<test::EmulatedDrives> drives_;
-  std::optional<CanHal> hal_;
-  model::RobotState truth_, state_;
-  model::JointCommand standing_ = standing_command(z1()), limp_ = standing_, acting_;
 };
 
 TEST_P(Dialect, ItsDrivesAreCalledSwitchedOnReadAndDriven) {
@@ -80,10 +43,10 @@ TEST_P(Dialect, ItsDrivesAreCalledSwitchedOnReadAndDriven) {
   OtherFrames others;
   EXPECT_THAT(scan(&others), testing::IsEmpty());
   EXPECT_THAT(others.lines(setup_.buses[0]), testing::IsEmpty());
-  start();
+  connect();
   EXPECT_EQ(cycle(standing_), BusStatus::kLost);
   EXPECT_EQ(trouble(), "left_hip_pitch (can0, node 1) is not enabled") << "never under stiffness";
-  cycle(limp_);
+  cycle(limp());
   for (int k = 0; k < 5; ++k) ASSERT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   for (int j = 0; j < truth_.q.size(); ++j) {
     EXPECT_NEAR(state_.q[j], truth_.q[j], 12.6 / 65535 / 2 + 1e-12);
@@ -95,8 +58,8 @@ TEST_P(Dialect, ItsDrivesAreCalledSwitchedOnReadAndDriven) {
 }
 
 TEST_P(Dialect, AFaultIsNamedWhereItsRepliesTellOne) {
-  start();
-  cycle(limp_);
+  connect();
+  cycle(limp());
   ASSERT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   knee().fault = drives::DriveFault::kOverCurrent;
   const bool tells = is("mit") || is("damiao");
@@ -107,20 +70,20 @@ TEST_P(Dialect, AFaultIsNamedWhereItsRepliesTellOne) {
   EXPECT_EQ(knee().fault, drives::DriveFault::kOverCurrent) << "nothing is cleared while the robot is stiff";
   knee().fault_passed = is("damiao");
   if (is("mit")) knee().fault = drives::DriveFault::kNone;
-  for (int k = 0; k < 4; ++k) cycle(limp_);
+  for (int k = 0; k < 4; ++k) cycle(limp());
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
 }
 
 // A computer that fell silent leaves such drives in a fault: the next start must not need their power switch.
 TEST_P(Dialect, AfterASilenceOfThisComputerTheDrivesAreHadAgain) {
-  start();
-  cycle(limp_);
+  connect();
+  cycle(limp());
   ASSERT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
   for (int k = 0; k < 30; ++k) drives_->tick(acting_);
   EXPECT_TRUE(knee().tripped());
   clock_.advance_to(clock_.now_ns() + drives::RobotDrives::kPause_ns + 1);
   EXPECT_EQ(cycle(standing_), BusStatus::kLost) << "they let go, and the robot is told to be stiff";
-  for (int k = 0; k < 4; ++k) cycle(limp_);
+  for (int k = 0; k < 4; ++k) cycle(limp());
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
 }
 

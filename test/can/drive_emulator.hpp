@@ -7,12 +7,12 @@
 #include <span>
 
 #include "can/bus_setup.hpp"
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::test {
 
 /// Frames that a drive sends to one that it heard, at most.
-using Replies = std::array<can::Frame, 6>;
+using Replies = std::array<drives::Message, 6>;
 
 class DriveEmulator {
  public:
@@ -25,8 +25,8 @@ class DriveEmulator {
   DriveEmulator(const DriveEmulator&) = delete;
   DriveEmulator& operator=(const DriveEmulator&) = delete;
 
-  virtual int hear(const can::Frame& frame, Replies& replies) noexcept = 0;  ///< => how many replies
-  virtual void tick() noexcept = 0;                                          ///< 2 ms pass
+  virtual int hear(const drives::Message& frame, Replies& replies) noexcept = 0;  ///< => how many replies
+  virtual void tick() noexcept = 0;                                               ///< 2 ms pass
   /// What the motor is given: without torque while the drive is off; braked after its watchdog acted.
   virtual drives::MotorCommand command() const noexcept = 0;
   virtual bool enabled() const noexcept = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -40,14 +41,16 @@ class EmulatedDrives {
     speak();
   }
   void answer() noexcept {
+    for (; !held_.empty() && held_.front().due <= ticks_; held_.pop_front())
+      links_[held_.front().bus]->send(std::span(&held_.front().frame, 1));
     for (std::size_t b = 0; b < buses_.size(); ++b) {
-      std::array<can::Frame, 32> frames;
+      std::array<drives::Message, 32> frames;
       while (const std::size_t count = links_[b]->receive(frames)) {
-        for (const can::Frame& frame : std::span(frames).first(count)) {
+        for (const drives::Message& frame : std::span(frames).first(count)) {
           for (const auto& drive : buses_[b]) {
             Replies replies;
-            const int answers = drive->hear(frame, replies);
-            links_[b]->send(std::span(replies).first(static_cast<std::size_t>(answers)));
+            const auto answers = static_cast<std::size_t>(drive->hear(frame, replies));
+            reply(b, std::span(replies).first(answers));
           }
         }
       }
@@ -64,6 +67,7 @@ class EmulatedDrives {
 
   /// 2 ms pass: watchdogs; the drives' commands, joint by joint.
   void tick(model::JointCommand& command) noexcept {
+    ++ticks_;
     for (auto& bus : buses_) {
       for (const auto& drive : bus) {
         drive->tick();
@@ -121,10 +125,26 @@ class EmulatedDrives {
   std::size_t buses() const { return buses_.size(); }
   std::size_t motors(std::size_t bus) const { return buses_[bus].size(); }
   bool imu_silent = false;
+  int late_cycles = 0;                                           ///< that each answer of a drive is under way
   Eigen::Quaterniond imu_lean = Eigen::Quaterniond::Identity();  ///< of the world's axes, beside the true orientation
 
  private:
+  struct Held {
+    long due;  // in ticks
+    std::size_t bus;
+    drives::Message frame;
+  };
+  void reply(std::size_t bus, std::span<const drives::Message> frames) noexcept {
+    if (late_cycles == 0 && held_.empty()) {
+      links_[bus]->send(frames);
+    } else {
+      for (const drives::Message& frame : frames) held_.push_back({ticks_ + late_cycles, bus, frame});
+    }
+  }
+
   const can::DriveSetup& setup_;
+  std::deque<Held> held_;
+  long ticks_ = 0;
   std::vector<std::unique_ptr<can::Link>> links_;
   std::vector<std::vector<std::unique_ptr<DriveEmulator>>> buses_;
   model::RobotState sensed_;

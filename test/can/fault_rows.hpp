@@ -33,7 +33,7 @@ using FaultRow = FaultRowOf<Stage>;
 /// last heartbeat, which came in the last cycle or some before.
 inline int watchdog_cycles(const drives::MotorSetup& motor) {
   if (drives::as_mit(motor.drive) != nullptr) return test::DriveEmulator::kWatchdogCycles - 1;
-  return static_cast<int>(can::kHeartbeatTimeout_ms) / 2 - 2;
+  return static_cast<int>(drives::canopen::kHeartbeatTimeout_ms) / 2 - 2;
 }
 
 /// Runs one row on one robot; the fault begins in bus cycle `from`. more: of the stage's constructor, after the seed.

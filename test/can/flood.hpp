@@ -8,15 +8,15 @@
 #include <cstdint>
 #include <random>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::test {
 
 /// Any bytes, mostly 8 of them. Every second frame begins with first_byte: what makes it a message of a drive.
-inline can::Frame any_frame(std::mt19937_64& random, std::uint32_t id, std::uint8_t first_byte) {
-  can::Frame frame;
+inline drives::Message any_frame(std::mt19937_64& random, std::uint32_t id, std::uint8_t first_byte) {
+  drives::Message frame;
   frame.id = id;
   frame.length = static_cast<std::uint8_t>(random() % 3 == 0 ? random() % 256 : 8);
   for (std::uint8_t& byte : frame.data) byte = static_cast<std::uint8_t>(random());

@@ -84,12 +84,12 @@ class Watcher {
            counts_.seconds >= counts_.syncs;
   }
   void hear() {
-    std::array<Frame, 64> frames;
+    std::array<drives::Message, 64> frames;
     while (const std::size_t count = link_.receive(frames)) {
-      for (const Frame& frame : std::span(frames).first(count)) hear(frame);
+      for (const drives::Message& frame : std::span(frames).first(count)) hear(frame);
     }
   }
-  void hear(const Frame& frame) {
+  void hear(const drives::Message& frame) {
     constexpr std::array kOurs = {std::uint32_t{drives::canopen::kNetworkManagement},
                                   std::uint32_t{drives::canopen::kSync}, drives::canopen::kReceive1 + kNode,
                                   drives::canopen::kSdoRequest + kNode,

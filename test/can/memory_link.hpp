@@ -17,18 +17,18 @@ class MemoryLink final : public can::Link {
     b->other_ = a.get();
     return {std::move(a), std::move(b)};
   }
-  std::size_t send(std::span<const can::Frame> frames) noexcept override {
+  std::size_t send(std::span<const drives::Message> frames) noexcept override {
     if (cut) {
       counts_.not_sent += frames.size();
       return 0;
     }
-    for (const can::Frame& frame : frames) {
+    for (const drives::Message& frame : frames) {
       ++counts_.sent;
       other_->push(frame);
     }
     return frames.size();
   }
-  std::size_t receive(std::span<can::Frame> frames) noexcept override {
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     std::size_t count = 0;
     for (; count < frames.size() && size_ > 0; ++count, --size_, first_ = (first_ + 1) % kRoom)
       frames[count] = queue_[first_];
@@ -38,7 +38,7 @@ class MemoryLink final : public can::Link {
   can::BusHealth health() const noexcept override { return state; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }
 
-  void push(const can::Frame& frame) noexcept {
+  void push(const drives::Message& frame) noexcept {
     if (size_ == kRoom) return;
     queue_[(first_ + size_) % kRoom] = frame;
     ++size_;
@@ -50,7 +50,7 @@ class MemoryLink final : public can::Link {
  private:
   static constexpr std::size_t kRoom = 256;
   MemoryLink* other_ = nullptr;
-  std::array<can::Frame, kRoom> queue_{};
+  std::array<drives::Message, kRoom> queue_{};
   std::size_t first_ = 0, size_ = 0;
   can::LinkCounts counts_;
 };

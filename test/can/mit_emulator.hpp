@@ -13,7 +13,7 @@ class MitEmulator final : public DriveEmulator {
  public:
   explicit MitEmulator(const drives::MotorSetup& setup) : DriveEmulator(setup), type_(drives::as_mit(setup.drive)) {}
 
-  int hear(const can::Frame& frame, Replies& replies) noexcept override {
+  int hear(const drives::Message& frame, Replies& replies) noexcept override {
     if (silent || frame.extended || frame.id != static_cast<std::uint32_t>(setup().node) || frame.length != 8) return 0;
     silent_cycles_ = 0;
     ++heard;
@@ -57,9 +57,9 @@ class MitEmulator final : public DriveEmulator {
   bool tripped() const noexcept override { return tripped_; }
 
  private:
-  can::Frame reply(drives::MotorReading reading, bool fd) const noexcept {
+  drives::Message reply(drives::MotorReading reading, bool fd) const noexcept {
     reading.follows = enabled_ ? drives::Follows::kYes : drives::Follows::kNo;
-    can::Frame frame = type_->reply({type_->named(node), reading});
+    drives::Message frame = type_->reply({type_->named(node), reading});
     frame.fd = fd;
     return frame;
   }

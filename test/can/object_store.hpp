@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <map>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::test {
 
@@ -31,7 +31,7 @@ class ObjectStore {
   }
 
   /// (request) => the 8 bytes of its answer.
-  std::array<std::uint8_t, 8> serve(const can::Frame& request) noexcept {
+  std::array<std::uint8_t, 8> serve(const drives::Message& request) noexcept {
     std::array<std::uint8_t, 8> answer{};
     std::copy_n(request.data.begin() + 1, 3, answer.begin() + 1);
     const int index = request.data[1] | request.data[2] << 8, subindex = request.data[3];

@@ -25,15 +25,16 @@ using testing::IsEmpty;
 /// Z1's left leg, whose drives answer as `answer` says; what the roll call hears besides.
 class OtherDialects : public testing::Test {
  protected:
-  std::vector<std::string> heard(const std::function<std::optional<Frame>(int node, const Frame& right)>& answer) {
+  std::vector<std::string> heard(
+      const std::function<std::optional<drives::Message>(int node, const drives::Message& right)>& answer) {
     auto [here, there] = test::MemoryLink::pair();
     const Wait wait = [&] {
-      std::array<Frame, 64> frames;
+      std::array<drives::Message, 64> frames;
       const std::size_t count = there->receive(frames);
-      for (const Frame& asked : std::span(frames).first(count)) {
+      for (const drives::Message& asked : std::span(frames).first(count)) {
         const auto motor = std::ranges::find(bus_.motors, static_cast<int>(asked.id), &drives::MotorSetup::node);
         const drives::MitProtocol protocol(drives::as_mit(motor->drive)->ranges());
-        const Frame right = Frame::of(
+        const drives::Message right = drives::Message::of(
             0, protocol.reply({.node = static_cast<std::uint8_t>(asked.id), .reading = {.temperature_degC = 31.0}}));
         if (const auto frame = answer(static_cast<int>(asked.id), right)) there->send(std::span(&*frame, 1));
       }
@@ -48,13 +49,13 @@ class OtherDialects : public testing::Test {
 };
 
 TEST_F(OtherDialects, DrivesAsRobotYamlHasThemAreNoNews) {
-  EXPECT_THAT(heard([](int, const Frame& right) { return right; }), IsEmpty());
+  EXPECT_THAT(heard([](int, const drives::Message& right) { return right; }), IsEmpty());
   EXPECT_THAT(problems_, IsEmpty());
 }
 
 TEST_F(OtherDialects, AMiniCheetahsShortAnswersAreNamed) {
   for (const int bytes : {6, 7}) {
-    const auto lines = heard([bytes](int node, Frame right) -> std::optional<Frame> {
+    const auto lines = heard([bytes](int node, drives::Message right) -> std::optional<drives::Message> {
       if (node == 4) right.length = static_cast<std::uint8_t>(bytes);
       return right;
     });
@@ -66,7 +67,7 @@ TEST_F(OtherDialects, AMiniCheetahsShortAnswersAreNamed) {
 }
 
 TEST_F(OtherDialects, ADaMiaoIsNamedByItsTemperatureAndByItsState) {
-  EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
+  EXPECT_THAT(heard([](int node, drives::Message right) -> std::optional<drives::Message> {
                 if (node == 4) right.data[7] = 29;  // rotor's temperature; switched off: state 0
                 return right;
               }),
@@ -74,7 +75,7 @@ TEST_F(OtherDialects, ADaMiaoIsNamedByItsTemperatureAndByItsState) {
                   "a DaMiao's answer of left_knee, or a RobStride's: 29 would be no fault code, but a temperature; "
                   "robot.yaml has `protocol: mit`: expected `protocol: damiao` or `protocol: robstride`")));
   EXPECT_THAT(problems_, ElementsAre(HasSubstr("reports a fault that the protocol doesn't name")));
-  EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
+  EXPECT_THAT(heard([](int node, drives::Message right) -> std::optional<drives::Message> {
                 if (node == 4) right.data[0] = 0x84;  // over-voltage
                 return right;
               }),
@@ -82,23 +83,23 @@ TEST_F(OtherDialects, ADaMiaoIsNamedByItsTemperatureAndByItsState) {
 }
 
 TEST_F(OtherDialects, AnotherReplyIdentifierAnotherProtocolAndOtherNodesAreNamed) {
-  EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
+  EXPECT_THAT(heard([](int node, drives::Message right) -> std::optional<drives::Message> {
                 if (node == 4) right.id = 0x11;
                 return right;
               }),
               ElementsAre(HasSubstr("an answer of left_knee with another identifier; robot.yaml's `reply_id` should be "
                                     "0x11")));
-  EXPECT_THAT(heard([](int node, Frame right) -> std::optional<Frame> {
+  EXPECT_THAT(heard([](int node, drives::Message right) -> std::optional<drives::Message> {
                 if (node == 4) right.id = 0x2800FD04, right.extended = true;
                 return right;
               }),
               ElementsAre(HasSubstr("a protocol with 29-bit identifiers")));
-  EXPECT_THAT(heard([](int node, const Frame& right) -> std::optional<Frame> {
-                return node == 4 ? Frame::of(0x704, std::array<std::uint8_t, 1>{0x7F}) : right;
+  EXPECT_THAT(heard([](int node, const drives::Message& right) -> std::optional<drives::Message> {
+                return node == 4 ? drives::Message::of(0x704, std::array<std::uint8_t, 1>{0x7F}) : right;
               }),
               ElementsAre(HasSubstr("a CANopen node's heartbeat, node 4")));
-  EXPECT_THAT(heard([](int node, const Frame& right) -> std::optional<Frame> {
-                return node == 4 ? Frame::of(0x3F0, std::array<std::uint8_t, 2>{1, 2}) : right;
+  EXPECT_THAT(heard([](int node, const drives::Message& right) -> std::optional<drives::Message> {
+                return node == 4 ? drives::Message::of(0x3F0, std::array<std::uint8_t, 2>{1, 2}) : right;
               }),
               ElementsAre(HasSubstr("no message of a drive that robot.yaml has")));
 }
@@ -106,8 +107,8 @@ TEST_F(OtherDialects, AnotherReplyIdentifierAnotherProtocolAndOtherNodesAreNamed
 /// A link whose controller says this.
 class TroubledLink final : public Link {
  public:
-  std::size_t send(std::span<const Frame> frames) noexcept override { return frames.size(); }
-  std::size_t receive(std::span<Frame> /*frames*/) noexcept override { return 0; }
+  std::size_t send(std::span<const drives::Message> frames) noexcept override { return frames.size(); }
+  std::size_t receive(std::span<drives::Message> /*frames*/) noexcept override { return 0; }
   BusHealth health() const noexcept override { return state; }
   const LinkCounts& counts() const noexcept override { return counted; }
   BusHealth state = BusHealth::kGood;

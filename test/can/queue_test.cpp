@@ -209,11 +209,11 @@ class AwaitedLink final : public Link {
   ~AwaitedLink() override { close(ready_); }
   AwaitedLink(const AwaitedLink&) = delete;
   AwaitedLink& operator=(const AwaitedLink&) = delete;
-  std::size_t send(std::span<const Frame> frames) noexcept override {
+  std::size_t send(std::span<const drives::Message> frames) noexcept override {
     looked_ = 0;
     return bus_.send(frames);
   }
-  std::size_t receive(std::span<Frame> frames) noexcept override {
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     if (++looked_ < 2) return 0;
     bus_.run_to(now_ns_ += QueuedRobot::kPeriod_ns);
     return bus_.receive(frames);

@@ -24,14 +24,14 @@ class QueuedBus final : public can::Link {
     for (const drives::MotorSetup& motor : bus.motors) drives_.push_back({std::make_unique<MitEmulator>(motor), {}});
   }
 
-  std::size_t send(std::span<const can::Frame> frames) noexcept override {
+  std::size_t send(std::span<const drives::Message> frames) noexcept override {
     std::size_t taken = 0;
     for (; taken < frames.size() && out_.size() < room_; ++taken) out_.push_back(frames[taken]);
     counts_.sent += taken;
     counts_.not_sent += frames.size() - taken;
     return taken;
   }
-  std::size_t receive(std::span<can::Frame> frames) noexcept override {
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     std::size_t count = 0;
     while (count < frames.size() && !in_.empty() && now_ns_ >= held_until_ns && in_.front().due_ns <= now_ns_) {
       frames[count++] = in_.front().frame;
@@ -51,12 +51,12 @@ class QueuedBus final : public can::Link {
         if (!drive.replies.empty() && drive.replies.front().due_ns <= free_ns_) replying = &drive;
       }
       if (replying != nullptr) {
-        const can::Frame frame = replying->replies.front().frame;
+        const drives::Message frame = replying->replies.front().frame;
         replying->replies.pop_front();
         free_ns_ += kFrame_ns;
         if (!cut) in_.push_back({frame, free_ns_ + answers_late_ns});
       } else if (!cut && !out_.empty()) {
-        const can::Frame frame = out_.front();
+        const drives::Message frame = out_.front();
         out_.pop_front();
         free_ns_ += kFrame_ns;
         hear(frame);
@@ -76,14 +76,14 @@ class QueuedBus final : public can::Link {
 
  private:
   struct Timed {
-    can::Frame frame;
+    drives::Message frame;
     std::int64_t due_ns;
   };
   struct Drive {
     std::unique_ptr<MitEmulator> drive;
     std::deque<Timed> replies;
   };
-  void hear(const can::Frame& frame) {
+  void hear(const drives::Message& frame) {
     for (Drive& drive : drives_) {
       Replies replies;
       const int count = drive.drive->hear(frame, replies);
@@ -94,7 +94,7 @@ class QueuedBus final : public can::Link {
 
   std::size_t room_;
   std::vector<Drive> drives_;
-  std::deque<can::Frame> out_;
+  std::deque<drives::Message> out_;
   std::deque<Timed> in_;
   std::int64_t now_ns_ = 0, free_ns_ = 0;  // free_ns_: the wire's
   can::LinkCounts counts_;

@@ -25,20 +25,20 @@ class WrittenLink final : public Link {
  public:
   WrittenLink(std::unique_ptr<Link> inner, std::string name, const std::int64_t& now_ns, std::string& recording)
       : inner_(std::move(inner)), name_(std::move(name)), now_ns_(now_ns), recording_(recording) {}
-  std::size_t send(std::span<const Frame> frames) noexcept override {
-    for (const Frame& frame : frames) write(frame);
+  std::size_t send(std::span<const drives::Message> frames) noexcept override {
+    for (const drives::Message& frame : frames) write(frame);
     return inner_->send(frames);
   }
-  std::size_t receive(std::span<Frame> frames) noexcept override {
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     const std::size_t count = inner_->receive(frames);
-    for (const Frame& frame : frames.first(count)) write(frame);
+    for (const drives::Message& frame : frames.first(count)) write(frame);
     return count;
   }
   BusHealth health() const noexcept override { return inner_->health(); }
   const LinkCounts& counts() const noexcept override { return inner_->counts(); }
 
  private:
-  void write(const Frame& frame) {
+  void write(const drives::Message& frame) {
     recording_ += to_line({.stamp_ns = now_ns_, .interface = name_, .frame = frame}) + "\n";
   }
   std::unique_ptr<Link> inner_;

@@ -23,13 +23,13 @@ namespace {
 class BunchingLink final : public Link {
  public:
   explicit BunchingLink(Link& inner) : inner_(inner) {}
-  std::size_t send(std::span<const Frame> frames) noexcept override { return inner_.send(frames); }
-  std::size_t receive(std::span<Frame> frames) noexcept override {
+  std::size_t send(std::span<const drives::Message> frames) noexcept override { return inner_.send(frames); }
+  std::size_t receive(std::span<drives::Message> frames) noexcept override {
     if (!open_) return 0;
     const std::size_t count = inner_.receive(frames);
     for (std::size_t i = 0; i < count; ++i) {
       ++received_;
-      if (lost_every != 0 && received_ % lost_every == 0) frames[i] = Frame{.id = 0x7FF};
+      if (lost_every != 0 && received_ % lost_every == 0) frames[i] = drives::Message{.id = 0x7FF};
     }
     open_ = count > 0 || period == 0;
     return count;
@@ -92,7 +92,7 @@ TEST_F(RollCall, TwoDrivesOfOneNodeAreFoundThoughTheirAnswersComeBunched) {
 
 TEST_F(RollCall, AnswersOfAProgramThatJustEndedAreNobodysSecond) {
   for (int k = 0; k < 5; ++k) {  // its last commands, answered while the roll is called
-    const Frame command = Frame::of(4, drives::kMitDisable);
+    const drives::Message command = drives::Message::of(4, drives::kMitDisable);
     here_->send(std::span(&command, 1));
   }
   EXPECT_THAT(scan(), testing::IsEmpty());

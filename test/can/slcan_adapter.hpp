@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 
 namespace pmg::test {
 
@@ -43,8 +43,8 @@ class SlcanAdapter {
   }
 
   /// Frames that the kernel sent, until `count` have come or a second has passed.
-  std::vector<can::Frame> sent(std::size_t count) {
-    std::vector<can::Frame> frames;
+  std::vector<drives::Message> sent(std::size_t count) {
+    std::vector<drives::Message> frames;
     pollfd polled{.fd = master_, .events = POLLIN, .revents = 0};
     while (frames.size() < count && poll(&polled, 1, 1000) > 0) {
       std::string bytes(4096, '\0');
@@ -59,7 +59,7 @@ class SlcanAdapter {
     return frames;
   }
   /// A frame from the bus.
-  void hear(const can::Frame& frame) {
+  void hear(const drives::Message& frame) {
     constexpr const char* kDigits = "0123456789ABCDEF";
     std::string line = "t";
     for (const unsigned shift : {8U, 4U, 0U}) line += kDigits[frame.id >> shift & 0xFU];
@@ -79,8 +79,8 @@ class SlcanAdapter {
     const std::string command = "ip link set " + interface_ + " " + state;
     [[maybe_unused]] const int code = std::system(command.c_str());  // NOLINT: a test's own kernel
   }
-  static can::Frame parse(const std::string& line) {
-    can::Frame frame;
+  static drives::Message parse(const std::string& line) {
+    drives::Message frame;
     frame.id = static_cast<std::uint32_t>(std::stoul(line.substr(1, 3), nullptr, 16));
     frame.length = static_cast<std::uint8_t>(line[4] - '0');
     for (std::size_t i = 0; i < frame.length; ++i)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 
 #include "../sim/robots.hpp"
@@ -40,7 +41,7 @@ class SocketsSlcan : public testing::Test {
   BusStatus cycle(const model::JointCommand& command, const std::string& said = {}, bool wire = true) {
     hal_->send(command);
     std::size_t awaited = 0;
-    for (const Frame& frame : adapter_.sent(wire ? drives_.size() : 0)) {
+    for (const drives::Message& frame : adapter_.sent(wire ? drives_.size() : 0)) {
       for (const auto& drive : drives_) {
         test::Replies replies;
         const int count = drive->hear(frame, replies);
@@ -56,7 +57,7 @@ class SocketsSlcan : public testing::Test {
     const std::uint64_t wanted_frames = watcher_->counts().received + frames,
                         wanted_errors = watcher_->counts().error_frames + errors;
     pollfd polled{.fd = watcher_->descriptor(), .events = POLLIN, .revents = 0};
-    std::array<Frame, 64> buffer;
+    std::array<drives::Message, 64> buffer;
     for (int wait = 0; wait < 100; ++wait) {
       watcher_->receive(buffer);
       if (watcher_->counts().received >= wanted_frames && watcher_->counts().error_frames >= wanted_errors) return;
@@ -113,6 +114,31 @@ TEST_F(SocketsSlcan, FramesThatNobodyAcknowledgesAreCountedAndTheirMotorsLostInT
   for (const auto& drive : drives_) drive->silent = false;
   for (int k = 0; k < kBackCycles; ++k) cycle(limp_);
   EXPECT_EQ(cycle(standing_), BusStatus::kOk) << trouble();
+}
+
+/// Sends until the kernel takes no more. Nobody reads the adapter.
+std::uint64_t taken(const std::string& interface, int most_waiting) {
+  SocketLink link(interface, {}, false, most_waiting);
+  const drives::Message command = drives::Message::of(1, drives::kMitDisable);
+  for (int k = 0; k < 5000 && link.counts().not_sent < 20; ++k) {
+    link.send(std::span(&command, 1));
+    pollfd polled{.fd = link.descriptor(), .events = POLLOUT, .revents = 0};
+    if (link.counts().not_sent > 0) poll(&polled, 1, 10);  // the driver works off what its line takes
+  }
+  return link.counts().sent;
+}
+
+TEST_F(SocketsSlcan, FramesOfFourCyclesAndNoMoreWaitForAWireThatIsOut) {
+  const std::string queue = "ip link set " + adapter_.interface() + " txqueuelen 1000";
+  ASSERT_EQ(std::system(queue.c_str()), 0);  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+  adapter_.restart();
+  constexpr int kMost = 4 * 9;
+  const std::uint64_t bounded = taken(adapter_.interface(), kMost);  // the line's room is full now
+  EXPECT_GE(bounded, static_cast<std::uint64_t>(kMost));
+  const std::uint64_t more = taken(adapter_.interface(), kMost), unbounded = taken(adapter_.interface(), 0);
+  EXPECT_LE(more, static_cast<std::uint64_t>(1.2 * kMost) + 1) << "a second socket's";
+  EXPECT_GE(more, static_cast<std::uint64_t>(0.8 * kMost)) << "a cycle's frames find room";
+  EXPECT_GT(unbounded, 3 * more) << "what a kernel takes else";
 }
 
 }  // namespace

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "can/frame.hpp"
+#include "drives/message.hpp"
 #include "generator_core/allocation_count.hpp"
 
 namespace pmg::can {
@@ -49,8 +49,8 @@ class Sockets : public testing::Test {
     if (if_nametoindex("can4") == 0) GTEST_SKIP() << "this kernel has no interface can4: run test/can/canrun";
   }
   /// So many frames, which the kernel may deliver a moment after send(); fewer if they don't come within 1 s.
-  static std::vector<Frame> receive(SocketLink& link, std::size_t expected = 0) {
-    std::vector<Frame> frames(256);
+  static std::vector<drives::Message> receive(SocketLink& link, std::size_t expected = 0) {
+    std::vector<drives::Message> frames(256);
     std::size_t count = link.receive(frames);
     pollfd polled{.fd = link.descriptor(), .events = POLLIN, .revents = 0};
     while (count < expected && poll(&polled, 1, 1000) > 0) count += link.receive(std::span(frames).subspan(count));
@@ -110,7 +110,7 @@ TEST_F(Sockets, WhatIsNoCanInterfaceOrIsDownIsRefused) {
   EXPECT_THAT(refusal("can4"), HasSubstr("can4: is down; expected it up: ip link set can4 up"));
   SocketLink open("can3", {}, false);
   ASSERT_EQ(std::system("ip link set can3 down"), 0);  // NOLINT
-  const Frame frame = Frame::of(1, std::array<std::uint8_t, 2>{1, 2});
+  const drives::Message frame = drives::Message::of(1, std::array<std::uint8_t, 2>{1, 2});
   open.send(std::span(&frame, 1));
   receive(open);
   EXPECT_EQ(open.health(), BusHealth::kOff);
@@ -120,18 +120,19 @@ TEST_F(Sockets, WhatIsNoCanInterfaceOrIsDownIsRefused) {
 
 TEST_F(Sockets, FramesArriveWholeInOrderAndThroughTheFilter) {
   SocketLink host("can0", {0x10, 0x7FF}, true), drives("can0", {}, true);
-  std::vector<Frame> sent;
+  std::vector<drives::Message> sent;
   for (int i = 0; i < 70; ++i) {  // three batches
     std::array<std::uint8_t, 64> data{};
     for (std::size_t k = 0; k < data.size(); ++k) data[k] = static_cast<std::uint8_t>(i + static_cast<int>(k));
-    sent.push_back(Frame::of(i % 2 == 0 ? 0x10 : 0x11, std::span(data).first(i % 3 == 0 ? 64 : 8), i % 3 == 0));
+    sent.push_back(
+        drives::Message::of(i % 2 == 0 ? 0x10 : 0x11, std::span(data).first(i % 3 == 0 ? 64 : 8), i % 3 == 0));
   }
   drives.send(sent);
   EXPECT_EQ(drives.counts().sent, 70u);
-  const std::vector<Frame> got = receive(host, 35);
+  const std::vector<drives::Message> got = receive(host, 35);
   ASSERT_EQ(got.size(), 35u) << "0x11 isn't awaited";
   for (std::size_t i = 0; i < got.size(); ++i) {
-    const Frame& wanted = sent[2 * i];
+    const drives::Message& wanted = sent[2 * i];
     EXPECT_EQ(got[i].id, wanted.id);
     EXPECT_EQ(got[i].fd, wanted.fd);
     ASSERT_EQ(got[i].length, wanted.length);
@@ -144,8 +145,9 @@ TEST_F(Sockets, ARecordingHasEveryFrameWithTheKernelsStamp) {
   SocketLink recorder("can2", {}, true), drives("can2", {}, true);
   const auto now_ns = [] { return std::chrono::system_clock::now().time_since_epoch().count(); };
   const std::int64_t before_ns = now_ns();
-  const std::array<Frame, 2> frames = {Frame::of(0x044, std::array<std::uint8_t, 2>{0x2A, 0x36}),
-                                       Frame::of(0x123, std::array<std::uint8_t, 2>{0xAA, 0xBB}, true)};
+  const std::array<drives::Message, 2> frames = {
+      drives::Message::of(0x044, std::array<std::uint8_t, 2>{0x2A, 0x36}),
+      drives::Message::of(0x123, std::array<std::uint8_t, 2>{0xAA, 0xBB}, true)};
   drives.send(frames);
   can_frame remote{}, error{};
   remote.can_id = 0x123 | CAN_RTR_FLAG;
@@ -172,8 +174,8 @@ TEST_F(Sockets, ARecordingHasEveryFrameWithTheKernelsStamp) {
 
 TEST_F(Sockets, SendingAndReceivingAllocatesNothing) {
   SocketLink host("can1", {}, false), drives("can1", {}, false);
-  std::array<Frame, 64> buffer;
-  const std::array<Frame, 7> frames{};
+  std::array<drives::Message, 64> buffer;
+  const std::array<drives::Message, 7> frames{};
   const long before = test::allocation_count();
   for (int k = 0; k < 50; ++k) {
     host.send(frames);

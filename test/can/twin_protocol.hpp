@@ -128,9 +128,9 @@ class TwinEmulator {
   TwinEmulator(can::Link& link, int node) : link_(link), node_(static_cast<std::uint32_t>(node)) {}
 
   void answer() noexcept {
-    std::array<can::Frame, 16> frames;
+    std::array<drives::Message, 16> frames;
     while (const std::size_t count = link_.receive(frames)) {
-      for (const can::Frame& frame : std::span(frames).first(count)) hear(frame);
+      for (const drives::Message& frame : std::span(frames).first(count)) hear(frame);
     }
   }
 
@@ -141,7 +141,7 @@ class TwinEmulator {
   std::optional<int> other_node;  ///< that it answers as
 
  private:
-  void hear(const can::Frame& frame) noexcept {
+  void hear(const drives::Message& frame) noexcept {
     if (frame.id == Twin::kFirst + node_) {
       first_ = frame;
       return;
@@ -154,8 +154,9 @@ class TwinEmulator {
       if (lost_halves > 0) {
         --lost_halves;
       } else {
-        send(can::Frame::of(Twin::kStage + node, std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(stage),
-                                                                             static_cast<std::uint8_t>(faulty), 40}));
+        send(drives::Message::of(
+            Twin::kStage + node,
+            std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(stage), static_cast<std::uint8_t>(faulty), 40}));
       }
       send(Twin::two_floats(Twin::kMotion + node, motor.q_rad, motor.dq_rad_s));
     }
@@ -171,11 +172,11 @@ class TwinEmulator {
       command = {.q_rad = second[0], .kp_Nm_per_rad = tenths(1), .kd_Nm_s_per_rad = tenths(3), .torque_Nm = second[1]};
     }
   }
-  void send(const can::Frame& frame) noexcept { link_.send(std::span(&frame, 1)); }
+  void send(const drives::Message& frame) noexcept { link_.send(std::span(&frame, 1)); }
 
   can::Link& link_;
   std::uint32_t node_;
-  can::Frame first_{};
+  drives::Message first_{};
 };
 
 }  // namespace pmg::test

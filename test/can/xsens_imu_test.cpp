@@ -32,7 +32,7 @@ TEST(XsensImu, ASampleComesBackWithinHalfAStep) {
   const model::RobotState sent = tilted();
   XsensImu imu;
   imu.begin_cycle();
-  for (const Frame& frame : imu_frames(sent)) EXPECT_TRUE(imu.hear(frame));
+  for (const drives::Message& frame : imu_frames(sent)) EXPECT_TRUE(imu.hear(frame));
   EXPECT_EQ(imu.age_cycles(), 0);
   model::RobotState read;
   imu.read(read);
@@ -57,7 +57,7 @@ TEST(XsensImu, WhatIsNoOrientationOrNoMessageIsRefused) {
 TEST(XsensImu, ItsAgeIsThatOfItsOldestMessage) {
   XsensImu imu;
   const auto frames = imu_frames(tilted());
-  for (const Frame& frame : frames) imu.hear(frame);
+  for (const drives::Message& frame : frames) imu.hear(frame);
   for (int k = 0; k < 4; ++k) {
     imu.begin_cycle();
     imu.hear(frames[1]);

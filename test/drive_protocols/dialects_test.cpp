@@ -2,6 +2,7 @@
 // docs/reference/drives.md names them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -22,6 +23,8 @@ constexpr MitRanges kAk80At50 = {
     .position_rad = 12.5, .velocity_rad_s = 50.0, .torque_Nm = 18.0, .kp_Nm_per_rad = 500.0, .kd_Nm_s_per_rad = 5.0};
 constexpr MitRanges kRs00 = {
     .position_rad = 12.57, .velocity_rad_s = 33.0, .torque_Nm = 14.0, .kp_Nm_per_rad = 500.0, .kd_Nm_s_per_rad = 5.0};
+constexpr MitRanges kRsSample = {
+    .position_rad = 12.5, .velocity_rad_s = 33.0, .torque_Nm = 17.0, .kp_Nm_per_rad = 500.0, .kd_Nm_s_per_rad = 5.0};
 
 MotorLimits whole(const MitRanges& ranges) {
   return {.q_lower_rad = -ranges.position_rad,
@@ -204,7 +207,7 @@ TEST(CubeMars, CommandsAndRepliesAreThoseOfAForeignHost) {
                        .fault = DriveFault::kUnderVoltage}});
 }
 
-// By hand from the layout in RS00's manual; RobStride/SampleProgram reads the same bytes.
+// By hand from the layout in RS00's manual.
 TEST(Robstride, RepliesHaveATemperatureOfSixteenBits) {
   const RobstrideDrive drive(kRs00);
   expect_read(drive, {{0x01, 0x85, 0x1E, 0x70, 0x89, 0xC3, 0x01, 0x5E},
@@ -213,6 +216,60 @@ TEST(Robstride, RepliesHaveATemperatureOfSixteenBits) {
                        .dq_rad_s = 1800 * 66.0 / 4095 - 33.0,
                        .torque_Nm = 2499 * 28.0 / 4095 - 14.0,
                        .temperature_degC = 35.0}});
+}
+
+// The maker's sample program without its microcontroller (Doraemonjayo/RobStride-SampleProgram at 6ceb402,
+// main/RobStride/RobStride.c, compiled for a PC): what RobStride_Motor_MIT_Control() and its like hand to their
+// transmit function, and what RobStride_Motor_Analysis() makes of these bytes in single precision.
+TEST(Robstride, CommandsThatAForeignHostPackedAreReadAsItMeantThem) {
+  const RobstrideDrive drive(kRsSample);
+  expect_command(drive, {{0.5, -3.0, 120.0, 2.5, 4.0}, {0x85, 0x1E, 0x74, 0x53, 0xD6, 0x7F, 0xF9, 0xE1}});
+  expect_command(drive, {{-7.25, 20.0, 33.0, 0.4, -9.5}, {0x35, 0xC2, 0xCD, 0x81, 0x0E, 0x14, 0x73, 0x87}});
+  expect_command(drive, {{}, {0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF}});
+  expect_command(drive, {{-12.5, -33.0, 0.0, 0.0, -17.0}, {}});
+  EXPECT_EQ(kMitEnable, (MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC}));
+  EXPECT_EQ(kMitDisable, (MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD}));
+  EXPECT_EQ(kMitZero, (MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE}));
+  for (const MitFrame& other : {MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFB},   // clears faults
+                                MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0xFB},   // asks for them
+                                MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x01, 0xFC},   // sets the mode
+                                MitFrame{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x07, 0x01}})  // sets the node
+    EXPECT_FALSE(drive.codec().command(other)) << "no command";
+}
+
+TEST(Robstride, RepliesAreReadAsAForeignHostReadsThemAndAFaultMessageIsNoReading) {
+  const RobstrideDrive drive(kRsSample);
+  struct Read {
+    MitFrame bytes;
+    MotorReading reading;
+  };
+  const std::vector<Read> replies = {
+      {{4, 0x85, 0x1E, 0x70, 0x89, 0xC3, 0x01, 0x56},
+       {.q_rad = 0.4999237, .dq_rad_s = -3.989012, .torque_Nm = 3.748718, .temperature_degC = 34.2}},
+      {{4, 0x12, 0x34, 0xFE, 0xD7, 0xBA, 0x02, 0x8A},
+       {.q_rad = -10.72232, .dq_rad_s = 32.70989, .torque_Nm = -0.5770454, .temperature_degC = 65.0}},
+      {{4, 0x80, 0x00, 0x80, 0x08, 0x00, 0x01, 0x2C},
+       {.q_rad = 0.0001907349, .dq_rad_s = 0.008060455, .torque_Nm = 0.004152298, .temperature_degC = 30.0}},
+      {{4, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF},
+       {.q_rad = 12.5, .dq_rad_s = 33.0, .torque_Nm = 17.0, .temperature_degC = 102.3}},
+      {{4, 0x80, 0x00, 0x00, 0x00, 0x00, 0x00, 0x01},
+       {.q_rad = 0.0001907349, .dq_rad_s = -33.0, .torque_Nm = -17.0, .temperature_degC = 0.1}}};
+  constexpr double kSingle = 1e-5;  // single precision of 102.3, with the maker's factor of a tenth in double
+  for (const Read& read : replies) {
+    const auto reply = drive.read(read.bytes);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->node, 4);
+    EXPECT_NEAR(reply->reading.q_rad, read.reading.q_rad, kSingle);
+    EXPECT_NEAR(reply->reading.dq_rad_s, read.reading.dq_rad_s, kSingle);
+    EXPECT_NEAR(reply->reading.torque_Nm, read.reading.torque_Nm, kSingle);
+    EXPECT_NEAR(reply->reading.temperature_degC, read.reading.temperature_degC, kSingle);
+    EXPECT_EQ(drive.reply(*reply).data[1], read.bytes[1]);
+    EXPECT_TRUE(std::ranges::equal(drive.reply(*reply).bytes(), read.bytes)) << "what the emulated drive says";
+  }
+  // That host takes these for over-temperature, under-voltage and overload, and for no fault.
+  EXPECT_FALSE(drive.read(MitFrame{4, 0x05, 0x40, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(drive.read(MitFrame{4, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(drive.sender(Message::of(RobstrideDrive::kReplyId, MitFrame{4, 0x05, 0x40, 0, 0, 0, 0, 0})));
 }
 
 TEST(Robstride, NoCommandBeginsWithSixBytesOfOnes) {

@@ -13,13 +13,13 @@ using testing::ElementsAre;
 
 constexpr int kRoom = 3;
 
-can::Frame frame(std::uint32_t id) {
+drives::Message frame(std::uint32_t id) {
   const std::array<std::uint8_t, 2> data = {static_cast<std::uint8_t>(id), 0x55};
-  return can::Frame::of(id, data);
+  return drives::Message::of(id, data);
 }
 
 /// A bridge's block.
-std::vector<std::uint8_t> batch(std::uint8_t sequence, const std::vector<can::Frame>& frames) {
+std::vector<std::uint8_t> batch(std::uint8_t sequence, const std::vector<drives::Message>& frames) {
   std::vector<std::uint8_t> block(block_bytes(kRoom), 0);
   put_frames(frames, block);
   block[0] = sequence;
@@ -27,23 +27,23 @@ std::vector<std::uint8_t> batch(std::uint8_t sequence, const std::vector<can::Fr
 }
 
 std::vector<std::uint32_t> fetch(BridgeLink& link, std::size_t most = 16) {
-  std::vector<can::Frame> frames(most);
+  std::vector<drives::Message> frames(most);
   frames.resize(link.receive(frames));
   std::vector<std::uint32_t> ids;
-  for (const can::Frame& one : frames) ids.push_back(one.id);
+  for (const drives::Message& one : frames) ids.push_back(one.id);
   return ids;
 }
 
 TEST(BridgeLink, FramesGoOutInTheirOrderOnceAndThoseBeyondTheRoomAreCounted) {
   BridgeLink link;
   for (const std::uint32_t id : {1U, 2U, 3U, 4U}) {
-    const can::Frame one = frame(id);
+    const drives::Message one = frame(id);
     link.send(std::span(&one, 1));
   }
   std::vector<std::uint8_t> block(block_bytes(kRoom), 0);
   link.fill(block);
   std::vector<std::uint32_t> ids;
-  for_frames(block, [&](const can::Frame& one) {
+  for_frames(block, [&](const drives::Message& one) {
     ids.push_back(one.id);
     EXPECT_EQ(one.length, 2);
     EXPECT_EQ(one.data[0], one.id);
@@ -59,10 +59,10 @@ TEST(BridgeLink, FramesGoOutInTheirOrderOnceAndThoseBeyondTheRoomAreCounted) {
 
 TEST(BridgeLink, AnIdentifierOf29BitsStaysOne) {
   BridgeLink link;
-  can::Frame wide = frame(0x1ABCDEF0);
+  drives::Message wide = frame(0x1ABCDEF0);
   wide.extended = true;
   link.take(batch(1, {wide}));
-  std::array<can::Frame, 1> got;
+  std::array<drives::Message, 1> got;
   ASSERT_EQ(link.receive(got), 1u);
   EXPECT_EQ(got[0].id, 0x1ABCDEF0u);
   EXPECT_TRUE(got[0].extended);

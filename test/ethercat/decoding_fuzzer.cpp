@@ -72,12 +72,12 @@ void check_outputs(std::span<const std::uint8_t> frame, const can::DriveSetup& s
   for (const can::BusSetup& bus : setup.buses) {
     if (bus.first_slave == 0) {
       ethercat::for_frames(next(ethercat::block_bytes(test::CabledDrives::kFramesOut)),
-                           [&](const can::Frame& sent) { test::check_limits(sent, bus); });
+                           [&](const drives::Message& sent) { test::check_limits(sent, bus); });
       continue;
     }
     for (const drives::MotorSetup& motor : bus.motors)
-      test::check_limits(can::Frame::of(drives::canopen::kReceive1 + static_cast<std::uint32_t>(motor.node),
-                                        next(ethercat::kDriveOutputs)),
+      test::check_limits(drives::Message::of(drives::canopen::kReceive1 + static_cast<std::uint32_t>(motor.node),
+                                             next(ethercat::kDriveOutputs)),
                          bus);
   }
 }

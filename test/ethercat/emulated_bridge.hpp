@@ -26,8 +26,8 @@ class EmulatedBridge final : public EmulatedSlave {
     taken_ = block[0];
     for (std::size_t i = 0; i < block[2] && 4 + 13 * (i + 1) <= block.size(); ++i) {
       const std::span<const std::uint8_t> at = block.subspan(4 + 13 * i, 13);
-      const can::Frame frame = can::Frame::of(static_cast<std::uint32_t>(at[0] | at[1] << 8),
-                                              at.subspan(5, std::min<std::size_t>(at[4], 8)));
+      const drives::Message frame = drives::Message::of(static_cast<std::uint32_t>(at[0] | at[1] << 8),
+                                                        at.subspan(5, std::min<std::size_t>(at[4], 8)));
       can_->send(std::span(&frame, 1));
     }
   }
@@ -36,7 +36,7 @@ class EmulatedBridge final : public EmulatedSlave {
     block[1] = taken_;
     block[3] = health;
     if (sequence_ == outputs[1]) {
-      std::array<can::Frame, 64> frames;
+      std::array<drives::Message, 64> frames;
       const std::size_t count = can_->receive(std::span(frames).first((block.size() - 4) / 13));
       for (std::size_t i = 0; i < count; ++i) {
         const std::span<std::uint8_t> at = block.subspan(4 + 13 * i, 13);

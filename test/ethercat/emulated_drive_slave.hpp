@@ -44,7 +44,7 @@ class EmulatedDriveSlave final : public EmulatedSlave {
 
   std::vector<std::uint8_t> answer_mail(std::span<const std::uint8_t> service) override {
     if (drive_.silent || service.size() < 10 || service[1] >> 4 != 2) return {};  // SDO requests alone
-    can::Frame request = can::Frame::of(0x600, service.subspan(2, 8));
+    drives::Message request = drives::Message::of(0x600, service.subspan(2, 8));
     const auto bytes = drive_.serve_objects(request);
     const bool abort = bytes[0] == 0x80;  // an abort is a request to end the transfer, too
     std::vector<std::uint8_t> answer = {0, static_cast<std::uint8_t>(abort ? 0x20 : 0x30)};

@@ -134,7 +134,7 @@ TEST_F(Bridges, OldAnswersInABridgeAreNoneToANewController) {
     for (int k = 0; k < 20; ++k) {
       for (const drives::MotorSetup& motor : cabled.setup.buses[b].motors) {
         const auto& ranges = drives::as_mit(motor.drive)->ranges();
-        const can::Frame old = can::Frame::of(
+        const drives::Message old = drives::Message::of(
             ranges.reply_id, drives::MitProtocol(ranges).reply({static_cast<std::uint8_t>(motor.node), {}}));
         cabled.drives->link(b).send(std::span(&old, 1));
       }

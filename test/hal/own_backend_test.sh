@@ -20,6 +20,8 @@ check() { # what, pattern, file
   cat "$3"
   failed=1
 }
+lines=$(grep -vcE '^\s*(//.*)?$' "$root/examples/backend/udp_backend.cpp")
+[ "$lines" -le 100 ] || { echo "FAILED: the backend has $lines lines of code, expected 100 at most"; failed=1; }
 "$work/build/own_controller" --help >"$work/help"
 check "help names it beside the others" 'can, drives on CAN buses.*udp, drives on a board' <(tr -s ' \n' ' ' <"$work/help")
 python3 "$root/examples/backend/board.py" >"$work/board" 2>&1 &
