@@ -13,34 +13,51 @@ namespace pmg::calib {
 namespace {
 
 constexpr double kAlike = 0.98;       // correlation
-constexpr double kBlind = 1e-6;       // eigenvalue of the information with a unit diagonal; differences leave 1e-9
+constexpr double kBlind = 1e-6;       // eigenvalue of the information with a unit diagonal
+constexpr double kOfError = 4.0;      // times E^T E along a direction: twice what doubled steps change
 constexpr double kPart = 0.01;        // of a unit direction: a parameter that belongs to it
 constexpr double kMostOfEdge = 0.25;  // of a range: farther away the derivatives at the point say nothing
 
-using Blind = std::vector<Eigen::Index>;  // parameters that have a part in a blind direction
+/// The fit's normal equations, and how little its derivatives tell of themselves: with steps twice as long they are J +
+/// E.
+struct Linearised {
+  fitting::LinearisedFit fit;
+  Eigen::MatrixXd squares_of_E;  // E^T E
+};
 
-/// (J^T J, seen parameters) => (parameters of each direction along which nothing moves).
-std::vector<Blind> blind_directions(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& seen) {
-  if (seen.empty()) return {};
-  const Eigen::MatrixXd of_seen = information(seen, seen);
-  const Eigen::VectorXd weight = of_seen.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(weight.asDiagonal() * of_seen * weight.asDiagonal());
-  std::vector<Blind> found;
-  for (Eigen::Index k = 0; k < parts.eigenvalues().size() && parts.eigenvalues()[k] < kBlind; ++k) {
-    Blind& direction = found.emplace_back();
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (std::abs(parts.eigenvectors()(static_cast<Eigen::Index>(i), k)) > kPart) direction.push_back(seen[i]);
-    }
-  }
+Linearised linearised(const FitProblem& problem, const Eigen::VectorXd& point, unsigned threads) {
+  fitting::Problem squares = problem.least_squares(threads);
+  const fitting::Residuals at = squares.residuals(point);
+  const fitting::Jacobian jacobian = fitting::jacobian(squares, point, at);
+  Linearised found{.fit = {.ranges = squares.coordinates, .coordinates = point}, .squares_of_E = {}};
+  found.fit.blocks = blocks(problem.runs()).normal_equations(at, jacobian);
+  for (auto& coordinate : squares.coordinates) coordinate.step *= 2.0;
+  fitting::Jacobian apart = fitting::jacobian(squares, point, at);
+  for (std::size_t run = 0; run < apart.size(); ++run) apart[run] -= jacobian[run];
+  found.squares_of_E = fitting::products(apart, apart);
   return found;
 }
 
-fitting::LinearisedFit linearised(const FitProblem& problem, const Eigen::VectorXd& point, unsigned threads) {
-  const fitting::Problem squares = problem.least_squares(threads);
-  const fitting::Residuals at = squares.residuals(point);
-  fitting::LinearisedFit fit{.ranges = squares.coordinates, .coordinates = point};
-  fit.blocks = blocks(problem.runs()).normal_equations(at, fitting::jacobian(squares, point, at));
-  return fit;
+using Blind = std::vector<Eigen::Index>;  // parameters that have a part in a blind direction
+
+/// (J^T J, E^T E, seen parameters) => (parameters of each direction along which nothing moves).
+std::vector<Blind> blind_directions(const Eigen::MatrixXd& information, const Eigen::MatrixXd& squares_of_E,
+                                    const std::vector<Eigen::Index>& seen) {
+  if (seen.empty()) return {};
+  const Eigen::MatrixXd of_seen = information(seen, seen), error = squares_of_E(seen, seen);
+  const Eigen::VectorXd weight = of_seen.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(weight.asDiagonal() * of_seen * weight.asDiagonal());
+  std::vector<Blind> found;
+  for (Eigen::Index k = 0; k < parts.eigenvalues().size(); ++k) {
+    const Eigen::VectorXd v = parts.eigenvectors().col(k), of_parameters = weight.asDiagonal() * v;
+    const double by_error = kOfError * of_parameters.dot(error * of_parameters);
+    if (parts.eigenvalues()[k] > std::max(kBlind, by_error)) continue;
+    Blind& direction = found.emplace_back();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (std::abs(v[static_cast<Eigen::Index>(i)]) > kPart) direction.push_back(seen[i]);
+    }
+  }
+  return found;
 }
 
 /// d value / d coordinate of a parameter at the point [its unit per edge of the cube].
@@ -56,7 +73,7 @@ double unit_per_edge(const FitProblem& problem, const std::vector<double>& point
 }  // namespace
 
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads) {
-  const fitting::LinearisedFit fit = linearised(
+  const auto [fit, squares_of_E] = linearised(
       problem, Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size())), threads);
   const Eigen::MatrixXd information = fitting::information(fit);
   std::vector<Eigen::Index> seen;
@@ -65,7 +82,7 @@ std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<
   }
   std::vector<Confidence> found(problem.dimensions());
   for (Confidence& one : found) one.deviation = std::numeric_limits<double>::infinity();
-  const std::vector<Blind> blind = blind_directions(information, seen);
+  const std::vector<Blind> blind = blind_directions(information, squares_of_E, seen);
   for (const Blind& direction : blind) {
     for (const Eigen::Index d : direction) {
       std::vector<std::string>& with = found[static_cast<std::size_t>(d)].told_only_with;

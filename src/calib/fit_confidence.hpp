@@ -18,10 +18,10 @@ struct Confidence {
   double correlation = 0.0;                 ///< with that parameter
 };
 
-/// (problem, point) => (confidence of each parameter), from the rollouts' derivatives J at the point. A direction v of
-/// the parameters is blind where |J v| is below 1e-3 of what its parameters move one by one: an eigenvalue of J^T J,
-/// scaled to a unit diagonal, below 1e-6. Parameters that have a part in a blind direction have no deviation. The
-/// others have
+/// (problem, point) => (confidence of each parameter), from the rollouts' derivatives J. Columns of unit length: where
+/// |J v| is below 1e-3, or below twice |E v|, the direction v of the parameters is blind, and these have no deviation.
+/// E is what finite differences with steps twice as long change: derivatives tell no more. The others have
+///
 ///   sqrt(A^-1 B A^-1 + d d^T), with fitting::cluster_robust_covariance's A and B,
 /// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left. A deviation beyond a quarter of
 /// the range of the search is none: the derivatives say nothing so far away.

@@ -123,7 +123,9 @@ void expect_worth(const bench::Bench& bench, const Diagnosis& found, const Diagn
   EXPECT_EQ(diagnosis_json(found)["worth"], work::name(grade));
   const std::string html = diagnosis_page::page_of(bench, found, runs, 1).html();
   EXPECT_EQ(html.find("verdict good"), std::string::npos);
-  EXPECT_LT(html.find(worth_of(found).sentence().substr(0, 12)), html.find("<p>"));
+  const std::size_t first = html.find("<div class=\"verdict");
+  const std::size_t text = html.find('>', first) + 1;
+  EXPECT_EQ(html.substr(text, 12), worth_of(found).sentence().substr(0, 12)) << "the first line";
 }
 
 TEST_F(Diagnose, InterruptedItHasNoVerdictWhereverItWas) {

@@ -176,17 +176,17 @@ TEST(Page, NoLineIsGreenUnlessPageAndLineHold) {
   for (const Grade grade : {Grade::kHolds, Grade::kOpen, Grade::kPartial, Grade::kMissed, Grade::kNoBetter,
                             Grade::kOffItsData, Grade::kInterrupted}) {
     Page of_line("line"), of_page("page");
-    of_line.verdict({grade, "why"}, "text");
-    of_page.worth({grade, "why"});
-    of_page.verdict({}, "text");
+    of_line.verdict({grade, "the reservation"}, "the judgement");
+    of_page.worth({grade, "the reservation"});
+    of_page.verdict({}, "the judgement");
     SCOPED_TRACE(name(grade));
     EXPECT_EQ(colours(of_line).front() == "good", grade == Grade::kHolds);
     EXPECT_EQ(colours(of_page).back() == "good", grade == Grade::kHolds);
     EXPECT_THAT(of_page.html(), HasSubstr(std::string("data-worth=\"") + name(grade) + "\""));
     if (grade == Grade::kHolds) continue;
     EXPECT_EQ(colours(of_page).size(), 2U) << "the reservation is the first line";
-    EXPECT_LT(of_page.html().find("why"), of_page.html().find("text"));
-    EXPECT_LT(of_line.html().find("why"), of_line.html().find("text"));
+    EXPECT_LT(of_page.html().find("the reservation"), of_page.html().find("the judgement"));
+    EXPECT_LT(of_line.html().find("the reservation"), of_line.html().find("the judgement"));
   }
 }
 
