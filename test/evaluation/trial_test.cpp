@@ -227,6 +227,7 @@ TEST(Table1, InterruptedNoLineIsGreenHoweverGoodTheRunsSoFar) {
   good.judged_s = 1.0;
   good.errors = {0.01, 0.01, 0.01, 0.01, 0.001};
   table.campaign.runs = {{good, good}};
+  table.campaign.courses.resize(1);
   evaluate(table);
   EXPECT_NE(page_of(table).html().find("verdict good"), std::string::npos);
   table.campaign.complete = false;
