@@ -217,7 +217,7 @@ TEST(Table1, LimitsAndThePapersFiguresAreThoseOfThePolicyByName) {
   EXPECT_FALSE(table.all_reached()) << "falls do too";
 }
 
-TEST(Table1, InterruptedNoLineIsGreenHoweverGoodTheRunsSoFar) {
+TEST(Table1, InterruptedItIsNotWorthWhatItsRunsSoFarAre) {
   Table1 table;
   table.scenario.name = kGentleScenario;
   table.yardsticks.resize(1);
@@ -227,24 +227,27 @@ TEST(Table1, InterruptedNoLineIsGreenHoweverGoodTheRunsSoFar) {
   good.judged_s = 1.0;
   good.errors = {0.01, 0.01, 0.01, 0.01, 0.001};
   table.campaign.runs = {{good, good}};
-  table.campaign.courses.resize(1);
   evaluate(table);
-  EXPECT_NE(page_of(table).html().find("verdict good"), std::string::npos);
+  EXPECT_EQ(worth_of(table).sentence(), "");
   table.campaign.complete = false;
   table.campaign.runs = {{good, {}}};
   evaluate(table);
   EXPECT_EQ(worth_of(table).sentence(), "INTERRUPTED: 1 of 2 runs are complete");
-  EXPECT_EQ(page_of(table).html().find("verdict good"), std::string::npos);
   table.campaign.runs = {{{}, {}}};
   evaluate(table);
   EXPECT_EQ(worth_of(table).sentence(), "INTERRUPTED: 0 of 2 runs are complete") << "and nothing of figures of no run";
+  table.campaign.complete = true;
+  good.errors[kRollError] = 1.0;
+  table.campaign.runs = {{good, good}};
+  evaluate(table);
+  EXPECT_EQ(worth_of(table).grade(), work::Grade::kMissed);
 }
 
 TEST(Pushes, WithoutTheJudgedStrengthThePageIsNotGreen) {
   PushTest test;
   TrialResult good;
   good.complete = true;
-  test.strengths = {{35.0, {good, good}}};
+  test.strengths = {{kJudgedPush_N_s + 15.0, {good, good}}};
   EXPECT_EQ(worth_of(test).grade(), work::Grade::kOpen);
   test.strengths.push_back({kJudgedPush_N_s, {good, good}});
   EXPECT_EQ(worth_of(test).sentence(), "");
