@@ -249,7 +249,7 @@ TEST(Pushes, WithoutTheJudgedStrengthThePageIsNotGreen) {
   good.complete = true;
   test.strengths = {{kJudgedPush_N_s + 15.0, {good, good}}};
   EXPECT_EQ(worth_of(test).grade(), work::Grade::kOpen);
-  test.strengths.push_back({kJudgedPush_N_s, {good, good}});
+  test.strengths.insert(test.strengths.begin(), {kJudgedPush_N_s, {good, good}});
   EXPECT_EQ(worth_of(test).sentence(), "");
   EXPECT_NE(page_of(test).html().find("verdict good"), std::string::npos);
   test.complete = false;
