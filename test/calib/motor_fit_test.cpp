@@ -278,7 +278,7 @@ TEST(Confidence, OfAnUnfinishedFitReachesToWhereTheFitWouldEnd) {
   const std::vector<calib::Confidence> confidence = calib::confidence(joint, joint.point_of(near), 1);
   for (std::size_t i = 0; i < confidence.size(); ++i) {
     const std::string& name = joint.parameters()[i].name;
-    EXPECT_LT(std::abs(calib::value(near, name) - calib::value(truth(), name)), 4.0 * confidence[i].deviation) << name;
+    EXPECT_LT(std::abs(calib::value(near, name) - calib::value(truth(), name)), 1.2 * confidence[i].deviation) << name;
   }
 }
 
