@@ -18,8 +18,7 @@ nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& diagnosis);
 /// Off its data, where left-out equations miss by more than kMostOfNoise; no better with the causes; missed, where the
 /// verdict is unexplained; open, where causes can't be told apart. An interrupted diagnosis leaves nothing.
 work::Worth worth_of(const RobotDiagnosis& diagnosis);
-inline constexpr double kMostOfNoise =
-    5.0;  ///< rms of left-out equations over their noise; simulated robots have 1 to 2
+inline constexpr double kMostOfNoise = 5.0;  ///< rms of left-out equations over their noise
 
 /// The same for people, a few lines.
 std::string robot_diagnosis_text(const RobotDiagnosis& diagnosis);
