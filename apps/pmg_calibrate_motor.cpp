@@ -11,6 +11,7 @@
 
 #include "calib/fit_results.hpp"
 #include "calib/joint_runs.hpp"
+#include "data_faults/data_faults_report.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pmg;
 
-enum ExitCode { kOk = 0, kNotBetter = 1, kBadInput = 2, kInterrupted = 130 };
+enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/reference/file-formats.md). Writes DIR/motor.yaml (what
@@ -41,13 +42,13 @@ Example:
   pmg_calibrate_motor --make-excitation --robot z1 --joint left_knee --out out/excitation
   pmg_calibrate_motor data/bench/servo --also damping friction delay --fit "repeat == 0" --score "repeat == 1" --out out/servo
 
-Exit codes: 0 fitted, 1 fitted but no better than where it started, 2 bad input or output, 130 interrupted (what was
-found until then is kept).)";
+Exit codes: 0 fitted, 1 fitted but off its data or no better than where it started (the first line says which), 2 bad
+input or output, among it faults of the data, 130 interrupted (what was found until then is kept).)";
 
 struct Arguments {
   fs::path bench, out;
   std::vector<std::string> also, ranges, fixed;
-  std::string fit, score, joint, method = "sbplx";
+  std::string fit, score, joint, method = "sbplx", data_faults = "leave-out";
   double step_s = 0.0;
   unsigned starts = 8, threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
   bool only = false, json = false;
@@ -63,6 +64,12 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--fit", arguments.fit,
                  "rows of runs.csv to fit, as in \"kp_firmware in 4,8 and repeat == 0\"; all if not given");
   app.add_option("--score", arguments.score, "rows to judge the fit by; none of them may be fitted");
+  app.add_option(
+         "--data-faults", arguments.data_faults,
+         "faulty data: leave-out (single faulty runs are left out, other faults refused), correct (fit the corrected "
+         "data) or keep")
+      ->check(CLI::IsMember({"leave-out", "correct", "keep"}))
+      ->capture_default_str();
   app.add_option("--set", arguments.fixed, "NAME=VALUE: what is known of the model, or where the search begins");
   app.add_option("--range", arguments.ranges, "NAME=LOWER:UPPER: where a parameter is looked for");
   app.add_option("--optimizer", arguments.method, "of the starts; the result is polished by BOBYQA and SBPLX")
@@ -81,6 +88,7 @@ void declare(CLI::App& app, Arguments& arguments) {
 
 std::vector<std::string> names_to_fit(const Arguments& arguments, const bench::Bench& bench) {
   std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
+  for (const std::string& name : calib::unknown_loads(bench)) names.push_back(name);
   for (const std::string& word : arguments.also) {
     for (const std::string& name : calib::effect_parameters(word)) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -139,13 +147,14 @@ void write_results(const calib::FitResults& results, const calib::JointModel& be
 }
 
 void print_summary(const calib::FitResults& results, const fs::path& out) {
+  if (const std::string worth = worth_of(results).sentence(); !worth.empty()) std::cout << worth << '\n';
   const std::string unit = calib::position_unit(*results.bench, true);
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
     const calib::FitParameter& p = results.problem->parameters()[i];
     const double value = calib::value(results.fit.model, p.name);
     const std::string reservation = calib::reservation(p, value, results.confidence[i]);
-    std::cout << fmt::format("{:34} {:>11.5g} +- {:<8.2g} {}{}\n", p.name, value, results.confidence[i].deviation,
-                             calib::unit_on_rig(p.unit, *results.bench),
+    std::cout << fmt::format("{:34} {:>11.5g} +- {:<8} {}{}\n", p.name, value,
+                             calib::deviation_text(results.confidence[i]), calib::unit_on_rig(p.unit, *results.bench),
                              reservation.empty() ? "" : "   (" + reservation + ")");
   }
   const auto line = [&](const char* what, const calib::Assessment& a) {
@@ -154,13 +163,15 @@ void print_summary(const calib::FitResults& results, const fs::path& out) {
   };
   if (results.inverse) {
     const calib::InverseDynamics& found = *results.inverse;
-    std::cout << fmt::format(
-        "inverse dynamics{}: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g} ({:.4g} forwards, {:.4g} backwards), "
-        "offset {:.4g}\n",
-        results.inverse_taken ? " (taken)" : "", found.armature_kg_m2.value, found.viscous_Nm_s_per_rad.value,
-        found.coulomb_Nm.value, found.coulomb_forward_Nm(), found.coulomb_backward_Nm(), found.offset_Nm.value);
+    if (calib::possible(found))
+      std::cout << fmt::format(
+          "inverse dynamics{}: armature {:.4g}, viscous {:.4g}, Coulomb {:.4g} ({:.4g} forwards, {:.4g} backwards), "
+          "offset {:.4g}\n",
+          results.inverse_taken ? " (taken)" : "", std::max(0.0, found.armature_kg_m2.value),
+          std::max(0.0, found.viscous_Nm_s_per_rad.value), std::max(0.0, found.coulomb_Nm.value),
+          std::max(0.0, found.coulomb_forward_Nm()), std::max(0.0, found.coulomb_backward_Nm()), found.offset_Nm.value);
     if (const std::string meaning = calib::meaning_of_negative(found); !meaning.empty())
-      std::cout << "  " << meaning << '\n';
+      std::cout << "inverse dynamics: " << meaning << '\n';
   }
   line("fitted", results.fitted);
   if (results.scored) line("scored", *results.scored);
@@ -182,6 +193,20 @@ bench::NoiseFloor noise_floor(const std::vector<calib::SingleJoint>& fitted,
   return bench::noise_floor(runs);
 }
 
+/// The bench as it is to be fitted. Throws std::invalid_argument that names the faults if they can't be left out.
+bench::Bench examined(const bench::Bench& bench, const Arguments& arguments, const work::Progress& progress,
+                      work::Worth& worth) {
+  const data_faults::Examination found =
+      data_faults::examine(bench, {arguments.fit, arguments.score}, std::nullopt,
+                           {.handling = data_faults::handling_of(arguments.data_faults)}, arguments.threads, progress);
+  worth = data_faults::worth_of(found);
+  if (found.handling == data_faults::Handling::kLeaveOut && found.uncorrected())
+    throw std::invalid_argument(fmt::format(
+        "{}: {}; mend the files, or fit the corrected data: --data-faults correct (docs/how-to/diagnosis.md)",
+        bench.folder.string(), worth.reservations().front().why));
+  return data_faults::examined_bench(bench, found);
+}
+
 int calibrate(const Arguments& arguments) {
   if (arguments.excitation.wanted()) {
     std::cout << arguments.excitation.run(arguments.joint, arguments.out, arguments.seed) << '\n';
@@ -189,7 +214,10 @@ int calibrate(const Arguments& arguments) {
   }
   if (arguments.bench.empty()) throw std::invalid_argument("BENCH is missing (--help shows an example)");
   apps::ProgressLine progress;
-  const bench::Bench bench = bench::read_bench(arguments.bench);
+  const bench::Bench as_recorded = bench::read_bench(arguments.bench);
+  parameters(arguments, as_recorded);  // refuses a wrong name before the work
+  calib::FitResults results;
+  const bench::Bench bench = examined(as_recorded, arguments, apps::shown(progress), results.data);
   std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
   calib::JointModel start = start_model(arguments, bench);
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
@@ -198,7 +226,6 @@ int calibrate(const Arguments& arguments) {
   if (!arguments.score.empty()) scored = calib::read_joints(bench, arguments.score, step_s, reading);
   if (apps::interrupt_requested != 0) return kInterrupted;  // before any result
   calib::expect_apart(fitted, scored);
-  calib::FitResults results;
   results.noise_floor = noise_floor(fitted, scored);
   std::vector<bench::BenchRun> runs;
   for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
@@ -234,10 +261,7 @@ int calibrate(const Arguments& arguments) {
     apps::print_json(calib::fit_json(results));
   else
     print_summary(results, arguments.out);
-  if (results.fit.interrupted) return kInterrupted;
-  return total(results.fitted.after).sum_of_squares_rad2 < total(results.fitted.before).sum_of_squares_rad2
-             ? kOk
-             : kNotBetter;
+  return worth_of(results).exit_code();
 }
 
 }  // namespace

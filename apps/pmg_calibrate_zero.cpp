@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pmg;
 
-enum ExitCode { kOk = 0, kNotAll = 1, kBadInput = 2, kInterrupted = 130 };
+enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
 
 constexpr const char* kFooter = R"(
 LOG is a log, or a run's folder, of pmg_sil or pmg_controller in which the robot stood still on both feet on level
@@ -31,8 +31,8 @@ Examples:
   pmg_sil --robot out/stances --scenario out/stances/scenario.yaml --motor hidden.yaml --out out/zero_run
   pmg_calibrate_zero out/zero_run --robot z1 --out out/zero
 
-Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are not observable or the iteration did not
-converge, 2 bad input or output, 130 interrupted (what was found until then is kept).)";
+Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are not observable, the poses
+disagree or the iteration did not converge (the first line says which), 2 bad input or output, 130 interrupted (what was found until then is kept).)";
 
 struct Arguments {
   std::vector<fs::path> logs;
@@ -105,11 +105,7 @@ int calibrate(const Arguments& arguments) {
     for (const std::string& line : zero::zero_text(results)) std::cout << line << '\n';
     std::cout << fmt::format("results in {}\n", arguments.out.string());
   }
-  if (results.interrupted) return kInterrupted;
-  const auto& observable = results.found.observable;
-  return results.found.converged && std::find(observable.begin(), observable.end(), false) == observable.end()
-             ? kOk
-             : kNotAll;
+  return worth_of(results).exit_code();
 }
 
 }  // namespace

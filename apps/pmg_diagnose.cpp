@@ -46,8 +46,9 @@ Example:
   pmg_diagnose --robot z1 --record out/excited
   pmg_diagnose --robot z1 out/excited/hanging.lcm out/excited/standing.lcm --out out/why_robot
 
-Exit codes: 0 a verdict (found, ambiguous, none, unexplained), 2 bad input or output, 130 interrupted (the verdict of
-what was done until then is kept).)";
+Exit codes: 0 a verdict (found, none, or ambiguous with what to record next), 1 unexplained, or a result that is off its
+data or no better than before (the first line says which), 2 bad input or output, 130 interrupted (what was found until
+then is kept, without a verdict).)";
 
 struct Arguments {
   fs::path bench, out, model, record;
@@ -102,6 +103,7 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
   const std::string unit = calib::position_unit(bench, true);
   std::vector<std::string> lines = {
       fmt::format("Written by pmg_diagnose from {}: {}", bench.folder.filename().string(), name(found.verdict))};
+  if (const std::string worth = worth_of(found).sentence(); !worth.empty()) lines.insert(lines.begin(), worth);
   for (const diagnosis::Cause& cause : found.causes) {
     lines.push_back(fmt::format("{}: held-out error {:.4g} {} without it, {:.4g} with it",
                                 effects::described(cause.effect, cause.form, cause.form_or_instead),
@@ -131,6 +133,7 @@ struct Cost {
 void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out,
                    const Cost& cost) {
   const std::string unit = calib::position_unit(bench, true);
+  if (const std::string worth = worth_of(found).sentence(); !worth.empty()) std::cout << worth << '\n';
   std::cout << data_faults::faults_text(found.data) << "verdict: " << name(found.verdict) << '\n';
   if (const std::string odd = calib::odd_runs_text(found.noise_floor.odd_runs); !odd.empty()) std::cout << odd << '\n';
   for (const diagnosis::Cause& cause : found.causes) {
@@ -180,9 +183,7 @@ int diagnose_robot(const Arguments& arguments) {
                                     .logs = arguments.inputs,
                                     .out = arguments.out,
                                     .json = arguments.json,
-                                    .progress = apps::shown(progress, "equations of motion")})
-             ? kOk
-             : kInterrupted;
+                                    .progress = apps::shown(progress, "equations of motion")});
 }
 
 int diagnose(Arguments arguments) {
@@ -207,7 +208,6 @@ int diagnose(Arguments arguments) {
   const Cost cost{.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
   fs::create_directories(arguments.out);
   nlohmann::ordered_json json = diagnosis::diagnosis_json(found);
-  json["interrupted"] = apps::interrupt_requested != 0;
   json["wall_s"] = cost.wall_s;
   json["cost"] = {{"cpu_s", cost.used.cpu_s},
                   {"peak_memory_MiB", cost.used.peak_memory_MiB},
@@ -225,7 +225,7 @@ int diagnose(Arguments arguments) {
     apps::print_json(json);
   else
     print_summary(found, bench, arguments.out, cost);
-  return apps::interrupt_requested != 0 ? kInterrupted : kOk;
+  return worth_of(found).exit_code();
 }
 
 }  // namespace

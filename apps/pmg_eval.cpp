@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pmg;
 
-enum ExitCode { kOk = 0, kMissed = 1, kBadInput = 2, kInterrupted = 130 };
+enum ExitCode { kBadInput = 2, kInterrupted = 130 };
 
 evaluation::Candidate candidate(const std::string& text, const apps::EvalArguments& arguments) {
   const std::size_t sign = text.find('=');
@@ -95,21 +95,23 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Writes page and JSON to the folder, text or JSON to stdout. Returns the exit code.
+/// Writes page and JSON to the folder, text or JSON to stdout. Returns the exit code of what the result is worth.
 template <typename Result>
-int hand_over(const apps::EvalArguments& arguments, const Result& result, bool complete, bool reached) {
-  const nlohmann::ordered_json json = to_json(result);
+int hand_over(const apps::EvalArguments& arguments, const Result& result) {
+  const work::Worth worth = worth_of(result);
+  nlohmann::ordered_json json = to_json(result);
+  add_to(json, worth);
   fs::create_directories(arguments.out);
   sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
   page_of(result).write(arguments.out / "report.html");
   if (arguments.json) {
     apps::print_json(json);
   } else {
+    if (!worth.reservations().empty()) std::cout << worth.sentence() << '\n';
     for (const std::string& line : text_of(result)) std::cout << line << '\n';
     std::cout << "report in " << (arguments.out / "report.html").string() << '\n';
   }
-  if (!complete) return kInterrupted;
-  return reached ? kOk : kMissed;
+  return worth.exit_code();
 }
 
 /// Errors of the films, one line each. The table gets the names of the films that were made.
@@ -152,7 +154,7 @@ int table1(const apps::EvalArguments& arguments) {
   std::vector<std::string> failures;
   if (arguments.video && table.campaign.complete) failures = make_films(arguments, table);
   evaluate(table);
-  const int code = hand_over(arguments, table, table.campaign.complete, table.all_reached());
+  const int code = hand_over(arguments, table);
   for (const std::string& failure : failures) std::cerr << "pmg_eval: " << failure << '\n';
   if (apps::interrupt_requested != 0) return kInterrupted;
   return failures.empty() ? code : static_cast<int>(kBadInput);
@@ -168,7 +170,7 @@ int table2(const apps::EvalArguments& arguments) {
   table.scenario = scenario(arguments);
   fs::create_directories(arguments.out);
   run_table2(table, arguments.out, Watch(arguments).supervision());
-  return hand_over(arguments, table, table.complete, table.complete && table.all_reached());
+  return hand_over(arguments, table);
 }
 
 int push(const apps::EvalArguments& arguments) {
@@ -180,7 +182,7 @@ int push(const apps::EvalArguments& arguments) {
   test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
   fs::create_directories(arguments.out);
   run_pushes(test, arguments.strengths_N_s, Watch(arguments).supervision());
-  return hand_over(arguments, test, test.complete, test.reached().value_or(true));
+  return hand_over(arguments, test);
 }
 
 int robust(const apps::EvalArguments& arguments) {
@@ -195,7 +197,7 @@ int robust(const apps::EvalArguments& arguments) {
   test.campaign =
       evaluation::run_campaign(test.cases, test.scenario, test.seeds, false, Watch(arguments).supervision());
   evaluate(test);
-  return hand_over(arguments, test, test.campaign.complete, test.all_survived());
+  return hand_over(arguments, test);
 }
 
 int gait(const apps::EvalArguments& arguments) {
@@ -207,7 +209,7 @@ int gait(const apps::EvalArguments& arguments) {
   test.evaluated = {.name = c.name, .candidate = c, .plants = {}};
   fs::create_directories(arguments.out);
   run_gait(test, Watch(arguments).supervision());
-  return hand_over(arguments, test, test.trial.complete, test.reached());
+  return hand_over(arguments, test);
 }
 
 int steady(const apps::EvalArguments& arguments) {
@@ -216,7 +218,7 @@ int steady(const apps::EvalArguments& arguments) {
   test.candidate = candidate(arguments.policies.front(), arguments);
   fs::create_directories(arguments.out);
   run_steady(test, Watch(arguments).supervision());
-  return hand_over(arguments, test, test.complete(), test.all_reached());
+  return hand_over(arguments, test);
 }
 
 int jumps(const apps::EvalArguments& arguments) {
@@ -229,7 +231,7 @@ int jumps(const apps::EvalArguments& arguments) {
   test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
   fs::create_directories(arguments.out);
   run_jumps(test, Watch(arguments).supervision());
-  return hand_over(arguments, test, test.complete(), test.all_survived());
+  return hand_over(arguments, test);
 }
 
 }  // namespace

@@ -17,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pmg;
 
-enum ExitCode { kOk = 0, kIncomplete = 1, kBadInput = 2, kInterrupted = 130 };
-
 constexpr const char* kFooter = R"(
 LOG is a .lcm file, or the folder of a run. Several logs are laid over each other, each from its own beginning. The page
 holds all that it needs: it can be mailed and read without a network. docs/how-to/reports.md says how to read it.
@@ -53,7 +51,7 @@ void tell(const Arguments& arguments, const std::vector<report::RunSeries>& runs
   }
   for (const report::RunSeries& run : runs) {
     std::cout << report::verdict(run) << '\n';
-    for (const std::string& problem : run.problems) std::cout << "  " << problem << '\n';
+    if (const std::string worth = worth_of_reading(run).sentence(); !worth.empty()) std::cout << "  " << worth << '\n';
   }
   std::cout << fmt::format("report in {}\n", arguments.out.string());
 }
@@ -66,8 +64,9 @@ int write_report(const Arguments& arguments) {
   const std::vector<report::RunSeries> runs = read(arguments.logs);
   report::run_report(runs).write(arguments.out);
   tell(arguments, runs);
-  if (apps::interrupt_requested != 0) return kInterrupted;
-  return std::ranges::all_of(runs, [](const auto& run) { return run.problems.empty(); }) ? kOk : kIncomplete;
+  work::Worth reading;
+  for (const report::RunSeries& run : runs) reading.add(worth_of_reading(run));
+  return reading.exit_code();
 }
 
 }  // namespace

@@ -50,9 +50,10 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
   return true;
 }
 
-/// Writes DIR/diagnosis.json and DIR/report.html, and the verdict to stdout. False after an interruption: nothing is
-/// written, and stderr says so. Throws std::exception on bad input, before anything is written.
-inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
+/// Writes DIR/diagnosis.json and DIR/report.html, and the verdict to stdout; returns the exit code of what it is worth.
+/// After an interruption nothing is written, and stderr says so. Throws std::exception on bad input, before anything is
+/// written.
+inline int diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
   const std::vector<robot_diagnosis::RobotRecording> recordings =
       robot_diagnosis::read_robot_logs(arguments.logs, robot);
@@ -61,9 +62,10 @@ inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
     found = robot_diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
   } catch (const work::Interrupted&) {
     std::cerr << "interrupted: nothing was written\n";
-    return false;
+    return work::Worth(work::Grade::kInterrupted, "").exit_code();
   }
-  const nlohmann::ordered_json json = robot_diagnosis::robot_diagnosis_json(found);
+  nlohmann::ordered_json json = robot_diagnosis::robot_diagnosis_json(found);
+  add_to(json, worth_of(found));
   std::filesystem::create_directories(arguments.out);
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   robot_diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
@@ -72,7 +74,7 @@ inline bool diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   } else {
     std::cout << robot_diagnosis::robot_diagnosis_text(found);
   }
-  return true;
+  return worth_of(found).exit_code();
 }
 
 }  // namespace pmg::apps

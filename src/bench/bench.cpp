@@ -89,8 +89,8 @@ BenchLoad read_load(ConfigReader reader, bool hangs) {
   load.mass_kg = reader.required<double>("mass_kg", files::positive());
   load.length_m = reader.optional<double>("length_m", 0.0, files::non_negative());
   const auto inertia = known_number(reader, "inertia_kg_m2"), gravity = known_number(reader, "gravity_Nm");
-  load.inertia_known = inertia.has_value();
-  load.gravity_known = gravity.has_value();
+  load.inertia_unknown = reader.has("inertia_kg_m2") && !inertia;
+  load.gravity_unknown = hangs && reader.has("gravity_Nm") && !gravity;
   const double point = load.length_m > 0.0 ? load.mass_kg * load.length_m * load.length_m : load.mass_kg;
   load.load.inertia_kg_m2 = inertia.value_or(point);
   load.load.hangs_at_rad = reader.optional<double>("hangs_at_rad", 0.0, files::any_number());

@@ -21,8 +21,8 @@ enum class DriveLaw { kServoVoltage, kPositionPd, kCascadePd, kTorque };
 
 struct BenchLoad {
   double mass_kg = 0.0, length_m = 0.0;
-  JointLoad load;  ///< of a point mass where bench.yaml says "unknown"
-  bool inertia_known = false, gravity_known = false;
+  JointLoad load;                                         ///< of a point mass where bench.yaml has no number
+  bool inertia_unknown = false, gravity_unknown = false;  ///< bench.yaml says "unknown": a fit is to find it
 };
 
 /// A parameter that is larger in this run's assembly than in the model of all runs: of this arm, this servo.

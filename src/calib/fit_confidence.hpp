@@ -10,13 +10,21 @@ namespace pmg::calib {
 
 /// Confidence of one parameter at the fit's result.
 struct Confidence {
-  double deviation = 0.0;       ///< one standard deviation, in the parameter's unit; infinite if unobservable
-  std::string confounded_with;  ///< the parameter that correlates with it by more than 0.98, or ""
-  double correlation = 0.0;     ///< with that parameter
+  /// One standard deviation, in the parameter's unit; infinite if the runs don't tell the parameter: they don't show
+  /// it, or only together with others.
+  double deviation = 0.0;
+  std::vector<std::string> told_only_with;  ///< parameters that could change with it so that nothing moves otherwise
+  std::string confounded_with;              ///< the parameter that correlates with it by more than 0.98, or ""
+  double correlation = 0.0;                 ///< with that parameter
 };
 
-/// (problem, point) => (confidence of each parameter), from the rollouts' derivatives at the point: the square roots of
-/// fitting::cluster_robust_covariance's diagonal.
+/// (problem, point) => (confidence of each parameter), from the rollouts' derivatives J. Columns of unit length: where
+/// |J v| is below 1e-3, or below twice |E v|, the direction v of the parameters is blind, and these have no deviation.
+/// E is what finite differences with steps twice as long change: derivatives tell no more. The others have
+///
+///   sqrt(A^-1 B A^-1 + d d^T), with fitting::cluster_robust_covariance's A and B,
+/// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left. A deviation beyond a quarter of
+/// the range of the search is none: the derivatives say nothing so far away.
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads);
 
 }  // namespace pmg::calib

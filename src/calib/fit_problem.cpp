@@ -141,6 +141,23 @@ std::vector<std::string> basic_parameters(const bench::Bench& bench) {
   return names;
 }
 
+std::vector<std::string> unknown_loads(const bench::Bench& bench) {
+  std::vector<std::string> names;
+  const auto add = [&](bool bench::BenchLoad::*unknown, const char* name, const char* key) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(bench.loads, unknown));
+    if (count == 0) return;
+    if (count < bench.loads.size()) {
+      throw std::invalid_argument(
+          fmt::format("{}: {} is unknown of {} of {} loads; expected all or none, as one factor is fitted for all",
+                      (bench.folder / "bench.yaml").string(), key, count, bench.loads.size()));
+    }
+    names.emplace_back(name);
+  };
+  add(&bench::BenchLoad::inertia_unknown, kInertia, "inertia_kg_m2");
+  add(&bench::BenchLoad::gravity_unknown, kGravity, "gravity_Nm");
+  return names;
+}
+
 double value(const JointModel& model, const std::string& name) {
   if (name == kInertia) return model.inertia_scale;
   if (name == kGravity) return model.gravity_scale;

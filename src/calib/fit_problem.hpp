@@ -31,6 +31,10 @@ std::vector<std::string> effect_words();
 /// The paper's parameters (III-C.1: Kp, Kd, I) for this bench's drive law, and those that bench.yaml calls unknown.
 std::vector<std::string> basic_parameters(const bench::Bench& bench);
 
+/// The scales of the loads that bench.yaml calls unknown, of the point mass that stands for them: load.inertia_scale,
+/// load.gravity_scale. One factor is for all loads: throws std::invalid_argument where some are known and others not.
+std::vector<std::string> unknown_loads(const bench::Bench& bench);
+
 double value(const JointModel& model, const std::string& name);
 void set(JointModel& model, const std::string& name, double value);
 

@@ -84,7 +84,7 @@ void show_parameters(pages::Page& page, const FitResults& results) {
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
     const FitParameter& p = results.problem->parameters()[i];
     const double x = value(results.fit.model, p.name);
-    table.rows.push_back({p.name, fmt::format("{:.5g}", x), fmt::format("{:.2g}", results.confidence[i].deviation),
+    table.rows.push_back({p.name, fmt::format("{:.5g}", x), deviation_text(results.confidence[i]),
                           unit_on_rig(p.unit, *results.bench), fmt::format("{:g} to {:g}", p.lower, p.upper),
                           reservation(p, x, results.confidence[i])});
   }
@@ -95,7 +95,16 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
   const auto row = [](const char* name, const InverseDynamics::Estimate& e) {
     return std::vector<std::string>{name, fmt::format("{:.5g}", e.value), fmt::format("{:.2g}", e.deviation)};
   };
+  // A negative estimate within its uncertainty counts as 0.
+  const auto at_least_0 = [](InverseDynamics::Estimate e) {
+    e.value = std::max(0.0, e.value);
+    return e;
+  };
   page.heading("Inverse dynamics");
+  if (!possible(found)) {
+    page.paragraph(meaning_of_negative(found));
+    return;
+  }
   if (taken) page.paragraph("The model has these values; the rollouts found what they leave open.");
   page.paragraph(fmt::format(
       "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
@@ -103,12 +112,13 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
       "timing isn't as modelled.",
       found.samples, found.residual_Nm));
   page.paragraph(fmt::format("Dry friction {:.4g} Nm forwards, {:.4g} Nm backwards (N on a linear axis).",
-                             found.coulomb_forward_Nm(), found.coulomb_backward_Nm()));
+                             std::max(0.0, found.coulomb_forward_Nm()), std::max(0.0, found.coulomb_backward_Nm())));
   if (const std::string meaning = meaning_of_negative(found); !meaning.empty()) page.paragraph(meaning);
-  page.table({.header = {"parameter", "value", "one standard deviation"},
-              .rows = {row("transmission.armature_kg_m2", found.armature_kg_m2),
-                       row("friction.viscous_Nm_s_per_rad", found.viscous_Nm_s_per_rad),
-                       row("friction.coulomb_Nm", found.coulomb_Nm), row("ripple.offset_Nm", found.offset_Nm)}});
+  page.table(
+      {.header = {"parameter", "value", "one standard deviation"},
+       .rows = {row("transmission.armature_kg_m2", at_least_0(found.armature_kg_m2)),
+                row("friction.viscous_Nm_s_per_rad", at_least_0(found.viscous_Nm_s_per_rad)),
+                row("friction.coulomb_Nm", at_least_0(found.coulomb_Nm)), row("ripple.offset_Nm", found.offset_Nm)}});
 }
 
 }  // namespace
@@ -148,10 +158,14 @@ pages::Page fit_report(const FitResults& results) {
   const std::string unit = position_unit(*results.bench, true);
   pages::Page page(fmt::format("{}: motor calibration", results.joint));
   const double before = total(shown.before).mean_absolute_rad(), after = total(shown.after).mean_absolute_rad();
-  page.verdict(after < before ? pages::Tone::kGood : pages::Tone::kBad,
-               fmt::format("{}: mean absolute error {:.4g} {} before, {:.4g} {} after, on {} runs {}",
-                           results.fit.interrupted ? "interrupted" : "fitted", 1e3 * before, unit, 1e3 * after, unit,
-                           shown.runs->size(), results.scored ? "that were not fitted" : "that were fitted"));
+  page.worth(worth_of(results));
+  page.verdict(
+      {},
+      fmt::format("Mean absolute error {:.4g} {} before, {:.4g} {} after, on {} runs {}{}", 1e3 * before, unit,
+                  1e3 * after, unit, shown.runs->size(), results.scored ? "that were not fitted" : "that were fitted",
+                  results.noise_floor.pairs.empty()
+                      ? ""
+                      : fmt::format(": {:.2g} noise floors", after / results.noise_floor.mean_absolute_rad)));
   page.heading("What the model makes of the runs");
   show_runs(page, results, shown);
   page.heading("Parameters");

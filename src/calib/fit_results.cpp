@@ -1,10 +1,12 @@
 #include "calib/fit_results.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace pmg::calib {
 
@@ -44,6 +46,7 @@ Json inverse_json(const InverseDynamics& found) {
           {"ripple.offset_Nm", estimate(found.offset_Nm)},
           {"coulomb_forward_Nm", found.coulomb_forward_Nm()},
           {"coulomb_backward_Nm", found.coulomb_backward_Nm()},
+          {"possible", possible(found)},
           {"residual_Nm", found.residual_Nm},
           {"unresolved", found.unresolved},
           {"windows", found.samples}};
@@ -67,6 +70,7 @@ Json parameter_json(const bench::Bench& bench, const FitParameter& parameter, do
                {"lower", parameter.lower},
                {"upper", parameter.upper},
                {"at_bound", at_bound(parameter, value)}};
+  if (!confidence.told_only_with.empty()) json["told_only_with"] = confidence.told_only_with;
   if (!confidence.confounded_with.empty()) json["told_apart_badly_from"] = confidence.confounded_with;
   return json;
 }
@@ -92,8 +96,15 @@ bool at_bound(const FitParameter& parameter, double value) {
   return value >= parameter.upper - edge || (parameter.lower < 0.0 && value <= parameter.lower + edge);
 }
 
+std::string deviation_text(const Confidence& confidence) {
+  return std::isfinite(confidence.deviation) ? fmt::format("{:.2g}", confidence.deviation) : "?";
+}
+
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence) {
   if (at_bound(parameter, value)) return "at its range's edge";
+  if (!confidence.told_only_with.empty())
+    return fmt::format("not told: other values move the same with another {}",
+                       fmt::join(confidence.told_only_with, ", "));
   if (!std::isfinite(confidence.deviation)) return "these runs don't show it";
   if (!confidence.confounded_with.empty()) return "hard to tell from " + confidence.confounded_with;
   return "";
@@ -108,16 +119,15 @@ bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& ben
       {"friction.coulomb_Nm", std::max(0.0, coulomb_Nm)},
       {"ripple.offset_Nm", found.offset_Nm.value},
   };
-  const bool possible = std::ranges::none_of(impossible_estimates(found), &ImpossibleEstimate::significant);
   for (const auto& [name, value] : determined) {
     std::erase_if(unknowns, [name = name](const FitParameter& p) { return p.name == name; });
-    if (possible)
+    if (possible(found))
       set(start, name, value);
     else
       unknowns.push_back(fit_parameter(name, bench));
   }
   if (unknowns.empty()) unknowns.push_back(fit_parameter("sensor.velocity_lag_s", bench));
-  return possible;
+  return possible(found);
 }
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
@@ -125,10 +135,59 @@ Assessment assess(const std::string& filter, const std::vector<SingleJoint>& run
   return {filter, &runs, errors(before, runs, threads), errors(after, runs, threads)};
 }
 
+RolloutError standing_still(const std::vector<SingleJoint>& runs) {
+  RolloutError sum;
+  for (const SingleJoint& joint : runs) {
+    const bench::Recording& r = joint.run().recording;
+    double mean_rad = 0.0, samples = 0.0;
+    for (std::size_t k = 0; k < r.q_rad.size(); ++k) {
+      if (r.valid[k]) mean_rad += r.q_rad[k], ++samples;
+    }
+    mean_rad /= samples;
+    for (std::size_t k = 0; k < r.q_rad.size(); ++k) {
+      if (!r.valid[k]) continue;
+      sum.sum_of_squares_rad2 += (r.q_rad[k] - mean_rad) * (r.q_rad[k] - mean_rad);
+      sum.sum_of_absolutes_rad += std::abs(r.q_rad[k] - mean_rad);
+      ++sum.samples;
+    }
+  }
+  return sum;
+}
+
+work::Worth worth_of(const FitResults& results) {
+  const Assessment& judged = results.scored ? *results.scored : results.fitted;
+  const RolloutError before = total(judged.before), after = total(judged.after), still = standing_still(*judged.runs);
+  const std::string unit = position_unit(*results.bench, true);
+  work::Worth worth = results.data;
+  worth.add_if(results.fit.interrupted, work::Grade::kInterrupted,
+               fmt::format("the best of {} evaluations, not the best fit", results.fit.evaluations));
+  worth.add_if(!(after.mean_absolute_rad() < kExplainedShare * still.mean_absolute_rad()), work::Grade::kOffItsData,
+               fmt::format("the model misses the readings by {:.3g} {}, a joint that stands still would by {:.3g}",
+                           1e3 * after.mean_absolute_rad(), unit, 1e3 * still.mean_absolute_rad()));
+  worth.add_if(!(after.mean_absolute_rad() < before.mean_absolute_rad()), work::Grade::kNoBetter,
+               "the fit is no better than the model that it began with");
+  for (std::size_t i = 0; i < results.confidence.size(); ++i) {
+    const FitParameter& p = results.problem->parameters()[i];
+    if (at_bound(p, value(results.fit.model, p.name)))
+      worth.add(work::Grade::kOpen, p.name + " is at its range's edge");
+    else if (results.confidence[i].told_only_with.empty() && !std::isfinite(results.confidence[i].deviation))
+      worth.add(work::Grade::kOpen, "these runs don't show " + p.name);
+  }
+  std::set<std::string> alike;
+  for (std::size_t i = 0; i < results.confidence.size(); ++i) {
+    if (!results.confidence[i].told_only_with.empty()) alike.insert(results.problem->parameters()[i].name);
+  }
+  worth.add_if(!alike.empty(), work::Grade::kOpen,
+               fmt::format("these runs don't tell {}: other values of them together move the joint the same",
+                           fmt::join(alike, ", ")));
+  return worth;
+}
+
 Json fit_json(const FitResults& results) {
   Json json = {{"bench", results.bench->folder.string()},      {"joint", results.joint},
                {"unit", position_unit(*results.bench, false)}, {"optimizer", results.method},
                {"interrupted", results.fit.interrupted},       {"parameters", Json::object()}};
+  add_to(json, worth_of(results));
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
     const FitParameter& parameter = results.problem->parameters()[i];
     json["parameters"][parameter.name] =
@@ -167,6 +226,7 @@ std::vector<std::string> motor_remarks(const FitResults& results) {
   std::vector<std::string> remarks = {
       fmt::format("Written by pmg_calibrate_motor from {}", results.bench->folder.filename().string()),
       line("fitted to", results.fitted)};
+  if (const std::string worth = worth_of(results).sentence(); !worth.empty()) remarks.insert(remarks.begin(), worth);
   if (results.scored) remarks.push_back(line("scored on", *results.scored));
   return remarks;
 }

@@ -11,6 +11,7 @@
 #include "calib/inverse_dynamics.hpp"
 #include "calib/motor_fit.hpp"
 #include "pages/page.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::calib {
 
@@ -20,6 +21,12 @@ struct Assessment {
   const std::vector<SingleJoint>* runs = nullptr;
   std::vector<RolloutError> before, after;  ///< per run, with the start of the fit and with its result
 };
+
+/// (runs) => the error of a joint that does nothing: it stands still at the mean of each run's readings.
+RolloutError standing_still(const std::vector<SingleJoint>& runs);
+
+/// A model explains a joint's motion if its error is below this share of a joint's that does nothing.
+inline constexpr double kExplainedShare = 0.5;
 
 struct FitResults {
   const bench::Bench* bench = nullptr;
@@ -31,6 +38,7 @@ struct FitResults {
   double wall_s = 0.0;
   std::optional<InverseDynamics> inverse;  ///< if the drive's output was recorded
   bool inverse_taken = false;              ///< true if the model uses it and rollouts fitted only the rest
+  work::Worth data;                        ///< of the recordings, by what was looked for before the fit
   bench::NoiseFloor noise_floor;           ///< from repeats among the fitted and scored runs
   Assessment fitted;
   std::optional<Assessment> scored;  ///< runs that were used for neither fitting nor choosing
@@ -46,6 +54,10 @@ bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& ben
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads);
 
+/// Interrupted; off its data, where these have faults or the model misses them by kExplainedShare of what a joint that
+/// stands still misses; no better than the start; open, where a parameter can't be told or is at its range's edge.
+work::Worth worth_of(const FitResults& results);
+
 nlohmann::ordered_json fit_json(const FitResults& results);
 /// A typical run as an SVG picture: command, measured and simulated position before and after the fit, and the
 /// residual.
@@ -57,6 +69,9 @@ std::vector<std::string> motor_remarks(const FitResults& results);
 std::string position_unit(const bench::Bench& bench, bool thousandths);
 /// (unit of a parameter of a turning joint) => (its unit on this bench's rig): newtons and metres on a linear axis.
 std::string unit_on_rig(std::string unit, const bench::Bench& bench);
+
+/// "+- 0.003", or "?" where the runs don't tell the parameter.
+std::string deviation_text(const Confidence& confidence);
 
 /// A warning about a fitted parameter, or "".
 std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);

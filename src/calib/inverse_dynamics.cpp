@@ -110,6 +110,10 @@ std::vector<ImpossibleEstimate> impossible_estimates(const InverseDynamics& foun
   return impossible;
 }
 
+bool possible(const InverseDynamics& found) {
+  return std::ranges::none_of(impossible_estimates(found), &ImpossibleEstimate::significant);
+}
+
 std::string meaning_of_negative(const InverseDynamics& found) {
   const std::vector<ImpossibleEstimate> impossible = impossible_estimates(found);
   std::string text;

@@ -39,6 +39,9 @@ struct ImpossibleEstimate {
 /// All negative estimates of inertia and friction.
 std::vector<ImpossibleEstimate> impossible_estimates(const InverseDynamics& found);
 
+/// True if no estimate is negative beyond its uncertainty. Numbers of a joint that can't be are shown to nobody.
+bool possible(const InverseDynamics& found);
+
 /// A sentence or two on the likely reason of negative estimates; empty if there are none.
 std::string meaning_of_negative(const InverseDynamics& found);
 

@@ -80,6 +80,13 @@ bool JumpTest::complete() const {
   return std::ranges::all_of(runs, [](const TrialResult& run) { return run.complete; });
 }
 
+work::Worth worth_of(const JumpTest& test) {
+  work::Worth worth;
+  worth.add_if(!test.complete(), work::Grade::kInterrupted, "not all robots ran to the end");
+  worth.add_if(!test.all_survived(), work::Grade::kMissed, "a robot fell or faulted");
+  return worth;
+}
+
 bool JumpTest::all_survived() const {
   return std::ranges::all_of(runs, [](const TrialResult& run) { return !run.complete || run.survived(); });
 }
@@ -130,9 +137,8 @@ std::vector<std::string> text_of(const JumpTest& test) {
 
 pages::Page page_of(const JumpTest& test) {
   pages::Page page(fmt::format("Jumping commands: {} on {}", test.evaluated.name, test.robot));
-  if (!test.complete()) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
-  page.verdict(test.all_survived() ? pages::Tone::kGood : pages::Tone::kBad,
-               test.all_survived() ? "No robot fell or faulted" : "A robot fell or faulted: see below");
+  page.worth(worth_of(test));
+  if (worth_of(test).usable()) page.verdict({}, "No robot fell or faulted");
   page.heading("Robots");
   for (const bool with : {false, true}) {
     page.paragraph(fmt::format("{} jump: survived {}", kGroupNames[with ? 1 : 0], percent(survival(test, with))));

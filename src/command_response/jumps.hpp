@@ -32,6 +32,7 @@ struct JumpTest {
 /// Every seed is another robot with another sequence of jumps. The result doesn't depend on the number of jobs.
 void run_jumps(JumpTest& test, const evaluation::Supervision& supervision);
 
+work::Worth worth_of(const JumpTest& test);
 nlohmann::ordered_json to_json(const JumpTest& test);
 pages::Page page_of(const JumpTest& test);
 std::vector<std::string> text_of(const JumpTest& test);

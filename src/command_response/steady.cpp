@@ -134,6 +134,12 @@ bool SteadyTest::reached(std::size_t command) const {
   return result.survived && worst_error(commands[command], result.did) <= commands[command].limit;
 }
 
+work::Worth worth_of(const SteadyTest& test) {
+  if (!test.complete()) return {work::Grade::kInterrupted, "not all commands were held"};
+  if (!test.all_reached()) return {work::Grade::kMissed, "a command is not realised within its limit"};
+  return {};
+}
+
 bool SteadyTest::all_reached() const {
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!reached(i)) return false;

@@ -53,6 +53,7 @@ struct SteadyTest {
 /// Runs every command with the robot as the model says. The result doesn't depend on the number of jobs.
 void run_steady(SteadyTest& test, const evaluation::Supervision& supervision);
 
+work::Worth worth_of(const SteadyTest& test);
 nlohmann::ordered_json to_json(const SteadyTest& test);
 pages::Page page_of(const SteadyTest& test);
 std::vector<std::string> text_of(const SteadyTest& test);

@@ -9,10 +9,10 @@ namespace pmg::command_response {
 
 pages::Page page_of(const SteadyTest& test) {
   pages::Page page(fmt::format("Steady commands: {} on {}", test.candidate.name, test.robot));
-  if (!test.complete()) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
+  page.worth(worth_of(test));
   std::size_t reached = 0;
   for (std::size_t i = 0; i < test.commands.size(); ++i) reached += test.reached(i) ? 1 : 0;
-  page.verdict(test.all_reached() ? pages::Tone::kGood : pages::Tone::kBad,
+  page.verdict(worth_of(test).usable() ? work::Worth() : work::Worth(work::Grade::kMissed, "see the table"),
                fmt::format("{} of {} commands are realised within their limit", reached, test.commands.size()));
   page.heading("Commands");
   pages::Bars bars{.title = "largest error of a channel [% of its command]", .unit = "%", .names = {}, .sets = {}};

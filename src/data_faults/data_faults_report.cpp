@@ -20,6 +20,14 @@ double factor_of(const DataFault& fault) {
 
 }  // namespace
 
+work::Worth worth_of(const Examination& examination) {
+  work::Worth worth;
+  for (const DataFault& fault : examination.faults)
+    worth.add(examination.uncorrected() ? work::Grade::kOffItsData : work::Grade::kOpen,
+              fmt::format("fault of the data, {}: {}: {}", name(fault.kind), fault.where, fault.correction));
+  return worth;
+}
+
 void add_to(Json& whole, const Examination& examination) {
   Json found = Json::array();
   for (const DataFault& fault : examination.faults) {
@@ -69,8 +77,7 @@ std::string faults_text(const Examination& examination) {
 
 void show_faults(pages::Page& page, const Examination& examination) {
   if (examination.faults.empty()) return;
-  page.verdict(examination.uncorrected() ? pages::Tone::kBad : pages::Tone::kNeutral,
-               fmt::format("Data faults: {}. {}", examination.faults.size(), handling_text(examination)));
+  page.note(fmt::format("Data faults: {}. {}", examination.faults.size(), handling_text(examination)));
   pages::Table table{.header = {"fault", "where", "correction", "evidence"}, .rows = {}};
   for (const DataFault& fault : examination.faults) {
     table.rows.push_back(

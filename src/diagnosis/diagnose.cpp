@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "calib/fit_results.hpp"
@@ -219,6 +220,7 @@ class JointDiagnosisRun {
     const effects::HeldOutErrors errors =
         held_out_errors(before, diagnosis_.before, *judged_, diagnosis_.after, options_.seed);
     diagnosis_.held_out_before = errors.before;
+    diagnosis_.standing_still = calib::standing_still(judged_->runs()).mean_absolute_rad();
     count_after(errors.after);
   }
 
@@ -251,8 +253,9 @@ class JointDiagnosisRun {
     ask_for_more(fit);
     const bool alike = std::any_of(diagnosis_.causes.begin(), diagnosis_.causes.end(),
                                    [](const Cause& cause) { return !cause.or_instead.empty(); });
-    diagnosis_.verdict = remains ? evidence::Verdict::kUnexplained
-                         : alike ? evidence::Verdict::kAmbiguous
+    diagnosis_.verdict = progress_.interrupted_now() ? evidence::Verdict::kInterrupted
+                         : remains                   ? evidence::Verdict::kUnexplained
+                         : alike                     ? evidence::Verdict::kAmbiguous
                          : diagnosis_.causes.empty() && diagnosis_.assemblies.varies.empty()
                              ? evidence::Verdict::kNone
                              : evidence::Verdict::kFound;
@@ -291,7 +294,12 @@ Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, Di
                    const work::Progress& progress) {
   const data_faults::Examination data =
       data_faults::examine(bench, {options.fit, options.score}, options.model, options.data, options.threads, progress);
-  Diagnosis found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, progress).run(runs);
+  std::atomic<bool> stopped{false};  // for good: whoever asked has cut its work short
+  const work::Progress lasting{.report = progress.report, .interrupted = [&] {
+                                 if (progress.interrupted_now()) stopped = true;
+                                 return stopped.load();
+                               }};
+  Diagnosis found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
   found.data = data;
   return found;
 }

@@ -13,6 +13,7 @@
 #include "evidence/option.hpp"
 #include "evidence/verdict.hpp"
 #include "residual_torque/extension.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::diagnosis {
 
@@ -82,7 +83,8 @@ struct Diagnosis {
   calib::IntegrationError step_error_after;                      ///< of this step, with all causes
   /// Mean absolute errors over the held-out runs with block-bootstrap intervals; over folds where nothing was held out.
   evidence::Interval held_out_before, held_out_after;
-  bool held_out = false;               ///< true if runs were held out; else the two errors above are from folds
+  double standing_still = 0.0;  ///< the same of a joint that does nothing (calib::standing_still); 0: not measured
+  bool held_out = false;        ///< true if runs were held out; else the two errors above are from folds
   double share_of_way_to_floor = 0.0;  ///< (before - after) / (before - floor)
   /// rms residual of the fitted runs (geometric mean over half-second blocks) over the rms noise: 1 if only noise is
   /// left.
@@ -95,5 +97,9 @@ struct Diagnosis {
   std::vector<std::string> base_parameters;  ///< fitted with and without effects
   std::vector<evidence::Option> options;     ///< thresholds in force
 };
+
+/// Interrupted; off its data, where these have faults or the simulation explains no motion (calib::kExplainedShare); no
+/// better with the causes; missed, where the verdict is unexplained; open, where causes can't be told apart.
+work::Worth worth_of(const Diagnosis& diagnosis);
 
 }  // namespace pmg::diagnosis

@@ -89,6 +89,9 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
     json["rejected"].push_back(
         {{"effect", rejected.effect}, {"why", rejected.why}, {"looked_at", name(rejected.looked_at)}});
   }
+  work::add_to(json, worth_of(diagnosis));
+  json["interrupted"] = diagnosis.verdict == evidence::Verdict::kInterrupted;
+  json["standing_still_error"] = number(diagnosis.standing_still);
   data_faults::add_to(json, diagnosis.data);
   json["noise_floor"] = number(diagnosis.noise_floor.mean_absolute_rad);
   json["noise_floor_from"] = diagnosis.noise_floor.how;

@@ -32,20 +32,6 @@ const std::vector<calib::SingleJoint>& judged_runs(const Diagnosis& diagnosis, c
   return diagnosis.held_out && !runs.scored.empty() ? runs.scored : runs.fitted;
 }
 
-pages::Tone tone(const Diagnosis& diagnosis) {
-  if (diagnosis.data.uncorrected()) return pages::Tone::kBad;
-  switch (diagnosis.verdict) {
-    case evidence::Verdict::kFound:
-    case evidence::Verdict::kNone:
-      return pages::Tone::kGood;
-    case evidence::Verdict::kAmbiguous:
-      return pages::Tone::kNeutral;
-    case evidence::Verdict::kUnexplained:
-      break;
-  }
-  return pages::Tone::kBad;
-}
-
 std::string thousandths(double value_rad) { return fmt::format("{:.3g}", 1e3 * value_rad); }
 
 std::string thousandths(const evidence::Interval& interval) {
@@ -184,12 +170,17 @@ std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, 
                          diagnosis.depends_on.empty() ? "" : "; it depends on ", fmt::join(diagnosis.depends_on, ", "));
       if (!causes.all().empty()) text += fmt::format("; besides: {}", fmt::join(causes.all(), ", "));
       break;
+    case evidence::Verdict::kInterrupted:
+      text = fmt::format("Interrupted: nothing is settled{}{}",
+                         causes.all().empty() ? "" : "; suspected until then: ", fmt::join(causes.all(), ", "));
+      break;
   }
   const std::string unit = calib::position_unit(bench, true);
   text += fmt::format(". Mean absolute error {} {} before, {} {} after, on {} {} runs",
                       thousandths(diagnosis.held_out_before), unit, thousandths(diagnosis.held_out_after), unit,
                       judged_runs(diagnosis, runs).size(), diagnosis.held_out ? "held-out" : "fitted (over folds)");
-  if (diagnosis.noise_floor.mean_absolute_rad > 0.0 && diagnosis.verdict != evidence::Verdict::kNone) {
+  if (diagnosis.noise_floor.mean_absolute_rad > 0.0 && diagnosis.verdict != evidence::Verdict::kNone &&
+      diagnosis.verdict != evidence::Verdict::kInterrupted) {
     text +=
         fmt::format(": {:.0f} % of the way to the noise floor", std::max(0.0, 100.0 * diagnosis.share_of_way_to_floor));
   }
@@ -200,8 +191,9 @@ pages::Page page_of(const bench::Bench& bench, const Diagnosis& diagnosis, const
                     unsigned threads) {
   const std::vector<calib::SingleJoint>& judged = judged_runs(diagnosis, runs);
   pages::Page page(fmt::format("{}: the joint and its simulation", bench.folder.filename().string()));
+  page.worth(worth_of(diagnosis));
   data_faults::show_faults(page, diagnosis.data);
-  page.verdict(tone(diagnosis), first_paragraph(bench, diagnosis));
+  page.verdict({}, first_paragraph(bench, diagnosis));
   page.paragraph(verdict_text(bench, diagnosis, runs) + ".");
   if (const std::string odd = calib::odd_runs_text(diagnosis.noise_floor.odd_runs); !odd.empty())
     page.paragraph(odd + ".");

@@ -81,6 +81,7 @@ std::string what_every_assembly_has(const Diagnosis& diagnosis) {
       if (causes.empty()) return "Its simulation is right on average over the assemblies of this joint.";
       return fmt::format("This joint has {}. Its simulation did not have this, or not in the right size.", causes);
     case evidence::Verdict::kUnexplained:
+    case evidence::Verdict::kInterrupted:
       break;
   }
   std::string text = "This joint does something that its simulation doesn't do, and no effect on our list explains it.";
@@ -109,12 +110,24 @@ std::string how_sure(const Diagnosis& diagnosis) {
     case evidence::Verdict::kUnexplained:
       text = "We are sure that something is there: it is clearly larger than the noise of the recordings.";
       break;
+    case evidence::Verdict::kInterrupted:
+      break;
   }
   if (some(diagnosis, &Cause::or_instead) && diagnosis.verdict == evidence::Verdict::kUnexplained)
     text += " Where it says \"or\", these recordings don't tell which.";
   if (some(diagnosis, &Cause::same_here) && diagnosis.verdict != evidence::Verdict::kAmbiguous)
     text += " On this test rig the names with \"or\" mean the same; the simulation is right with either.";
   return text;
+}
+
+/// Of the two strongest causes; a third one hardly matters beside them.
+std::string what_it_costs(const Diagnosis& diagnosis) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, diagnosis.causes.size()); ++i) {
+    const std::string cost = workshop_words(diagnosis.causes[i].effect).cost;
+    if (!cost.empty()) text += (text.empty() ? "" : " ") + cost;
+  }
+  return text.empty() ? "" : "On the robot: " + text + " ";
 }
 
 std::string how_much_better(const bench::Bench& bench, const Diagnosis& diagnosis) {
@@ -178,8 +191,16 @@ std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosi
            "don't "
            "trust it. Next: repair the recordings, or start the diagnosis again with the corrections, and read its new "
            "page.";
-  return fmt::format("{} {} {} {}", what_is_wrong(diagnosis), how_sure(diagnosis), how_much_better(bench, diagnosis),
-                     what_next(diagnosis));
+  if (diagnosis.verdict == evidence::Verdict::kInterrupted)
+    return "The diagnosis was stopped before it was finished: it doesn't say what is wrong with this joint, nor that "
+           "nothing "
+           "is. Next: start it again, and let it end.";
+  if (worth_of(diagnosis).grade() == work::Grade::kOffItsData)
+    return "The simulation doesn't move as this joint does, not even roughly: the recordings may be of something else. "
+           "Next: "
+           "look at the pictures, and check which joint was recorded, its commands and its readings.";
+  return fmt::format("{} {} {}{} {}", what_is_wrong(diagnosis), how_sure(diagnosis), what_it_costs(diagnosis),
+                     how_much_better(bench, diagnosis), what_next(diagnosis));
 }
 
 void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {

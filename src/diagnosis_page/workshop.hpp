@@ -9,6 +9,7 @@ namespace pmg::diagnosis_page {
 struct WorkshopWords {
   std::string what;   ///< the effect as a noun, without the words of control theory: "play in the gear"
   std::string check;  ///< what to do at the joint: whole sentences
+  std::string cost;   ///< what the robot suffers from it: a whole sentence
 };
 
 /// (name of an effect) => (its words). A name from another version of the catalogue is its own word.

@@ -1,5 +1,8 @@
 #include "evaluation/campaign.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -37,6 +40,16 @@ ordered_json plant_json(const sim::WorldOptions& world) {
            {v.torso_center_of_mass_m.x(), v.torso_center_of_mass_m.y(), v.torso_center_of_mass_m.z()}},
           {"hand_payload_kg", {v.hand_payload_kg[kLeft], v.hand_payload_kg[kRight]}},
           {"delay_s", v.delay_s}};
+}
+
+work::Worth whole(const CampaignRuns& campaign) {
+  std::size_t all = 0, complete = 0;
+  for (const std::vector<TrialResult>& runs : campaign.runs) {
+    all += runs.size();
+    complete += static_cast<std::size_t>(std::ranges::count_if(runs, &TrialResult::complete));
+  }
+  if (campaign.complete) return {};
+  return {work::Grade::kInterrupted, fmt::format("{} of {} runs are complete", complete, all)};
 }
 
 CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,

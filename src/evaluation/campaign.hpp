@@ -13,6 +13,7 @@
 #include "evaluation/supervision.hpp"
 #include "evaluation/trial.hpp"
 #include "sim/variation.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::evaluation {
 
@@ -41,6 +42,9 @@ struct CampaignRuns {
   std::vector<Course> courses;  ///< by case; each of its first seed
   bool complete = true;
 };
+
+/// Interrupted, with how many trials are complete; otherwise it holds.
+work::Worth whole(const CampaignRuns& campaign);
 
 /// Seeds 1 to `seeds`. The result doesn't depend on the number of jobs.
 CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,

@@ -37,9 +37,13 @@ sil::Scenario gait_scenario(const GaitTest& test) {
   return {.name = "gait", .steps = {stand, walk}};
 }
 
+bool makes_two_steps(const FootRecording& recording) {
+  return initial_contacts(recording.loaded, control::ControlCycle::kPeriod_s).size() >= 2;
+}
+
 FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
   const std::vector<std::size_t> contacts = initial_contacts(recording.loaded, control::ControlCycle::kPeriod_s);
-  if (contacts.size() < 2) throw std::runtime_error("the robot doesn't walk: a foot makes no two steps");
+  if (!makes_two_steps(recording)) throw std::runtime_error("the robot doesn't walk: a foot makes no two steps");
   FootGait gait;
   gait.cycles = static_cast<int>(contacts.size()) - 1;
   const auto begin = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.front());
@@ -105,13 +109,27 @@ bool GaitTest::duty_reached(Foot foot) const {
   return std::abs(feet[foot].duty_factor - kPublishedDutyFactor) <= kAskedDutyDifference;
 }
 
-bool GaitTest::reached() const {
-  bool all = trial.survived();
-  for (const Foot foot : {kLeft, kRight}) {
-    all = all && duty_reached(foot);
-    for (const CurveAgreement& curve : feet[foot].measured) all = all && curve.correlation >= kAskedCorrelation;
+work::Worth worth_of(const GaitTest& test) {
+  work::Worth worth;
+  worth.add_if(
+      !test.trial.complete, work::Grade::kInterrupted,
+      fmt::format("{} and {} of the feet's cycles were walked", test.feet[kLeft].cycles, test.feet[kRight].cycles));
+  worth.add_if(test.trial.complete && !test.trial.survived(), work::Grade::kMissed, "the robot fell or faulted");
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+    const CurveAgreement &left = test.feet[kLeft].measured[joint], &right = test.feet[kRight].measured[joint];
+    const double least = std::min(left.correlation, right.correlation),
+                 most_deg = std::max(left.rms_deg, right.rms_deg);
+    worth.add_if(!(least >= kAskedCorrelation), work::Grade::kMissed,
+                 fmt::format("the shape of {} correlates by {:.2f} with people's, asked {}", kGaitJointNames[joint],
+                             least, kAskedCorrelation));
+    worth.add_if(!(most_deg <= test.rms_limit_deg(joint)), work::Grade::kMissed,
+                 fmt::format("{} is {:.0f} deg RMS from people's mean, asked {:.0f}", kGaitJointNames[joint], most_deg,
+                             test.rms_limit_deg(joint)));
   }
-  return all;
+  worth.add_if(!test.duty_reached(kLeft) || !test.duty_reached(kRight), work::Grade::kMissed,
+               fmt::format("duty factor {:.2f} and {:.2f}, asked {} within {}", test.feet[kLeft].duty_factor,
+                           test.feet[kRight].duty_factor, kPublishedDutyFactor, kAskedDutyDifference));
+  return worth;
 }
 
 void run_gait(GaitTest& test, const Supervision& supervision) {
@@ -151,7 +169,10 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
     test.walked_m_s = (end_W - start_W).head<2>().norm() / ((ticks - 1.0) * control::ControlCycle::kPeriod_s);
     test.reference_duty_factor = duty_sum / ticks;
   }
-  for (const Foot foot : {kLeft, kRight}) test.feet[foot] = foot_gait(recordings[foot], test.norms);
+  for (const Foot foot : {kLeft, kRight}) {
+    if (!test.trial.complete && !makes_two_steps(recordings[foot])) throw work::Interrupted();
+    test.feet[foot] = foot_gait(recordings[foot], test.norms);
+  }
 }
 
 std::string difference_text(const GaitTest& test) {
@@ -169,6 +190,9 @@ std::string difference_text(const GaitTest& test) {
 }
 
 ordered_json to_json(const GaitTest& test) {
+  ordered_json rms_limits;
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint)
+    rms_limits[kGaitJointNames[joint]] = test.rms_limit_deg(joint);
   ordered_json json = {
       {"kind", "gait"},
       {"complete", test.trial.complete},
@@ -181,7 +205,8 @@ ordered_json to_json(const GaitTest& test) {
       {"limits",
        {{"correlation", kAskedCorrelation},
         {"duty_factor", {kPublishedDutyFactor - kAskedDutyDifference, kPublishedDutyFactor + kAskedDutyDifference}},
-        {"reached", test.reached()}}},
+        {"rms_deg", rms_limits},
+        {"reached", worth_of(test).usable()}}},
       {"reference_duty_factor", test.reference_duty_factor},
       {"published_duty_factor", kPublishedDutyFactor}};
   for (const Foot foot : {kLeft, kRight}) {
@@ -209,9 +234,10 @@ std::vector<std::string> text_of(const GaitTest& test) {
   for (const Foot foot : {kLeft, kRight}) {
     for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
       const CurveAgreement &m = test.feet[foot].measured[joint], &r = test.feet[foot].reference[joint];
-      lines.push_back(fmt::format("{:<6}{:<22}{:>11.3f}{:>9.1f}{:>11.1f}{:>14.3f}{:>9.1f}{}", kSideNames[foot],
-                                  kGaitJointNames[joint], m.correlation, m.rms_deg, m.shape_rms_deg, r.correlation,
-                                  r.rms_deg, m.correlation >= kAskedCorrelation ? "" : "  MISSED"));
+      lines.push_back(
+          fmt::format("{:<6}{:<22}{:>11.3f}{:>9.1f}{:>11.1f}{:>14.3f}{:>9.1f}{}", kSideNames[foot],
+                      kGaitJointNames[joint], m.correlation, m.rms_deg, m.shape_rms_deg, r.correlation, r.rms_deg,
+                      m.correlation >= kAskedCorrelation && m.rms_deg <= test.rms_limit_deg(joint) ? "" : "  MISSED"));
     }
   }
   for (const Foot foot : {kLeft, kRight}) {
@@ -226,11 +252,13 @@ std::vector<std::string> text_of(const GaitTest& test) {
 pages::Page page_of(const GaitTest& test) {
   pages::Page page(
       fmt::format("Gait: {} on {}, asked to walk at {} m/s", test.evaluated.name, test.robot, test.speed_m_s));
-  page.verdict(test.reached() ? pages::Tone::kGood : pages::Tone::kBad,
-               fmt::format("{} (correlation at least {}, duty factor within {} of {})",
-                           test.reached() ? "The shapes are as asked" : "A shape is not as asked: see below",
-                           kAskedCorrelation, kAskedDutyDifference, kPublishedDutyFactor));
-  page.verdict(pages::Tone::kNeutral, difference_text(test));
+  page.worth(worth_of(test));
+  if (worth_of(test).usable())
+    page.verdict(
+        {}, fmt::format("Shapes, angles and duty factors are as people's (correlation at least {}, RMS within {:g} "
+                        "standard deviations between persons, duty factor within {} of {})",
+                        kAskedCorrelation, kAskedDeviations, kAskedDutyDifference, kPublishedDutyFactor));
+  page.note(difference_text(test));
   std::vector<double> percent(kCyclePoints);
   for (std::size_t k = 0; k < kCyclePoints; ++k) percent[k] = static_cast<double>(k);
   page.heading("Joints over the gait cycle");

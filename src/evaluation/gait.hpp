@@ -13,6 +13,8 @@
 namespace pmg::evaluation {
 
 inline constexpr double kAskedCorrelation = 0.9, kAskedDutyDifference = 0.05;
+/// RMS difference from the published mean, in standard deviations between persons: of 20 people 19 are as near.
+inline constexpr double kAskedDeviations = 2.0;
 /// Foot off at 62 % of the cycle (standard deviation 2 %) at a dimensionless speed of 0.29, which is 0.8 m/s for legs
 /// of 0.8 m: M. Schwartz, A. Rozumalski, J. Trost, J. Biomech. 41:1639-1650, 2008.
 inline constexpr double kPublishedDutyFactor = 0.62;
@@ -60,12 +62,16 @@ struct GaitTest {
   PerFoot<FootGait> feet;
 
   bool duty_reached(Foot foot) const;
-  bool reached() const;
+  /// The largest RMS difference of a joint from its published mean that counts as a person's [deg].
+  double rms_limit_deg(std::size_t joint) const { return kAskedDeviations * norms.deviation_deg[joint]; }
 };
 
-/// Uses robot seed 1. Throws std::runtime_error if the robot does not make two steps with each foot.
+/// Uses robot seed 1. Throws std::runtime_error if the robot does not make two steps with each foot, work::Interrupted
+/// if it could not make them in time.
 void run_gait(GaitTest& test, const Supervision& supervision);
 
+/// Interrupted; missed by a fall, a shape (correlation), an angle (RMS with its offset) or a duty factor.
+work::Worth worth_of(const GaitTest& test);
 nlohmann::ordered_json to_json(const GaitTest& test);
 pages::Page page_of(const GaitTest& test);
 std::vector<std::string> text_of(const GaitTest& test);

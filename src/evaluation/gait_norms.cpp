@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "bench/csv_table.hpp"
 #include "generator/published_gait.hpp"
@@ -20,6 +22,16 @@ std::vector<double> means(const bench::CsvTable& table, const std::string& begin
     if (name.starts_with(begin) && name.ends_with("_mean")) return table.numbers(name);
   }
   files::raise({table.file.string(), table.header_line}, begin + "..._mean", "is missing", "a column of that name");
+}
+
+/// rms of the column whose name begins with `begin` and ends with _sd; nothing without one.
+std::optional<double> deviation(const bench::CsvTable& table, const std::string& begin) {
+  for (const std::string& name : table.header) {
+    if (!name.starts_with(begin) || !name.ends_with("_sd")) continue;
+    const std::vector<double> sd = table.numbers(name);
+    return std::sqrt(std::inner_product(sd.begin(), sd.end(), sd.begin(), 0.0) / static_cast<double>(sd.size()));
+  }
+  return std::nullopt;
 }
 
 /// Linear interpolation of equal steps from 0 to 100 % of the cycle at kCyclePoints.
@@ -57,6 +69,9 @@ GaitNorms load_norms(const std::filesystem::path& file) {
   norms.deg[kHip] = resampled(means(table, "hip_flexion"));
   norms.deg[kKneeFlexion] = resampled(means(table, "knee_flexion"));
   norms.deg[kAnkle] = resampled(means(table, "ankle_dorsiflexion"));
+  constexpr std::array<const char*, kGaitJoints> kColumns = {"hip_flexion", "knee_flexion", "ankle_dorsiflexion"};
+  for (std::size_t joint = 0; joint < kGaitJoints; ++joint)
+    norms.deviation_deg[joint] = deviation(table, kColumns[joint]).value_or(norms.deviation_deg[joint]);
   const std::vector<double> tilt = resampled(means(table, "pelvis_tilt"));
   for (std::size_t k = 0; k < kCyclePoints; ++k) norms.deg[kHip][k] -= tilt[k];
   return norms;

@@ -18,14 +18,17 @@ inline constexpr std::size_t kCyclePoints = 100;  ///< 0 to 99 % of the cycle, f
 struct GaitNorms {
   std::string source;
   std::array<std::vector<double>, kGaitJoints> deg;
+  /// One standard deviation between persons, rms over the cycle. Of files without columns ..._sd that of the built-in
+  /// norms.
+  std::array<double, kGaitJoints> deviation_deg = {6.1, 5.1, 3.8};
 };
 
 /// The curves from which the forward clip is made (generator/published_gait.hpp).
 GaitNorms built_in_norms();
 
 /// CSV with a header line; lines that begin with # are skipped. Columns hip_flexion..._mean, knee_flexion..._mean,
-/// ankle_dorsiflexion..._mean and pelvis_tilt..._mean in degrees, at equal steps from 0 to 100 % of the cycle. Throws
-/// files::ConfigError.
+/// ankle_dorsiflexion..._mean and pelvis_tilt..._mean in degrees, at equal steps from 0 to 100 % of the cycle; ..._sd
+/// of the first three as far as they are there. Throws files::ConfigError.
 GaitNorms load_norms(const std::filesystem::path& file);
 
 }  // namespace pmg::evaluation

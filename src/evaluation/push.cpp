@@ -90,6 +90,18 @@ bool Pusher::operator()(const sil::RunProgress& now, sim::World& world) {
   return now.result.mode != control::Mode::kFault;
 }
 
+work::Worth worth_of(const PushTest& test) {
+  work::Worth worth;
+  worth.add_if(!test.complete, work::Grade::kInterrupted, "not all trials ran");
+  const std::optional<bool> reached = test.reached();
+  worth.add_if(!reached.has_value(), work::Grade::kOpen,
+               fmt::format("pushes of {:.0f} N s are judged, and none of them was tried", kJudgedPush_N_s));
+  worth.add_if(test.complete && !reached.value_or(true), work::Grade::kMissed,
+               fmt::format("less than {:.0f} % of the pushes of {:.0f} N s are survived", 100.0 * kPushSurvival,
+                           kJudgedPush_N_s));
+  return worth;
+}
+
 std::optional<bool> PushTest::reached() const {
   for (const PushTrials& at : strengths) {
     if (at.impulse_N_s == kJudgedPush_N_s) return survival(at).mean >= kPushSurvival;

@@ -74,6 +74,9 @@ struct PushTest {
   std::optional<bool> reached() const;
 };
 
+/// Interrupted; missed at the judged strength; open where that strength was not tried.
+work::Worth worth_of(const PushTest& test);
+
 /// Runs all trials of every strength. The result doesn't depend on the number of jobs.
 void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const Supervision& supervision);
 

@@ -80,11 +80,11 @@ void add_directions(const PushTest& test, pages::Page& page) {
 
 pages::Page page_of(const PushTest& test) {
   pages::Page page(fmt::format("Pushes: {} on {}", test.evaluated.name, test.robot));
-  if (!test.complete) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
+  page.worth(worth_of(test));
   if (const auto reached = test.reached()) {
     for (const PushTrials& at : test.strengths) {
       if (at.impulse_N_s != kJudgedPush_N_s) continue;
-      page.verdict(*reached ? pages::Tone::kGood : pages::Tone::kBad,
+      page.verdict(*reached ? work::Worth() : work::Worth(work::Grade::kMissed, "too many trials fell or faulted"),
                    fmt::format("{:.0f} N s: survived {} % of trials; asked {:.0f} %", at.impulse_N_s,
                                percent_with_interval(test.survival(at)), 100.0 * kPushSurvival));
     }

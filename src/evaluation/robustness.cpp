@@ -44,6 +44,12 @@ bool RobustnessTest::all_survived() const {
   return std::ranges::all_of(summaries, [](const CaseSummary& s) { return s.survived == s.trials; });
 }
 
+work::Worth worth_of(const RobustnessTest& test) {
+  work::Worth worth = whole(test.campaign);
+  worth.add_if(!test.all_survived(), work::Grade::kMissed, "fell or faulted under a condition");
+  return worth;
+}
+
 void evaluate(RobustnessTest& test) {
   test.summaries.clear();
   for (const auto& runs : test.campaign.runs) test.summaries.push_back(summarise(runs));
@@ -88,10 +94,8 @@ std::vector<std::string> text_of(const RobustnessTest& test) {
 
 pages::Page page_of(const RobustnessTest& test) {
   pages::Page page(fmt::format("Robustness: {} on {}", test.cases.front().candidate.name, test.robot));
-  if (!test.campaign.complete) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
-  page.verdict(test.all_survived() ? pages::Tone::kGood : pages::Tone::kBad,
-               test.all_survived() ? "Walked the whole scenario under every condition, with every seed"
-                                   : "Fell or faulted under a condition: see below");
+  page.worth(worth_of(test));
+  if (worth_of(test).usable()) page.verdict({}, "Walked the whole scenario under every condition, with every seed");
   page.heading("Conditions");
   pages::Bars bars{.title = "survived [%], 95 % interval", .unit = "%", .names = {}, .sets = {}};
   pages::Bars::Set set{.name = "survived", .values = {}};

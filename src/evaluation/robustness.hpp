@@ -26,6 +26,7 @@ struct RobustnessTest {
   bool all_survived() const;
 };
 
+work::Worth worth_of(const RobustnessTest& test);
 void evaluate(RobustnessTest& test);  ///< fills summaries
 
 nlohmann::ordered_json to_json(const RobustnessTest& test);

@@ -64,6 +64,24 @@ bool Table1::reached(std::size_t error) const {
   return value <= limit(error) || (!gentle() && std::isnan(value) && summaries[judged].trials > 0);
 }
 
+work::Worth worth_of(const Table1& table) {
+  work::Worth worth = whole(table.campaign);
+  const std::string& name = table.cases[table.judged].name;
+  const CaseSummary& judged = table.summaries[table.judged];
+  if (judged.trials == 0) return worth;
+  worth.add_if(judged.falls > 0, work::Grade::kMissed,
+               fmt::format("{} fell in {} of {} runs", name, judged.falls, judged.trials));
+  for (std::size_t e = 0; e < kErrors; ++e) {
+    if (table.reached(e)) continue;
+    worth.add(work::Grade::kMissed,
+              table.gentle() ? fmt::format("{}'s {} error {:.4f} {} is over {}", name, kErrorNames[e], table.figure(e),
+                                           kErrorUnits[e], table.limit(e))
+                             : fmt::format("{}'s {} error leaves {:.0f} % of what doing nothing leaves, over {:.0f} %",
+                                           name, kErrorNames[e], 100.0 * table.figure(e), 100.0 * table.limit(e)));
+  }
+  return worth;
+}
+
 bool Table1::all_reached() const {
   bool all = summaries[judged].falls == 0;
   for (std::size_t e = 0; e < kErrors; ++e) all = all && reached(e);

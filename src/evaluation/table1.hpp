@@ -53,6 +53,8 @@ struct Table1 {
   bool all_reached() const;               ///< all errors reached, and no fall
 };
 
+work::Worth worth_of(const Table1& table);
+
 /// Fills yardsticks by one run per case with the robot on the gantry.
 void measure_yardsticks(Table1& table, const Supervision& supervision);
 

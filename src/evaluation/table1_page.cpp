@@ -63,22 +63,11 @@ std::string interval_text(const Estimate& estimate) {
 
 void add_verdicts(const Table1& table, pages::Page& page) {
   const CaseSummary& judged = table.summaries[table.judged];
-  if (!table.campaign.complete) page.verdict(pages::Tone::kNeutral, "Incomplete: the evaluation was interrupted.");
-  std::string missed;
-  for (std::size_t e = 0; e < kErrors; ++e) {
-    if (table.reached(e)) continue;
-    missed += table.gentle() ? fmt::format("{}{} {:.4f} {} over {}", missed.empty() ? "" : "; ", kErrorNames[e],
-                                           table.figure(e), kErrorUnits[e], table.limit(e))
-                             : fmt::format("{}{} leaves {:.0f} % of what doing nothing leaves, over {:.0f} %",
-                                           missed.empty() ? "" : "; ", kErrorNames[e], 100.0 * table.figure(e),
-                                           100.0 * table.limit(e));
-  }
-  const std::string name = table.cases[table.judged].name;
-  page.verdict(judged.falls == 0 ? pages::Tone::kGood : pages::Tone::kBad,
-               fmt::format("{}: fell in {} of {} runs", name, judged.falls, judged.trials));
-  page.verdict(missed.empty() ? pages::Tone::kGood : pages::Tone::kBad,
-               missed.empty() ? fmt::format("{}: every error is within its limit", name)
-                              : fmt::format("{} misses: {}", name, missed));
+  page.worth(worth_of(table));
+  page.verdict({},
+               fmt::format("{}: fell in {} of {} runs", table.cases[table.judged].name, judged.falls, judged.trials));
+  if (worth_of(table).usable())
+    page.verdict({}, fmt::format("{}: every error is within its limit", table.cases[table.judged].name));
   for (const Comparison& comparison : table.comparisons) {
     std::string better, open, worse;
     for (std::size_t e = 0; e < kErrors; ++e) {
@@ -90,7 +79,7 @@ void add_verdicts(const Table1& table, pages::Page& page) {
                                    better.empty() ? "nothing" : better);
     if (!worse.empty()) text += "; worse in " + worse;
     if (!open.empty()) text += "; undecided in " + open;
-    page.verdict(open.empty() && worse.empty() ? pages::Tone::kGood : pages::Tone::kNeutral, text);
+    page.note(text);
   }
 }
 

@@ -221,6 +221,15 @@ double Table2::ratio() const {
   return results[kFullCalibration].sim_to_real_rad.mean / results[kBaseline].sim_to_real_rad.mean;
 }
 
+work::Worth worth_of(const Table2& table) {
+  if (!table.complete) return {work::Grade::kInterrupted, "nothing can be compared"};
+  if (!table.all_reached())
+    return {work::Grade::kMissed, fmt::format("the full calibration is not the best in both errors, or leaves more "
+                                              "than {:.2f} of the baseline's sim-to-real error",
+                                              kAskedRatio)};
+  return {};
+}
+
 bool Table2::all_reached() const {
   const ConfigurationResult& full = results[kFullCalibration];
   bool best = ratio() <= kAskedRatio;

@@ -90,6 +90,8 @@ inline constexpr double kAskedRatio = 0.53;  ///< the paper's 0.0414 / 0.0781
 /// The paper's figures [rad]: imitation error, sim-to-real error.
 std::array<double, 2> published(Configuration configuration);
 
+work::Worth worth_of(const Table2& table);
+
 /// Calibrates the plants below folder/plants, then runs all walks. The result doesn't depend on the number of jobs.
 void run_table2(Table2& table, const std::filesystem::path& folder, const Supervision& supervision);
 

@@ -69,6 +69,12 @@ class BalanceChecks {
     found_.back().sentence = why;
   }
 
+  const char* no_pendulum() const {
+    return bench_.rig == bench::Rig::kRobot
+               ? "only the robot's model says what hangs on this joint: this check needs a bench"
+               : "no load hangs";
+  }
+
   /// An effect that is one term of the balance. must_be_positive: friction cannot drive the motion.
   void add_term(const std::string& effect, const std::vector<Column>& base, const Column& column,
                 const std::string& what, const std::string& unit, bool must_be_positive, double worth_share) {
@@ -109,7 +115,7 @@ class BalanceChecks {
       add_term("load_friction", {c().load, c().acceleration, c().speed, c().direction, c().one}, c().heavy,
                "friction per torque of gravity", "", true, options_.friction_share);
     } else {
-      cannot_tell("load_friction", "no load hangs");
+      cannot_tell("load_friction", no_pendulum());
     }
   }
 
@@ -127,7 +133,7 @@ class BalanceChecks {
       add_term("zero_offset", base, hanging, "gravity as if the joint stood elsewhere, by", "rad", false,
                options_.constant_share);
     } else {
-      cannot_tell("zero_offset", "no load hangs");
+      cannot_tell("zero_offset", no_pendulum());
     }
   }
 

@@ -11,9 +11,11 @@ const char* name(Verdict verdict) {
     case Verdict::kNone:
       return "none";
     case Verdict::kUnexplained:
+      return "unexplained";
+    case Verdict::kInterrupted:
       break;
   }
-  return "unexplained";
+  return "interrupted";
 }
 
 }  // namespace pmg::evidence

@@ -10,9 +10,10 @@ enum class Verdict {
   kAmbiguous,    ///< these data cannot tell at least one cause from another: record next_excitation
   kNone,         ///< the residual is noise
   kUnexplained,  ///< the residual exceeds the noise, and no effect of the catalogue explains it
+  kInterrupted,  ///< the search was ended before it could tell
 };
 
-/// found, ambiguous, none, unexplained.
+/// found, ambiguous, none, unexplained, interrupted.
 const char* name(Verdict verdict);
 
 /// A value with its 95 % interval.

@@ -76,13 +76,44 @@ std::string chart_element(const std::string& spec, int height_px) {
                      height_px, escape_script(spec));
 }
 
+/// Green says that it holds, and nothing else does.
+const char* colour_class(work::Grade grade) {
+  switch (grade) {
+    case work::Grade::kHolds:
+      return "good";
+    case work::Grade::kOpen:
+      return "neutral";
+    case work::Grade::kPartial:
+    case work::Grade::kInterrupted:
+      return "unfinished";
+    case work::Grade::kMissed:
+    case work::Grade::kNoBetter:
+    case work::Grade::kOffItsData:
+      break;
+  }
+  return "bad";
+}
+
 }  // namespace
 
 Page::Page(std::string title) : title_(std::move(title)) {}
 
-void Page::verdict(Tone tone, const std::string& text) {
-  const char* name = tone == Tone::kGood ? "good" : tone == Tone::kBad ? "bad" : "neutral";
-  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", name, escape_markup(text));
+void Page::worth(const work::Worth& worth) {
+  worth_.add(worth);
+  if (!worth.reservations().empty()) highlighted(worth.grade(), worth.sentence());
+}
+
+void Page::verdict(const work::Worth& worth, const std::string& text) {
+  const std::string before = worth.sentence();
+  highlighted(std::max(worth.grade(), worth_.grade()), before.empty() ? text : before + ". " + text);
+}
+
+void Page::note(const std::string& text) {
+  body_ += "<div class=\"verdict neutral\">" + escape_markup(text) + "</div>\n";
+}
+
+void Page::highlighted(work::Grade grade, const std::string& text) {
+  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", colour_class(grade), escape_markup(text));
 }
 
 void Page::heading(const std::string& text) {
@@ -193,7 +224,8 @@ std::string Page::html() const {
       "script-src "
       "'unsafe-inline'\">\n<title>" +
       title + "</title>\n<style>" + kUplotStyle + "\n" + kPageStyle + "</style></head>\n";
-  text += fmt::format("<body data-axes=\"{}\">\n<h1>{}</h1>\n", escape_markup(dump(axes)), title);
+  text += fmt::format("<body data-axes=\"{}\" data-worth=\"{}\">\n<h1>{}</h1>\n", escape_markup(dump(axes)),
+                      name(worth_.grade()), title);
   if (headings_ > 1) text += "<nav>" + contents_ + "</nav>\n";
   if (needs_script_) {
     text += "<noscript><p>Charts to zoom into need JavaScript; tables and all other pictures don't.</p></noscript>\n";

@@ -10,18 +10,23 @@
 
 #include "pages/axis.hpp"
 #include "pages/pictures.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::pages {
-
-enum class Tone { kGood, kBad, kNeutral };
 
 /// Each call appends to the page. The page escapes all text.
 class Page {
  public:
   explicit Page(std::string title);
 
-  void verdict(Tone tone, const std::string& text);  ///< one highlighted line
-  void heading(const std::string& text);             ///< begins a section, which the list at the top names
+  /// What the whole page is worth: a highlighted line with its reservations, if there are any. From then on no verdict
+  /// is of a better colour, whatever it says of its own part.
+  void worth(const work::Worth& worth);
+  /// One highlighted line of the colour of what it is worth: green only if it holds. Reservations stand before the
+  /// text.
+  void verdict(const work::Worth& worth, const std::string& text);
+  void note(const std::string& text);     ///< one highlighted line that judges nothing
+  void heading(const std::string& text);  ///< begins a section, which the list at the top names
   void paragraph(const std::string& text);
   void table(const Table& table);
   void chart(const Chart& chart);  ///< throws std::invalid_argument if a line's x decreases or y has another size
@@ -40,7 +45,10 @@ class Page {
   void picture(const std::string& title, const std::string& content);
   void show_x(const std::string& axis, double x);
 
+  void highlighted(work::Grade grade, const std::string& text);
+
   std::string title_, body_, contents_;
+  work::Worth worth_;
   int headings_ = 0;
   bool needs_script_ = false;          ///< for charts and lanes
   std::map<std::string, Range> axes_;  ///< range of each axis when the page opens

@@ -69,6 +69,23 @@ double hanging_s(const RunSeries& run) {
   return all_s;
 }
 
+work::Worth worth_of_reading(const RunSeries& run) {
+  work::Worth worth;
+  worth.add_if(run.interrupted, work::Grade::kInterrupted, run.name + ": the rest of the log was not read");
+  for (const std::string& problem : run.problems)
+    worth.add(work::Grade::kPartial, fmt::format("{}: {}", run.name, problem));
+  return worth;
+}
+
+work::Worth worth_of(const RunSeries& run) {
+  work::Worth worth;
+  worth.add_if(!run.faults.empty(), work::Grade::kMissed, "the robot faulted");
+  worth.add_if(run.fell, work::Grade::kMissed, "the robot fell");
+  worth.add_if(run.modes.empty(), work::Grade::kOpen, "the log doesn't say whether there was a fault");
+  worth.add_if(hanging_s(run) > 0.5 * run.duration_s, work::Grade::kOpen, "the feet carried nothing for most of it");
+  return worth;
+}
+
 std::string verdict(const RunSeries& run) {
   std::string text = run.name + ": ";
   if (run.identified) {
@@ -122,7 +139,7 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
     steps.push_back({{"number", step.number}, {"from_s", step.from_s}, {"to_s", step.to_s}, {"text", step.text}});
   }
   const bool judged = run.tracking.followed_s > 0.0;
-  return {
+  ordered_json json = {
       {"log", run.name},
       {"robot", run.info.robot},
       {"model", run.info.model},
@@ -148,6 +165,8 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
       {"timing_us", {{"tick", times_json(run.timing.tick_us)}, {"wake", times_json(run.timing.wake_us)}}},
       {"lost_ticks", run.lost_ticks},
       {"problems", run.problems}};
+  add_to(json, worth_of_reading(run));
+  return json;
 }
 
 }  // namespace pmg::report

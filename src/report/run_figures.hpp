@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "report/run_series.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::report {
 
@@ -23,6 +24,13 @@ std::string limited_text(const RunSeries& run);
 
 /// Seconds in which the feet carried nothing, so that the policy did not run.
 double hanging_s(const RunSeries& run);
+
+/// Of what was read: interrupted, or partial where the log has problems. A page holds as far as its logs were read.
+work::Worth worth_of_reading(const RunSeries& run);
+
+/// Of the run, beside its reading: missed, where the robot fell or faulted; open, where the log doesn't tell, or the
+/// feet carried nothing for most of the time.
+work::Worth worth_of(const RunSeries& run);
 
 /// One sentence: policy, duration, end, tracking and limits.
 std::string verdict(const RunSeries& run);

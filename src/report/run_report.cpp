@@ -147,14 +147,13 @@ void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title
 }
 
 void verdicts(pages::Page& page, const Runs& runs) {
+  work::Worth reading;
+  for (const RunSeries& run : runs) reading.add(worth_of_reading(run));
+  page.worth(reading);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     const std::string letter = runs.size() > 1 ? fmt::format("{}  ", static_cast<char>('A' + i)) : "";
-    const pages::Tone tone = run.fell || !run.faults.empty()                              ? pages::Tone::kBad
-                             : run.modes.empty() || hanging_s(run) > 0.5 * run.duration_s ? pages::Tone::kNeutral
-                                                                                          : pages::Tone::kGood;
-    page.verdict(tone, letter + verdict(run));
-    for (const std::string& problem : run.problems) page.verdict(pages::Tone::kNeutral, letter + problem);
+    page.verdict(worth_of(run), letter + verdict(run));
   }
 }
 

@@ -321,7 +321,7 @@ RunSeries read_run(const fs::path& log, const work::Progress& progress) {
   } else if (series.skipped_bytes() > 0) {
     run.problems.push_back(fmt::format("{} damaged bytes were skipped", series.skipped_bytes()));
   }
-  if (interrupted) run.problems.push_back("reading was interrupted: the rest of the log is not shown");
+  run.interrupted = interrupted;
   if (run.state.t_s.empty() && run.status.t_s.empty() && run.reference.t_s.empty() && !interrupted) {
     throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read");
   }

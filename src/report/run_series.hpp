@@ -115,6 +115,7 @@ struct RunSeries {
   bool fell = false;
   double fell_at_s = -1.0;
   std::int64_t lost_ticks = 0;        ///< tick numbers that are missing in the log
+  bool interrupted = false;           ///< the rest of the log was not read
   std::vector<std::string> problems;  ///< problems while reading, one sentence each
 };
 

@@ -87,8 +87,22 @@ nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& d) {
   return json;
 }
 
+work::Worth worth_of(const RobotDiagnosis& d) {
+  work::Worth worth;
+  worth.add_if(d.verdict == evidence::Verdict::kUnexplained, work::Grade::kMissed,
+               fmt::format("no cause of the list explains {}", fmt::join(d.depends_on, ", ")));
+  worth.add_if(d.verdict == evidence::Verdict::kAmbiguous, work::Grade::kOpen,
+               "these logs don't tell all causes apart");
+  worth.add_if(!d.causes.empty() && !(d.held_out_after < d.held_out_before), work::Grade::kNoBetter,
+               "the equations are no better with the causes than without them");
+  worth.add_if(!(d.held_out_after <= kMostOfNoise), work::Grade::kOffItsData,
+               fmt::format("left-out equations miss by {:.3g} times their noise", d.held_out_after));
+  return worth;
+}
+
 std::string robot_diagnosis_text(const RobotDiagnosis& d) {
-  std::string text = fmt::format("verdict: {}\n", name(d.verdict));
+  std::string text = worth_of(d).sentence();
+  text += fmt::format("{}verdict: {}\n", text.empty() ? "" : "\n", name(d.verdict));
   for (const RobotCause& cause : d.causes) {
     text += fmt::format("  {} of {}, log evidence {:.0f}, {} of {} folds{}\n", cause.effect, cause.place,
                         cause.log_evidence, cause.folds_better, cause.folds,
@@ -114,9 +128,9 @@ pages::Page robot_diagnosis_page(const std::string& robot, const RobotDiagnosis&
   const bool clean = d.verdict == evidence::Verdict::kNone;
   std::vector<std::string> found;
   for (const RobotCause& cause : d.causes) found.push_back(fmt::format("{} of {}", cause.effect, cause.place));
-  page.verdict(clean ? pages::Tone::kGood : pages::Tone::kBad,
-               clean ? "Nothing beyond what robots of a kind differ by"
-                     : fmt::format("{}: {}", name(d.verdict), fmt::join(found, ", ")));
+  page.worth(worth_of(d));
+  page.verdict({}, clean ? "Nothing beyond what robots of a kind differ by"
+                         : fmt::format("{}: {}", name(d.verdict), fmt::join(found, ", ")));
   pages::Bars bars{
       .title = "log evidence of each cause", .unit = "", .names = {}, .sets = {{.name = "", .values = {}}}};
   for (const auto* causes : {&d.causes, &d.others}) {

@@ -6,6 +6,7 @@
 
 #include "pages/page.hpp"
 #include "robot_diagnosis/robot_diagnosis.hpp"
+#include "work/worth.hpp"
 
 namespace pmg::robot_diagnosis {
 
@@ -13,6 +14,11 @@ namespace pmg::robot_diagnosis {
 /// or_instead}], rejected: [{effect, place, log_evidence}], ground_friction, coverage_s, held_out_error_before,
 /// held_out_error_after, unit, depends_on, not_seen, next_excitation}.
 nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& diagnosis);
+
+/// Off its data, where left-out equations miss by more than kMostOfNoise; no better with the causes; missed, where the
+/// verdict is unexplained; open, where causes can't be told apart. An interrupted diagnosis leaves nothing.
+work::Worth worth_of(const RobotDiagnosis& diagnosis);
+inline constexpr double kMostOfNoise = 5.0;  ///< rms of left-out equations over their noise
 
 /// The same for people, a few lines.
 std::string robot_diagnosis_text(const RobotDiagnosis& diagnosis);

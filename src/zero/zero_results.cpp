@@ -20,10 +20,6 @@ double deviation_rad(const ZeroResults& results, std::size_t i) {
   return results.found.deviation_rad[static_cast<Eigen::Index>(i)];
 }
 
-bool all_observed(const ZeroCalibration& found) {
-  return std::ranges::all_of(found.observable, [](bool observable) { return observable; });
-}
-
 ordered_json pose_json(const StillPose& pose, const ZeroPose& judged) {
   ordered_json json = {{"log", pose.log},
                        {"from_s", pose.from_s},
@@ -40,14 +36,9 @@ ordered_json pose_json(const StillPose& pose, const ZeroPose& judged) {
 }
 
 std::string verdict_text(const ZeroResults& results) {
-  const ZeroCalibration& found = results.found;
-  const auto observed = std::ranges::count(found.observable, true);
-  return fmt::format("{}: zero points of {} joints from {} poses{}; {} of {} joints can't be told",
-                     results.interrupted ? "interrupted"
-                     : found.converged   ? "converged"
-                                         : "not converged",
-                     observed, found.used(), results.interrupted ? " so far" : "", unobserved_joints(results).size(),
-                     results.robot->joints.size());
+  const auto observed = std::ranges::count(results.found.observable, true);
+  return fmt::format("Zero points of {} joints from {} poses; {} of {} joints can't be told", observed,
+                     results.found.used(), unobserved_joints(results).size(), results.robot->joints.size());
 }
 
 void show_offsets(pages::Page& page, const ZeroResults& results) {
@@ -151,6 +142,22 @@ std::vector<UnobservedJoint> unobserved_joints(const ZeroResults& results) {
   return unobserved;
 }
 
+work::Worth worth_of(const ZeroResults& results) {
+  const ZeroCalibration& found = results.found;
+  work::Worth worth;
+  worth.add_if(results.interrupted, work::Grade::kInterrupted,
+               fmt::format("after {} iterations", found.steps_rad.size()));
+  worth.add_if(!results.interrupted && !found.converged, work::Grade::kMissed,
+               fmt::format("not converged in {} iterations", found.steps_rad.size()));
+  worth.add_if(!(found.weighted_rms <= kMostWeightedRms), work::Grade::kOffItsData,
+               fmt::format("the poses disagree by {:.2g} times what was expected", found.weighted_rms));
+  const auto unobserved = std::ranges::count(found.observable, false);
+  worth.add_if(
+      unobserved > 0, work::Grade::kPartial,
+      fmt::format("{} of {} joints between the soles and the IMU can't be told", unobserved, found.observable.size()));
+  return worth;
+}
+
 ordered_json zero_json(const ZeroResults& results) {
   const ZeroCalibration& found = results.found;
   const ZeroOptions& options = results.options;
@@ -171,6 +178,7 @@ ordered_json zero_json(const ZeroResults& results) {
                        {"singular_values_per_rad", found.singular_values},
                        {"blind_directions", ordered_json::array()},
                        {"poses", ordered_json::array()}};
+  add_to(json, worth_of(results));
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     json["joints"][joint_name(results, i)] = {{"z_rad", z_rad(results, i)},
                                               {"zero_offset_rad", -z_rad(results, i)},
@@ -187,8 +195,8 @@ ordered_json zero_json(const ZeroResults& results) {
 
 pages::Page zero_report(const ZeroResults& results) {
   pages::Page page(fmt::format("{}: zero calibration", results.robot->name));
-  page.verdict(results.found.converged && all_observed(results.found) ? pages::Tone::kGood : pages::Tone::kBad,
-               verdict_text(results));
+  page.worth(worth_of(results));
+  page.verdict({}, verdict_text(results));
   page.heading("Zero points");
   show_offsets(page, results);
   page.heading("What the poses can tell");
@@ -213,14 +221,18 @@ std::vector<std::string> zero_text(const ZeroResults& results) {
   }
   for (const BlindDirection& blind : results.found.blind)
     lines.push_back(fmt::format("hardly seen: {} (+- {:.4f} rad)", blind.text, blind.deviation_rad));
+  if (const std::string worth = worth_of(results).sentence(); !worth.empty()) lines.push_back(worth);
   lines.push_back(verdict_text(results));
   return lines;
 }
 
 std::vector<std::string> zero_remarks(const ZeroResults& results) {
-  return {fmt::format("{}: zero points by pmg_calibrate_zero, {} poses, {}.", results.robot->name, results.found.used(),
-                      results.found.converged ? "converged" : "not converged"),
-          "zero_offset_rad is reading less truth; the firmware adds its negative."};
+  std::vector<std::string> lines = {
+      fmt::format("{}: zero points by pmg_calibrate_zero, {} poses, {}.", results.robot->name, results.found.used(),
+                  results.found.converged ? "converged" : "not converged"),
+      "zero_offset_rad is reading less truth; the firmware adds its negative."};
+  if (const std::string worth = worth_of(results).sentence(); !worth.empty()) lines.insert(lines.begin(), worth);
+  return lines;
 }
 
 }  // namespace pmg::zero

@@ -7,6 +7,7 @@
 
 #include "pages/page.hpp"
 #include "sim/motor_file.hpp"
+#include "work/worth.hpp"
 #include "zero/zero_calibration.hpp"
 
 namespace pmg::zero {
@@ -28,6 +29,11 @@ struct UnobservedJoint {
   std::string name, why;
 };
 std::vector<UnobservedJoint> unobserved_joints(const ZeroResults& results);
+
+/// Interrupted; off its data, where the poses disagree by more than kMostWeightedRms; missed, where the iteration did
+/// not converge; partial, where a joint between soles and IMU can't be told.
+work::Worth worth_of(const ZeroResults& results);
+inline constexpr double kMostWeightedRms = 3.0;  ///< of what was expected: three standard deviations
 
 nlohmann::ordered_json zero_json(const ZeroResults& results);
 pages::Page zero_report(const ZeroResults& results);

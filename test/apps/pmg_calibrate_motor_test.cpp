@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/running_program.hpp"
@@ -104,6 +105,48 @@ TEST_F(PmgCalibrateMotor, KeepsWhatItHasWhenInterrupted) {
   EXPECT_EQ(exit_code, 130);
   EXPECT_EQ(nlohmann::json::parse(test::text_of(out_ / "fit.json"))["interrupted"], true);
   EXPECT_NO_THROW(sim::read_motor_file(out_ / "motor.yaml"));
+}
+
+TEST_F(PmgCalibrateMotor, RefusesDegreesByNameAndKeptTheyAreOffTheirData) {
+  std::vector<calib::SingleJoint> degrees;
+  const bench::Bench bench = test::pd_bench(true);
+  for (const calib::SingleJoint& joint : test::record(bench, truth_, 4, 1e-3)) {
+    bench::BenchRun run = joint.run();
+    for (double& q : run.recording.q_rad) q *= 57.29578;
+    for (double& q : run.recording.q_cmd_rad) q *= 57.29578;
+    degrees.emplace_back(bench, run, joint.step_s());
+  }
+  fs::remove_all(folder_ / "servo");
+  test::write_bench(folder_ / "servo", degrees);
+  const test::Finished refused = run({"--also", "friction"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("unit: column q_rad"), HasSubstr("degrees"), HasSubstr("--data-faults correct")));
+  EXPECT_FALSE(fs::exists(out_)) << "nothing is fitted";
+  const test::Finished kept = run({"--also", "friction", "--starts", "2", "--data-faults", "keep"});
+  EXPECT_EQ(kept.exit_code, 1);
+  EXPECT_THAT(kept.out, testing::StartsWith("OFF ITS DATA: fault of the data, unit"));
+  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), testing::StartsWith("# OFF ITS DATA: "));
+  EXPECT_THAT(test::text_of(out_ / "report.html"), testing::Not(HasSubstr("class=\"verdict good\"")));
+  const test::Finished corrected = run({"--also", "friction", "--starts", "2", "--data-faults", "correct"});
+  EXPECT_EQ(corrected.exit_code, 0) << corrected.out;
+  EXPECT_NEAR(sim::read_motor_file(out_ / "motor.yaml").at("servo").friction.coulomb_Nm, 0.3, 0.03);
+}
+
+TEST_F(PmgCalibrateMotor, FitsTheLoadThatBenchYamlCallsUnknown) {
+  std::string yaml = test::text_of(folder_ / "servo" / "bench.yaml");
+  for (const std::string key : {"inertia_kg_m2: ", "gravity_Nm: "}) {
+    for (std::size_t at = yaml.find(key); at != std::string::npos; at = yaml.find(key, at + 1))
+      yaml.replace(at + key.size(), yaml.find_first_of(",}", at) - at - key.size(), "unknown");
+  }
+  std::ofstream(folder_ / "servo" / "bench.yaml") << yaml;
+  run({"--also", "friction", "--starts", "2"});
+  const auto json = nlohmann::json::parse(test::text_of(out_ / "fit.json"));
+  for (const char* name : {"load.inertia_scale", "load.gravity_scale"}) {
+    ASSERT_TRUE(json["parameters"].contains(name)) << name;
+    EXPECT_TRUE(json["parameters"][name]["deviation"].is_null()) << "all torques may be larger by one factor";
+  }
+  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't tell"));
 }
 
 TEST_F(PmgCalibrateMotor, ExplainsItself) {

@@ -111,7 +111,7 @@ TEST_F(PmgEval, JumpsAreReportedByRobot) {
   EXPECT_EQ(result, json::parse(test::text_of(folder_ / "run/jumps.json")));
   EXPECT_EQ(result["runs"].size(), 2U);
   EXPECT_TRUE(result["variation"].is_null());
-  EXPECT_THAT(test::text_of(folder_ / "run/report.html"), HasSubstr("A robot fell or faulted"));
+  EXPECT_THAT(test::text_of(folder_ / "run/report.html"), HasSubstr("MISSED: a robot fell or faulted"));
 }
 
 TEST_F(PmgEval, AnInterruptionKeepsWhatWasDone) {
@@ -124,7 +124,9 @@ TEST_F(PmgEval, AnInterruptionKeepsWhatWasDone) {
   EXPECT_EQ(program.wait(), 130) << program.err();
   const json result = json::parse(program.out());
   EXPECT_FALSE(result["complete"]);
-  EXPECT_THAT(test::text_of(folder_ / "run/report.html"), HasSubstr("Incomplete"));
+  EXPECT_EQ(result["worth"], "interrupted");
+  EXPECT_THAT(test::text_of(folder_ / "run/report.html"),
+              testing::AllOf(HasSubstr("INTERRUPTED: "), testing::Not(HasSubstr("class=\"verdict good\""))));
 }
 
 }  // namespace

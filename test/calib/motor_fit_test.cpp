@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "calib/fit_confidence.hpp"
@@ -179,6 +180,166 @@ TEST(Confidence, SaysWhatTheRunsCantTell) {
   EXPECT_EQ(confidence[3].confounded_with, "drive.kd_scale");
   ASSERT_EQ(joint.parameters()[5].name, "drive.no_load_rad_s");
   EXPECT_TRUE(std::isinf(confidence[5].deviation));
+}
+
+/// A pendulum whose rotor has 0.020 kg m^2, and of whose loads bench.yaml knows neither inertia nor gravity torque: the
+/// point masses that stand for them are too light by 13 and 8 %.
+calib::FitProblem of_unknown_load(const std::vector<double>& masses_kg, bool gains_known, double noise_rad = 2e-4) {
+  bench::Bench bench = test::pd_bench(true);
+  for (const double mass_kg : masses_kg) {
+    bench::BenchLoad& load = bench.loads.emplace_back();
+    load.mass_kg = mass_kg;
+    load.inertia_unknown = load.gravity_unknown = true;
+  }
+  calib::JointModel truth;
+  truth.actuator.transmission.armature_kg_m2 = 0.020;
+  truth.actuator.friction.coulomb_Nm = 0.1;
+  truth.inertia_scale = 1.13;
+  truth.gravity_scale = 1.08;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, noise_rad);
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& joint : test::record(bench, truth, 4)) {
+    bench::BenchRun run = joint.run();
+    const double mass_kg = masses_kg[runs.size() % masses_kg.size()];
+    run.load = {0.02 * mass_kg, 2.0 * mass_kg, 0.0};
+    run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(truth);
+    for (double& q_rad : run.recording.q_rad) q_rad += noise(random);
+    runs.emplace_back(bench, run, joint.step_s());
+  }
+  std::vector<std::string> names = {"transmission.armature_kg_m2", "friction.coulomb_Nm"};
+  if (!gains_known) names.insert(names.end(), {"drive.kp_scale", "drive.kd_scale"});
+  for (const std::string& name : calib::unknown_loads(bench)) names.push_back(name);
+  std::vector<calib::FitParameter> parameters;
+  for (const std::string& name : names) parameters.push_back(calib::fit_parameter(name, bench));
+  return {parameters, {}, runs};
+}
+
+struct FittedLoad {
+  calib::FitProblem problem;
+  calib::Fit fit = calib::fit(problem, {.starts = 4, .newton_steps = 30, .threads = 2});
+  std::vector<calib::Confidence> confidence = calib::confidence(problem, fit.point, 2);
+};
+
+std::vector<std::string> not_told(const FittedLoad& fitted) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < fitted.confidence.size(); ++i) {
+    if (!fitted.confidence[i].told_only_with.empty()) names.push_back(fitted.problem.parameters()[i].name);
+  }
+  return names;
+}
+
+TEST(UnknownLoad, OfTwoMassesIsFittedBesideTheRotor) {
+  const FittedLoad fitted{of_unknown_load({0.5, 2.0}, true)};
+  EXPECT_NEAR(fitted.fit.model.actuator.transmission.armature_kg_m2, 0.020, 0.02 * 0.020);
+  EXPECT_NEAR(fitted.fit.model.inertia_scale, 1.13, 0.02 * 1.13);
+  EXPECT_NEAR(fitted.fit.model.gravity_scale, 1.08, 0.02 * 1.08);
+  EXPECT_THAT(not_told(fitted), testing::IsEmpty());
+  for (const calib::Confidence& one : fitted.confidence) EXPECT_TRUE(std::isfinite(one.deviation));
+  EXPECT_LT(std::abs(fitted.fit.model.actuator.transmission.armature_kg_m2 - 0.020),
+            4.0 * fitted.confidence[0].deviation);
+}
+
+TEST(UnknownLoad, OfOneMassIsNotToldFromTheRotorAndNoIntervalIsClaimed) {
+  const FittedLoad fitted{of_unknown_load({1.0}, true)};
+  EXPECT_THAT(not_told(fitted), testing::ElementsAre("transmission.armature_kg_m2", "load.inertia_scale"));
+  EXPECT_THAT(fitted.confidence[0].told_only_with, testing::ElementsAre("load.inertia_scale"));
+  EXPECT_TRUE(std::isinf(fitted.confidence[0].deviation));
+  EXPECT_NEAR(fitted.fit.model.actuator.transmission.armature_kg_m2 + 0.02 * fitted.fit.model.inertia_scale,
+              0.020 + 0.02 * 1.13, 0.02 * 0.0426)
+      << "what they make together is told";
+  EXPECT_NEAR(fitted.fit.model.gravity_scale, 1.08, 0.02 * 1.08) << "gravity is told by gains that are known";
+}
+
+TEST(UnknownLoad, BesideUnknownGainsLeavesTheFactorOfAllTorquesOpen) {
+  const FittedLoad fitted{of_unknown_load({0.5, 2.0}, false)};
+  EXPECT_THAT(not_told(fitted),
+              testing::UnorderedElementsAre("transmission.armature_kg_m2", "friction.coulomb_Nm", "drive.kp_scale",
+                                            "drive.kd_scale", "load.inertia_scale", "load.gravity_scale"));
+  for (const calib::Confidence& one : fitted.confidence) EXPECT_TRUE(std::isinf(one.deviation));
+}
+
+TEST(UnknownLoad, IsThatOfBenchYamlAndOfAllLoadsOrNone) {
+  bench::Bench bench = test::pd_bench(true);
+  bench.loads.resize(2);
+  EXPECT_THAT(calib::unknown_loads(bench), testing::IsEmpty());
+  bench.loads[0].inertia_unknown = true;
+  EXPECT_THROW(calib::unknown_loads(bench), std::invalid_argument);
+  bench.loads[1].inertia_unknown = true;
+  EXPECT_THAT(calib::unknown_loads(bench), testing::ElementsAre("load.inertia_scale"));
+}
+
+// A search that stopped far from its optimum: the residual's slope says how far.
+TEST(Confidence, OfAnUnfinishedFitReachesToWhereTheFitWouldEnd) {
+  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-4);
+  calib::JointModel near = truth();
+  near.actuator.transmission.armature_kg_m2 *= 1.05;
+  near.actuator.friction.coulomb_Nm *= 0.97;
+  const std::vector<calib::Confidence> confidence = calib::confidence(joint, joint.point_of(near), 1);
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    const std::string& name = joint.parameters()[i].name;
+    EXPECT_LT(std::abs(calib::value(near, name) - calib::value(truth(), name)), 1.2 * confidence[i].deviation) << name;
+  }
+}
+
+/// What the program makes of a fit, of which it may ask for interruptions so often.
+calib::FitResults results_of(const calib::FitProblem& problem, const bench::Bench& bench, int most_questions) {
+  calib::FitResults results;
+  int questions = 0;
+  results.fit = calib::fit(problem, {.starts = 2, .evaluations_per_dimension = 20},
+                           {.interrupted = [&] { return ++questions > most_questions; }});
+  results.confidence = calib::confidence(problem, results.fit.point, 1);
+  results.bench = &bench;
+  results.problem = &problem;
+  results.fitted = calib::assess("", problem.runs(), problem.start(), results.fit.model, 1);
+  return results;
+}
+
+/// The words that a fit's files and page begin with.
+void expect_everywhere(const calib::FitResults& results, const std::string& word, work::Grade grade) {
+  EXPECT_EQ(worth_of(results).grade(), grade) << worth_of(results).sentence();
+  EXPECT_THAT(calib::motor_remarks(results).front(), testing::StartsWith(word)) << "motor.yaml";
+  EXPECT_EQ(calib::fit_json(results)["worth"], work::name(grade));
+  const std::string html = calib::fit_report(results).html();
+  EXPECT_THAT(html, testing::Not(HasSubstr("class=\"verdict good\"")));
+  EXPECT_LT(html.find(word), html.find("Mean absolute error"));
+}
+
+constexpr int kWithoutEnd = 1 << 30;
+
+TEST(FitWorth, GreenOnlyWhereTheFitEndedAndExplainsTheMotion) {
+  const bench::Bench bench = test::pd_bench(true);
+  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitResults whole = results_of(joint, bench, kWithoutEnd);
+  EXPECT_EQ(worth_of(whole).sentence(), "");
+  EXPECT_THAT(calib::fit_report(whole).html(), HasSubstr("class=\"verdict good\""));
+  for (const int questions : {0, 10, 40})
+    expect_everywhere(results_of(joint, bench, questions), "INTERRUPTED: ", work::Grade::kInterrupted);
+}
+
+TEST(FitWorth, ReadingsOfNoiseAreNothingThatAModelExplains) {
+  const bench::Bench bench = test::pd_bench(true);
+  const calib::FitProblem joint = problem({"friction", "damping"}, 1e-3);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& one : joint.runs()) {
+    bench::BenchRun run = one.run();
+    for (double& q_rad : run.recording.q_rad) q_rad = noise(random);
+    runs.emplace_back(bench, run, one.step_s());
+  }
+  const calib::FitProblem wrong(joint.parameters(), {}, runs);
+  expect_everywhere(results_of(wrong, bench, kWithoutEnd), "OFF ITS DATA: ", work::Grade::kOffItsData);
+}
+
+TEST(FitWorth, OfFaultyDataAndOfAFitThatGetsNoBetter) {
+  const bench::Bench bench = test::pd_bench(true);
+  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  calib::FitResults results = results_of(joint, bench, kWithoutEnd);
+  results.fitted.before = results.fitted.after;
+  expect_everywhere(results, "NO BETTER: ", work::Grade::kNoBetter);
+  results.data = {work::Grade::kOffItsData, "a fault of the data"};
+  expect_everywhere(results, "OFF ITS DATA: a fault of the data", work::Grade::kOffItsData);
 }
 
 TEST(FitProblem, PointsAreWhatModelsAre) {

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis_page/diagnosis_page.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -112,6 +114,61 @@ TEST(JointDiagnosisOptions, EveryNumberIsListedWithItsReason) {
   for (const evidence::Option& option : all) {
     EXPECT_TRUE(names.insert(option.name).second) << option.name;
     EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
+  }
+}
+
+/// The words that a diagnosis' JSON and page begin with; no line is green.
+void expect_worth(const bench::Bench& bench, const Diagnosis& found, const DiagnosedRuns& runs, work::Grade grade) {
+  EXPECT_EQ(worth_of(found).grade(), grade) << worth_of(found).sentence();
+  EXPECT_EQ(diagnosis_json(found)["worth"], work::name(grade));
+  const std::string html = diagnosis_page::page_of(bench, found, runs, 1).html();
+  EXPECT_EQ(html.find("verdict good"), std::string::npos);
+  const std::size_t first = html.find("<div class=\"verdict");
+  const std::size_t text = html.find('>', first) + 1;
+  EXPECT_EQ(html.substr(text, 12), worth_of(found).sentence().substr(0, 12)) << "the first line";
+}
+
+TEST_F(Diagnose, InterruptedItHasNoVerdictWhereverItWas) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  truth.actuator.command.delay_s = 0.015;
+  test::write_bench(folder_, test::record(test::pd_bench(true), truth, 4, 2e-4));
+  const bench::Bench bench = bench::read_bench(folder_);
+  DiagnoseOptions options;
+  options.model = known();
+  for (const int most : {0, 5, 50}) {
+    int questions = 0;
+    DiagnosedRuns runs;
+    const Diagnosis found =
+        diagnose(bench, options, &runs, {.report = {}, .interrupted = [&] { return ++questions == most + 1; }});
+    SCOPED_TRACE(most);
+    EXPECT_EQ(found.verdict, evidence::Verdict::kInterrupted);
+    expect_worth(bench, found, runs, work::Grade::kInterrupted);
+  }
+}
+
+TEST_F(Diagnose, ReadingsInDegreesOrOfNoiseAreNoGreenPage) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  for (const bool degrees : {true, false}) {
+    std::vector<calib::SingleJoint> joints;
+    for (const calib::SingleJoint& one : test::record(test::pd_bench(true), truth, 4, 2e-4)) {
+      bench::BenchRun run = one.run();
+      for (double& q_rad : run.recording.q_rad) q_rad = degrees ? q_rad * 57.29578 : noise(random);
+      for (double& q_rad : run.recording.q_cmd_rad) q_rad *= degrees ? 57.29578 : 1.0;
+      joints.emplace_back(test::pd_bench(true), run, one.step_s());
+    }
+    fs::remove_all(folder_);
+    test::write_bench(folder_, joints);
+    const bench::Bench bench = bench::read_bench(folder_);
+    DiagnoseOptions options;
+    options.model = known();
+    DiagnosedRuns runs;
+    const Diagnosis found = diagnose(bench, options, &runs);
+    SCOPED_TRACE(degrees ? "degrees" : "noise");
+    expect_worth(bench, found, runs, work::Grade::kOffItsData);
   }
 }
 

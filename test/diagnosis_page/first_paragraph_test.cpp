@@ -44,6 +44,24 @@ TEST(FirstParagraph, OfACauseSaysWhatHowSureHowMuchBetterAndWhatToCheck) {
   }
 }
 
+TEST(FirstParagraph, SaysWhatTheRobotSuffersFrom) {
+  EXPECT_THAT(paragraph_of(diagnosis_of(Verdict::kFound, {cause("backlash"), cause("load_friction")})),
+              testing::AllOf(HasSubstr("On the robot: The limb is loose"), HasSubstr("the more it carries")));
+  EXPECT_THAT(paragraph_of(diagnosis_of(Verdict::kNone, {})), Not(HasSubstr("On the robot")));
+}
+
+TEST(FirstParagraph, OfAnInterruptedSearchSaysNeitherThatSomethingIsWrongNorThatNothingIs) {
+  const std::string text = paragraph_of(diagnosis_of(Verdict::kInterrupted, {cause("backlash")}));
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("stopped before it was finished"), HasSubstr("start it again"),
+                                   Not(HasSubstr("play in the gear")), Not(HasSubstr("sure"))));
+}
+
+TEST(FirstParagraph, OfASimulationThatExplainsNothingNamesNoCause) {
+  Diagnosis other = diagnosis_of(Verdict::kFound, {cause("backlash")});
+  other.standing_still = 0.005;  // 0.00349 with the causes
+  EXPECT_THAT(paragraph_of(other), testing::AllOf(HasSubstr("not even roughly"), Not(HasSubstr("play in the gear"))));
+}
+
 TEST(FirstParagraph, OfTwoRivalsAsksForTheRecordingsThatTell) {
   Diagnosis both = diagnosis_of(Verdict::kAmbiguous, {cause("delay", {"sensor_lag"})});
   both.next_excitation.emplace();
@@ -115,6 +133,7 @@ TEST(Workshop, EveryEffectOfTheCatalogueHasACheck) {
     const WorkshopWords words = workshop_words(effect.name);
     EXPECT_NE(words.what, effect.title) << effect.name;
     EXPECT_THAT(words.check, testing::ContainsRegex("[.?]$")) << effect.name;
+    EXPECT_THAT(words.cost, testing::ContainsRegex("[.]$")) << effect.name;
   }
 }
 

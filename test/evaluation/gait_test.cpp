@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "files/config_error.hpp"
@@ -120,6 +121,55 @@ TEST(Gait, BuiltInNormsAreThoseOfWalking) {
   EXPECT_GT(peak, 65) << "the knee bends most in swing";
   EXPECT_LT(peak, 80);
   EXPECT_GT(norms.deg[kHip].front(), norms.deg[kHip][50]) << "flexed at contact, extended when the other foot lands";
+}
+
+/// A test whose both feet move as the norms say, with so much added to each joint.
+GaitTest walk_of(std::array<double, kGaitJoints> offset_deg) {
+  GaitTest test;
+  test.robot = "z1";
+  test.norms = built_in_norms();
+  test.trial.complete = true;
+  for (FootGait& gait : test.feet) {
+    gait.cycles = 10;
+    gait.period_s = 1.0;
+    gait.duty_factor = kPublishedDutyFactor;
+    for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
+      std::vector<double> curve = test.norms.deg[joint];
+      for (double& value : curve) value += offset_deg[joint];
+      gait.measured_deg[joint] = gait.reference_deg[joint] = curve;
+      gait.measured[joint] = gait.reference[joint] = agreement(curve, test.norms.deg[joint]);
+    }
+  }
+  return test;
+}
+
+TEST(GaitWorth, ACrouchThatHasTheShapesOfAWalkIsMissedByItsAngles) {
+  const GaitTest walk = walk_of({0.0, 0.0, 0.0}), crouch = walk_of({25.0, 40.0, 15.0});
+  EXPECT_EQ(worth_of(walk).sentence(), "");
+  EXPECT_THAT(page_of(walk).html(), HasSubstr("class=\"verdict good\""));
+  EXPECT_EQ(worth_of(crouch).grade(), work::Grade::kMissed);
+  EXPECT_THAT(worth_of(crouch).sentence(),
+              testing::AllOf(HasSubstr("hip flexion is 25 deg RMS"), HasSubstr("knee flexion is 40 deg RMS"),
+                             HasSubstr("ankle dorsiflexion is 15 deg RMS"), testing::Not(HasSubstr("shape"))));
+  EXPECT_THAT(page_of(crouch).html(), testing::Not(HasSubstr("class=\"verdict good\"")));
+  EXPECT_FALSE(to_json(crouch)["limits"]["reached"]);
+  EXPECT_EQ(worth_of(walk_of({12.0, 10.0, 7.0})).sentence(), "") << "as far as persons are apart";
+}
+
+TEST(GaitWorth, InterruptedFallenOrOfAnotherStrideItIsNotGreen) {
+  GaitTest test = walk_of({0.0, 0.0, 0.0});
+  test.trial.complete = false;
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kInterrupted);
+  EXPECT_THAT(page_of(test).html(), testing::Not(HasSubstr("class=\"verdict good\"")));
+  test = walk_of({0.0, 0.0, 0.0});
+  test.trial.fell = true;
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kMissed);
+  test = walk_of({0.0, 0.0, 0.0});
+  test.feet[kRight].duty_factor = 0.8;
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kMissed);
+  test = walk_of({0.0, 0.0, 0.0});
+  test.feet[kLeft].measured[kHip].correlation = std::nan("");  // a leg that doesn't move
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kMissed);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "evaluation/campaign.hpp"
 #include "evaluation/push.hpp"
 #include "evaluation/table1.hpp"
+#include "evaluation/table2.hpp"
 
 namespace pmg::evaluation {
 namespace {
@@ -214,6 +215,53 @@ TEST(Table1, LimitsAndThePapersFiguresAreThoseOfThePolicyByName) {
   evaluate(table);
   EXPECT_TRUE(table.reached(kYawVel)) << "the mean counts";
   EXPECT_FALSE(table.all_reached()) << "falls do too";
+}
+
+TEST(Table1, InterruptedItIsNotWorthWhatItsRunsSoFarAre) {
+  Table1 table;
+  table.scenario.name = kGentleScenario;
+  table.yardsticks.resize(1);
+  table.cases = {{.name = "pmg", .candidate = without_policy(), .plants = {}}};
+  TrialResult good;
+  good.complete = true;
+  good.judged_s = 1.0;
+  good.errors = {0.01, 0.01, 0.01, 0.01, 0.001};
+  table.campaign.runs = {{good, good}};
+  evaluate(table);
+  EXPECT_EQ(worth_of(table).sentence(), "");
+  table.campaign.complete = false;
+  table.campaign.runs = {{good, {}}};
+  evaluate(table);
+  EXPECT_EQ(worth_of(table).sentence(), "INTERRUPTED: 1 of 2 runs are complete");
+  table.campaign.runs = {{{}, {}}};
+  evaluate(table);
+  EXPECT_EQ(worth_of(table).sentence(), "INTERRUPTED: 0 of 2 runs are complete") << "and nothing of figures of no run";
+  table.campaign.complete = true;
+  good.errors[kRollError] = 1.0;
+  table.campaign.runs = {{good, good}};
+  evaluate(table);
+  EXPECT_EQ(worth_of(table).grade(), work::Grade::kMissed);
+}
+
+TEST(Pushes, WithoutTheJudgedStrengthThePageIsNotGreen) {
+  PushTest test;
+  TrialResult good;
+  good.complete = true;
+  test.strengths = {{kJudgedPush_N_s + 15.0, {good, good}}};
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kOpen);
+  test.strengths.insert(test.strengths.begin(), {kJudgedPush_N_s, {good, good}});
+  EXPECT_EQ(worth_of(test).sentence(), "");
+  EXPECT_NE(page_of(test).html().find("verdict good"), std::string::npos);
+  test.complete = false;
+  EXPECT_EQ(worth_of(test).grade(), work::Grade::kInterrupted);
+  EXPECT_EQ(page_of(test).html().find("verdict good"), std::string::npos);
+}
+
+TEST(Table2, InterruptedNothingIsCompared) {
+  Table2 table;
+  table.complete = false;
+  EXPECT_EQ(worth_of(table).exit_code(), 130);
+  EXPECT_EQ(page_of(table).html().find("verdict good"), std::string::npos);
 }
 
 }  // namespace

@@ -39,6 +39,16 @@ double rms(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
+TEST(Wiring, AGaitThatIsInterruptedBeforeTwoStepsIsNoRobotThatCannotWalk) {
+  GaitTest test;
+  test.robot = "z1";
+  test.evaluated = {.name = "pmg", .candidate = pmg_policy(), .plants = {}};
+  test.norms = built_in_norms();
+  int questions = 0;
+  const Supervision supervision{.jobs = 1, .progress = {.report = {}, .interrupted = [&] { return ++questions > 20; }}};
+  EXPECT_THROW(run_gait(test, supervision), work::Interrupted);
+}
+
 // Soft drives let a loaded leg yield by degrees. So the measured gait is near the reference, and never the reference.
 TEST(Wiring, GaitComparesTheMeasuredJointsWithTheReferenceAndBothWithThePublishedMeans) {
   GaitTest test;

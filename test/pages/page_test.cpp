@@ -23,7 +23,9 @@ constexpr const char* kHostile = "</script><img src=x onerror=alert(1)> \"&' \xf
 /// A page with one element of every kind, all with this name.
 Page full_page(const std::string& name) {
   Page page(name);
-  page.verdict(Tone::kBad, name);
+  page.worth({work::Grade::kMissed, name});
+  page.verdict({}, name);
+  page.note(name);
   page.heading(name);
   page.heading("second");
   page.paragraph(name);
@@ -156,6 +158,36 @@ TEST(Number, IsShortAndReadable) {
   EXPECT_EQ(number(-4.25e-7), "-4.25e-7");
   EXPECT_EQ(number(3e300), "3e300") << "no number takes three hundred digits";
   EXPECT_EQ(number(std::nan("")), "-");
+}
+
+/// Classes of the highlighted lines, in their order.
+std::vector<std::string> colours(const Page& page) {
+  std::vector<std::string> found;
+  const std::string html = without_assets(page.html()), open = "<div class=\"verdict ";
+  for (std::size_t at = html.find(open); at != std::string::npos; at = html.find(open, at + 1)) {
+    const std::size_t begin = at + open.size();
+    found.push_back(html.substr(begin, html.find('"', begin) - begin));
+  }
+  return found;
+}
+
+TEST(Page, NoLineIsGreenUnlessPageAndLineHold) {
+  using work::Grade;
+  for (const Grade grade : {Grade::kHolds, Grade::kOpen, Grade::kPartial, Grade::kMissed, Grade::kNoBetter,
+                            Grade::kOffItsData, Grade::kInterrupted}) {
+    Page of_line("line"), of_page("page");
+    of_line.verdict({grade, "the reservation"}, "the judgement");
+    of_page.worth({grade, "the reservation"});
+    of_page.verdict({}, "the judgement");
+    SCOPED_TRACE(name(grade));
+    EXPECT_EQ(colours(of_line).front() == "good", grade == Grade::kHolds);
+    EXPECT_EQ(colours(of_page).back() == "good", grade == Grade::kHolds);
+    EXPECT_THAT(of_page.html(), HasSubstr(std::string("data-worth=\"") + name(grade) + "\""));
+    if (grade == Grade::kHolds) continue;
+    EXPECT_EQ(colours(of_page).size(), 2U) << "the reservation is the first line";
+    EXPECT_LT(of_page.html().find("the reservation"), of_page.html().find("the judgement"));
+    EXPECT_LT(of_line.html().find("the reservation"), of_line.html().find("the judgement"));
+  }
 }
 
 }  // namespace

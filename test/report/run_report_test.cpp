@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "report/run_figures.hpp"
 #include "small_log.hpp"
 
 namespace pmg::report {
@@ -95,6 +97,28 @@ TEST_F(RunReport, StaysSmall) {
 TEST_F(RunReport, RefusesNoneAndTooMany) {
   EXPECT_THROW(run_report({}), std::invalid_argument);
   EXPECT_THROW(run_report(std::vector<RunSeries>(kMostRuns + 1)), std::invalid_argument);
+}
+
+TEST_F(RunReport, OfALogThatWasNotReadToItsEndNoLineIsGreen) {
+  RunSeries whole = run({});
+  EXPECT_THAT(run_report({whole}).html(), HasSubstr("class=\"verdict good\""));
+  RunSeries cut = whole, ended = whole;
+  cut.problems = {"a log file ends in the middle of an event: its end is missing"};
+  ended.interrupted = true;
+  EXPECT_EQ(worth_of_reading(cut).exit_code(), 1);
+  EXPECT_EQ(worth_of_reading(ended).exit_code(), 130);
+  for (const RunSeries& series : {cut, ended}) {
+    EXPECT_THAT(run_report({whole, series}).html(), Not(HasSubstr("class=\"verdict good\"")));
+    EXPECT_EQ(run_json(series)["worth"], work::name(worth_of_reading(series).grade()));
+  }
+  EXPECT_EQ(worth_of_reading(run({.fault_at = 200})).sentence(), "")
+      << "the log was read; what it shows is another thing";
+}
+
+TEST_F(RunReport, SaysThatReadingWasInterrupted) {
+  SmallLog{.ticks = 9000}.write(folder_ / "long.lcm");
+  const RunSeries run = read_run(folder_ / "long.lcm", {.report = {}, .interrupted = [] { return true; }});
+  EXPECT_EQ(worth_of_reading(run).grade(), work::Grade::kInterrupted);
 }
 
 }  // namespace

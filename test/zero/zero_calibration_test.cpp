@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <kdl/chaindynparam.hpp>
+#include <nlohmann/json.hpp>
 
 #include "sim/robots.hpp"
+#include "zero/zero_results.hpp"
 #include "zero/zero_stances.hpp"
 
 namespace pmg::zero {
@@ -14,6 +16,7 @@ namespace {
 
 using testing::Contains;
 using testing::Each;
+using testing::HasSubstr;
 using testing::Not;
 
 /// Deterministic offsets between 0.02 and 0.1 rad of either sign.
@@ -147,6 +150,55 @@ TEST(ZeroCalibration, WithoutAPoseThatStandsThereIsAMessage) {
   for (StillPose& pose : poses) pose.torque_Nm.setZero();
   EXPECT_THROW(calibrate_zero(z1(), poses), std::invalid_argument);
   EXPECT_THROW(calibrate_zero(z1(), {}), std::invalid_argument);
+}
+
+ZeroResults results_of(const std::vector<StillPose>& poses, int most_questions = 1 << 30) {
+  ZeroResults results{.robot = &z1(), .poses = &poses, .options = {}, .found = {}};
+  int questions = 0;
+  const work::Progress progress{.report = {}, .interrupted = [&] { return ++questions > most_questions; }};
+  results.found = calibrate_zero(z1(), poses, results.options, progress);
+  results.interrupted = questions > most_questions;
+  return results;
+}
+
+/// The words that zero.yaml, zero.json and the page begin with.
+void expect_everywhere(const ZeroResults& results, const std::string& word, work::Grade grade) {
+  EXPECT_EQ(worth_of(results).grade(), grade) << worth_of(results).sentence();
+  EXPECT_THAT(zero_remarks(results).front(), testing::StartsWith(word));
+  EXPECT_EQ(zero_json(results)["worth"], work::name(grade));
+  EXPECT_THAT(zero_report(results).html(), Not(HasSubstr("class=\"verdict good\"")));
+}
+
+TEST(ZeroWorth, GreenOnlyWhereTheIterationEndedAndThePosesAgree) {
+  const Eigen::VectorXd offset = hidden_offsets(leg_joints().size());
+  const std::vector<StillPose> poses = all_stances(offset);
+  const ZeroResults whole = results_of(poses);
+  EXPECT_EQ(worth_of(whole).sentence(), "");
+  EXPECT_THAT(zero_report(whole).html(), HasSubstr("class=\"verdict good\""));
+  expect_everywhere(results_of(poses, 1), "INTERRUPTED: ", work::Grade::kInterrupted);
+
+  ZeroResults apart = whole;
+  apart.found.weighted_rms = 1.1 * kMostWeightedRms;
+  expect_everywhere(apart, "OFF ITS DATA: ", work::Grade::kOffItsData);
+  apart = whole;
+  apart.found.converged = false;
+  expect_everywhere(apart, "MISSED: ", work::Grade::kMissed);
+  apart = whole;
+  apart.found.observable.front() = false;
+  expect_everywhere(apart, "PARTIAL: ", work::Grade::kPartial);
+}
+
+// Such legs stand on no ground: poses are judged before they are used.
+TEST(ZeroWorth, OfReadingsInDegreesOrOfNoiseThereAreNoZeroPoints) {
+  for (const bool degrees : {true, false}) {
+    std::mt19937_64 random(11);
+    std::vector<StillPose> poses = all_stances(hidden_offsets(leg_joints().size()));
+    for (StillPose& pose : poses) {
+      for (double& reading_rad : pose.reading_rad)
+        reading_rad = degrees ? reading_rad * 57.29578 : reading_rad + uniform(random, -0.15, 0.15);
+    }
+    EXPECT_THROW(results_of(poses), std::invalid_argument) << (degrees ? "degrees" : "noise");
+  }
 }
 
 }  // namespace
