@@ -77,7 +77,8 @@ struct ShowOptions {
   bool json = false;
 };
 
-void print_table(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
+void print_table(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms,
+                 const generator::SoleReport& sole) {
   std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance mm  gap mm\n"
             << std::fixed;
   for (const generator::ClipReport& clip : clips) {
@@ -101,9 +102,13 @@ void print_table(const std::vector<generator::ClipReport>& clips, const std::vec
               << std::setprecision(1) << norm.rms_deg << " degrees from the norm, at contact " << norm.at_contact_deg
               << "\n";
   }
+  if (norms.empty()) return;
+  std::cout << "forward sole from 10 to 30 % of the cycle: toes up by " << sole.toes_up_deg << " degrees, the norm "
+            << sole.published_toes_up_deg << "\n";
 }
 
-void print_json(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
+void print_json(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms,
+                const generator::SoleReport& sole) {
   nlohmann::json out;
   for (const generator::ClipReport& clip : clips) {
     nlohmann::json& entry = out["clips"][clip.name];
@@ -131,6 +136,9 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
     out["norms"][norm.curve] = {
         {"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}, {"contact_deg", norm.at_contact_deg}};
   }
+  if (!norms.empty()) {
+    out["sole"] = {{"toes_up_deg", sole.toes_up_deg}, {"published_toes_up_deg", sole.published_toes_up_deg}};
+  }
   apps::print_json(out);
 }
 
@@ -140,8 +148,12 @@ int show(const ShowOptions& options) {
       model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
   const std::vector<generator::ClipReport> clips = generator::report(robot, library);
   std::vector<generator::NormReport> norms;
-  if (library.positive[kVx]) norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
-  options.json ? print_json(clips, norms) : print_table(clips, norms);
+  generator::SoleReport sole;
+  if (library.positive[kVx]) {
+    norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
+    sole = generator::compare_sole_with_norms(robot, *library.positive[kVx], options.norms);
+  }
+  options.json ? print_json(clips, norms, sole) : print_table(clips, norms, sole);
   for (const generator::ClipReport& clip : clips) {
     if (!clip.failure.empty()) {
       std::cerr << clip.name << ": " << clip.failure << "\n";

@@ -166,26 +166,45 @@ NormReport compare(const std::string& curve, const std::vector<double>& ours, co
 
 constexpr std::size_t kNormPoints = 100;  // 0 to 99 % of the cycle
 
+// Where people's feet lie flat [kNormPoints]: the published curves turn the sole by less than 3 degrees there.
+constexpr std::size_t kFlatFrom = 10, kFlatTo = 30;
+
 /// Published means [deg] at kNormPoints.
 struct NormCurves {
   std::vector<double> hip, tilt, knee, ankle;
 };
 
-std::vector<NormReport> compare(const model::RobotModel& robot, const DynamicClip& forward, const NormCurves& norms) {
+/// The left leg's flexion [deg] at kNormPoints.
+struct LegCurves {
+  std::vector<double> hip, thigh, knee, ankle;
+
+  /// Mean rise of the toes where people's feet lie flat.
+  double toes_up_deg() const {
+    double sum = 0.0;
+    for (std::size_t k = kFlatFrom; k <= kFlatTo; ++k) sum += thigh[k] - knee[k] + ankle[k];
+    return sum / static_cast<double>(kFlatTo - kFlatFrom + 1);
+  }
+};
+
+LegCurves curves_of(const model::RobotModel& robot, const DynamicClip& forward) {
   const JointRoles roles = find_joint_roles(robot);
   const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kRadPerDegree;
-  std::vector<double> hip_deg, thigh_deg, knee_deg, ankle_deg, published_thigh_deg;
+  LegCurves curves;
   const std::size_t n = forward.q.size();
   for (std::size_t k = 0; k < kNormPoints; ++k) {
     const JointVector& q = forward.q[k * n / kNormPoints];
-    hip_deg.push_back(-q[roles.leg[kLeft][kHipPitch]] / kRadPerDegree);
-    thigh_deg.push_back(hip_deg.back() - tilt_deg);
-    knee_deg.push_back(q[roles.leg[kLeft][kKnee]] / kRadPerDegree);
-    ankle_deg.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kRadPerDegree);
-    published_thigh_deg.push_back(norms.hip[k] - norms.tilt[k]);
+    curves.hip.push_back(-q[roles.leg[kLeft][kHipPitch]] / kRadPerDegree);
+    curves.thigh.push_back(curves.hip.back() - tilt_deg);
+    curves.knee.push_back(q[roles.leg[kLeft][kKnee]] / kRadPerDegree);
+    curves.ankle.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kRadPerDegree);
   }
-  return {compare("hip", hip_deg, norms.hip), compare("thigh", thigh_deg, published_thigh_deg),
-          compare("knee", knee_deg, norms.knee), compare("ankle", ankle_deg, norms.ankle)};
+  return curves;
+}
+
+LegCurves curves_of(const NormCurves& norms) {
+  LegCurves curves{.hip = norms.hip, .thigh = norms.hip, .knee = norms.knee, .ankle = norms.ankle};
+  for (std::size_t k = 0; k < kNormPoints; ++k) curves.thigh[k] -= norms.tilt[k];
+  return curves;
 }
 
 /// Of generator/published_gait.hpp.
@@ -200,6 +219,15 @@ NormCurves published_norms() {
     norms.ankle.push_back(gait.ankle_dorsiflexion.at_rad(phase) / kRadPerDegree);
   }
   return norms;
+}
+
+/// norms: as of compare_with_norms.
+NormCurves read_norms(const std::filesystem::path& norms) {
+  if (norms.empty()) return published_norms();
+  return {.hip = read_column(norms, "hip_flexion_mean"),
+          .tilt = read_column(norms, "pelvis_tilt_ant+_mean"),
+          .knee = read_column(norms, "knee_flexion_mean"),
+          .ankle = read_column(norms, "ankle_dorsiflexion_mean")};
 }
 
 }  // namespace
@@ -223,12 +251,14 @@ std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary
 
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms) {
-  if (norms.empty()) return compare(robot, forward, published_norms());
-  return compare(robot, forward,
-                 {.hip = read_column(norms, "hip_flexion_mean"),
-                  .tilt = read_column(norms, "pelvis_tilt_ant+_mean"),
-                  .knee = read_column(norms, "knee_flexion_mean"),
-                  .ankle = read_column(norms, "ankle_dorsiflexion_mean")});
+  const LegCurves ours = curves_of(robot, forward), published = curves_of(read_norms(norms));
+  return {compare("hip", ours.hip, published.hip), compare("thigh", ours.thigh, published.thigh),
+          compare("knee", ours.knee, published.knee), compare("ankle", ours.ankle, published.ankle)};
+}
+
+SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
+                                   const std::filesystem::path& norms) {
+  return {curves_of(robot, forward).toes_up_deg(), curves_of(read_norms(norms)).toes_up_deg()};
 }
 
 }  // namespace pmg::generator

@@ -46,4 +46,14 @@ struct NormReport {
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
                                            const std::filesystem::path& norms);
 
+/// How far a walking clip's left sole stands on its heel in the mean of 10 to 30 % of the cycle, where people's feet
+/// lie flat: thigh flexion - knee flexion + ankle dorsiflexion [deg]. A robot's foot lies flat on the floor there,
+/// whatever the clip says.
+struct SoleReport {
+  double toes_up_deg = 0.0, published_toes_up_deg = 0.0;
+};
+/// norms: as of compare_with_norms.
+SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
+                                   const std::filesystem::path& norms);
+
 }  // namespace pmg::generator

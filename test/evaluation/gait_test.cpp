@@ -56,6 +56,17 @@ TEST(Gait, CyclesOfDifferentLengthAreStretchedOntoEachOther) {
   }
 }
 
+TEST(Gait, CyclesSinceAPlannedContactAreNegativeBeforeIt) {
+  EXPECT_NEAR(cycles_since_contact(0.02, 0.31, 0.62), 0.02, 1e-12);
+  EXPECT_NEAR(cycles_since_contact(0.98, 0.31, 0.62), -0.02, 1e-12);
+  EXPECT_NEAR(cycles_since_contact(0.47, 0.81, 0.62), -0.03, 1e-12);
+  EXPECT_NEAR(cycles_since_contact(0.03, 0.81, 0.60), -0.48, 1e-12);
+}
+
+TEST(Gait, WhenFeetLandIsTheMeanAtTheirContacts) {
+  EXPECT_NEAR(mean_at({0.4, -0.06, -0.05, 0.0, -0.02}, {1, 4}), -0.04, 1e-12);
+}
+
 TEST(Gait, AnOffsetSpoilsTheRmsButNeitherCorrelationNorShape) {
   std::vector<double> published, ours;
   for (std::size_t k = 0; k < kCyclePoints; ++k) {

@@ -105,6 +105,27 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeansOffsetIncludedAndLandsOnANearly
   }
 }
 
+TEST_F(ClipsOfZ1, ForwardsSoleIsComparedWherePeoplesFeetLieFlat) {
+  const JointRoles roles = find_joint_roles(*robot_);
+  ASSERT_EQ(library_->positive[kVx]->q.size(), 100U);  // a row for each percent of the cycle
+  const SoleReport sole = compare_sole_with_norms(*robot_, *library_->positive[kVx], {});
+  EXPECT_NEAR(sole.published_toes_up_deg, 0.0, 1.0);
+  EXPECT_LE(sole.toes_up_deg, 10.5);  // not yet flat: no later clip shall stand farther on its heel
+  const auto toes_up_deg = [&](LegRole role, double added_deg, int from_percent, int to_percent) {
+    DynamicClip moved = *library_->positive[kVx];
+    for (int k = from_percent; k <= to_percent; ++k) {
+      moved.q[static_cast<std::size_t>(k)][roles.leg[kLeft][role]] += added_deg * kRadPerDegree;
+    }
+    return compare_sole_with_norms(*robot_, moved, {}).toes_up_deg;
+  };
+  // Flexion of hip and ankle is negative in this robot's joints, that of the knee positive.
+  EXPECT_NEAR(toes_up_deg(kHipPitch, -4.0, 10, 30), sole.toes_up_deg + 4.0, 1e-9);
+  EXPECT_NEAR(toes_up_deg(kKnee, 4.0, 10, 30), sole.toes_up_deg - 4.0, 1e-9);
+  EXPECT_NEAR(toes_up_deg(kAnklePitch, -4.0, 10, 30), sole.toes_up_deg + 4.0, 1e-9);
+  EXPECT_NEAR(toes_up_deg(kKnee, 4.0, 0, 9), sole.toes_up_deg, 1e-9);
+  EXPECT_NEAR(toes_up_deg(kKnee, 4.0, 31, 99), sole.toes_up_deg, 1e-9);
+}
+
 TEST_F(ClipsOfZ1, ForwardAnkleBendsThroughStanceAndPushesOff) {
   const JointRoles roles = find_joint_roles(*robot_);
   const DynamicClip& forward = *library_->positive[kVx];
