@@ -53,7 +53,7 @@ async function run() {
     });
   });
   assert.deepEqual((await within(60, 'its name', info)).capabilities, []);
-  await within(60, `messages of ${[...wanted]}`, all);
+  await within(60, 'a message of each topic', all).catch((error) => { error.message += `, but of ${[...got.keys()]}; advertised were ${[...topics.values()].map(({topic}) => topic)}`; throw error; });
   assert.equal(got.get('STATUS').robot, 'z1');
   assert.ok('left_knee' in got.get('STATE').q_rad);
   assert.equal(got.get('/joint_states').joints.length, 31);

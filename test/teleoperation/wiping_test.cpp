@@ -48,7 +48,7 @@ TEST(Wiping, APersonLeansAsFarAsTheShareThatIsWanted) {
 TEST(Wiping, HandsInAHeadsetsControllersRaiseTheRobotsPalmsThroughTheWholeWay) {
   int asked = 0;
   double highest_m = 0.0;
-  const work::Progress ends{.report = {}, .interrupted = [&] { return ++asked > 700; }};
+  const work::Progress ends{.report = {}, .interrupted = [&] { return ++asked > 560; }};
   const WipingResult result =
       run_wiping({"pmg", {}}, {}, WipingPlan::of(0), ends, [&](const LedRobot& robot, const std::string&) {
         const Eigen::Isometry3d T_WL = robot.world().pose("right_wrist_pitch_link");
