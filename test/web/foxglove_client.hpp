@@ -1,6 +1,7 @@
 // A client of Foxglove's WebSocket protocol, written from its published description.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,10 +34,12 @@ class FoxgloveClient {
     std::int64_t time_ns = 0;
     std::string text;
   };
-  /// The next message of a topic. Lines of JSON on the way are read() or kept in channels. Nothing: closed.
+  /// The next message of a topic, within 10 s. Lines of JSON on the way are read() or kept in channels. Nothing:
+  /// closed.
   std::optional<Data> data() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);  // pings alone are no answer
     while (auto next = browser.frame()) {
-      if (next->opcode == 8) return std::nullopt;
+      if (next->opcode == 8 || std::chrono::steady_clock::now() > end) return std::nullopt;
       if (next->opcode == 9) browser.say(next->text, 10);
       if (next->opcode == 1) take(nlohmann::json::parse(next->text, nullptr, false));
       if (next->opcode != 2) continue;

@@ -160,7 +160,8 @@ TEST_F(FoxgloveServerTest, ASlowClientSkipsStatesKeepsEventsAndHoldsNobodyUp) {
   for (FoxgloveClient* client : {&slow, &quick}) {
     ASSERT_EQ(client->open(), 101);
     client->subscribe(1, state);
-    subscribe(*client, 2, events);
+    client->subscribe(2, events);
+    subscribe(*client, 3, server_.add(topic("LAST")));  // nobody else's: when it has come, so have the others
   }
   until([&] { return server_.counts().clients == 2; });
   const std::string padding(20'000, ' ');
