@@ -17,6 +17,7 @@ Examples:
   pmg_eval table1 --robot z1 --seeds 20 --out out/table1
   pmg_eval table1 --policy pmg=trained/new.onnx --policy without_gco --seeds 4 --out out/new
   pmg_eval table2 --robot z1 --policy pmg --out out/table2
+  pmg_eval table3 --trials 100 --out out/table3
   pmg_eval push --trials 200 --out out/push
   pmg_eval robust --seeds 20 --out out/robust
   pmg_eval gait --out out/gait
@@ -98,6 +99,16 @@ void declare_table2(CLI::App& app, EvalArguments& arguments) {
   declare_output(command, arguments);
 }
 
+void declare_table3(CLI::App& app, EvalArguments& arguments) {
+  CLI::App& command = *app.add_subcommand(
+      "table3", "How often an operator in a headset wipes a table: Table III of the paper, without its box");
+  declare_common(command, arguments);
+  declare_policy(command, arguments);
+  command.add_option("--trials", arguments.tasks, "trials, each with another robot and another towel")
+      ->check(in_range(1, 100000))
+      ->capture_default_str();
+}
+
 void declare_push(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand("push", "Impulses at the torso: how many are survived");
   declare_common(command, arguments);
@@ -155,6 +166,7 @@ void EvalArguments::declare(CLI::App& app) {
   app.require_subcommand(1);
   declare_table1(app, *this);
   declare_table2(app, *this);
+  declare_table3(app, *this);
   declare_push(app, *this);
   declare_robust(app, *this);
   declare_gait(app, *this);

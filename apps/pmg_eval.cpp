@@ -24,6 +24,7 @@
 #include "progress_line.hpp"
 #include "sil/summary.hpp"
 #include "sim/video_writer.hpp"
+#include "teleoperation/table3.hpp"
 
 namespace {
 
@@ -173,6 +174,18 @@ int table2(const apps::EvalArguments& arguments) {
   return hand_over(arguments, table);
 }
 
+int table3(const apps::EvalArguments& arguments) {
+  teleoperation::Table3 table;
+  table.robot = arguments.robot;
+  table.ranges_file = arguments.ranges_file();
+  table.trials = arguments.tasks;
+  const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
+  table.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
+  fs::create_directories(arguments.out);
+  run_table3(table, Watch(arguments).supervision());
+  return hand_over(arguments, table);
+}
+
 int push(const apps::EvalArguments& arguments) {
   evaluation::PushTest test;
   test.robot = arguments.robot;
@@ -245,6 +258,7 @@ int main(int argc, char** argv) {
     const std::string command = arguments.finish(app);
     if (command == "table1") return table1(arguments);
     if (command == "table2") return table2(arguments);
+    if (command == "table3") return table3(arguments);
     if (command == "push") return push(arguments);
     if (command == "robust") return robust(arguments);
     if (command == "steady") return steady(arguments);

@@ -3,10 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,11 +19,13 @@
 #include "io/lcm_link.hpp"
 #include "io/plain_text.hpp"
 #include "live_page/assets.hpp"
+#include "live_page/foxglove_feed.hpp"
 #include "live_page/page_state.hpp"
 #include "live_page/robot_shape.hpp"
 #include "operator/driving_station.hpp"
 #include "program.hpp"
 #include "seal/private_file.hpp"
+#include "web/foxglove_server.hpp"
 #include "web/own_names.hpp"
 #include "web/pairings.hpp"
 #include "web/server.hpp"
@@ -44,14 +48,16 @@ Software stops are not safety-rated.
 Examples:
   pmg_web pair phone
   pmg_web --robot z1 --listen 0.0.0.0
+  pmg_web --robot z1 --foxglove 8765
 
 Exit codes: 0 done, or ended with Ctrl-C or by a signal: velocity was brought to zero first; 1 revoke: nothing is paired under this name;
 2 bad input, no network, or a file that can't be used.)";
 
 struct Arguments {
   std::string robot, lcm_url, keys, folder, name, listen = "127.0.0.1";
-  std::vector<std::string> hosts;
+  std::vector<std::string> hosts, foxglove_origins;
   std::uint16_t port = 8443;
+  std::optional<std::uint16_t> foxglove_port;
 };
 
 fs::path folder_of(const Arguments& arguments) {
@@ -98,14 +104,14 @@ int revoke(const Arguments& arguments) {
 /// What is known of the robot once the controller names its model: this computer must have its files.
 class KnownRobot {
  public:
-  /// Null: nothing is measured.
-  const live_page::MeasuredMotion* motion(const ops::RobotNews* news) {
-    if (news == nullptr || !news->info) return nullptr;
+  void take(const ops::RobotNews* news) {
+    if (news == nullptr || !news->info) return;
     if (session_ != news->info->session) begin(*news->info);
     if (motion_) motion_->take(*news);
-    return motion_ ? &*motion_ : nullptr;
   }
 
+  const live_page::MeasuredMotion* motion() const { return motion_ ? &*motion_ : nullptr; }  ///< null: none is measured
+  const model::RobotModel* model() const { return motion_ ? &*models_.back() : nullptr; }    ///< stays
   double arm_span() const { return span_m_; }  ///< [m]; 0: it has no arms that can be led
   /// What a page draws of it, once after it has become known; empty: nothing new.
   std::string take_shape() { return std::exchange(shape_, {}); }
@@ -116,7 +122,8 @@ class KnownRobot {
     motion_.reset();
     span_m_ = 0.0;
     try {
-      const model::RobotModel robot = model::load_robot(model::find_robot(info.model));
+      const model::RobotModel& robot = *models_.emplace_back(
+          std::make_unique<const model::RobotModel>(model::load_robot(model::find_robot(info.model))));
       if (robot.joint_index.names() != info.joint_names) throw std::runtime_error("its joints are others");
       motion_.emplace(robot);
       const auto setup = arms::read_arm_setup(robot);
@@ -129,9 +136,32 @@ class KnownRobot {
   }
 
   std::optional<std::int64_t> session_;
+  std::vector<std::unique_ptr<const model::RobotModel>> models_;  // one for each start of a controller
   std::optional<live_page::MeasuredMotion> motion_;
   double span_m_ = 0.0;
   std::string shape_;
+};
+
+/// The robot's topics for Foxglove on this computer, if it was asked for.
+class FoxgloveDoor {
+ public:
+  FoxgloveDoor(const Arguments& arguments, io::LcmLink& link) {
+    if (!arguments.foxglove_port) return;
+    const auto utc_ns = [] {
+      return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    };
+    server_.emplace(web::FoxgloveSettings{
+        .port = *arguments.foxglove_port, .session = std::to_string(utc_ns()), .origins = arguments.foxglove_origins});
+    feed_.emplace(link, *server_, utc_ns);
+    std::cout << fmt::format("Foxglove: ws://localhost:{}\n", server_->port());
+  }
+  void follow(const ops::RobotNews* news, const model::RobotModel* model) {
+    if (feed_) feed_->follow(news != nullptr && news->info ? &*news->info : nullptr, model);
+  }
+
+ private:
+  std::optional<web::FoxgloveServer> server_;
+  std::optional<live_page::FoxgloveFeed> feed_;
 };
 
 /// Closes the pages of names that are no longer paired.
@@ -164,6 +194,7 @@ int serve(const Arguments& arguments) {
   for (const std::string& one : links(arguments, server.port(), here))
     if (!here || (one.find("[::1]") == std::string::npos) == (arguments.listen != "::1")) std::cout << one << '\n';
   std::cout << "fingerprint of the certificate (SHA-256): " << certificate.fingerprint << '\n';
+  FoxgloveDoor foxglove(arguments, link);
   if (pairings.names().empty()) std::cout << "nothing is paired: pmg_web pair NAME\n";
   std::cout << std::flush;
   std::int64_t show_at_ns = 0, look_at_ns = 0;
@@ -174,7 +205,8 @@ int serve(const Arguments& arguments) {
     devices.learn(arms.of(station.driver() == nullptr ? "" : station.driver()->robot()));
     for (const web::Said& said : server.take()) devices.take(said, clock.now_ns());
     station.step(kWait_ms);
-    const live_page::MeasuredMotion* measured = known.motion(station.news());
+    known.take(station.news());
+    foxglove.follow(station.news(), known.model());
     devices.set_robot_span(known.arm_span());
     if (std::string shape = known.take_shape(); !shape.empty())
       server.give_out({"/robot.json", "application/json", std::move(shape)});
@@ -185,7 +217,7 @@ int serve(const Arguments& arguments) {
     }
     if (now_ns < show_at_ns || pages.empty()) continue;
     show_at_ns = now_ns + kPicture_ns;
-    const std::string shared = live_page::shared_state(station, devices, arms, measured, now_ns);
+    const std::string shared = live_page::shared_state(station, devices, arms, known.motion(), now_ns);
     for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, devices));
   }
   std::cout << station.last_words() << '\n';
@@ -204,6 +236,11 @@ int main(int argc, char** argv) {
                  "IP address of the interface that is served; 0.0.0.0: all; this computer alone if not given");
   app.add_option("--port", arguments.port, "TCP port; 0: any free one")->capture_default_str();
   app.add_option("--host", arguments.hosts, "another name by which browsers call this computer; may be repeated");
+  app.add_option("--foxglove", arguments.foxglove_port,
+                 "also serve the robot's topics to Foxglove on this TCP port of this computer alone; 0: any free one; "
+                 "Foxglove looks for 8765");
+  app.add_option("--foxglove-origin", arguments.foxglove_origins,
+                 "another site whose pages may look at these topics: https://HOST; may be repeated");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");

@@ -1,5 +1,5 @@
-// Z1 stands up and walks for five seconds in MuJoCo, balanced by its policy, as fast as this computer can: prints time, mode and place
-// twice a second.
+// Z1 stands up and walks for five seconds in MuJoCo, balanced by its policy, as fast as this computer can: prints time,
+// mode and place twice a second.
 #include <cstdio>
 
 #include "control/control_setup.hpp"

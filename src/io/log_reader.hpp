@@ -3,12 +3,13 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "io/message_prefix.hpp"
 
 namespace pmg::io {
 
@@ -33,11 +34,7 @@ class LogReader {
   /// The same, into a message whose memory is reused.
   template <typename Message>
   bool decode_into(Message& message) const {
-    try {
-      return message.decode(data_.data(), 0, static_cast<int>(data_.size())) >= 0;
-    } catch (const std::exception&) {  // damaged bytes hold a length beyond all memory
-      return false;
-    }
+    return decode_prefix(data_, message);
   }
 
   /// Bytes so far that belong to no event, including an incomplete last event.

@@ -10,18 +10,19 @@
 
 #include "io/log_series.hpp"
 #include "io/plain_text.hpp"
-#include "logs/foxglove_topics.hpp"
-#include "logs/json_text.hpp"
 #include "logs/mcap_writer.hpp"
-#include "logs/message_fields.hpp"
 #include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
+#include "topics/foxglove_topics.hpp"
+#include "topics/message_fields.hpp"
+#include "topics/message_topics.hpp"
 
 namespace pmg::logs {
 
 namespace {
 
 namespace fs = std::filesystem;
+using topics::Field;
 
 constexpr std::int64_t kEventsAProgress = 500;
 
@@ -66,7 +67,7 @@ ExportReport for_each_message(const std::vector<fs::path>& files, const work::Pr
 std::string cell(const Field::Value& value) {
   const bool number = std::holds_alternative<std::int64_t>(value) || std::holds_alternative<double>(value) ||
                       std::holds_alternative<bool>(value);
-  return number ? to_text(value) : io::csv_text(to_text(value));
+  return number ? topics::to_text(value) : io::csv_text(topics::to_text(value));
 }
 
 /// One channel's file.
@@ -136,14 +137,8 @@ class McapExport {
       robot_ = robot_of(row.info, named_, report);
       foxglove_.emplace(writer_, robot_ ? &*robot_ : nullptr);
     }
-    foxglove_->take(row.event, time_ns, row.info ? row.info->joint_names : nameless_);
-    const std::string& channel = row.event.channel();
-    auto known = channels_.find(channel);
-    if (known == channels_.end()) {
-      const auto schema = writer_.add_schema("pmg." + channel, "jsonschema", message_schema(row.fields));
-      known = channels_.emplace(channel, writer_.add_channel(schema, channel, "json")).first;
-    }
-    writer_.write(known->second, time_ns, message_json(row.fields));
+    foxglove_->take(row.event.channel(), row.event.data(), time_ns, row.info ? row.info->joint_names : nameless_);
+    messages_.write(row.event.channel(), time_ns, row.fields);
   }
   void close() {
     if (foxglove_) foxglove_->finish();
@@ -154,8 +149,8 @@ class McapExport {
   McapWriter writer_;
   std::string named_;
   std::optional<model::RobotModel> robot_;
-  std::optional<FoxgloveTopics> foxglove_;
-  std::map<std::string, McapWriter::Id> channels_;
+  std::optional<topics::FoxgloveTopics> foxglove_;
+  topics::MessageTopics messages_{writer_};
   const std::vector<std::string> nameless_;
 };
 

@@ -82,7 +82,7 @@ McapWriter::Id McapWriter::add_schema(std::string_view name, std::string_view en
   return schema_count_;
 }
 
-McapWriter::Id McapWriter::add_channel(Id schema, std::string_view topic, std::string_view message_encoding) {
+McapWriter::Id McapWriter::add_channel(Id schema, std::string_view topic, std::string_view message_encoding, Keep) {
   Bytes channel;
   channel.u16(++channel_count_);
   channel.u16(schema);

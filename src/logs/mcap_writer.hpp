@@ -11,23 +11,23 @@
 #include <string_view>
 #include <vector>
 
+#include "topics/message_sink.hpp"
+
 struct ZSTD_CCtx_s;
 
 namespace pmg::logs {
 
-/// Messages of any encoding; each channel has its own. Every method throws std::runtime_error if the disk refuses the
+/// Every method throws std::runtime_error if the disk refuses the
 /// data.
-class McapWriter {
+class McapWriter : public topics::MessageSink {
  public:
-  using Id = std::uint16_t;
-
   explicit McapWriter(const std::filesystem::path& path);  ///< throws std::runtime_error if the file can't be made
 
-  /// Once for each channel, before its first message. encoding: "jsonschema", "protobuf", ...
-  Id add_schema(std::string_view name, std::string_view encoding, std::string_view data);
-  Id add_channel(Id schema, std::string_view topic, std::string_view message_encoding);
-  /// Times in nanoseconds; readers take them for UTC.
-  void write(Id channel, std::int64_t time_ns, std::string_view data);
+  Id add_schema(std::string_view name, std::string_view encoding, std::string_view data) override;
+  Id add_channel(Id schema, std::string_view topic, std::string_view message_encoding,
+                 Keep keep = Keep::kEvents) override;  ///< keeps all
+  bool wants(Id) const override { return true; }
+  void write(Id channel, std::int64_t time_ns, std::string_view data) override;
 
   /// Writes index and footer, without which the file is incomplete. Call once, at the end.
   void close();

@@ -14,11 +14,11 @@
 
 #include "control/control_setup.hpp"
 #include "io/log_series.hpp"
-#include "logs/message_fields.hpp"
 #include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
 #include "recording/tick_messages.hpp"
 #include "runtime/robot_excitation_session.hpp"
+#include "topics/message_fields.hpp"
 
 namespace pmg::logs {
 
@@ -31,15 +31,15 @@ constexpr double kNotANumber = std::numeric_limits<double>::infinity();
 constexpr int kTicksAProgress = 100;
 
 /// Equal bits: -0 differs from 0, and a NaN equals the same NaN.
-bool same(const Field::Value& a, const Field::Value& b) {
+bool same(const topics::Field::Value& a, const topics::Field::Value& b) {
   if (std::holds_alternative<double>(a) && std::holds_alternative<double>(b)) {
     return std::bit_cast<std::uint64_t>(std::get<double>(a)) == std::bit_cast<std::uint64_t>(std::get<double>(b));
   }
   return a == b;
 }
 
-double distance(const Field::Value& a, const Field::Value& b) {
-  const auto number = [](const Field::Value& value) {
+double distance(const topics::Field::Value& a, const topics::Field::Value& b) {
+  const auto number = [](const topics::Field::Value& value) {
     if (const auto* real = std::get_if<double>(&value)) return *real;
     if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
     if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
@@ -254,8 +254,8 @@ class Replay {
     if (logged_fields_.size() != replayed_fields_.size())
       throw std::runtime_error(event.channel() + " has vectors of another length than this robot");
     for (std::size_t i = 0; i < logged_fields_.size(); ++i) {
-      const Field& logged = logged_fields_[i];
-      const Field& replayed = replayed_fields_[i];
+      const topics::Field& logged = logged_fields_[i];
+      const topics::Field& replayed = replayed_fields_[i];
       if (same(logged.value, replayed.value)) continue;
       double& largest = report_.largest[event.channel() + " " + logged.name];
       largest = std::max(largest, distance(logged.value, replayed.value));
@@ -264,8 +264,8 @@ class Replay {
                                  .tick = record_.tick,
                                  .channel = event.channel(),
                                  .field = logged.path(),
-                                 .logged = to_text(logged.value),
-                                 .replayed = to_text(replayed.value)};
+                                 .logged = topics::to_text(logged.value),
+                                 .replayed = topics::to_text(replayed.value)};
     }
   }
 
@@ -289,7 +289,7 @@ class Replay {
   pmg_msgs::status_t status_;
   pmg_msgs::arms_state_t arms_state_{};
   std::vector<std::uint8_t> bytes_;
-  std::vector<Field> logged_fields_, replayed_fields_;
+  std::vector<topics::Field> logged_fields_, replayed_fields_;
   ReplayReport report_;
 };
 

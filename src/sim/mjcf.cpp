@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -21,7 +22,7 @@ using pages::escape_markup;
 
 // Contact classes: soles touch only the floor, bodies touch the floor and each other. Two geoms collide when one's
 // contype meets the other's conaffinity: floor (1, 0), sole (0, 1), body (2, 3), foot body (2, 2); a foot body meets
-// the floor through its sole.
+// the floor through its sole. Props (3, 3) touch all of them; a fixed one (1, 0) is like the floor.
 constexpr const char* kScene = R"(
   <compiler angle="radian" inertiafromgeom="false" balanceinertia="false"/>
   <option timestep="{timestep}" integrator="implicit" gravity="0 0 -{gravity}"/>
@@ -72,6 +73,7 @@ class MjcfText {
     text_ += "  <worldbody>\n";
     text_ += kFloor;
     write_body(*robot_.urdf->getRoot(), nullptr, "", 2);
+    for (const Prop& prop : options_.props) write_prop(prop);
     text_ += "  </worldbody>\n";
     write_exclusions();
     write_actuators();
@@ -99,6 +101,8 @@ class MjcfText {
     if (link.inertial) line(depth + 1, inertial_element(*link.inertial));
     write_visuals(link, depth + 1);
     write_collisions(link, depth + 1);
+    for (const HandBox& box : options_.hand_boxes)
+      if (box.link == link.name) write_hand_box(box, depth + 1);
     if (!link.collision_array.empty()) {
       if (!colliding_ancestor.empty()) neighbours_.emplace_back(colliding_ancestor, link.name);
       colliding_ancestor = link.name;
@@ -108,6 +112,32 @@ class MjcfText {
     for (const auto& child : children_in_joint_order(link))
       write_body(*child, child->parent_joint.get(), colliding_ancestor, depth + 1);
     line(depth, "</body>");
+  }
+
+  void write_prop(const Prop& prop) {
+    const bool fixed = prop.mass_kg == 0.0;
+    const Eigen::Vector3d &p = prop.p_WP_m, &h = prop.half_size_m;
+    const auto& c = prop.colour;
+    line(2, fmt::format(R"(<body name="{}" pos="{} {} {}" quat="{} 0 0 {}">)", escape_markup(prop.name), p.x(), p.y(),
+                        p.z(), std::cos(0.5 * prop.yaw_rad), std::sin(0.5 * prop.yaw_rad)));
+    if (!fixed) {
+      line(3, "<freejoint/>");
+      const Eigen::Vector3d squared = h.cwiseProduct(h) * prop.mass_kg / 3.0;
+      line(3, fmt::format(R"(<inertial pos="0 0 0" mass="{}" diaginertia="{} {} {}"/>)", prop.mass_kg,
+                          squared.y() + squared.z(), squared.x() + squared.z(), squared.x() + squared.y()));
+    }
+    line(3, fmt::format(R"(<geom group="1" type="box" size="{} {} {}" contype="{}" conaffinity="{}" condim="4" )"
+                        R"(friction="{} 0.005 0.0001" rgba="{} {} {} {}"/>)",
+                        h.x(), h.y(), h.z(), fixed ? 1 : 3, fixed ? 0 : 3, prop.friction, c[0], c[1], c[2], c[3]));
+    line(2, "</body>");
+  }
+
+  void write_hand_box(const HandBox& box, int depth) {
+    const Eigen::Vector3d& h = box.half_size_m;
+    line(depth,
+         fmt::format(R"(<geom class="collision" type="box" size="{} {} {}" condim="4" friction="{} 0.005 0.0001" )"
+                     R"({}/>)",
+                     h.x(), h.y(), h.z(), box.friction, pose_attributes(box.T_LH)));
   }
 
   void write_joint(const std::string& name, int depth) {
@@ -196,6 +226,12 @@ class MjcfText {
   void write_standing_keyframe() {
     std::string qpos = fmt::format("0 0 {} 1 0 0 0", robot_.standing_height_m);
     append_standing_angles(*robot_.urdf->getRoot(), qpos);
+    for (const Prop& prop : options_.props) {
+      if (prop.mass_kg == 0.0) continue;
+      const Eigen::Vector3d& p = prop.p_WP_m;
+      qpos += fmt::format(" {} {} {} {} 0 0 {}", p.x(), p.y(), p.z(), std::cos(0.5 * prop.yaw_rad),
+                          std::sin(0.5 * prop.yaw_rad));
+    }
     std::string ctrl;
     for (const auto& joint : robot_.joints) ctrl += fmt::format("{}{}", ctrl.empty() ? "" : " ", joint.stand_rad);
     text_ += "  <keyframe>\n";

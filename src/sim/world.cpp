@@ -266,6 +266,14 @@ model::GroundTruth World::truth() const noexcept {
   return truth;
 }
 
+Eigen::Isometry3d World::pose(const std::string& name) const {
+  const int body = find(model_, mjOBJ_BODY, name);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * body);
+  T.linear() = quaternion(data_->xquat + 4 * body).toRotationMatrix();
+  return T;
+}
+
 bool World::diverged() const noexcept { return impl_->diverged; }
 
 double World::time_s() const noexcept { return static_cast<double>(impl_->steps) * impl_->options.timestep_s; }

@@ -18,6 +18,25 @@
 
 namespace pmg::sim {
 
+/// A box in the world beside the robot: a table's top, or something to handle.
+struct Prop {
+  std::string name;
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_WP_m = Eigen::Vector3d::Zero();  ///< of its centre
+  double yaw_rad = 0.0;
+  double mass_kg = 0.0;   ///< spread evenly; 0: fixed to the world
+  double friction = 0.8;  ///< between two things the larger of both counts
+  std::array<double, 4> colour = {0.7, 0.6, 0.5, 1.0};
+};
+
+/// A box on a link of the robot, which touches props, the floor and other links.
+struct HandBox {
+  std::string link;
+  Eigen::Isometry3d T_LH = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  double friction = 0.8;
+};
+
 struct WorldOptions {
   double timestep_s = 0.002;  ///< one physics step per bus cycle
   bool gantry = false;        ///< the torso hangs in a soft suspension, feet clear of the ground
@@ -28,7 +47,9 @@ struct WorldOptions {
   double gyro_noise_rad_s = 0.0, encoder_noise_rad = 0.0, orientation_noise_rad = 0.0;  ///< standard deviations
   double velocity_noise_rad_s = 0.0;  ///< of measured joint velocities; standard deviation
   ActuatorsByJoint motors;            ///< from motor.yaml; other numbers come from robot.yaml
-  Variation variation;                ///< other differences from the model
+  std::vector<Prop> props{};
+  std::vector<HandBox> hand_boxes{};
+  Variation variation;  ///< other differences from the model
 };
 
 /// The gantry's rope, for pictures.
@@ -60,6 +81,8 @@ class World {
   void step(const model::JointCommand& command) noexcept;
   void read(model::RobotState& state) noexcept;  ///< sensors of the current step
   model::GroundTruth truth() const noexcept;
+  /// Of a link or a prop. Throws std::runtime_error if there is none of this name.
+  Eigen::Isometry3d pose(const std::string& name) const;
   bool diverged() const noexcept;  ///< MuJoCo warned of NaN or a bad state, or reset itself
   double time_s() const noexcept;
 

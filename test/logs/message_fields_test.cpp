@@ -1,5 +1,5 @@
 // Every field of every message type in msgs/ is exported under its own name.
-#include "logs/message_fields.hpp"
+#include "topics/message_fields.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@
 #include "recorded_run.hpp"
 #include "temporary_folder.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,7 +165,7 @@ TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
   std::vector<Field> fields;
   EXPECT_FALSE(read_fields("CHATTER", examples_.at("STATE"), joints_, fields));
   EXPECT_FALSE(read_fields("REFERENCE", examples_.at("STATE"), joints_, fields)) << "another type's bytes";
-  EXPECT_FALSE(read_fields("STATE", {1, 2, 3}, joints_, fields));
+  EXPECT_FALSE(read_fields("STATE", std::vector<std::uint8_t>{1, 2, 3}, joints_, fields));
   std::vector<std::uint8_t> damaged = examples_.at("STATE");
   // joint_count becomes negative; before it are hash, robot's name (with length and closing zero), stamp and sample
   const auto state = test::LogEvent{"STATE", 0, damaged}.as<pmg_msgs::robot_state_t>();
@@ -174,4 +174,4 @@ TEST_F(MessageFields, StrangeChannelsAndBytesAreNoMessage) {
 }
 
 }  // namespace
-}  // namespace pmg::logs
+}  // namespace pmg::topics

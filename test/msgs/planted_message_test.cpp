@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "logs/field_gatherer.hpp"
 #include "pmg_planted/message_fields.hpp"
+#include "topics/field_gatherer.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 namespace {
 
 pmg_planted::planted_t planted() {
@@ -113,4 +113,4 @@ TEST(PlantedMessage, TheTableHoldsWhatTheFileSays) {
 }
 
 }  // namespace
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -90,11 +90,18 @@ std::string Browser::fingerprint() const {
 
 int Browser::open(std::string_view token, std::string_view host, std::string_view origin) {
   return status_of(
-      ask(fmt::format("GET /socket HTTP/1.1\r\nHost: {}\r\nOrigin: {}\r\nConnection: Upgrade\r\n"
-                      "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-                      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-                      "Sec-WebSocket-Protocol: pmg{}{}\r\n\r\n",
-                      host, origin, token.empty() ? "" : ", pmg.token.", token)));
+      upgrade("/socket", host, origin, fmt::format("pmg{}{}", token.empty() ? "" : ", pmg.token.", token)));
+}
+
+std::string Browser::upgrade(std::string_view path, std::string_view host, std::string_view origin,
+                             std::string_view protocols) {
+  const std::string from = origin.empty() ? "" : fmt::format("Origin: {}\r\n", origin);
+  return ask(
+      fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n{}Connection: Upgrade\r\n"
+                  "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                  "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                  "Sec-WebSocket-Protocol: {}\r\n\r\n",
+                  path, host, from, protocols));
 }
 
 std::string Browser::frame(std::string_view text, int opcode, bool last, bool masked) {

@@ -31,6 +31,9 @@ class Browser {
 
   /// Opens a WebSocket. token: empty: none. Returns the status: 101.
   int open(std::string_view token, std::string_view host = "localhost", std::string_view origin = "https://localhost");
+  /// Asks for a WebSocket of any protocols; origin: empty: none is told. The whole answer.
+  std::string upgrade(std::string_view path, std::string_view host, std::string_view origin,
+                      std::string_view protocols);
   /// A frame of a client. opcode: 1 text, 2 binary, 8 close, 9 ping, 10 pong.
   bool say(std::string_view text, int opcode = 1) const;
   static std::string frame(std::string_view text, int opcode, bool last = true, bool masked = true);

@@ -1,4 +1,4 @@
-// (a log's messages) => the topics that Foxglove and its kin draw without being told how, by Foxglove's own schemas:
+// (a robot's messages) => the topics that Foxglove and its kin draw without being told how, by Foxglove's own schemas:
 //   /tf                 foxglove.FrameTransforms  every link, fifty times a second
 //   /joint_states       foxglove.JointStates      every STATE
 //   /log                foxglove.Log              modes, scenario steps, faults, the bus guard
@@ -8,24 +8,26 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "io/log_reader.hpp"
-#include "logs/mcap_writer.hpp"
-#include "logs/robot_frames.hpp"
+#include "io/lcm_assembler.hpp"
 #include "model/robot_model.hpp"
 #include "pmg_msgs/ground_truth_t.hpp"
 #include "pmg_msgs/robot_state_t.hpp"
+#include "topics/message_sink.hpp"
+#include "topics/robot_frames.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 class FoxgloveTopics {
  public:
   /// robot: nullptr leaves out what needs its description: /tf and /robot_description.
-  FoxgloveTopics(McapWriter& writer, const model::RobotModel* robot);
+  FoxgloveTopics(MessageSink& sink, const model::RobotModel* robot);
 
-  /// Each message of the log in its order. time_ns: the message's time in the MCAP file. joint_names: as ROBOT_INFO
-  /// says.
-  void take(const io::LogReader& event, std::int64_t time_ns, const std::vector<std::string>& joint_names);
+  /// Each message in its order. time_ns: the message's time for the sink. joint_names: as ROBOT_INFO says.
+  void take(std::string_view channel, io::Bytes message, std::int64_t time_ns,
+            const std::vector<std::string>& joint_names);
   void finish();  ///< once, behind the last message
 
  private:
@@ -37,12 +39,13 @@ class FoxgloveTopics {
   void write_frames(const Eigen::Isometry3d& T_WB);
   void write_pending();
   void log(std::int64_t time_ns, Level level, const std::string& text);
-  McapWriter::Id channel(std::optional<McapWriter::Id>& known, const char* topic, const char* schema, const char* text);
+  MessageSink::Id channel(std::optional<MessageSink::Id>& known, const char* topic, const char* schema,
+                          const char* text, MessageSink::Keep keep);
 
-  McapWriter& writer_;
+  MessageSink& sink_;
   const model::RobotModel* robot_;
   std::optional<RobotFrames> frames_;
-  std::optional<McapWriter::Id> tf_, joint_states_, log_, description_;
+  std::optional<MessageSink::Id> tf_, joint_states_, log_, description_;
   pmg_msgs::robot_state_t state_{};  ///< the newest
   std::int64_t state_time_ns_ = 0;
   bool pending_ = false;  ///< state_ has no frames yet: its GROUND_TRUTH, if there is any, comes behind it
@@ -51,4 +54,4 @@ class FoxgloveTopics {
   std::string text_;       ///< memory is reused
 };
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -1,36 +1,32 @@
-#include "logs/message_fields.hpp"
+#include "topics/message_fields.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
-#include <exception>
 #include <utility>
 
-#include "logs/field_gatherer.hpp"
+#include "io/message_prefix.hpp"
 #include "pmg_msgs/message_fields.hpp"
+#include "topics/field_gatherer.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using io::Bytes;
 using Names = std::vector<std::string>;
 
 template <typename Message>
-bool read(const Bytes& data, const Names& joint_names, std::vector<Field>& fields) {
+bool read(Bytes data, const Names& joint_names, std::vector<Field>& fields) {
   static thread_local Message message;  // its memory is reused
-  try {
-    if (message.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return false;
-  } catch (const std::exception&) {  // damaged bytes hold a length beyond all memory
-    return false;
-  }
+  if (!io::decode_prefix(data, message)) return false;
   fields.clear();
   FieldGatherer(joint_names, fields).add(message);
   return true;
 }
 
-using Read = bool (*)(const Bytes&, const Names&, std::vector<Field>&);
+using Read = bool (*)(Bytes, const Names&, std::vector<Field>&);
 
 template <typename... Message>
 constexpr std::array<std::string_view, sizeof...(Message)> channels_of(std::type_identity<std::tuple<Message...>>) {
@@ -67,11 +63,11 @@ std::string to_text(const Field::Value& value) { return std::visit(ToText{}, val
 
 std::span<const std::string_view> known_channels() { return kChannelsInOrder; }
 
-bool read_fields(std::string_view channel, const Bytes& data, const Names& joint_names, std::vector<Field>& fields) {
+bool read_fields(std::string_view channel, Bytes data, const Names& joint_names, std::vector<Field>& fields) {
   for (std::size_t i = 0; i < kChannelsInOrder.size(); ++i) {
     if (channel == kChannelsInOrder[i]) return kReads[i](data, joint_names, fields);
   }
   return false;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

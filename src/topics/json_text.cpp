@@ -1,4 +1,4 @@
-#include "logs/json_text.hpp"
+#include "topics/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::string message_schema(const std::vector<Field>& fields) {
   return ordered_json{{"type", "object"}, {"properties", properties}}.dump();
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

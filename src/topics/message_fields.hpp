@@ -8,9 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "io/lcm_assembler.hpp"
 #include "pmg_msgs/field.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 /// One number, flag or text of a message, or one element of an array with named elements. A list, whose length may
 /// change from message to message, is one field.
@@ -36,7 +37,7 @@ std::span<const std::string_view> known_channels();
 /// The fields of a message in the order of its .lcm file, without lengths of arrays. False if the channel is unknown or
 /// the bytes are no message of its type. joint_names label arrays of joints of the same length; other arrays have
 /// numbers.
-bool read_fields(std::string_view channel, const std::vector<std::uint8_t>& data,
-                 const std::vector<std::string>& joint_names, std::vector<Field>& fields);
+bool read_fields(std::string_view channel, io::Bytes data, const std::vector<std::string>& joint_names,
+                 std::vector<Field>& fields);
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "logs/message_fields.hpp"
+#include "topics/message_fields.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 /// Appends a number to seven to nine digits, those that a 32-bit float needs; null if it isn't finite.
 void append_number(std::string& json, double value);
@@ -23,4 +23,4 @@ std::string message_json(const std::vector<Field>& fields);
 /// own schemas do: oneOf with title and const.
 std::string message_schema(const std::vector<Field>& fields);
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

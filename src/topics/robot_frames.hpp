@@ -7,7 +7,7 @@
 #include "model/robot_io.hpp"
 #include "model/robot_model.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 inline constexpr const char* kWorldFrame = "world";
 
@@ -38,4 +38,4 @@ class RobotFrames {
   std::vector<Frame> frames_;
 };
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -1,9 +1,9 @@
-#include "logs/robot_frames.hpp"
+#include "topics/robot_frames.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 namespace {
 
@@ -67,4 +67,4 @@ Eigen::Isometry3d RobotFrames::standing_base(const std::vector<double>& q_rad, c
   return T_WB;
 }
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "logs/message_fields.hpp"
 #include "pmg_msgs/field.hpp"
+#include "topics/message_fields.hpp"
 
-namespace pmg::logs {
+namespace pmg::topics {
 
 /// Appends a message's fields. Members that are lengths of others are left out; a message within a message is its
 /// members, "outer.inner".
@@ -83,4 +83,4 @@ class FieldGatherer {
   std::vector<Field>& fields_;
 };
 
-}  // namespace pmg::logs
+}  // namespace pmg::topics

@@ -1,0 +1,64 @@
+// The wiping task (the paper's IV-D): one hand moves a towel sideways across a table, the robot stepping along.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "evaluation/trial.hpp"
+#include "teleoperation/led_robot.hpp"
+#include "work/progress.hpp"
+
+namespace pmg::teleoperation {
+
+/// How a trial ends. Names in words: end_name().
+enum class End : std::uint8_t {
+  kDone,         ///< the task's criterion holds
+  kFell,         ///< the robot fell, or the simulation diverged
+  kFault,        ///< the controller latched a fault
+  kOffTable,     ///< the towel left the table
+  kNotReached,   ///< time was up before the hand was on the towel
+  kLostTowel,    ///< time was up, and the hand had lost it on the way
+  kInterrupted,  ///< the evaluation was; counts as no trial
+};
+const char* end_name(End end) noexcept;
+
+/// Heights and sizes [m] and kilograms. The towel is a stiff patch: a cloth's folds and its hanging edges are left out.
+/// ASSUMPTIONS: the table's height and depth, and the towel's size and its friction on the table, which the paper
+/// doesn't tell.
+struct WipingPlan {
+  static constexpr double kTableTop_m = 0.76, kTableDepth_m = 0.50, kTableLength_m = 2.4;
+  static constexpr double kTowelMass_kg = 0.2, kTowelFriction = 0.3, kTowelLength_m = 0.20, kTowelThickness_m = 0.02;
+  static constexpr double kMoved_m = 1.0;  ///< required, along the table
+  static constexpr double kLongest_s = 180.0;
+
+  bool from_left = true;  ///< the towel lies near the table's left end, and moves right
+  double along_m = 0.0, deep_m = 0.0, towel_yaw_rad = 0.0;  ///< the towel's place from that end and from the front edge
+  double edge_m = 0.0;    ///< from the robot's base to the front edge at the beginning
+  double beside_m = 0.0;  ///< of the robot to the left of the towel
+  std::uint64_t seed = 0;
+
+  static WipingPlan of(std::uint64_t trial);
+};
+
+struct WipingResult {
+  End end = End::kInterrupted;
+  double moved_m = 0.0;  ///< of the towel along the table, from where it lay
+  double duration_s = 0.0;
+  std::string words{};  ///< a fault's, or what the operator was last told
+  std::string stage{};  ///< what the operator was doing at the end
+};
+
+/// What the judge says of a towel that lies there; nothing: go on. The criterion: moved along the table by more than
+/// kMoved_m, while it lay on the table all the time.
+std::optional<End> judge_towel(const Eigen::Vector3d& towel_E_m, double moved_m) noexcept;
+
+/// Called after each tick, for pictures and tests; may be empty.
+using WipingObserver = std::function<void(const LedRobot& robot, const std::string& stage)>;
+
+/// world: the simulated robot's; the task's things are added. Throws what loading throws.
+WipingResult run_wiping(const evaluation::Candidate& candidate, sim::WorldOptions world, const WipingPlan& plan,
+                        const work::Progress& progress = {}, const WipingObserver& observer = {});
+
+}  // namespace pmg::teleoperation
