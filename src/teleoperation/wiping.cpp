@@ -198,8 +198,8 @@ class Wiper {
 }  // namespace
 
 const char* end_name(End end) noexcept {
-  constexpr std::array kNames = {"done",       "fell",       "fault", "towel off the table", "towel not reached",
-                                 "towel lost", "interrupted"};
+  constexpr std::array kNames = {
+      "done", "fell", "fault", "towel off the table", "palm not on the towel in time", "towel lost", "interrupted"};
   return kNames.at(static_cast<std::size_t>(end));
 }
 

@@ -18,7 +18,7 @@ enum class End : std::uint8_t {
   kFell,         ///< the robot fell, or the simulation diverged
   kFault,        ///< the controller latched a fault
   kOffTable,     ///< the towel left the table
-  kNotReached,   ///< time was up before the hand was on the towel
+  kNotReached,   ///< time was up while the palm was off the towel: before it was there, or gripping anew
   kLostTowel,    ///< time was up, and the hand had lost it on the way
   kInterrupted,  ///< the evaluation was; counts as no trial
 };
