@@ -1,5 +1,6 @@
 #include "evaluation/table2.hpp"
 
+#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

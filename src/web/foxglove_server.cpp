@@ -198,8 +198,11 @@ class Client : public std::enable_shared_from_this<Client> {
     response->body() = std::string(view(http::obsolete_reason(status))) + "\n";
     response->prepare_payload();
     http::async_write(socket_.next_layer(), *response, [self = shared_from_this(), response](error_code, std::size_t) {
-      error_code ignored;
-      self->socket_.next_layer().socket().shutdown(Tcp::socket::shutdown_send, ignored);
+      try {
+        self->socket_.next_layer().socket().shutdown(Tcp::socket::shutdown_send);
+      } catch (const boost::system::system_error&) {
+        return;  // it is gone already
+      }
     });
   }
 
@@ -412,9 +415,12 @@ class FoxgloveServer::Thread {
   }
 
   void take(Tcp::socket&& socket) {
-    error_code ignored;
-    socket.set_option(Tcp::no_delay(true), ignored);
-    socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer_bytes), ignored);
+    try {
+      socket.set_option(Tcp::no_delay(true));
+      socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer_bytes));
+    } catch (const boost::system::system_error&) {
+      return;  // it is gone already
+    }
     std::erase_if(clients_, [](const std::weak_ptr<Client>& client) { return client.expired(); });
     const auto client = std::make_shared<Client>(std::move(socket), settings_, board_);
     const bool full = clients_.size() >= kMostClients;

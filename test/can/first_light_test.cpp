@@ -96,6 +96,7 @@ class FirstLight : public testing::Test {
   void hang_obliquely(double angle_rad, const Eigen::Vector3d& axis) {
     const Eigen::Vector3d gravity =
         Eigen::AngleAxisd(angle_rad, axis.normalized()) * Eigen::Vector3d(0.0, 0.0, -kGravity_m_s2);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): no world leans, so this test's does
     auto* model = const_cast<mjModel*>(world_.mj_model());
     for (int i = 0; i < 3; ++i) model->opt.gravity[i] = gravity[i];
     for (int k = 0; k < 1500; ++k) tick();
