@@ -78,7 +78,7 @@ struct ShowOptions {
 };
 
 void print_table(const std::vector<generator::ClipReport>& clips, const std::vector<generator::NormReport>& norms) {
-  std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance mm  gap mm\n"
+  std::cout << "clip       gain   vx m/s   vy m/s  omega r/s  error   slip cm/s (p95)  feet mm  clearance (late) mm  gap mm\n"
             << std::fixed;
   for (const generator::ClipReport& clip : clips) {
     for (const generator::GainReport& at : clip.gains) {
@@ -88,8 +88,8 @@ void print_table(const std::vector<generator::ClipReport>& clips, const std::vec
                 << g.mean_velocity.y() << std::setw(11) << g.mean_velocity.z() << std::setw(7)
                 << at.velocity_error.cwiseAbs().maxCoeff() << std::setprecision(1) << std::setw(10)
                 << 100.0 * g.slip_mean_m_s << " (" << 100.0 * g.slip_p95_m_s << ")" << std::setw(9)
-                << 1000.0 * g.other_foot_height_m << std::setw(14) << 1000.0 * g.clearance_m << std::setw(8)
-                << 1000.0 * g.foot_gap_m << "\n";
+                << 1000.0 * g.other_foot_height_m << std::setw(14) << 1000.0 * g.clearance_m << " (" << 1000.0 * g.landing_m
+                << ")" << std::setw(8) << 1000.0 * g.foot_gap_m << "\n";
     }
     std::cout << "           T " << std::setprecision(2) << clip.period_s << " s, r " << clip.duty_factor
               << ", joint speed " << std::setprecision(0) << 100.0 * clip.joint_speed_share << " % of limits, "
@@ -123,6 +123,7 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
                                 {"slip_p95_m_s", g.slip_p95_m_s},
                                 {"other_foot_height_m", g.other_foot_height_m},
                                 {"clearance_m", g.clearance_m},
+                                {"landing_m", g.landing_m},
                                 {"lowest_swing_m", g.lowest_swing_m},
                                 {"foot_gap_m", g.foot_gap_m}});
     }
@@ -249,7 +250,7 @@ int main(int argc, char** argv) {
       app.add_subcommand("show", "Check a library's clips against the ground at gains from 0.1 to 1");
   show_command->add_option("--robot", options.robot, "robot's name, or its directory")->capture_default_str();
   show_command->add_option("--clips", options.clips, "directory of the clips; the robot's own if left out");
-  show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with");
+  show_command->add_option("--norms", options.norms, "CSV of published means to compare the forward clip with (default: those that it is made from)");
   show_command->add_flag("--json", options.json, "for machines");
   std::filesystem::path inverse_clips;
   std::string blend = "library";

@@ -46,6 +46,7 @@ FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
   const auto end = recording.loaded.begin() + static_cast<std::ptrdiff_t>(contacts.back());
   gait.period_s = static_cast<double>(end - begin) * control::ControlCycle::kPeriod_s / gait.cycles;
   gait.duty_factor = static_cast<double>(std::count(begin, end, true)) / static_cast<double>(end - begin);
+  gait.contact_late = mean_at(recording.since_planned_contact, contacts);
   for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
     gait.measured_deg[joint] = mean_cycle(recording.measured_deg[joint], contacts);
     gait.reference_deg[joint] = mean_cycle(recording.reference_deg[joint], contacts);
@@ -92,6 +93,12 @@ std::vector<double> mean_cycle(const std::vector<double>& values, const std::vec
   return mean;
 }
 
+double mean_at(const std::vector<double>& values, const std::vector<std::size_t>& contacts) {
+  double sum = 0.0;
+  for (const std::size_t tick : contacts) sum += values[tick];
+  return sum / static_cast<double>(contacts.size());
+}
+
 CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published) {
   const auto n = static_cast<Eigen::Index>(ours.size());
   const Eigen::Map<const Eigen::ArrayXd> a(ours.data(), n), b(published.data(), n);
@@ -135,6 +142,8 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
     duty_sum += planned.duty_factor[kLeft];
     for (const Foot foot : {kLeft, kRight}) {
       recordings[foot].loaded.push_back(truth.foot_force_N[foot] > kLoadedFoot_N);
+      const double since_contact = planned.phase - (planned.contact_center[foot] - 0.5 * planned.duty_factor[foot]);
+      recordings[foot].since_planned_contact.push_back(since_contact - std::floor(since_contact + 0.5));
       const auto measured = flexions_deg(state.q, roles.leg[foot], sil::roll_pitch(truth.q_WB).pitch_rad);
       const auto reference = flexions_deg(planned.q, roles.leg[foot], planned_pitch_rad);
       for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
@@ -187,7 +196,10 @@ ordered_json to_json(const GaitTest& test) {
   for (const Foot foot : {kLeft, kRight}) {
     const FootGait& gait = test.feet[foot];
     ordered_json& entry = json["feet"][kSideNames[foot]];
-    entry = {{"cycles", gait.cycles}, {"period_s", gait.period_s}, {"duty_factor", gait.duty_factor}};
+    entry = {{"cycles", gait.cycles},
+             {"period_s", gait.period_s},
+             {"duty_factor", gait.duty_factor},
+             {"contact_late_share", gait.contact_late}};
     for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
       entry["joints"].push_back({{"joint", kGaitJointNames[joint]},
                                  {"measured", agreement_json(gait.measured[joint])},
@@ -219,6 +231,9 @@ std::vector<std::string> text_of(const GaitTest& test) {
         fmt::format("{} duty factor {:.3f}, period {:.3f} s over {} cycles (reference {:.3f}, published {:.2f}){}",
                     kSideNames[foot], test.feet[foot].duty_factor, test.feet[foot].period_s, test.feet[foot].cycles,
                     test.reference_duty_factor, kPublishedDutyFactor, test.duty_reached(foot) ? "" : "  MISSED"));
+    lines.push_back(fmt::format("{} foot lands {:.1f} % of a cycle {} the reference", kSideNames[foot],
+                                100.0 * std::abs(test.feet[foot].contact_late),
+                                test.feet[foot].contact_late < 0.0 ? "before" : "after"));
   }
   return lines;
 }
@@ -256,12 +271,12 @@ pages::Page page_of(const GaitTest& test) {
     }
   });
   page.heading("Feet");
-  pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published"}, .rows = {}};
+  pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published", "lands after the reference [% of a cycle]"}, .rows = {}};
   for (const Foot foot : {kLeft, kRight}) {
     const FootGait& gait = test.feet[foot];
     feet.rows.push_back({kSideNames[foot], std::to_string(gait.cycles), fmt::format("{:.3f}", gait.period_s),
                          fmt::format("{:.3f}", gait.duty_factor), fmt::format("{:.3f}", test.reference_duty_factor),
-                         fmt::format("{:.2f}", kPublishedDutyFactor)});
+                         fmt::format("{:.2f}", kPublishedDutyFactor), fmt::format("{:.1f}", 100.0 * gait.contact_late)});
   }
   page.table(feet);
   page.heading("How it was measured");

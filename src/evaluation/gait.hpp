@@ -20,6 +20,7 @@ inline constexpr double kPublishedDutyFactor = 0.62;
 /// The recording of one foot, one value per control tick.
 struct FootRecording {
   std::vector<bool> loaded;
+  std::vector<double> since_planned_contact;  ///< cycles since the reference's initial contact, in [-0.5, 0.5)
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;
 };
 
@@ -34,6 +35,9 @@ std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, doubl
 /// Mean over whole cycles at kCyclePoints; each cycle is stretched from one contact to the next. Needs two contacts.
 std::vector<double> mean_cycle(const std::vector<double>& values, const std::vector<std::size_t>& contacts);
 
+/// Mean of `values` at the ticks `contacts`.
+double mean_at(const std::vector<double>& values, const std::vector<std::size_t>& contacts);
+
 struct CurveAgreement {
   double correlation = 0.0;
   double rms_deg = 0.0;
@@ -45,6 +49,9 @@ CurveAgreement agreement(const std::vector<double>& ours, const std::vector<doub
 struct FootGait {
   int cycles = 0;
   double period_s = 0.0, duty_factor = 0.0;
+  /// Mean contact after (+) or before (-) the reference's, as a share of the cycle. Both curves begin at the measured
+  /// contact, so that a foot which lands early also takes the reference off the published curves.
+  double contact_late = 0.0;
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;  ///< means over cycles
   std::array<CurveAgreement, kGaitJoints> measured, reference;               ///< against the published curves
 };

@@ -1,5 +1,6 @@
 #include "generator/corner_synthesis.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -74,6 +75,7 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.symmetric = false;
   task.sway_m = pair.first.task.sway_m + pair.second.task.sway_m;
   task.hike_rad = pair.first.task.hike_rad + pair.second.task.hike_rad;
+  task.height_m = std::min(pair.first.task.height_m, pair.second.task.height_m);
   task.clearance_m = 0.035;
   task.foot_gap_m = 0.025;
   task.flat_from = 0.25;

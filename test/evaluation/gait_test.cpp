@@ -55,6 +55,10 @@ TEST(Gait, CyclesOfDifferentLengthAreStretchedOntoEachOther) {
   }
 }
 
+TEST(Gait, WhenFeetLandIsTheMeanAtTheirContacts) {
+  EXPECT_NEAR(mean_at({0.4, -0.06, -0.05, 0.0, -0.02}, {1, 4}), -0.04, 1e-12);
+}
+
 TEST(Gait, AnOffsetSpoilsTheRmsButNeitherCorrelationNorShape) {
   std::vector<double> published, ours;
   for (std::size_t k = 0; k < kCyclePoints; ++k) {
