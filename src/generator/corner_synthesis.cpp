@@ -83,12 +83,12 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.reference = reference;
   task.weights.reference = LegVector<double>::Constant(1.0);
   task.weights.bias = LegVector<double>::Constant(0.5);
-  task.weights.step_height = 1200.0;
+  task.weights.step_height = 2400.0;
   task.weights.step_height_free_m = 0.004;
   task.weights.velocity = 12.0;
   task.weights.velocity_yaw = 6.0;
   task.weights.height = 40.0;
-  task.weights.above_ground = 1000.0;
+  task.weights.above_ground = 2000.0;
   task.weights.limit = 300.0;
   // The generator's limit of n1 + n2 is 1.8 (kCornerReach).
   constexpr std::array<std::array<double, 3>, 9> kMixtures = {{{0.9, 0.9, 1.5},
