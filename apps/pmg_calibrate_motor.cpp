@@ -196,9 +196,10 @@ bench::NoiseFloor noise_floor(const std::vector<calib::SingleJoint>& fitted,
 /// The bench as it is to be fitted. Throws std::invalid_argument that names the faults if they can't be left out.
 bench::Bench examined(const bench::Bench& bench, const Arguments& arguments, const work::Progress& progress,
                       work::Worth& worth) {
+  data_faults::ExamineOptions options{.handling = data_faults::handling_of(arguments.data_faults)};
+  if (bench.law != bench::DriveLaw::kCascadePd) options.unused = {bench::Column::kTorque};  // the fit is of positions
   const data_faults::Examination found =
-      data_faults::examine(bench, {arguments.fit, arguments.score}, std::nullopt,
-                           {.handling = data_faults::handling_of(arguments.data_faults)}, arguments.threads, progress);
+      data_faults::examine(bench, {arguments.fit, arguments.score}, std::nullopt, options, arguments.threads, progress);
   worth = data_faults::worth_of(found);
   if (found.handling == data_faults::Handling::kLeaveOut && found.uncorrected())
     throw std::invalid_argument(fmt::format(

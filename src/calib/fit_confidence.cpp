@@ -12,11 +12,12 @@ namespace pmg::calib {
 
 namespace {
 
-constexpr double kAlike = 0.98;       // correlation
-constexpr double kBlind = 1e-6;       // eigenvalue of the information with a unit diagonal
-constexpr double kOfError = 4.0;      // times E^T E along a direction: twice what doubled steps change
-constexpr double kPart = 0.01;        // of a unit direction: a parameter that belongs to it
-constexpr double kMostOfEdge = 0.25;  // of a range: farther away the derivatives at the point say nothing
+constexpr double kAlike = 0.98;        // correlation
+constexpr double kBlind = 1e-6;        // eigenvalue of the information with a unit diagonal
+constexpr double kNearlyBlind = 1e-2;  // likewise: above it columns don't cancel, however rough dry friction makes them
+constexpr double kOfError = 4.0;       // times E^T E along a direction: twice what doubled steps change
+constexpr double kPart = 0.01;         // of a unit direction: a parameter that belongs to it
+constexpr double kMostOfEdge = 0.25;   // of a range: farther away the derivatives at the point say nothing
 
 /// The fit's normal equations, and how little its derivatives tell of themselves: with steps twice as long they are J +
 /// E.
@@ -51,7 +52,7 @@ std::vector<Blind> blind_directions(const Eigen::MatrixXd& information, const Ei
   for (Eigen::Index k = 0; k < parts.eigenvalues().size(); ++k) {
     const Eigen::VectorXd v = parts.eigenvectors().col(k), of_parameters = weight.asDiagonal() * v;
     const double by_error = kOfError * of_parameters.dot(error * of_parameters);
-    if (parts.eigenvalues()[k] > std::max(kBlind, by_error)) continue;
+    if (parts.eigenvalues()[k] > std::max(kBlind, std::min(kNearlyBlind, by_error))) continue;
     Blind& direction = found.emplace_back();
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (std::abs(v[static_cast<Eigen::Index>(i)]) > kPart) direction.push_back(seen[i]);

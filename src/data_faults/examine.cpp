@@ -84,6 +84,18 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
   return found;
 }
 
+std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused) {
+  const auto is_unused = [&](const bench::Correction& fix) {
+    return !fix.columns.empty() && std::ranges::all_of(fix.columns, [&](bench::Column column) {
+      return std::ranges::find(unused, column) != unused.end();
+    });
+  };
+  std::erase_if(faults, [&](const DataFault& fault) {
+    return !fault.fixes.empty() && std::ranges::all_of(fault.fixes, is_unused);
+  });
+  return faults;
+}
+
 Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress) {
@@ -107,7 +119,7 @@ Examination examine(const bench::Bench& bench, const std::vector<std::string>& f
   if (implausible && stays_implausible(runs, faults, linear)) {  // no unit: let the reader refuse it
     for (const std::string& filter : filters) (void)bench.read_runs(bench::RowFilter(filter));
   }
-  Examination found = examination(std::move(faults), runs, options.handling, groups);
+  Examination found = examination(of_used_columns(std::move(faults), options.unused), runs, options.handling, groups);
   found.other_units = implausible;
   found.options = options.decide_by;
   return found;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/bench.hpp"
+#include "bench/correction.hpp"
 #include "data_faults/data_fault.hpp"
 #include "data_faults/options.hpp"
 #include "model/actuator_parameters.hpp"
@@ -28,6 +29,7 @@ const char* name(Handling handling);
 struct ExamineOptions {
   DataFaultOptions decide_by{};
   Handling handling = Handling::kLeaveOut;
+  std::vector<bench::Column> unused{};  ///< columns that the work goes on without: what is wrong in them alone is none
 };
 
 struct Examination {
@@ -45,6 +47,9 @@ struct Examination {
 std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                         const std::optional<model::ActuatorParameters>& model,
                                         const DataFaultOptions& options, unsigned threads);
+
+/// Without the faults that are in unused columns alone.
+std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused);
 
 /// (bench, filters of runs.csv, the simulation's model or none) => (examination of all runs that a filter keeps).
 /// Throws as Bench::read_runs, on positions that are too large only where no fault of the data explains them.

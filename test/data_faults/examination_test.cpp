@@ -105,6 +105,21 @@ TEST(Examination, EveryThresholdIsListedWithItsReason) {
   }
 }
 
+TEST(Examination, WhatIsWrongInAnUnusedColumnAloneCostsNoRun) {
+  using bench::Column;
+  const auto fault = [](std::vector<Column> columns) {
+    return DataFault{
+        .kind = Kind::kSign, .where = "a column", .correction = "turn it", .fixes = {{.columns = columns}}};
+  };
+  const DataFault of_a_row{.kind = Kind::kUnit, .where = "a row", .correction = "another mass"};
+  const std::vector<DataFault> all = {fault({Column::kTorque}), fault({Column::kTorque, Column::kPosition}), of_a_row};
+  EXPECT_EQ(of_used_columns(all, {}).size(), 3U);
+  const std::vector<DataFault> used = of_used_columns(all, {Column::kTorque});
+  ASSERT_EQ(used.size(), 2U);
+  EXPECT_EQ(used[0].fixes.front().columns.size(), 2U);
+  EXPECT_EQ(used[1].where, "a row");
+}
+
 TEST(Examination, RefusesAnUnknownHandling) { EXPECT_THROW(handling_of("ignore"), std::invalid_argument); }
 
 /// Four runs of a pendulum that moves up to 2.2 rad either way: 124 degrees, more than a reader takes for radians.
