@@ -17,6 +17,7 @@
 #include "diagnosis/next_excitation_files.hpp"
 #include "diagnosis_page/diagnosis_page.hpp"
 #include "effects/catalogue.hpp"
+#include "evidence/thresholds.hpp"
 #include "files/nearest_name.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
@@ -58,7 +59,15 @@ struct Arguments {
   double step_s = 0.0;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
   std::string data_faults = "leave-out";
+  std::vector<std::string> set;
+  fs::path set_file;
   bool json = false;
+
+  /// Sets thresholds as --set-file says, then as --set says.
+  void set_thresholds(const evidence::ThresholdRows& rows) const {
+    if (!set_file.empty()) evidence::set_from_file(rows, set_file);
+    for (const std::string& one : set) evidence::set(rows, one);
+  }
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -84,6 +93,13 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "at most")->check(apps::in_range(1, 256));
   app.add_option("--step", arguments.step_s, "of the simulation [s]; chosen if not given")
       ->check(apps::in_range(1e-5, 0.01));
+  app.add_option(
+         "--set", arguments.set,
+         "NAME=VALUE: a threshold to decide by, by its name in diagnosis.json's options, or data_faults.NAME of its "
+         "data_fault_options; once or more")
+      ->type_name("NAME=VALUE")
+      ->take_all();
+  app.add_option("--set-file", arguments.set_file, "YAML file of NAME: VALUE lines; --set overrides it");
   app.add_flag("--json", arguments.json, "print diagnosis.json on stdout instead of the short report");
 }
 
@@ -179,9 +195,12 @@ int diagnose_robot(const Arguments& arguments) {
   }
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
+  robot_diagnosis::RobotDiagnosisOptions options;
+  arguments.set_thresholds(evidence::rows(options));
   return apps::diagnose_robot_logs({.robot = arguments.robot,
                                     .logs = arguments.inputs,
                                     .out = arguments.out,
+                                    .options = options,
                                     .json = arguments.json,
                                     .progress = apps::shown(progress, "equations of motion")});
 }
@@ -199,6 +218,8 @@ int diagnose(Arguments arguments) {
   options.seed = arguments.seed;
   options.step_s = arguments.step_s;
   options.data.handling = data_faults::handling_of(arguments.data_faults);
+  const evidence::ThresholdRows thresholds = diagnosis::rows(options.decide_by, options.data.decide_by);
+  arguments.set_thresholds(thresholds);
   if (!arguments.model.empty()) options.model = given_model(arguments);
   if (arguments.joint.empty()) arguments.joint = bench.joint_name();
   const auto begin = std::chrono::steady_clock::now();
@@ -221,10 +242,13 @@ int diagnose(Arguments arguments) {
   io::write_whole_file(arguments.out / "report.html",
                        diagnosis_page::page_of(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
-  if (arguments.json)
+  if (arguments.json) {
     apps::print_json(json);
-  else
+  } else {
     print_summary(found, bench, arguments.out, cost);
+    if (const auto set = evidence::set_by_hand(thresholds); !set.empty())
+      std::cout << fmt::format("decided by thresholds set by hand: {}\n", fmt::join(set, ", "));
+  }
   return worth_of(found).exit_code();
 }
 

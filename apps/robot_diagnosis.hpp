@@ -21,6 +21,7 @@ struct RobotDiagnosisArguments {
   std::string robot;                        ///< name or folder
   std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
   std::filesystem::path out;
+  robot_diagnosis::RobotDiagnosisOptions options{};
   bool json = false;
   work::Progress progress{};
 };
@@ -59,7 +60,7 @@ inline int diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
       robot_diagnosis::read_robot_logs(arguments.logs, robot);
   robot_diagnosis::RobotDiagnosis found;
   try {
-    found = robot_diagnosis::diagnose_robot(robot, recordings, {}, arguments.progress);
+    found = robot_diagnosis::diagnose_robot(robot, recordings, arguments.options, arguments.progress);
   } catch (const work::Interrupted&) {
     std::cerr << "interrupted: nothing was written\n";
     return work::Worth(work::Grade::kInterrupted, "").exit_code();

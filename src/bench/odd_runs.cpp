@@ -211,7 +211,7 @@ class OddRunSearch {
       if (o != c && same_command(run(c).recording, run(o).recording))
         distances.push_back(nearest_rad(conditions_[c].runs.front(), o));
     }
-    const bool enough = static_cast<double>(distances.size()) >= std::max(2.0, options_.fewest_conditions);
+    const bool enough = static_cast<double>(distances.size()) >= std::max(2, options_.fewest_conditions.value);
     return neighbours_[c] = enough ? fitting::value_at_rank(std::move(distances), 1) : 0.0;
   }
 

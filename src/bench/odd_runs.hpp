@@ -2,18 +2,48 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/repeats.hpp"
+#include "work/threshold.hpp"
 
 namespace pmg::bench {
 
-/// evidence::listed() gives the reason of each threshold.
+inline constexpr std::string_view kServo =
+    "240 conditions of a measured servo: odd runs 11 times and more, all others up to 3";
+inline constexpr std::string_view kAssumed = "assumed; another measured joint with repeats would settle it";
+
 struct OddRunOptions {
-  double times_usual = 5.0, fewest_conditions = 3.0;
-  double times_nearer = 1.2, agreeing_share = 0.75, slow_share = 0.5, fast_ratio = 0.95;
-  double times_by_chance = 2.0;
-  double times_neighbours = 8.0;
+  work::Threshold times_usual{
+      5.0, "",
+      "repeats that differ by so many times what repeats usually do disagree; noise alone differs by two or three",
+      kServo};
+  work::CountThreshold fewest_conditions{3, "", "conditions that say what is usual: a median of fewer is none",
+                                         kAssumed};
+  work::Threshold times_nearer{
+      1.2, "",
+      "of two repeats another condition is nearer to one, where the other's distance is so many times as large",
+      kAssumed};
+  work::Threshold agreeing_share{0.75, "", "share of the other conditions that must be nearer to the same one",
+                                 kAssumed};
+  work::Threshold slow_share{0.5, "",
+                             "a difference whose half-second means hold a smaller share of its squares oscillates: "
+                             "noise, or a drive that hunts",
+                             kAssumed};
+  work::Threshold fast_ratio{
+      0.95, "", "and both repeats move about as much: a joint that stalls in a fast motion moves less", kAssumed};
+  work::Threshold times_by_chance{
+      2.0, "",
+      "repeats of a drive that hunts may be in step by chance, but hardly to so many times the usual difference",
+      kAssumed};
+  work::Threshold times_neighbours{8.0, "",
+                                   "a run without repeats is odd from so many times the usual distance to neighbours "
+                                   "on: the edge of a design has two or three times the distance",
+                                   kAssumed};
+
+  PMG_THRESHOLDS(times_usual, fewest_conditions, times_nearer, agreeing_share, slow_share, fast_ratio, times_by_chance,
+                 times_neighbours)
 };
 
 struct OddRun {

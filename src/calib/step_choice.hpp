@@ -2,15 +2,27 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "calib/single_joint.hpp"
+#include "work/threshold.hpp"
 
 namespace pmg::calib {
 
-/// evidence::listed() gives the reason of each threshold.
 struct StepOptions {
-  double share_of_noise = 0.5, finest_share = 0.125, most_steps = 1e5;
+  work::Threshold share_of_noise{0.5, "",
+                                 "an integration error of this share of residual or noise adds a quarter to its mean "
+                                 "square; a residual counts as unexplained from several times the noise's on",
+                                 "arithmetic"};
+  work::Threshold finest_share{0.125, "", "of the first step: three halvings, eight times the time of a rollout",
+                               "time of a diagnosis"};
+  work::CountThreshold most_steps{
+      100000, "",
+      "steps of all searched runs together: a finer step than this takes counts into the noise floor instead",
+      "time of a diagnosis"};
+
+  PMG_THRESHOLDS(share_of_noise, finest_share, most_steps)
 };
 
 /// Error of one step size: of each run, and of the usual one.

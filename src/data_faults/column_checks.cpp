@@ -78,7 +78,7 @@ Finding judged(std::size_t run, const Alignment& by, const Pair& pair, double sa
   found.unit = unit_of_factor(std::abs(by.factor), pair.units, o.unit_tolerance);
   const double size = std::max(std::abs(by.factor), 1.0 / std::abs(by.factor));
   found.strange = found.unit.name.empty() && size > pair.strange_factor;
-  const double least_s = std::max(o.shift_samples * sample_s, o.least_shift_s);
+  const double least_s = std::max<double>(o.shift_samples * sample_s, o.least_shift_s);
   const double before = 1.0 - std::pow(by.correlation_unshifted, 2), after = 1.0 - std::pow(by.correlation, 2);
   const bool late = by.lag_s > std::max(least_s, pair.may_lag_s), early = by.lag_s < -least_s;
   found.shifted = (late || early) && after < o.shift_rest * before;

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evidence/thresholds.hpp"
+
 namespace pmg::data_faults {
 
 namespace {
@@ -45,7 +47,7 @@ void add_to(Json& whole, const Examination& examination) {
                                   {"corrected", examination.corrected},
                                   {"left_out", examination.left_out},
                                   {"verdict_of_faulty_data", examination.uncorrected()}};
-  whole["data_fault_options"] = evidence::options_json(listed(examination.options));
+  whole["data_fault_options"] = evidence::thresholds_json(examination.options);
 }
 
 std::string handling_text(const Examination& examination) {

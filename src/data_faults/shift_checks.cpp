@@ -53,7 +53,7 @@ Shift best_shift(const Examined& e, std::size_t run) {
 }
 
 double least_shift_s(const Examined& e) {
-  return std::max(e.options().model_shift_samples * e.sample_s(), e.options().least_shift_s);
+  return std::max<double>(e.options().model_shift_samples * e.sample_s(), e.options().least_shift_s);
 }
 
 /// A shift that a sibling shows, too, is physics: fast motion lags, and a weak drive lags more.

@@ -11,7 +11,7 @@ namespace {
 
 struct Tolerance {
   const char* name;
-  double JointDiagnosisOptions::*share;  ///< of the value
+  work::Threshold JointDiagnosisOptions::*share;  ///< of the value
 };
 
 using Options = JointDiagnosisOptions;

@@ -27,7 +27,7 @@ class JointDiagnosisRun {
  public:
   JointDiagnosisRun(const bench::Bench& bench, const DiagnoseOptions& options, const work::Progress& progress)
       : bench_(bench), options_(options), by_(options.decide_by), progress_(progress) {
-    diagnosis_.options = listed(by_);
+    diagnosis_.options = by_;
   }
 
   Diagnosis run(DiagnosedRuns* runs) {

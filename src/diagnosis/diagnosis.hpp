@@ -10,7 +10,7 @@
 #include "calib/joint_floor.hpp"
 #include "calib/step_choice.hpp"
 #include "data_faults/examine.hpp"
-#include "evidence/option.hpp"
+#include "diagnosis/options.hpp"
 #include "evidence/verdict.hpp"
 #include "residual_torque/extension.hpp"
 #include "work/worth.hpp"
@@ -95,7 +95,7 @@ struct Diagnosis {
   std::string unit = "rad";
   calib::JointModel before, after;
   std::vector<std::string> base_parameters;  ///< fitted with and without effects
-  std::vector<evidence::Option> options;     ///< thresholds in force
+  JointDiagnosisOptions options;             ///< thresholds in force
 };
 
 /// Interrupted; off its data, where these have faults or the simulation explains no motion (calib::kExplainedShare); no

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "data_faults/data_faults_report.hpp"
+#include "evidence/thresholds.hpp"
 #include "residual_torque/extension_report.hpp"
 
 namespace pmg::diagnosis {
@@ -114,7 +115,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
     json["residual_extension"] = residual_torque::extension_json(*diagnosis.residual_extension);
   json["base_parameters"] = diagnosis.base_parameters;
   json["next_excitation"] = diagnosis.next_excitation ? excitation_json(*diagnosis.next_excitation) : Json(nullptr);
-  json["options"] = evidence::options_json(diagnosis.options);
+  json["options"] = evidence::thresholds_json(diagnosis.options);
   return json;
 }
 

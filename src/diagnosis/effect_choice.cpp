@@ -98,8 +98,8 @@ effects::ApartLimits EffectSearch::apart_limits() const {
   return {.noise_squares = limits_.noise_squares,
           .deviations = options_.apart_deviations,
           .share_of_expected = options_.apart_share,
-          .blocks = options_.fewest_apart_blocks,
-          .visible_share = options_.visible_share};
+          .visible_share = options_.visible_share,
+          .blocks = options_.fewest_apart_blocks};
 }
 
 /// (extension) => (extension with each effect in the best of its forms, and those that do as well). A form that isn't

@@ -1,54 +1,149 @@
 // The thresholds of a joint's diagnosis.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "assembly/options.hpp"
 #include "bench/odd_runs.hpp"
 #include "calib/step_choice.hpp"
+#include "data_faults/options.hpp"
 #include "effects/intervals.hpp"
 #include "evidence/signature_options.hpp"
+#include "evidence/thresholds.hpp"
 #include "residual_torque/options.hpp"
+#include "work/threshold.hpp"
 
 namespace pmg::diagnosis {
 
-/// listed() gives the unit, the reason and the data of each threshold.
+// docs/explanation/hidden-plants.md
+inline constexpr std::string_view kPlants = "hidden plants, seeds 0 to 83";
+inline constexpr std::string_view kAssumed = "assumed; measured joints whose effects are known would settle it";
+inline constexpr std::string_view kCost = "time of a diagnosis";
+
 struct JointDiagnosisOptions {
   // When an effect is taken.
-  double least_deviations = 3.0, least_folds_won = 0.6;
-  double amplitude_of_noise = 1.2, amplitude_of_beginning = 0.1, gain_of_rest = 0.35;
-  double scratch_amplitude_of_noise = 0.4, scratch_amplitude_of_beginning = 0.05, scratch_gain_of_rest = 0.1;
-  double nearly_all_of_rest = 0.8, worse_deviations = 2.0, one_torque = 0.9;
-  double equal_gain = 0.03, clearly_deviations = 3.0, regained_share = 0.5, most_effects = 6.0;
+  work::Threshold least_deviations{
+      3.0, "", "an effect is taken if its mean gain over blocks left out is so many of its standard deviations",
+      kPlants};
+  work::Threshold least_folds_won{0.6, "", "and if it is better in this share of the folds", kPlants};
+  work::Threshold amplitude_of_noise{1.2, "", "and if the square root of its gain is so many times the noise", kPlants};
+  work::Threshold amplitude_of_beginning{0.1, "", "and this share of the residual before any effect", kPlants};
+  work::Threshold gain_of_rest{0.35, "",
+                               "and if its gain is this share of the residual beyond a correct model's: an effect "
+                               "whose form isn't quite right leaves a rest that a second one could mend",
+                               kPlants};
+  work::Threshold scratch_amplitude_of_noise{
+      0.4, "", "amplitude_of_noise without a model: several effects are expected, the weaker beside the stronger",
+      kPlants};
+  work::Threshold scratch_amplitude_of_beginning{0.05, "", "amplitude_of_beginning without a model", kPlants};
+  work::Threshold scratch_gain_of_rest{0.1, "", "gain_of_rest without a model", kPlants};
+  work::Threshold nearly_all_of_rest{0.8, "",
+                                     "from this share of the residual beyond a correct model's, amplitude_of_beginning "
+                                     "doesn't count: what mends another effect's form leaves a rest itself; only where "
+                                     "the residual without the effect is above remains_of_noise",
+                                     "doubles of the second family"};
+  work::Threshold worse_deviations{2.0, "",
+                                   "an effect is not taken if runs of a gain, a load or a trajectory left out are "
+                                   "predicted worse with it, by so many standard deviations",
+                                   kAssumed};
+  work::Threshold one_torque{
+      0.9, "",
+      "two effects are one torque if the squared cosine of what they do to the rollouts, beyond what the other numbers "
+      "can do, is larger: a variance inflation of ten (D. W. Marquardt, Technometrics 12:591, 1970)",
+      kAssumed};
+  work::Threshold equal_gain{0.03, "", "gains that differ by less than this share are equal: fewer parameters decide",
+                             kPlants};
+  work::Threshold clearly_deviations{
+      3.0, "", "an effect replaces another, or its special case, if it is better by so many standard deviations",
+      kPlants};
+  work::Threshold regained_share{
+      0.5, "", "a fit without the newest effect that regains this share of its gain was not at its end", kPlants};
+  work::CountThreshold most_effects{6, "", "effects that one joint may have", kAssumed};
   // When two effects are told apart.
-  double apart_deviations = 2.0, apart_share = 0.5, fewest_apart_blocks = 6.0, visible_share = 0.25;
+  work::Threshold apart_deviations{
+      2.0, "", "two effects are told apart if one is better by so many standard deviations", kPlants};
+  work::Threshold apart_share{0.5, "", "and by this share of what is expected were it the truth", kPlants};
+  work::CountThreshold fewest_apart_blocks{6, "", "on at least so many blocks of half a second in which the two differ",
+                                           kPlants};
+  work::Threshold visible_share{
+      0.25, "", "two rollouts differ in a block if the square of their difference is this share of the residual's",
+      kPlants};
   // When a form of an effect is taken.
-  double better_form_deviations = 1.0, hopeless_form_deviations = 4.0;
+  work::Threshold better_form_deviations{
+      1.0, "",
+      "a form of an effect replaces a simpler one if it is better by so many standard deviations: less is a tie",
+      kAssumed};
+  work::Threshold hopeless_form_deviations{
+      4.0, "", "a form that is worse by so many standard deviations after a first fit is not fitted to its end", kCost};
   // The verdict.
-  double remains_of_noise = 8.0, remains_of_beginning = 0.1;
+  work::Threshold remains_of_noise{8.0, "",
+                                   "a residual of less than so many times the noise's mean square is not called "
+                                   "unexplained: loads are weighed to a percent, friction changes from day to day",
+                                   kPlants};
+  work::Threshold remains_of_beginning{0.1, "", "nor is one of less than this share of the beginning", kPlants};
   // When the readings alone decide.
-  double coarser_quantum = 1.5, quantum_of_noise = 0.5;
+  work::Threshold coarser_quantum{
+      1.5, "",
+      "readings show quantisation if their step is so many times the known one: sensors halve or double theirs",
+      kPlants};
+  work::Threshold quantum_of_noise{0.5, "", "and if rounding to it makes up this share of the noise's deviation",
+                                   kPlants};
   // The base model.
-  double gain_tolerance = 0.02, damping_tolerance = 0.03, friction_tolerance = 0.1, load_tolerance = 0.02;
-  double deviation_of_tolerance = 0.5;
+  work::Threshold gain_tolerance{
+      0.02, "", "of the value: how well the base model's gains and torque constants are known", kAssumed};
+  work::Threshold damping_tolerance{0.03, "", "the same of a drive's damping and back-EMF", kAssumed};
+  work::Threshold friction_tolerance{
+      0.1, "",
+      "the same of friction, delay and the rotor's inertia, which change from day to day or come from a data sheet",
+      kAssumed};
+  work::Threshold load_tolerance{0.02, "", "the same of loads", kAssumed};
+  work::Threshold deviation_of_tolerance{
+      0.5, "", "one standard deviation of such a number, as a share of its tolerance", kAssumed};
   effects::IntervalOptions intervals;
   // The next excitation.
-  double enough_deviations = 2.0, most_asked_runs = 6.0, most_asked_recordings = 24.0;
+  work::Threshold enough_deviations{
+      2.0, "", "what is asked for should part two effects by so many times apart_deviations: the outcome strays by one",
+      kAssumed};
+  work::CountThreshold most_asked_runs{6, "", "different runs that are asked for at once", kAssumed};
+  work::CountThreshold most_asked_recordings{24, "", "recordings of them", kAssumed};
   // Cost limits of the search.
-  double searched_runs = 40.0, fitted_effects = 8.0, exchanged_effects = 5.0, fitted_pairs = 5.0,
-         finished_effects = 3.0;
-  double worth_finishing = 0.4, worth_fitting_form = 0.7, few_iterations = 4.0, many_iterations = 15.0;
-  double settled_squares = 0.995;
+  work::CountThreshold searched_runs{40, "", "runs that effects are chosen on; the result is fitted to all", kCost};
+  work::CountThreshold fitted_effects{8, "", "effects of a round that are fitted, the best by their linearisation",
+                                      kCost};
+  work::CountThreshold exchanged_effects{5, "", "effects that are fitted in the place of a cause", kCost};
+  work::CountThreshold fitted_pairs{
+      5, "", "pairs of effects that are fitted where no single effect explains a rest, the best by their linearisation",
+      kCost};
+  work::CountThreshold finished_effects{3, "", "of these, fits that are continued to their end", kCost};
+  work::Threshold worth_finishing{0.4, "", "share of the best gain from which a fit is continued", kCost};
+  work::Threshold worth_fitting_form{
+      0.7, "", "a further form of an effect is fitted if its start explains this share of what the best start explains",
+      kCost};
+  work::CountThreshold few_iterations{4, "", "Gauss-Newton iterations of a first fit", kCost};
+  work::CountThreshold many_iterations{15, "", "of a fit to its end", kCost};
+  work::Threshold settled_squares{
+      0.995, "",
+      "rivals are fitted again about the fit with priors if its squares are below this share of the search's", kCost};
 
   assembly::AssemblyOptions assembly;
   bench::OddRunOptions odd_runs;
   calib::StepOptions step;
   evidence::SignatureOptions signatures;
   residual_torque::Options extension;
+
+  PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, gain_of_rest,
+                 scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest, nearly_all_of_rest,
+                 worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share, most_effects,
+                 apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
+                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, coarser_quantum, quantum_of_noise,
+                 gain_tolerance, damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance,
+                 intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs, fitted_effects,
+                 exchanged_effects, fitted_pairs, finished_effects, worth_finishing, worth_fitting_form, few_iterations,
+                 many_iterations, settled_squares, assembly, odd_runs, step, signatures, extension)
 };
 
-/// Every number of the struct, in its order; those of a struct within it at the end, as
-/// "signatures.NAME".
-std::vector<evidence::Option> listed(const JointDiagnosisOptions& options);
+/// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".
+evidence::ThresholdRows rows(JointDiagnosisOptions& joint, data_faults::DataFaultOptions& data);
 
 }  // namespace pmg::diagnosis

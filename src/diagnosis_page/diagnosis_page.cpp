@@ -15,6 +15,7 @@
 #include "diagnosis_page/residual_pictures.hpp"
 #include "diagnosis_page/run_pictures.hpp"
 #include "effects/catalogue.hpp"
+#include "evidence/thresholds.hpp"
 #include "residual_torque/extension_report.hpp"
 
 namespace pmg::diagnosis_page {
@@ -68,6 +69,10 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
                     1e3 * diagnosis.step.error.step_s, name(diagnosis.step.limit),
                     thousandths(diagnosis.step.error.rms_rad), calib::position_unit(bench, true)));
   }
+  diagnosis::JointDiagnosisOptions joint = diagnosis.options;
+  data_faults::DataFaultOptions data = diagnosis.data.options;
+  if (const auto set = evidence::set_by_hand(diagnosis::rows(joint, data)); !set.empty())
+    page.paragraph(fmt::format("Thresholds set by hand: {}.", fmt::join(set, ", ")));
 }
 
 std::string parameter_lines(const Cause& cause) {

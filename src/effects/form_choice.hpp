@@ -13,7 +13,8 @@ namespace pmg::effects {
 /// (SeenSeparation).
 struct ApartLimits {
   double noise_squares = 0.0;  ///< mean square that no model goes below [rad^2]
-  double deviations = 0.0, share_of_expected = 0.0, blocks = 0.0, visible_share = 0.0;
+  double deviations = 0.0, share_of_expected = 0.0, visible_share = 0.0;
+  int blocks = 0;
 };
 bool told_apart(const SeenSeparation& seen, const ApartLimits& limits);
 

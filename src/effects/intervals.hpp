@@ -1,17 +1,40 @@
 // 95 % intervals of a diagnosis' parameters and errors.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "effects/nested_fit.hpp"
 #include "evidence/verdict.hpp"
+#include "work/threshold.hpp"
 
 namespace pmg::effects {
 
-/// The list of a diagnosis' options gives the reason of each.
+// docs/explanation/hidden-plants.md
+inline constexpr std::string_view kPlants = "hidden plants, seeds 0 to 83";
+inline constexpr std::string_view kAssumed = "assumed; how often intervals hold a known truth would settle it";
+inline constexpr std::string_view kCost = "time of a diagnosis";
+
 struct IntervalOptions {
-  double form_of_squares = 0.01, form_of_value = 0.03, widest_tolerance = 0.3;
-  double wider = 1.5, widest_difference = 0.1, widenings = 3.0, iterations = 4.0;
+  work::Threshold form_of_squares{
+      0.01, "",
+      "intervals: share of the squares beyond the noise that counts as one observation, for a form that isn't right",
+      kPlants};
+  work::Threshold form_of_value{
+      0.03, "",
+      "intervals: share of the value that two integrators of one joint differ by, beyond the error of the step",
+      kPlants};
+  work::Threshold widest_tolerance{
+      0.3, "", "intervals: a wider range, as a share of its upper end, is a search's and no tolerance", kAssumed};
+  work::Threshold wider{1.5, "",
+                        "intervals: where a parameter's deviation is so many times its difference, the difference "
+                        "becomes as wide: in a narrower one, a joint that sticks a sample earlier looks like a slope",
+                        kAssumed};
+  work::Threshold widest_difference{0.1, "", "intervals: no wider than this share of its range", kAssumed};
+  work::CountThreshold widenings{3, "", "intervals: so many times", kCost};
+  work::CountThreshold iterations{4, "", "Gauss-Newton iterations each time", kCost};
+
+  PMG_THRESHOLDS(form_of_squares, form_of_value, widest_tolerance, wider, widest_difference, widenings, iterations)
 };
 
 /// (linearised model, folds, mean square of the noise [rad^2]) => (standard deviations of its coordinates; 0 at the

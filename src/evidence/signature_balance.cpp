@@ -213,7 +213,7 @@ class BalanceChecks {
     }
     const double gain = 1.0 / e.coefficient, deviation = e.deviation * gain * gain;
     Signature s = undecided("gain", around(gain, deviation), "");
-    if (std::abs(gain - 1.0) > std::max(options_.sure_deviations * deviation, options_.gain_error)) {
+    if (std::abs(gain - 1.0) > std::max<double>(options_.sure_deviations * deviation, options_.gain_error)) {
       s.agreement = Agreement::kAgrees;
     } else if (std::abs(gain - 1.0) + 2.0 * deviation < options_.gain_error) {
       s.agreement = Agreement::kDisagrees;

@@ -23,7 +23,7 @@ Signature too_little(const std::string& effect) {
 
 Signature delay_check(const FoundShape& shape, double sample_s, const ShapeOptions& options) {
   const Interval& d = shape.delay_s;
-  const double unsure_s = std::max(options.least_delay_s, options.least_delay_samples * sample_s);
+  const double unsure_s = std::max<double>(options.least_delay_s, options.least_delay_samples * sample_s);
   Signature s{"delay", "balance of torques", Agreement::kCannotTell, d, "s", ""};
   if (d.low > unsure_s && shape.delay_gain > options.least_gain) {
     s.agreement = Agreement::kAgrees;

@@ -99,7 +99,7 @@ void add_rests(const bench::Bench& bench, const bench::BenchRun& run, const Rest
       high_rad = std::max(high_rad, r.q_rad[i]);
       on = on && r.valid[i] && (r.enabled.empty() || r.enabled[i]) && (r.tau_ff_Nm.empty() || r.tau_ff_Nm[i] == 0.0);
     }
-    if (on && high_rad - low_rad <= std::max(options.range_of_noise * noise_rad, options.range_rad)) {
+    if (on && high_rad - low_rad <= std::max<double>(options.range_of_noise * noise_rad, options.range_rad)) {
       const double held_rad = run.load.gravity_Nm * std::sin(mean_rad) / kp;
       rests.push_back({kp, r.q_cmd_rad[from] - mean_rad - held_rad});
     }
@@ -122,7 +122,7 @@ Signature step_onset_check(const bench::Bench& bench, const std::vector<bench::B
   if (static_cast<double>(onsets_s.size()) < options.onset.fewest_steps) return s;
   s.value = median_interval(onsets_s);
   const double unsure_s =
-      std::max(options.onset.least_delay_s, options.onset.least_delay_samples / bench.sample_rate_hz);
+      std::max<double>(options.onset.least_delay_s, options.onset.least_delay_samples / bench.sample_rate_hz);
   if (s.value.low > unsure_s) {
     s.agreement = Agreement::kAgrees;
   } else if (s.value.high < unsure_s) {
@@ -183,7 +183,7 @@ std::vector<Signature> rest_checks(const bench::Bench& bench, const std::vector<
   friction.sentence = fmt::format(
       "joints at rest are short of their command by {:.2g} Nm on average (deviation {:.1g})", torque_Nm, deviation_Nm);
   band.value = {fit[0], fit[0] - 2.0 * deviation_rad, fit[0] + 2.0 * deviation_rad};
-  if (fit[0] > std::max(options.rest_worth_rad, options.sure_deviations * deviation_rad)) {
+  if (fit[0] > std::max<double>(options.rest_worth_rad, options.sure_deviations * deviation_rad)) {
     band.agreement = Agreement::kAgrees;
   } else if (band.value.high < options.rest_worth_rad) {
     band.agreement = Agreement::kDisagrees;

@@ -94,7 +94,7 @@ class RobotDiagnosisRun {
         progress_(progress),
         list_(robot_parameters(robot, options.tolerances, options.causes)),
         equations_(robot, list_, options.support) {
-    result_.options = listed(options);
+    result_.options = options;
   }
 
   RobotDiagnosis run(std::span<const RobotRecording> recordings) {

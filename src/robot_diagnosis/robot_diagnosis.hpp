@@ -38,7 +38,7 @@ struct RobotDiagnosis {
   std::vector<RobotCause> others;                      ///< the next candidates, with their evidence, no parameters
   std::vector<std::string> recordings;                 ///< each log, and where it was made
   std::string drive_sampling;                          ///< when the drives sample positions, and the source
-  std::vector<evidence::Option> options;               ///< thresholds in force
+  RobotDiagnosisOptions options;                       ///< thresholds in force
   std::vector<std::string> not_seen;                   ///< "effect of place": not observable in these logs
 };
 

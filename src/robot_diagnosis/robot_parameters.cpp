@@ -106,11 +106,11 @@ class ParameterListBuilder {
     effect("gain", Kind::kKp, t.kp_share, sizes_.kp_share);
     effect("damping_gain", Kind::kKd, t.kd_share, sizes_.kd_share);
     const double friction_Nm = std::max(joint.friction_Nm, sizes_.coulomb_least_of_effort * joint.effort_limit_Nm);
-    effect("coulomb", Kind::kCoulomb, std::max(t.friction_share * joint.friction_Nm, t.friction_least_Nm),
+    effect("coulomb", Kind::kCoulomb, std::max<double>(t.friction_share * joint.friction_Nm, t.friction_least_Nm),
            sizes_.coulomb_share, friction_Nm);
-    const double viscous = std::max(joint.damping_Nm_s_per_rad, sizes_.viscous_least_Nm_s_per_rad);
+    const double viscous = std::max<double>(joint.damping_Nm_s_per_rad, sizes_.viscous_least_Nm_s_per_rad);
     effect("viscous", Kind::kViscous, t.friction_share * viscous, sizes_.viscous_share, viscous);
-    const double armature = std::max(joint.armature_kg_m2, sizes_.armature_least_kg_m2);
+    const double armature = std::max<double>(joint.armature_kg_m2, sizes_.armature_least_kg_m2);
     effect("armature", Kind::kArmature, std::hypot(t.armature_share * armature, t.inertia_share * moved_kg_m2_[j]),
            sizes_.armature_share, armature);
     effect("zero_offset", Kind::kZeroOffset, t.zero_offset_rad, sizes_.zero_offset_rad);

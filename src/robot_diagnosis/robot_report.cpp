@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "evidence/thresholds.hpp"
+
 namespace pmg::robot_diagnosis {
 
 namespace {
@@ -81,7 +83,7 @@ nlohmann::ordered_json robot_diagnosis_json(const RobotDiagnosis& d) {
   json["not_seen"] = d.not_seen;
   json["recordings"] = d.recordings;
   json["drive_sampling"] = d.drive_sampling;
-  json["options"] = evidence::options_json(d.options);
+  json["options"] = evidence::thresholds_json(d.options);
   const std::string next = next_excitation(d);
   json["next_excitation"] = next.empty() ? Json(nullptr) : Json(next);
   return json;

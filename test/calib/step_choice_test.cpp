@@ -71,8 +71,7 @@ TEST_F(StepChoice, StopsWhereAFinerStepCostsTooMuch) {
   EXPECT_DOUBLE_EQ(fine.error.step_s, runs_.front().step_s() / 8.0);
   EXPECT_EQ(fine.limit, StepLimit::kCost);
   StepOptions cheap;
-  cheap.most_steps =
-      3.0 * 4.0 * static_cast<double>(runs_.front().steps());  // of 4 runs; a halving takes twice as many
+  cheap.most_steps = 3 * 4 * static_cast<int>(runs_.front().steps());  // of 4 runs; a halving takes twice as many
   EXPECT_DOUBLE_EQ(chosen(1e-9, cheap).error.step_s, runs_.front().step_s() / 2.0);
 }
 

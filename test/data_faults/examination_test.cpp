@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "calib/synthetic_bench.hpp"
 #include "data_faults/data_faults_report.hpp"
@@ -93,16 +92,6 @@ TEST(Examination, SaysInJsonWhatTheFormatAsksFor) {
   EXPECT_EQ(fault.at("runs").at(0), "run3.csv");
   EXPECT_EQ(json.at("data_faults_handled").at("by"), "leave-out");
   EXPECT_EQ(json.at("data_faults_handled").at("verdict_of_faulty_data"), false);
-}
-
-TEST(Examination, EveryThresholdIsListedWithItsReason) {
-  const std::vector<evidence::Option> all = listed(DataFaultOptions{});
-  EXPECT_EQ(all.size(), sizeof(DataFaultOptions) / sizeof(double));
-  std::set<std::string> names;
-  for (const evidence::Option& option : all) {
-    EXPECT_TRUE(names.insert(option.name).second) << option.name;
-    EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
-  }
 }
 
 TEST(Examination, WhatIsWrongInAnUnusedColumnAloneCostsNoRun) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <set>
 
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/diagnosis_json.hpp"
@@ -104,17 +103,7 @@ TEST_F(Diagnose, DecidesByItsOptions) {
   options.decide_by.least_deviations = 1e9;
   const Diagnosis found = diagnose(bench::read_bench(folder_), options);
   EXPECT_TRUE(found.causes.empty()) << "no gain has so many deviations";
-  EXPECT_EQ(found.options.front().value, 1e9);
-}
-
-TEST(JointDiagnosisOptions, EveryNumberIsListedWithItsReason) {
-  const std::vector<evidence::Option> all = listed(JointDiagnosisOptions{});
-  EXPECT_EQ(all.size(), sizeof(JointDiagnosisOptions) / sizeof(double));
-  std::set<std::string> names;
-  for (const evidence::Option& option : all) {
-    EXPECT_TRUE(names.insert(option.name).second) << option.name;
-    EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
-  }
+  EXPECT_EQ(found.options.least_deviations, 1e9);
 }
 
 /// The words that a diagnosis' JSON and page begin with; no line is green.

@@ -36,7 +36,7 @@ TEST_F(Rules, WhatIsEvidentWithoutAModelIsFittedWhateverALinearLookSays) {
   truth.actuator.friction.load_driving = truth.actuator.friction.load_backdriving = 0.3;
   const bench::Bench bench = written(test::record(bench_, truth, 8, 2e-4));
   DiagnoseOptions options = given_healthy();
-  options.decide_by.fitted_effects = 0.0;  // a linear look lets nothing pass
+  options.decide_by.fitted_effects = 0;  // a linear look lets nothing pass
   const Diagnosis found = diagnose(bench, options);
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes.front().effect, "load_friction");
@@ -48,7 +48,9 @@ TEST_F(Rules, AFitOfWhatIsEvidentBeginsWithTheMeasuredStrength) {
   truth.actuator.friction.load_driving = truth.actuator.friction.load_backdriving = 0.2;
   const bench::Bench bench = written(test::record(bench_, truth, 8, 2e-4));
   DiagnoseOptions options = given_healthy();
-  options.decide_by.fitted_effects = options.decide_by.few_iterations = options.decide_by.many_iterations = 0.0;
+  options.decide_by.fitted_effects = 0;
+  options.decide_by.few_iterations = 0;
+  options.decide_by.many_iterations = 0;
   const Diagnosis found = diagnose(bench, options);
   ASSERT_FALSE(found.causes.empty());
   ASSERT_EQ(found.causes.front().effect, "load_friction");

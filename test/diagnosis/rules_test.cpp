@@ -7,6 +7,7 @@
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis/rules_fixture.hpp"
 #include "effects/catalogue.hpp"
+#include "evidence/thresholds.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -156,15 +157,15 @@ TEST_F(Rules, EffectsThatTheRunsDoNotTellApartAreAmbiguous) {
   const bench::Bench bench = written(test::record(bench_, truth, 4, 2e-4));
   DiagnoseOptions options = given_healthy();
   EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kFound);
-  for (double JointDiagnosisOptions::*rule : {&JointDiagnosisOptions::apart_share,       // no rival is so much worse
-                                              &JointDiagnosisOptions::apart_deviations,  // nor so surely,
-                                              &JointDiagnosisOptions::fewest_apart_blocks}) {  // nor so often
+  for (const std::string rule : {"apart_share=1e12",                   // no rival is so much worse
+                                 "apart_deviations=1e12",              // nor so surely,
+                                 "fewest_apart_blocks=1000000000"}) {  // nor so often
     options = given_healthy();
-    options.decide_by.*rule = 1e12;
+    evidence::set(evidence::rows(options.decide_by), rule);
     const Diagnosis found = diagnose(bench, options);
     EXPECT_EQ(found.verdict, evidence::Verdict::kAmbiguous);
     EXPECT_FALSE(found.causes.at(0).or_instead.empty());
-    if (rule != &JointDiagnosisOptions::apart_deviations) {  // no recording parts two effects by so much
+    if (!rule.starts_with("apart_deviations")) {  // no recording parts two effects by so much
       EXPECT_TRUE(found.next_excitation);
     }
   }
@@ -176,7 +177,7 @@ TEST_F(Rules, EveryEffectThatIsNoCauseHasAReasonAndSaysHowItWasLookedAt) {
   truth.actuator.command.delay_s = 0.015;
   const bench::Bench bench = written(test::record(bench_, truth, 4, 2e-4));
   DiagnoseOptions options = given_healthy();
-  options.decide_by.fitted_effects = 2.0;  // the others are not fitted, unless a check shows them
+  options.decide_by.fitted_effects = 2;  // the others are not fitted, unless a check shows them
   const Diagnosis found = diagnose(bench, options);
   std::map<LookedAt, int> count;
   for (const Rejected& one : found.rejected) {

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <string>
 
+#include "evidence/thresholds.hpp"
 #include "robot_diagnosis/drive_sampling.hpp"
 #include "robot_diagnosis/robot_samples.hpp"
 #include "sim/robots.hpp"
@@ -57,14 +59,14 @@ TEST(RobotEvidence, RivalsPartWhereTheirRowsDifferNotWhereTheBlockBegins) {
             10.0 * payload.apart[static_cast<std::size_t>(Support::kStanding)]);
 }
 
-TEST(RobotDiagnosisOptions, EveryNumberIsListedWithItsReason) {
-  const std::vector<evidence::Option> all = listed(RobotDiagnosisOptions{});
-  EXPECT_EQ(all.size(), sizeof(RobotDiagnosisOptions) / sizeof(double));
+TEST(RobotDiagnosisOptions, EachHasAReasonAndTheDataThatItWasSetOn) {
   std::set<std::string> names;
-  for (const evidence::Option& option : all) {
-    EXPECT_TRUE(names.insert(option.name).second) << option.name;
-    EXPECT_FALSE(option.reason.empty() || option.set_on.empty()) << option.name;
+  for (const nlohmann::ordered_json& row : evidence::thresholds_json(RobotDiagnosisOptions{})) {
+    EXPECT_TRUE(names.insert(row["name"]).second) << row["name"];
+    EXPECT_FALSE(row["reason"].get<std::string>().empty()) << row["name"];
+    EXPECT_FALSE(row["set_on"].get<std::string>().empty()) << row["name"];
   }
+  EXPECT_TRUE(names.contains("causes.delay_s.relevant"));
 }
 
 // Means over the beginnings, and over the ends, of the steps of a tick.
