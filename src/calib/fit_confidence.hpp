@@ -20,8 +20,7 @@ struct Confidence {
 
 /// (problem, point) => (confidence of each parameter), from the rollouts' derivatives J. Columns of unit length: where
 /// |J v| is below 1e-3, or below 0.1 and twice |E v|, the direction v of the parameters is blind, and these have no
-/// deviation.
-/// E is what finite differences with steps twice as long change: derivatives tell no more. The others have
+/// deviation. E is what finite differences with steps twice as long change: derivatives tell no more. The others have
 ///
 ///   sqrt(A^-1 B A^-1 + d d^T), with fitting::cluster_robust_covariance's A and B,
 /// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left. A deviation beyond a quarter of

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "data_faults/column_checks.hpp"
 #include "fitting/statistics.hpp"
@@ -147,7 +148,7 @@ std::vector<DataFault> position_faults(const Examined& e) {
     candidates.push_back({{Column::kPosition}, -1.0, ""});
     candidates.push_back({{Column::kPositionCommand}, -1.0, ""});
   } else if (fitting::median(ranges) > kFullTurn_rad && !e.linear()) {
-    candidates.push_back({{Column::kPosition, Column::kPositionCommand}, 3.141592653589793 / 180.0, "degrees"});
+    candidates.push_back({{Column::kPosition, Column::kPositionCommand}, std::numbers::pi / 180.0, "degrees"});
   }
   if (candidates.empty()) return {};
   const Candidate& first = candidates.front();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "calib/fit_problem.hpp"
 #include "calib/joint_runs.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr std::size_t kMostStarts = 4;
 constexpr std::size_t kRunsForOrders = 5;  // a hundred orders of a wave are screened on so many runs first
-constexpr double kPi = 3.141592653589793;
 
 bool better(const ScreenedStart& a, const ScreenedStart& b) { return a.squares < b.squares; }
 
@@ -121,7 +121,7 @@ void StartScreen::screen_waves(const Form& form, const std::vector<double>& valu
   const std::vector<Wave> waves = waves_of(form);
   std::vector<fitting::Residuals> parts;
   for (const Wave& wave : waves) {
-    for (const double phase : {0.0, 0.5 * kPi}) {
+    for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
       calib::JointModel model = flat;
       for (const Wave& other : waves) {
         if (other.amplitude != wave.amplitude) calib::set(model, other.amplitude, 0.0);

@@ -1,4 +1,4 @@
-// Longer than 300 lines: one table, a row for each form of an effect.
+// One table, a row for each form of an effect.
 #include "effects/starts.hpp"
 
 #include <algorithm>

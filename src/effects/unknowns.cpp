@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "effects/period.hpp"
 #include "fitting/statistics.hpp"
@@ -48,7 +49,7 @@ double quantum_of(const std::vector<calib::SingleJoint>& runs) {
 }  // namespace
 
 double lowest_order(const BenchScale& scale) {
-  return 2.0 * 3.141592653589793 / std::max(0.1, scale.position_high_rad - scale.position_low_rad);
+  return 2.0 * std::numbers::pi / std::max(0.1, scale.position_high_rad - scale.position_low_rad);
 }
 
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const JointModel& model) {

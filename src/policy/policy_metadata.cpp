@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr int kFormat = 1;
 constexpr double kLargestGoldenTolerance = 0.01;  // for actions of order one; with more the pairs would prove nothing
-constexpr double kLargestAction_rad = 3.14159265358979;  // farther than any joint of a robot moves
+constexpr double kLargestAction_rad = std::numbers::pi;  // farther than any joint of a robot moves
 constexpr double kPostureTolerance_rad = 1e-6;           // the same number after writing and reading as text
 
 [[noreturn]] void refuse_metadata(const std::string& what) { throw std::invalid_argument(what); }

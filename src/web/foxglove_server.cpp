@@ -1,4 +1,4 @@
-// The second file that knows Boost.Beast: plain sockets, so it compiles in half of server.cpp's time.
+// Boost.Beast is known here and in server.cpp alone; this server has plain sockets.
 #include "web/foxglove_server.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The only file that knows Boost.Beast, which takes most of a minute to compile; longer than 300 lines for that reason.
+// Boost.Beast, which takes most of a minute to compile, is known here and in foxglove_server.cpp alone.
 #include "web/server.hpp"
 
 #include <fmt/format.h>
