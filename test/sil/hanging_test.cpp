@@ -23,7 +23,7 @@ namespace {
 using test::kTick_s;
 constexpr double kLift_m = 0.20;
 
-/// Counts the policy's calls.
+/// Counts the calls whose targets were sent.
 class CountedPolicy final : public policy::Policy {
  public:
   CountedPolicy(std::unique_ptr<policy::Policy> own, int& calls) : own_(std::move(own)), calls_(calls) {}
@@ -32,6 +32,10 @@ class CountedPolicy final : public policy::Policy {
   std::optional<double> action_bound_rad() const override { return own_->action_bound_rad(); }
   bool needs_ground() const override { return own_->needs_ground(); }
   void reset() noexcept override { own_->reset(); }
+  void unsent() noexcept override {
+    --calls_;
+    own_->unsent();
+  }
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {
     ++calls_;
