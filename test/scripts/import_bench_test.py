@@ -90,6 +90,11 @@ class ImportBench(unittest.TestCase):
     def test_gains_that_nothing_says_are_refused(self):
         self.expect_refused("kp_Nm_per_rad and kd_Nm_s_per_rad", self.sine(), *BASE[:4], *MAPS)
 
+    def test_a_rig_without_a_load_and_a_law_without_its_constant_are_refused(self):
+        self.expect_refused("expected --load", self.sine(), "--rig", "pendulum", *BASE[2:], *MAPS)
+        servo = ["--rig", "horizontal", "--law", "servo_voltage", "--row", "kp_firmware=16"]
+        self.expect_refused("--drive error_gain_per_rad=NUMBER or =unknown", self.sine(), *servo, *MAPS)
+
     def test_a_gap_is_told_with_its_place_and_split_on_request(self):
         path = self.sine(times_ms=[10 * k + (500 if k >= 10 else 0) for k in range(20)])
         self.expect_refused("1 gap, the first of 0.51 s at 0.09 s", path, *BASE, *MAPS, code=1)
