@@ -37,7 +37,7 @@ constexpr std::array<std::pair<const char*, const char*>, 12> kMeanings = {{
     {"J L", "lean left, right"},
     {"N", "upright again"},
     {"Enter", "stand, after a stop, too"},
-    {"H G R", "hoist: lift, set down; reset a fault"},
+    {"H G R", "hoist up, down; reset a fault"},
 }};
 
 std::string command_row(const char* label, const double* u) {

@@ -339,6 +339,30 @@ TEST(Tick, APolicyRunsUnsentForHalfASecondBeforeItGetsTheDrives) {
   int ticks = 0;
   for (; policy_waits(driven.tick.result().maker) && ticks < 100; ++ticks) driven.step();
   EXPECT_LE(ticks, 10) << "it ran unsent while it hung: nothing delays it on the ground";
+
+  driven.request.mode = Mode::kDamping;
+  driven.run(0.1);
+  driven.request.mode = Mode::kStand;
+  const int calls = driven.policy->calls, unsent = driven.policy->unsent_calls;
+  while (driven.policy->calls == calls && driven.now_ns < 10'000'000'000) driven.step();
+  EXPECT_EQ(driven.policy->unsent_calls - unsent, 49) << "every time that Stand begins";
+}
+
+TEST(Tick, ARequestForWalkWaitsUntilThePolicyIsKnown) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kStand;
+  driven.run(0.1);
+  driven.request.mode = Mode::kWalk;
+  driven.step();
+  driven.asking = false;                                     // once
+  driven.policy->how = test::BreakablePolicy::Break::kLate;  // what gives no result makes nobody known
+  driven.run(0.7);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kStand);
+  ASSERT_FALSE(driven.tick.result().entering) << "the ramp is over";
+  ASSERT_TRUE(policy_waits(driven.tick.result().maker));
+  driven.policy->how = test::BreakablePolicy::Break::kNone;
+  driven.run(1.0);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
 }
 
 TEST(Tick, APolicyWhoseFirstStepIsFarIsRefusedWithItsJointBeforeAnythingMoves) {

@@ -186,7 +186,7 @@ TEST(WaitingSimulation, AComputerThatStopsBothThreadsIsNoHang) {
   LateComputer computer(true);
   ASSERT_TRUE(computer.run(300, in_time, in_time));
   const double before_s = computer.time_s();
-  computer.stop_both(10'000 * kMillisecond_ns);
+  computer.stop_both(3'000 * kMillisecond_ns);
   ASSERT_TRUE(computer.run(100, in_time, in_time));
   EXPECT_EQ(computer.trips(), 0u);
   EXPECT_EQ(computer.result().mode, control::Mode::kWalk) << to_string(computer.result().fault.code);
