@@ -164,7 +164,7 @@ void fill(const control::TickRecord& record, const RunInfo& run, const model::Ro
   message.gco_held = result.optimised.status == gco::Status::kNotConverged;
   message.policy_held = result.policy_held;
   message.hanging = control::hanging(result.maker);
-  message.footing_unknown = control::policy_waits(result.maker) && !control::hanging(result.maker);
+  message.footing_unknown = result.maker == control::TargetMaker::kReferenceUnjudged;
   copy(result.foot_load.value_or(PerFoot<double>{-1.0, -1.0}), message.foot_load);
   message.realtime = run.realtime;
 }

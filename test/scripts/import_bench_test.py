@@ -106,8 +106,17 @@ class ImportBench(unittest.TestCase):
     def test_a_clock_that_stands_or_jumps_back_is_told_and_its_rows_dropped_on_request(self):
         path = self.sine(times_ms=[10 * k for k in range(15)] + [140, 130, 150, 160, 170])
         self.expect_refused("row 17 the clock goes from 0.14 s to 0.14 s", path, *BASE, *MAPS, code=1)
-        (run,) = self.expect_bench(path, *BASE, *MAPS, "--clock", "drop")
-        self.assertEqual(len(rows_of(self.out / "runs" / run["file"])), 18)
+        done = self.run_import(path, *BASE, *MAPS, "--clock", "drop")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("2 rows are left out", done.stderr)
+        self.assertEqual(len(rows_of(self.out / "runs/log.csv")), 18)
+
+    def test_a_stretch_that_is_too_short_for_a_run_is_told(self):
+        path = self.sine(times_ms=[10 * k + (500 if k >= 15 else 0) for k in range(20)])
+        done = self.run_import(path, *BASE, *MAPS, "--gaps", "split")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("5 rows are left out, in stretches of fewer than 10", done.stderr)
+        self.assertEqual(len(rows_of(self.out / "runs.csv")), 1)
 
     def test_a_cell_that_is_no_number_a_missing_column_and_a_ragged_row_are_refused_with_their_place(self):
         rows = [f"{10 * k},1,2" for k in range(12)]
