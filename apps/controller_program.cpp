@@ -134,10 +134,12 @@ void supervise(runtime::Controller& controller, const EndSignals& signals, const
            std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(*arguments.duration_s);
   };
   bool signalled = false;
+  runtime::LatenessNews lateness;
   while (!signalled && !expired() && !excitation_over && controller.failure().empty()) {
     signalled = signals.wait_ms(window == nullptr ? kPoll_ms : kKeys_ms);
     for (runtime::ControllerNews news; controller.news(news);) console.show(news);
     if (const std::string news = backend.news(); !news.empty()) spdlog::warn("drives: {}", news);
+    if (const std::string late = lateness.since(controller.turns()); !late.empty()) spdlog::warn("{}", late);
     if (window == nullptr) continue;
     window->listen();
     if (!window->closed()) continue;
@@ -230,6 +232,8 @@ int run_controller(Arguments& arguments) {
                                                      .options = backend_options});
   backend = imu::with_imu(std::move(backend), loaded.robot, imu::sleeping());
   control::take_limits(backend->limits(), loaded.options);
+  // What is injected is to be seen: a stall that the simulation waits for would be none.
+  arguments.threads.waits = backend->limits().waits && arguments.inject.empty();
   apps::ControllerExcitation excitation(arguments.bench, arguments.excite, arguments.excitation, arguments.bench_out,
                                         backend->description().own_gains, loaded);
   apps::Injection injection(arguments.inject, arguments.backend.hal(), loaded.robot);

@@ -61,10 +61,7 @@ int drive(const Arguments& arguments) {
       station.step(kWait_ms);
       if (clock.now_ns() < picture_at_ns) continue;
       picture_at_ns = clock.now_ns() + kPicture_ns;
-      std::vector<std::string> lines = station.lines();
-      lines.emplace_back();
-      lines.insert(lines.end(), meanings.begin(), meanings.end());
-      terminal.draw(lines);
+      terminal.draw(ops::fitted(station.lines(), meanings, terminal.rows()));
     }
   }
   std::cout << station.last_words() << '\n';

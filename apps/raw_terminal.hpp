@@ -56,12 +56,11 @@ class RawTerminal {
     return "";
   }
   bool ended() const noexcept { return ended_; }
+  std::size_t rows() const { return measured().ws_row; }
 
   /// Draws a picture from the top left corner. Cuts lines that are too long, and surplus lines.
   void draw(const std::vector<std::string>& lines) const {
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
-      size = {.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+    const winsize size = measured();
     std::string text = "\x1b[H";
     for (std::size_t i = 0; i < lines.size() && i < size.ws_row; ++i) {
       if (i > 0) text += "\r\n";
@@ -71,6 +70,12 @@ class RawTerminal {
   }
 
  private:
+  static winsize measured() {
+    winsize size{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+      size = {.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+    return size;
+  }
   static termios& cooked() {
     static termios settings{};
     return settings;

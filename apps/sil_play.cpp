@@ -118,7 +118,7 @@ Played play_realtime(const Stage& stage) {
                                                                  : sil::HoistedBy::kScenario,
                                 true);
   sil::FailingBus bus(simulated, stage.failures, robot, stage.failure_clock, true);
-  runtime::Controller controller(robot, bus, stage.tick);
+  runtime::Controller controller(robot, bus, stage.tick, {.waits = stage.failures.empty()});
   for (const std::string& refused : controller.refused()) std::cerr << "not real-time: " << refused << '\n';
   recording::RunInfo info = run_info(stage);
   info.session = std::chrono::system_clock::now().time_since_epoch().count();

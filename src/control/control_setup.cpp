@@ -102,6 +102,9 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/change_over/speed_rad_s", tick.change_over.speed_rad_s);
   visit("/change_over/shortest_s", tick.change_over.shortest_s);
   visit("/change_over/longest_s", tick.change_over.longest_s);
+  visit("/rehearsal/duration_s", tick.rehearsal.duration_s);
+  visit("/rehearsal/largest_step_rad", tick.rehearsal.largest_step_rad);
+  visit("/rehearsal/refused_ticks", tick.rehearsal.refused_ticks);
   visit("/sit_down/duration_s", tick.sit_down.duration_s);
   visit("/sit_down/settle_s", tick.sit_down.settle_s);
   visit("/sit_down/reference_s", tick.sit_down.reference_s);
@@ -186,6 +189,7 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
     return json.is_object() && !json.empty() && !json.contains(nlohmann::ordered_json::json_pointer(place));
   };
   if (unnamed("/command/turn_s")) options.generator.turn_s = 0.0;
+  if (unnamed("/rehearsal/duration_s")) options.rehearsal.duration_s = 0.0;
   if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
   if (unnamed("/sit_down/brake_factor")) options.sit_down.brake_factor = 1.0;
 }

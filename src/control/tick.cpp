@@ -49,11 +49,14 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
       change_over_(options.change_over),
+      hand_over_(options.change_over),
       limiter_(robot, gains_.kp_Nm_per_rad, gains_.kd_Nm_s_per_rad, options.dt_s, options.limiter),
+      rehearsal_(options.rehearsal),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
       sit_down_(robot, library, options.sit_down, guard_),
       fallback_(options.sit_down.reference_s),
-      target_(robot.q_stand()) {
+      target_(robot.q_stand()),
+      rehearsed_(target_) {
   model::JointCommand& command = result_.command;
   command.q = robot.q_stand();
   for (JointVector* values : {&command.dq, &command.kp, &command.kd, &command.tau_ff}) {
@@ -182,7 +185,7 @@ faults::FaultEvidence Tick::evidence(const TickInput& input) const noexcept {
 SupervisorInput Tick::supervisor_input(const TickInput& input) const noexcept {
   SupervisorInput known{.evidence = evidence(input),
                         .command_age_s = result_.command_age_s,
-                        .entry_done = entry_.done(),
+                        .entry_done = entry_.done() && result_.maker != TargetMaker::kReferenceRehearsed,
                         .at_rest = motion_.reference().gain == 0.0,
                         .gco_held_ticks = gco_held_ticks_,
                         .policy_waits = policy_waits(result_.maker)};
@@ -204,7 +207,13 @@ void Tick::watch_feet(const model::RobotState& state) noexcept {
   result_.foot_load = feet_->share();
   if (feet_->footing() == faults::Footing::kUnknown) return;
   const bool carry = feet_->footing() == faults::Footing::kStands;
-  if (take(carry ? TargetEvent::kFeetCarry : TargetEvent::kFeetCarryNothing)) change_over();
+  if (!take(carry ? TargetEvent::kFeetCarry : TargetEvent::kFeetCarryNothing)) return;
+  if (!carry) return hang();
+  refused_ticks_ = 0;
+  if (rehearsal_.duration_s > 0.0) return;
+  policy_->reset();  // as in a log from before policies were rehearsed
+  take_over();
+  change_over_.start(result_.command.q, motion_.reference().q);
 }
 
 bool Tick::take(TargetEvent event) noexcept {
@@ -212,22 +221,57 @@ bool Tick::take(TargetEvent event) noexcept {
   return result_.maker != before;
 }
 
-void Tick::change_over() noexcept {
-  if (hanging(result_.maker)) {
-    motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
-    gco_held_ticks_ = 0;
-  } else {
-    begin_policy();
-  }
-  // From the targets in force, so that no torque jumps. Where the policy will want to go isn't known yet; it stays near
-  // the reference.
-  change_over_.start(result_.command.q, motion_.reference().q);
+void Tick::hang() noexcept {
+  motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
+  gco_held_ticks_ = 0;
+  begin_rehearsal();
+  hand_over_.finish();
+  change_over_.start(result_.command.q, motion_.reference().q);  // from the targets in force: no torque jumps
+}
+
+void Tick::take_over() noexcept {
+  take(TargetEvent::kPolicyIsKnown);
+  begin_policy();
 }
 
 void Tick::begin_policy() noexcept {
-  policy_->reset();
   action_monitor_.reset();
   policy_owes_ticks_ = 0;
+}
+
+void Tick::begin_rehearsal() noexcept {
+  policy_->reset();
+  rehearsed_ticks_ = refused_ticks_ = 0;
+}
+
+faults::Fault Tick::rehearse(const model::RobotState& state) noexcept {
+  if (rehearsal_.duration_s <= 0.0) return {};
+  const policy::Status status = act(state, rehearsed_);
+  if (status == policy::Status::kLate) return {};
+  if (!sound(status, rehearsed_)) return {.code = faults::FaultCode::kPolicyNotFinite};
+  ++rehearsed_ticks_;
+  const bool long_enough = rehearsed_ticks_ * dt_s_ >= rehearsal_.duration_s - 0.5 * dt_s_;
+  if (!long_enough || result_.maker != TargetMaker::kReferenceRehearsed) {
+    policy_->unsent();
+    return {};
+  }
+  return judge_first_step();
+}
+
+faults::Fault Tick::judge_first_step() noexcept {
+  Eigen::Index joint = 0;
+  const double step_rad = (rehearsed_ - result_.reference.q).cwiseAbs().maxCoeff(&joint);
+  if (step_rad <= rehearsal_.largest_step_rad) {
+    take_over();
+    hand_over_.start(result_.reference.q, rehearsed_);  // below the ramp into Stand, which goes on
+    return {};
+  }
+  policy_->unsent();
+  if (++refused_ticks_ < rehearsal_.refused_ticks) return {};
+  return {.code = faults::FaultCode::kActionOutOfRange,
+          .joint = static_cast<int>(joint),
+          .value = step_rad,
+          .limit = rehearsal_.largest_step_rad};
 }
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
@@ -239,9 +283,11 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
   gco_held_ticks_ = 0;
   entry_.start(state.q, target_);
   change_over_.finish();
+  hand_over_.finish();
   limiter_.start_from(state.q);
   set_limiter_gains(gains_);
   if (robot_excitation_) robot_excitation_->start();
+  begin_rehearsal();
   if (feet_) {
     feet_->start();
   } else {
@@ -257,14 +303,11 @@ faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   } else if (arms_) {
     result_.arms.arm = arms_->keep(result_.reference.q);
   }
-  if (!runs_policy(result_.maker)) {
-    target_ = result_.reference.q;
-  } else if (const faults::Fault fault = ask_policy(state); fault.code != faults::FaultCode::kNone) {
-    return fault;
-  }
+  if (const faults::Fault fault = make_target(state); fault.code != faults::FaultCode::kNone) return fault;
 
   model::JointCommand& command = result_.command;
   command.q = target_;
+  hand_over_.apply(dt_s_, command.q);
   entry_.apply(dt_s_, command.q);
   change_over_.apply(dt_s_, command.q);
   command.kp = gains_in_use().kp_Nm_per_rad;
@@ -274,6 +317,15 @@ faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   if (excites() && entry_.done()) excite(command);
   result_.limited = limiter_.apply(state, command.dq, command.q);
   return {};
+}
+
+faults::Fault Tick::make_target(const model::RobotState& state) noexcept {
+  if (runs_policy(result_.maker)) return ask_policy(state);
+  target_ = result_.reference.q;
+  if (!policy_waits(result_.maker)) return {};
+  const faults::Fault fault = rehearse(state);
+  if (runs_policy(result_.maker)) target_ = rehearsed_;
+  return fault;
 }
 
 void Tick::excite(model::JointCommand& command) noexcept {
@@ -324,21 +376,27 @@ faults::Fault Tick::without_generator() noexcept {
   return {};
 }
 
-faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
+policy::Status Tick::act(const model::RobotState& state, JointVector& q_des) noexcept {
   const io::Lap lap(stopwatch_);
-  JointVector& q_des = result_.command.q;
   const policy::Status status = policy_->act(state, result_.reference, result_.optimised.command, q_des);
   result_.times.policy_ns = lap.elapsed_ns();
+  return status;
+}
 
+bool Tick::sound(policy::Status status, const JointVector& q_des) const noexcept {
+  return status == policy::Status::kOk && q_des.size() == target_.size() && q_des.allFinite();
+}
+
+faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
+  JointVector& q_des = result_.command.q;
+  const policy::Status status = act(state, q_des);
   result_.policy_held = status == policy::Status::kLate;
   if (result_.policy_held) {
     return ++policy_owes_ticks_ < policy_may_owe_ticks_ ? faults::Fault{}
                                                         : faults::Fault{.code = faults::FaultCode::kStalePolicy};
   }
   policy_owes_ticks_ = 0;
-  if (status != policy::Status::kOk || q_des.size() != target_.size() || !q_des.allFinite()) {
-    return {.code = faults::FaultCode::kPolicyNotFinite};
-  }
+  if (!sound(status, q_des)) return {.code = faults::FaultCode::kPolicyNotFinite};
   target_ = q_des;
   return action_monitor_.watch(target_, result_.reference.q);
 }
@@ -401,6 +459,7 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
 }
 
 void Tick::leave_policy(const model::RobotState& state) noexcept {
+  hand_over_.finish();
   change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), result_.reference.q);
   set_limiter_gains(sit_down_.gains());
 }

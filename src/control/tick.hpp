@@ -41,6 +41,14 @@ class TickSpoiler {
   virtual void spoil(TickResult& result) noexcept = 0;    ///< at the tick's end
 };
 
+/// Before a policy that balances gets the drives, it runs unsent beside the reference.
+struct RehearsalOptions {
+  double duration_s = 0.5;  ///< for so long at least; 0: it gets them unseen
+  /// Largest step of a joint from the reference, which is sent, to what the policy wants when it gets the drives.
+  double largest_step_rad = 0.5;
+  int refused_ticks = 5;  ///< so many ticks in a row beyond it, on the ground, are a fault
+};
+
 struct TickOptions {
   double dt_s = 0.01;
   GeneratorOptions generator;
@@ -54,6 +62,7 @@ struct TickOptions {
   /// From the policy's targets to the reference when the robot begins to hang, and back when it stands again: quick,
   /// because a robot that is set down must be balanced.
   EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
+  RehearsalOptions rehearsal;
   faults::ActionMonitorOptions action_monitor;
   SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
@@ -148,9 +157,14 @@ class Tick {
   SupervisorInput supervisor_input(const TickInput& input) const noexcept;
   void watch_feet(const model::RobotState& state) noexcept;
   void enter_stand(const model::RobotState& state) noexcept;
-  void change_over() noexcept;
+  void hang() noexcept;
+  void take_over() noexcept;
   /// True if it changes the maker.
   bool take(TargetEvent event) noexcept;
+  void begin_rehearsal() noexcept;
+  /// The policy's targets of this tick, unsent; on the ground it is given the drives, or refused.
+  faults::Fault rehearse(const model::RobotState& state) noexcept;
+  faults::Fault judge_first_step() noexcept;
   void begin_policy() noexcept;
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   /// Called again in a tick whose policy failed: the reference goes on once a tick.
@@ -166,6 +180,9 @@ class Tick {
   void take_excitation(const model::RobotModel& robot, const TickOptions& options);
   void see_excitation() noexcept;
   faults::Fault ask_policy(const model::RobotState& state) noexcept;
+  faults::Fault make_target(const model::RobotState& state) noexcept;
+  policy::Status act(const model::RobotState& state, JointVector& q_des) noexcept;
+  bool sound(policy::Status status, const JointVector& q_des) const noexcept;
   /// In Fault: begins, goes on with or ends the sit-down.
   void sit_down(const TickInput& input, Mode before) noexcept;
   void begin_sit_down(const TickInput& input) noexcept;
@@ -192,11 +209,12 @@ class Tick {
   CommandIntake intake_;
   Supervisor supervisor_;
   std::optional<faults::FootLoadWatch> feet_;  // nothing for a policy that needs no ground
-  EntryRamp entry_, change_over_;
-  std::optional<LedArms> arms_;  // nothing: of a robot without
+  EntryRamp entry_, change_over_, hand_over_;  // hand_over_: from the reference to a policy that becomes known
+  std::optional<LedArms> arms_;                // nothing: of a robot without
   std::optional<ExcitationPlayer> excitation_;
   std::optional<RobotExcitationPlayer> robot_excitation_;
   Limiter limiter_;
+  RehearsalOptions rehearsal_;
   faults::ActionMonitor action_monitor_;
   SitDown sit_down_;
   FallbackReference fallback_;      // in a sit-down whose generator has failed
@@ -206,6 +224,8 @@ class Tick {
   bool reference_is_made_ = false;  // in this tick, with led arms
   JointVector target_;              // the policy's last good one, before ramp and limits
   int policy_owes_ticks_ = 0, gco_held_ticks_ = 0;
+  JointVector rehearsed_;  // the policy's last unsent targets
+  int rehearsed_ticks_ = 0, refused_ticks_ = 0;
   TickResult result_;
 };
 

@@ -39,6 +39,7 @@ struct BackendLimits {
   GuardOptions guard;                   ///< largest gains; age of a command
   std::optional<double> stale_state_s;  ///< a state older than this is stale
   std::optional<int> overrun_ticks;     ///< so many control periods in a row that end late are a fault
+  bool waits = false;                   ///< physics stand still while the controller is late: of simulations alone
 };
 
 /// What a log says of the backend that made it, for those who use the log.

@@ -77,7 +77,8 @@ DeviceManner KeyCommand::manner() const {
           .starts = "a key makes it stand up and walk",
           .lifts = "H lifts it",
           .sets_down = "G sets it down",
-          .anew = "Press a key anew"};
+          .anew = "Press a key anew",
+          .holds_heading = true};
 }
 
 void KeyCommand::press(std::string_view name, bool fast, std::int64_t now_ns) noexcept {

@@ -50,8 +50,9 @@ struct DeviceManner {
   std::string starts;   ///< the same from a mode below Stand
   std::string lifts = "pmg_send lift lifts it";           ///< how a simulated robot's hoist takes it up
   std::string sets_down = "pmg_send lower sets it down";  ///< likewise
-  std::string anew;         ///< what to do after it came to rest by itself: "Press a key anew"
-  double timeout_s = 10.0;  ///< for each request
+  std::string anew;            ///< what to do after it came to rest by itself: "Press a key anew"
+  double timeout_s = 10.0;     ///< for each request
+  bool holds_heading = false;  ///< where a simulated robot is asked for no turn, it keeps its heading
 };
 
 /// For one thread. All times come from one monotonic clock.

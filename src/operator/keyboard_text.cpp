@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::array kOrder = {kVx, kVy, kOmega, kPitch, kRoll, kHeight};
 
+constexpr std::size_t kLeastState = 8;  // mode and what to do in four lines, and the commands
+
 struct Row {
   std::string label, value;
 };
@@ -35,7 +37,7 @@ constexpr std::array<std::pair<const char*, const char*>, 12> kMeanings = {{
     {"J L", "lean left, right"},
     {"N", "upright again"},
     {"Enter", "stand, after a stop, too"},
-    {"H G R", "hoist: lift, set down; reset a fault"},
+    {"H G R", "hoist up, down; reset a fault"},
 }};
 
 std::string command_row(const char* label, const double* u) {
@@ -66,8 +68,8 @@ std::vector<Row> status_rows(const RobotNews& news, double silence_s) {
   const std::string who = status.driving_source.empty() ? "nobody" : status.driving_source;
   const std::string age =
       status.command_age_s < 0.0 ? "" : fmt::format(", last command {} old", time_words(status.command_age_s));
-  std::vector<Row> rows = {{"limited", limits_text(news)},
-                           {"fault", status.fault.empty() ? "none" : status.fault},
+  std::vector<Row> rows = {{"fault", status.fault.empty() ? "none" : status.fault},
+                           {"limited", limits_text(news)},
                            {"driven by", fmt::format("{}{}; heard {} ago", who, age, time_words(silence_s))}};
   if (news.info) {
     rows.push_back({"policy", fmt::format("{}, backend {}", news.info->policy, news.info->backend)});
@@ -95,10 +97,11 @@ std::optional<CommandLimits> command_limits(const pmg_msgs::robot_info_t& info) 
 
 std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNews* news, double silence_s) {
   std::vector<std::string> lines;
-  constexpr std::size_t kWidth = 79, kIndent = 4;  // what a terminal cuts off isn't read
-  for (const Row& row : head_rows(driver, news, silence_s))
-    for (std::string& line : io::wrapped(io::plain_text(row.label + "   " + row.value), kWidth, kIndent))
-      lines.push_back(std::move(line));
+  const auto add = [&lines](const std::string& text, std::size_t indent) {
+    constexpr std::size_t kWidth = 79;  // what a terminal cuts off isn't read
+    for (std::string& line : io::wrapped(io::plain_text(text), kWidth, indent)) lines.push_back(std::move(line));
+  };
+  for (const Row& row : head_rows(driver, news, silence_s)) add(row.label + "   " + row.value, 4);
   if (news == nullptr) return lines;
   lines.push_back(fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "forwards", "left", "turn", "bend",
                               "lean", "height"));
@@ -106,9 +109,7 @@ std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNew
       fmt::format("{:<10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "m/s", "m/s", "rad/s", "rad", "rad", "m"));
   lines.push_back(command_row("asked", driver.asked().u.data()));
   if (const auto* reference = reference_in_force(*news)) lines.push_back(command_row("taken", reference->command));
-  for (const Row& row : status_rows(*news, silence_s))
-    lines.push_back(io::plain_text(fmt::format("{:<10}{}", row.label, row.value)));
-
+  for (const Row& row : status_rows(*news, silence_s)) add(fmt::format("{:<10}{}", row.label, row.value), 10);
   return lines;
 }
 
@@ -144,8 +145,19 @@ std::vector<std::string> key_lines() {
       lines.back() += fmt::format("{:<6}{}", kMeanings[i + kRows].first, kMeanings[i + kRows].second);
     }
   }
-  lines.emplace_back("Each press is a step; a second without any key brings velocity to zero. Ctrl-C ends.");
+  lines.emplace_back("Each press is a step; a second without any key stops. Ctrl-C ends.");
   return lines;
+}
+
+std::vector<std::string> fitted(std::vector<std::string> state, const std::vector<std::string>& keys,
+                                std::size_t rows) {
+  const std::size_t all = state.size() + keys.size(), over = all > rows ? all - rows : 0;
+  const std::size_t of_state = std::min(over, state.size() > kLeastState ? state.size() - kLeastState : 0);
+  const std::size_t of_keys = std::min(over - of_state, keys.empty() ? 0 : keys.size() - 1);
+  state.resize(state.size() - of_state);
+  if (all < rows) state.emplace_back();
+  state.insert(state.end(), keys.begin() + static_cast<std::ptrdiff_t>(of_keys), keys.end());
+  return state;
 }
 
 DrivingTable key_table() {
@@ -154,8 +166,8 @@ DrivingTable key_table() {
     table.labels += std::string(keys) + "\n";
     table.values += std::string(meaning) + "\n";
   }
-  table.labels += "let go";
-  table.values += "velocity to zero, then Stand";
+  table.labels += "let go\nV\nmouse";
+  table.values += "velocity to zero, then Stand\nfrom behind, or from the front\nleft turns, right shifts, wheel zooms";
   return table;
 }
 

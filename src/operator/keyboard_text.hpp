@@ -27,4 +27,8 @@ std::vector<std::string> driving_lines(const RobotDriver& driver, const RobotNew
 std::vector<std::string> key_lines();
 DrivingTable key_table();
 
+/// (state, meaning of the keys, rows of the terminal) => what fits: the state loses its last lines first, then the keys
+/// their first. What the robot waits for, at the top, and how to end, the last line, stay.
+std::vector<std::string> fitted(std::vector<std::string> state, const std::vector<std::string>& keys, std::size_t rows);
+
 }  // namespace pmg::ops

@@ -340,7 +340,7 @@ void RobotDriver::send_if_due() {
   if (doing_ == Doing::kIdle || source_.heard(robot_) == nullptr) return;  // unheard: no command would be fresh
   Command command;
   const bool drives = doing_ == Doing::kDriving || doing_ == Doing::kCalming;
-  if (drives) command = asked_;
+  if (drives) command = manner_.holds_heading ? heading_.held(asked_, news_, now_ns()) : asked_;
   const bool due = now_ns() >= send_at_ns_;
   if (!due && (!manner_.at_once || command == sent_)) return;
   if (doing_ == Doing::kDriving && (!taken_ || command != sent_)) {

@@ -7,6 +7,7 @@
 
 #include "operator/climb.hpp"
 #include "operator/device.hpp"
+#include "operator/heading_hold.hpp"
 #include "operator/hoist_wish.hpp"
 #include "operator/hold_to_drive.hpp"
 #include "operator/mode_wish.hpp"
@@ -22,6 +23,7 @@ namespace pmg::ops {
 /// - A stop goes out at once, in every state. It is repeated until it is answered, and nothing else is asked before.
 /// - After a stop by any operator, a fault or a controller's restart the robot rises only when its operator asks for
 ///   Stand or Walk.
+/// - A simulated robot keeps its heading where its device asks for no turn (HeadingHold).
 /// - Where the controller falls silent, or another source drives, nothing more is sent; afterwards a fresh press is
 ///   needed.
 class RobotDriver {
@@ -114,6 +116,7 @@ class RobotDriver {
   const DeviceManner manner_;
   ArmsSource arms_;
   HoldToDrive hold_;
+  HeadingHold heading_;
   Command asked_, sent_;
   const RobotNews* news_ = nullptr;
   Doing doing_ = Doing::kIdle;

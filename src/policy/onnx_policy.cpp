@@ -162,6 +162,8 @@ void OnnxPolicy::reset() noexcept {
   impl_->action.setZero();
 }
 
+void OnnxPolicy::unsent() noexcept { impl_->action.setZero(); }
+
 Status OnnxPolicy::act(const model::RobotState& state, const Reference& reference, const Command& observed,
                        JointVector& q_des) noexcept {
   Impl& impl = *impl_;

@@ -23,6 +23,7 @@ class OnnxPolicy final : public Policy {
   std::optional<DriveGains> gains() const override;
   std::optional<double> action_bound_rad() const override;
   void reset() noexcept override;
+  void unsent() noexcept override;  ///< the last action that the network sees is none
 
   /// One thread, no lock, inputs and outputs bound at construction. ONNX Runtime makes the same number of heap
   /// allocations in each call.

@@ -44,6 +44,9 @@ class Policy {
   /// No exception. q_des is valid only with kOk.
   virtual Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept = 0;
+
+  /// After act(): its targets were not sent, and the drives follow the reference alone. The next act() sees it so.
+  virtual void unsent() noexcept {}
 };
 
 /// `--policy none`: q_des = q_ref, also in the air, as a first start needs.

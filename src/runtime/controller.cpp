@@ -1,6 +1,7 @@
 #include "runtime/controller.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <chrono>
 #include <stdexcept>
@@ -36,6 +37,7 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::T
       phase_source_(dynamic_cast<const hal::PhaseSource*>(&bus)),
       bus_cycle_(bus, link_, robot, clock_, tick.guard()),
       control_cycle_(tick, link_, inbox_, clock_) {
+  if (options.waits) turns_.emplace();
   if (options.realtime) refused_ = lock_memory();
   bus_thread_ = std::make_unique<PeriodicThread>(
       scheduled(options.bus, options.realtime), hal::BusCycle::kPeriod_ns,
@@ -52,7 +54,8 @@ Controller::Controller(const model::RobotModel& robot, hal::Hal& bus, control::T
 Controller::~Controller() { stop(); }
 
 void Controller::run_bus(const control::CycleTiming& timing) noexcept {
-  bus_cycle_.run();
+  for (int due = turns_ ? turns_->due(clock_.now_ns()) : 1; due > 0; --due) bus_cycle_.run();
+  if (turns_) turns_->ran();
   if (phase_source_ != nullptr) phase_ns_.fetch_add(phase_source_->phase_shift_ns(), std::memory_order_relaxed);
   if (bus_cycle_.sample().status == hal::BusStatus::kOk) drives_answered_.store(true, std::memory_order_release);
   control::CycleTiming done = timing;
@@ -61,7 +64,10 @@ void Controller::run_bus(const control::CycleTiming& timing) noexcept {
 }
 
 void Controller::run_control(const control::CycleTiming& timing) noexcept {
-  control_cycle_.run(timing.planned_ns);
+  if (turns_) await_bus();
+  // Where a simulation waits, a tick is late by its own work alone.
+  control_cycle_.run(turns_ ? clock_.now_ns() : timing.planned_ns);
+  if (turns_) turns_->ticked(timing.planned_ns);
   record_ = control_cycle_.record();
   record_.timing = timing;
   record_.timing.done_ns = clock_.now_ns();
@@ -74,6 +80,11 @@ void Controller::run_control(const control::CycleTiming& timing) noexcept {
              .fault = result.fault,
              .driving = result.driving});
   mode_.store(result.mode, std::memory_order_release);
+}
+
+void Controller::await_bus() noexcept {
+  constexpr timespec kLook{.tv_sec = 0, .tv_nsec = Turns::kLook_ns};
+  while (!turns_->may_tick()) clock_nanosleep(CLOCK_MONOTONIC, 0, &kLook, nullptr);
 }
 
 void Controller::start(Pass comms, Pass recorder) {

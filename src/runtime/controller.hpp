@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,11 +20,13 @@
 #include "io/clock.hpp"
 #include "io/mailbox.hpp"
 #include "runtime/periodic_thread.hpp"
+#include "runtime/turns.hpp"
 
 namespace pmg::runtime {
 
 struct ControllerOptions {
   bool realtime = true;  ///< false: ordinary scheduling, nothing locked
+  bool waits = false;    ///< of a simulation: a thread that is late stops the physics (runtime/turns.hpp)
   /// The bus before the control tick: whatever the tick does, the drives are answered and the guard can act.
   ThreadSchedule bus{.name = "bus", .priority = 80};
   ThreadSchedule control{.name = "control", .priority = 70};
@@ -84,11 +87,13 @@ class Controller {
     return control_thread_->statistics();
   }                                                                       ///< after stop()
   const hal::BusCycle& bus_cycle() const noexcept { return bus_cycle_; }  ///< after stop()
+  const std::optional<Turns>& turns() const noexcept { return turns_; }   ///< nullopt: nothing waits
 
  private:
   void run_bus(const control::CycleTiming& timing) noexcept;
   void run_control(const control::CycleTiming& timing) noexcept;
   void await_first_sample();
+  void await_bus() noexcept;
   std::jthread repeat(const char* name, Pass& pass, int pause_ms);
   bool try_pass(const char* name, Pass& pass);  // false: it threw
   bool await_damping();
@@ -101,6 +106,7 @@ class Controller {
   const hal::PhaseSource* phase_source_;  // null: the drives have no clock
   hal::BusCycle bus_cycle_;
   control::ControlCycle control_cycle_;
+  std::optional<Turns> turns_;
   control::TickRecord record_;  // the control thread's
   io::Mailbox<ControllerNews> news_;
   std::atomic<bool> drives_answered_{false};

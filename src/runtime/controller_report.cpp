@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace pmg::runtime {
 
 namespace {
 
 constexpr std::size_t kDelayedShown = 10;
+constexpr std::int64_t kTold_ns = 5'000'000'000;
+constexpr double kWorthSaying = 0.05;  // a share of the time; less is not seen in a walk
 
 nlohmann::ordered_json histogram_json(const TimeHistogram& times) {
   return {{"p50", times.percentile_us(0.50)}, {"p99", times.percentile_us(0.99)}};
@@ -52,22 +55,45 @@ void add_delayed_line(const char* name, const CycleStatistics& statistics, std::
   lines.push_back(text);
 }
 
+double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+
+std::string lateness_text(std::int64_t passed_ns, std::int64_t lost_ns) {
+  return fmt::format(
+      "this computer is late: of {:.1f} s the simulation waited {:.1f} s for it. A robot's physics don't wait: free "
+      "the "
+      "computer before you judge by this run how fast it is",
+      seconds(passed_ns), seconds(lost_ns));
+}
+
 }  // namespace
+
+std::string LatenessNews::since(const std::optional<Turns>& turns) {
+  if (!turns || turns->passed_ns() < passed_ns_ + kTold_ns) return "";
+  const std::int64_t passed_ns = turns->passed_ns(), lost_ns = turns->lost_ns();
+  const std::int64_t of_ns = passed_ns - std::exchange(passed_ns_, passed_ns);
+  const std::int64_t waited_ns = lost_ns - std::exchange(lost_ns_, lost_ns);
+  return seconds(waited_ns) > kWorthSaying * seconds(of_ns) ? lateness_text(of_ns, waited_ns) : "";
+}
 
 nlohmann::ordered_json punctuality_json(const Controller& controller) {
   const control::DroppedItems dropped = controller.outbox().dropped();
-  return {{"realtime", controller.refused().empty()},
-          {"refused", controller.refused()},
-          {"control", thread_json(controller.control_statistics(), "tick_us")},
-          {"bus", thread_json(controller.bus_statistics(), "exchange_us")},
-          {"dropped_records", dropped.records},
-          {"dropped_bus_cycles", dropped.bus_cycles},
-          {"dropped_acks", dropped.acks}};
+  nlohmann::ordered_json json = {{"realtime", controller.refused().empty()}, {"refused", controller.refused()}};
+  if (const auto& turns = controller.turns()) json["simulation_waited_s"] = seconds(turns->lost_ns());
+  json.update({{"control", thread_json(controller.control_statistics(), "tick_us")},
+               {"bus", thread_json(controller.bus_statistics(), "exchange_us")},
+               {"dropped_records", dropped.records},
+               {"dropped_bus_cycles", dropped.bus_cycles},
+               {"dropped_acks", dropped.acks}});
+  return json;
 }
 
 std::vector<std::string> punctuality_lines(const Controller& controller) {
   std::vector<std::string> lines = {thread_line("control", controller.control_statistics(), "tick"),
                                     thread_line("bus", controller.bus_statistics(), "exchange")};
+  if (const auto& turns = controller.turns();
+      turns && seconds(turns->lost_ns()) > kWorthSaying * seconds(turns->passed_ns())) {
+    lines.push_back(lateness_text(turns->passed_ns(), turns->lost_ns()));
+  }
   add_delayed_line("control", controller.control_statistics(), lines);
   add_delayed_line("bus", controller.bus_statistics(), lines);
   const control::DroppedItems dropped = controller.outbox().dropped();

@@ -38,13 +38,16 @@ void DrivingWindow::paint(const std::stop_token& stop) {
     robot_.take(pose);
     const ops::DrivingTable table = keyboard_.table();
     if (pose.count == 0) continue;
-    viewer_.draw({pose.qpos.data(), pose.count}, "", pose.rope, {table.labels, table.values, keys.labels, keys.values});
+    speed_.take(pose);
+    viewer_.draw({pose.qpos.data(), pose.count}, "", pose.rope,
+                 {table.labels + "\nmeasured", table.values + "\n" + speed_.text(), keys.labels, keys.values});
   }
   viewer_.withdraw();
 }
 
 void DrivingWindow::take(const sim::ViewerKey& key) {
   using What = sim::ViewerKey::What;
+  if (key.what == What::kPressed && key.name == "v") viewer_.look_from_the_other_side();
   if (key.what == What::kPressed) keyboard_.press(key.name, key.shift);
   if (key.what == What::kRepeats) keyboard_.repeat(key.name, key.shift);
   if (key.what == What::kReleased) keyboard_.release(key.name);

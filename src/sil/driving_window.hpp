@@ -7,6 +7,7 @@
 
 #include "hal/backend.hpp"
 #include "keyboard/keyboard_thread.hpp"
+#include "sil/shown_speed.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/viewer.hpp"
 
@@ -33,6 +34,7 @@ class DrivingWindow final : public hal::Window {
   SimulatedRobot& robot_;
   sim::Viewer viewer_;
   ops::KeyboardThread keyboard_;
+  ShownSpeed speed_;      // the painter's
   std::jthread painter_;  // after what it uses
 };
 

@@ -80,6 +80,7 @@ class FailingPolicy final : public policy::Policy {
   std::optional<double> action_bound_rad() const override { return own_->action_bound_rad(); }
   bool needs_ground() const override { return own_->needs_ground(); }
   void reset() noexcept override { own_->reset(); }
+  void unsent() noexcept override { own_->unsent(); }
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override;
 

@@ -79,7 +79,7 @@ void register_backend(hal::BackendFactory& factory) {
            {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands", false},
             {"viewer", "a window with the robot, whose keys drive it", false},
             {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none", std::string()},
-            {"robot-limits", "judge old states and late ticks as on a robot, not as on a shared computer", false},
+            {"robot-limits", "judge old states and late ticks as on a robot, and wait for no late controller", false},
             {"seed", "of the sensor noise", std::uint64_t{0}}},
        .make = [](const hal::BackendSetup& setup) { return std::make_unique<SimulatedBackend>(setup); }});
 }

@@ -23,7 +23,9 @@ sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry) {
   return options;
 }
 
-hal::BackendLimits limits_on_shared_host() { return {.guard = {}, .stale_state_s = 0.2, .overrun_ticks = 20}; }
+hal::BackendLimits limits_on_shared_host() {
+  return {.guard = {}, .stale_state_s = 0.2, .overrun_ticks = 20, .waits = true};
+}
 
 void expect_shared_host(control::TickOptions& options) { control::take_limits(limits_on_shared_host(), options); }
 

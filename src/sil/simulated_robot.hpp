@@ -42,7 +42,7 @@ sim::WorldOptions world_with_noise(std::uint64_t seed, bool gantry);
 
 /// For controllers whose robot is simulated by the same host in real time: a host that others share stops both for tens
 /// of milliseconds now and then, and the physics with them. Such a state is not stale before 0.2 s, nor are late ticks
-/// a fault; everything else is as on a robot.
+/// a fault, and physics wait for a late controller (runtime/turns.hpp); everything else is as on a robot.
 hal::BackendLimits limits_on_shared_host();
 void expect_shared_host(control::TickOptions& options);  ///< takes these limits
 

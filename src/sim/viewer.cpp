@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -35,7 +37,14 @@ class Window {
 #endif
     if (glfwInit() == GLFW_FALSE) refuse();
     glfwWindowHint(GLFW_SAMPLES, 4);
-    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+    WindowSize size{options.width, options.height};
+    if (GLFWmonitor* screen = glfwGetPrimaryMonitor(); screen != nullptr) {
+      int x = 0, y = 0;
+      WindowSize room;
+      glfwGetMonitorWorkarea(screen, &x, &y, &room.width, &room.height);
+      size = fitted(size, room);
+    }
+    window_ = glfwCreateWindow(size.width, size.height, options.title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
       glfwTerminate();
       refuse();
@@ -85,7 +94,16 @@ std::string key_name(int key, int scancode) {
 
 }  // namespace
 
+WindowSize fitted(WindowSize wanted, WindowSize room) {
+  constexpr int kFrame = 8, kTitle = 64;  // title bar, and a panel that a window system doesn't tell of
+  if (room.width <= 0 || room.height <= 0) return wanted;
+  return {std::min(wanted.width, std::max(room.width - kFrame, 1)),
+          std::min(wanted.height, std::max(room.height - kTitle, 1))};
+}
+
 struct Viewer::Impl {
+  static constexpr double kFrontLeft_deg = 216.0;  // from the robot's front and left, as in films
+
   Impl(const mjModel* mj_model, const ViewerOptions& options)
       : model(mj_model), on_key(options.on_key), window(options), data(mj_makeData(mj_model)), scene(mj_model) {
     mjr_defaultContext(&context);
@@ -93,7 +111,7 @@ struct Viewer::Impl {
     mjr_setBuffer(mjFB_WINDOW, &context);
     mjv_defaultCamera(&camera);
     camera.distance = 3.2;
-    camera.azimuth = 216.0;  // from the robot's front and left, as in films
+    camera.azimuth = kFrontLeft_deg;
     camera.elevation = -9.0;
     measure();
     glfwSetWindowUserPointer(window.get(), this);
@@ -174,9 +192,16 @@ struct Viewer::Impl {
     return framebuffer;
   }
 
-  /// Moves with the robot; the user's shift stays.
+  /// Moves with the robot; the user's shift stays. From behind it turns with the robot, too; the user's turn stays.
   void follow() {
     const mjtNum* base = data->xpos + 3 * Scene::kBaseBody;
+    const mjtNum* R_WB = data->xmat + 9 * Scene::kBaseBody;
+    const double yaw_deg = std::atan2(R_WB[3], R_WB[0]) * 180.0 / M_PI;
+    const bool wanted = behind.load();
+    if (wanted != shown_behind) camera.azimuth = wanted ? yaw_deg : kFrontLeft_deg;
+    if (wanted && shown_behind) camera.azimuth += std::remainder(yaw_deg - followed_yaw_deg, 360.0);
+    shown_behind = wanted;
+    followed_yaw_deg = yaw_deg;
     for (int i = 0; i < 3; ++i) {
       camera.lookat[i] += first ? base[i] - camera.lookat[i] : base[i] - followed[i];
       followed[i] = base[i];
@@ -194,6 +219,9 @@ struct Viewer::Impl {
   double mouse_x = 0.0, mouse_y = 0.0;
   double followed[3] = {};
   bool first = true;
+  std::atomic<bool> behind{false};
+  bool shown_behind = false;
+  double followed_yaw_deg = 0.0;
   mjrRect viewport{};
   std::mutex mutex;  // guards what the main thread passes to the drawing thread
   std::vector<CameraMove> moves;
@@ -213,6 +241,8 @@ void Viewer::show(std::span<const double> qpos, const std::string& text, const s
 void Viewer::release() { glfwMakeContextCurrent(nullptr); }
 
 void Viewer::withdraw() { glfwMakeContextCurrent(nullptr); }
+
+void Viewer::look_from_the_other_side() { impl_->behind.store(!impl_->behind.load()); }
 
 void Viewer::poll() {
   glfwPollEvents();

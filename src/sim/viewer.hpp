@@ -38,13 +38,20 @@ struct ViewerPanel {
 };
 
 struct ViewerOptions {
-  int width = 1280, height = 800;  ///< of the window, in screen coordinates
+  int width = 1280, height = 800;  ///< of the window, in screen coordinates; less where the screen has less room
   std::string title = "PMG";
   std::function<void(const ViewerKey&)> on_key{};  ///< called from show() or poll(); then Esc and q don't close
 };
 
 /// Belongs to the main thread, as window systems require. It draws from a copy of the positions, so the simulation may
 /// run in another thread; model is only read. One process can't have a Viewer and a Renderer: MuJoCo uses one OpenGL.
+struct WindowSize {
+  int width = 0, height = 0;
+};
+
+/// (wanted size, the screen's room beside panels) => the size, with its frame and title within the room.
+WindowSize fitted(WindowSize wanted, WindowSize room);
+
 class Viewer {
  public:
   /// Throws std::runtime_error, in one line, if no window can be opened (no display, no OpenGL).
@@ -64,6 +71,8 @@ class Viewer {
   void draw(std::span<const double> qpos, const std::string& text, const std::optional<Rope>& rope,
             const ViewerPanel& panel);
   void withdraw();
+  /// From behind the robot, turning with it; or back to the front left, where the window begins. Any thread.
+  void look_from_the_other_side();
 
   bool closed() const;  ///< by its user
 

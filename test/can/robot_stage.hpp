@@ -50,6 +50,7 @@ class BreakingPolicy final : public policy::Policy {
   std::optional<double> action_bound_rad() const override { return sound_->action_bound_rad(); }
   bool needs_ground() const override { return sound_->needs_ground(); }
   void reset() noexcept override { sound_->reset(); }
+  void unsent() noexcept override { sound_->unsent(); }
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {
     const policy::Status status = sound_->act(state, reference, observed, q_des);

@@ -111,6 +111,7 @@ class BreakablePolicy final : public policy::Policy {
     if (meanwhile) meanwhile();
     seen_command = optimised;
     q_des = reference.q;
+    q_des[3] += pull_rad;
     if (how == Break::kNotANumber) q_des[0] = std::numeric_limits<double>::quiet_NaN();
     if (how == Break::kHeap) heap_ = std::make_unique<double>(reference.phase);
     if (how == Break::kFarAction) q_des[3] += faults::ActionMonitorOptions{}.bound_rad + 0.1;
@@ -120,11 +121,16 @@ class BreakablePolicy final : public policy::Policy {
   }
   std::optional<policy::DriveGains> gains() const override { return own_gains; }
   void reset() noexcept override { ++resets; }
+  void unsent() noexcept override {
+    --calls;
+    ++unsent_calls;
+  }
   bool needs_ground() const override { return balances; }
 
   Break how = Break::kNone;
   bool balances;
-  int calls = 0;
+  int calls = 0, unsent_calls = 0;  ///< by what became of their targets
+  double pull_rad = 0.0;            ///< of the joint of index 3 from its reference
   std::function<void()> meanwhile;  ///< runs while the policy computes
   std::optional<policy::DriveGains> own_gains;
   Command seen_command;

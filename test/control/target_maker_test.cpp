@@ -57,12 +57,14 @@ TEST(TargetMaker, ChangesAsThePageSaysAndInNoOtherWay) {
   EXPECT_EQ(rows, documented());
 }
 
-TEST(TargetMaker, OnlyTheFeetsWordPutsAWaitingPolicyInForce) {
+TEST(TargetMaker, OnlyTheFeetsWordAndThenAKnownPolicyPutItInForce) {
   for (std::size_t e = 0; e < kTargetEvents; ++e) {
     const auto event = static_cast<TargetEvent>(e);
     for (const TargetMaker waits : {TargetMaker::kReferenceUnjudged, TargetMaker::kReferenceHanging}) {
-      EXPECT_EQ(runs_policy(next(waits, event)), event == TargetEvent::kFeetCarry) << to_string(event);
+      EXPECT_FALSE(runs_policy(next(waits, event))) << to_string(event);
+      EXPECT_EQ(next(waits, event) == TargetMaker::kReferenceRehearsed, event == TargetEvent::kFeetCarry);
     }
+    EXPECT_EQ(runs_policy(next(TargetMaker::kReferenceRehearsed, event)), event == TargetEvent::kPolicyIsKnown);
   }
 }
 

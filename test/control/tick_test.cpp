@@ -269,11 +269,12 @@ TEST(Tick, APolicyIsNotRunInTheAirAndWalkingAgainNeedsANewRequest) {
   ASSERT_FALSE(hanging(driven.tick.result().maker));
   driven.asking = false;  // one request is enough to walk on
   driven.carried = {0.0, 0.0};
+  const int resets = driven.policy->resets;
   for (int k = 0; k < 20 && !hanging(driven.tick.result().maker); ++k) driven.step();
   ASSERT_TRUE(hanging(driven.tick.result().maker));
   EXPECT_EQ(driven.tick.result().mode, Mode::kStand) << "nobody steps in the air";
   EXPECT_EQ(driven.tick.result().reference.gain, 0.0);
-  const int calls = driven.policy->calls, resets = driven.policy->resets;
+  const int calls = driven.policy->calls;
   driven.run(0.6);
   EXPECT_EQ(driven.tick.result().mode, Mode::kStand);
   EXPECT_NEAR(driven.tick.result().reference.gain, 0.0, 1e-9);
@@ -322,6 +323,89 @@ TEST(Tick, BeforeTheFeetAreJudgedTheReferenceDrivesAndNobodySaysThatTheRobotHang
   EXPECT_GE(unknown_ticks, 5);
   EXPECT_LE(unknown_ticks, 10) << "0.05 s and the filter";
   EXPECT_GT(driven.policy->calls, 0);
+}
+
+TEST(Tick, APolicyRunsUnsentForHalfASecondBeforeItGetsTheDrives) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kStand;
+  while (driven.policy->calls == 0 && driven.now_ns < 3'000'000'000) driven.step();
+  EXPECT_EQ(driven.policy->unsent_calls, 49) << "the fiftieth is sent";
+  EXPECT_EQ(driven.policy->resets, 1) << "what it saw meanwhile is its history";
+
+  driven.carried = {0.0, 0.0};
+  driven.run(2.0);
+  ASSERT_TRUE(hanging(driven.tick.result().maker));
+  driven.carried = {0.5, 0.5};
+  int ticks = 0;
+  for (; policy_waits(driven.tick.result().maker) && ticks < 100; ++ticks) driven.step();
+  EXPECT_LE(ticks, 10) << "it ran unsent while it hung: nothing delays it on the ground";
+
+  driven.request.mode = Mode::kDamping;
+  driven.run(0.1);
+  driven.request.mode = Mode::kStand;
+  const int calls = driven.policy->calls, unsent = driven.policy->unsent_calls;
+  while (driven.policy->calls == calls && driven.now_ns < 10'000'000'000) driven.step();
+  EXPECT_EQ(driven.policy->unsent_calls - unsent, 49) << "every time that Stand begins";
+}
+
+TEST(Tick, ARequestForWalkWaitsUntilThePolicyIsKnown) {
+  test::DrivenTick driven(test::z1());
+  driven.request.mode = Mode::kStand;
+  driven.run(0.1);
+  driven.request.mode = Mode::kWalk;
+  driven.step();
+  driven.asking = false;                                     // once
+  driven.policy->how = test::BreakablePolicy::Break::kLate;  // what gives no result makes nobody known
+  driven.run(0.7);
+  ASSERT_EQ(driven.tick.result().mode, Mode::kStand);
+  ASSERT_FALSE(driven.tick.result().entering) << "the ramp is over";
+  ASSERT_TRUE(policy_waits(driven.tick.result().maker));
+  driven.policy->how = test::BreakablePolicy::Break::kNone;
+  driven.run(1.0);
+  EXPECT_EQ(driven.tick.result().mode, Mode::kWalk);
+}
+
+TEST(Tick, APolicyWhoseFirstStepIsFarIsRefusedWithItsJointBeforeAnythingMoves) {
+  const model::RobotModel& robot = test::z1();
+  test::DrivenTick driven(robot), sound(robot);
+  driven.policy->pull_rad = 1.0;
+  driven.request.mode = sound.request.mode = Mode::kStand;
+  for (int k = 0; k < 300 && driven.tick.result().mode != Mode::kFault; ++k) {
+    driven.step();
+    if (driven.tick.result().mode == Mode::kFault) break;
+    // Until the sound one, which asks for nothing, has the drives, both send the reference.
+    EXPECT_LT((driven.tick.result().command.q - sound.step().command.q).cwiseAbs().maxCoeff(), 1e-12) << k;
+  }
+  const faults::Fault& fault = driven.tick.result().fault;
+  EXPECT_EQ(fault.code, faults::FaultCode::kActionOutOfRange);
+  EXPECT_NEAR(fault.value, 1.0, 1e-12);
+  EXPECT_NE(faults::describe(fault, robot).find(robot.joint_index.name(3)), std::string::npos);
+  EXPECT_EQ(driven.policy->calls, 0) << "nothing of it was sent";
+}
+
+TEST(Tick, AFirstStepThatPassesIsRampedIn) {
+  test::DrivenTick driven(test::z1());
+  driven.policy->pull_rad = 0.45;
+  driven.request.mode = Mode::kStand;
+  driven.run(0.3);
+  double moved_rad = 0.0, before_rad = driven.tick.result().command.q[3];
+  for (int k = 0; k < 150; ++k) {
+    const double now_rad = driven.step().command.q[3];
+    moved_rad = std::max(moved_rad, std::abs(now_rad - std::exchange(before_rad, now_rad)));
+  }
+  ASSERT_EQ(driven.tick.result().mode, Mode::kStand);
+  EXPECT_NEAR(before_rad - driven.tick.result().reference.q[3], 0.45, 1e-9) << "all of it, in the end";
+  // Within 0.2 s, at half as much again as the mean speed: 1.5 * 0.45 rad / 20 ticks.
+  EXPECT_LE(moved_rad, 0.035);
+}
+
+TEST(Tick, APolicyThatIsNoNumberIsAFaultWhileNothingOfItIsSent) {
+  test::DrivenTick driven(test::z1());
+  driven.policy->how = test::BreakablePolicy::Break::kNotANumber;
+  driven.request.mode = Mode::kStand;
+  driven.run(0.2);
+  EXPECT_EQ(driven.tick.result().fault.code, faults::FaultCode::kPolicyNotFinite);
+  EXPECT_EQ(driven.policy->calls, 1) << "the failed one alone";
 }
 
 TEST(Tick, FaultsStayInForceInTheAir) {

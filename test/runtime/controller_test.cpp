@@ -142,5 +142,41 @@ TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
   EXPECT_GE(run.controller.bus_cycle().guard().trips(), 1u);
 }
 
+TEST(Controller, ASimulationThatWaitsRunsFiveBusCyclesATickHoweverLateItsControlThreadIs) {
+  ThreadedRobot run(test::z1(), {.waits = true});
+  std::vector<std::uint64_t> samples;
+  run.controller.start([&] { run.speaker(); },
+                       [&] {
+                         control::TickRecord tick;
+                         while (run.controller.outbox().records.pop(tick)) samples.push_back(tick.state.bus_sample);
+                       });
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  for (int k = 0; k < 3; ++k) {
+    run.policy->freeze = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    run.policy->freeze = false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  const std::int64_t lost_ns = run.controller.turns()->lost_ns();
+  EXPECT_TRUE(run.controller.stop());
+  EXPECT_GT(lost_ns, 200'000'000) << "of 360 ms";
+  EXPECT_EQ(run.controller.bus_cycle().guard().trips(), 0u);
+  ASSERT_GT(samples.size(), 10u);
+  for (std::size_t i = 2; i < samples.size(); ++i) ASSERT_EQ(samples[i], samples[i - 1] + 5) << i;
+}
+
+TEST(Controller, ASimulationThatWaitsDampsAControlThreadThatIsFrozenForGood) {
+  ThreadedRobot run(test::z1(), {.waits = true});
+  run.controller.start([&] { run.speaker(); }, [] {});
+  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  ASSERT_TRUE(eventually([&] { return run.bus.last_kp_sum > 0.0; }));
+  run.policy->freeze = true;
+  EXPECT_TRUE(eventually([&] { return run.bus.last_kp_sum == 0.0 && run.bus.last_kd_sum > 0.0; }));
+  run.policy->freeze = false;
+  EXPECT_TRUE(run.sees(control::Mode::kFault));
+  EXPECT_EQ(run.news.fault.code, faults::FaultCode::kControlFrozen);
+  EXPECT_TRUE(run.controller.stop());
+}
+
 }  // namespace
 }  // namespace pmg::runtime

@@ -77,6 +77,7 @@ class CountedOnnxPolicy final : public policy::Policy {
   std::optional<policy::DriveGains> gains() const override { return onnx_->gains(); }
   std::optional<double> action_bound_rad() const override { return onnx_->action_bound_rad(); }
   void reset() noexcept override { onnx_->reset(); }
+  void unsent() noexcept override { onnx_->unsent(); }
   bool needs_ground() const override { return false; }  // the robot walks on the gantry
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {

@@ -51,6 +51,7 @@ class SwitchablePolicy final : public policy::Policy {
   std::optional<policy::DriveGains> gains() const override { return inner_->gains(); }
   std::optional<double> action_bound_rad() const override { return inner_->action_bound_rad(); }
   void reset() noexcept override { inner_->reset(); }
+  void unsent() noexcept override { inner_->unsent(); }
   bool needs_ground() const override { return inner_->needs_ground(); }
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {

@@ -175,6 +175,7 @@ class GoesWild final : public policy::Policy {
   std::optional<policy::DriveGains> gains() const override { return sound_->gains(); }
   std::optional<double> action_bound_rad() const override { return sound_->action_bound_rad(); }
   void reset() noexcept override { sound_->reset(); }
+  void unsent() noexcept override { sound_->unsent(); }
   policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
                      JointVector& q_des) noexcept override {
     const policy::Status status = sound_->act(state, reference, observed, q_des);

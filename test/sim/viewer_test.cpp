@@ -61,6 +61,16 @@ TEST(Viewer, ShowsTheRobotInAWindow) {
   EXPECT_NE(viewer.pixels(), standing);
 }
 
+TEST(Viewer, IsNoLargerThanItsScreenLessItsBars) {
+  const sim::WindowSize laptop = sim::fitted({1280, 800}, {1366, 768});
+  EXPECT_EQ(laptop.width, 1280);
+  EXPECT_LE(laptop.height, 768 - 64) << "a title bar and a panel";
+  const sim::WindowSize large = sim::fitted({1280, 800}, {1920, 1080});
+  EXPECT_EQ(large.width, 1280);
+  EXPECT_EQ(large.height, 800);
+  EXPECT_EQ(sim::fitted({1280, 800}, {0, 0}).height, 800) << "a screen that nothing is known of";
+}
+
 TEST(Viewer, SaysInOneLineThatThereIsNoDisplay) {
   if (test::Display::there()) GTEST_SKIP() << "there is a display";
   unsetenv("WAYLAND_DISPLAY");
