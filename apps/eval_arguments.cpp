@@ -101,10 +101,10 @@ void declare_table2(CLI::App& app, EvalArguments& arguments) {
 
 void declare_table3(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand(
-      "table3", "How often an operator in a headset wipes a table: Table III of the paper, without its box");
+      "table3", "How often an operator in a headset wipes a table and moves a box: Table III of the paper");
   declare_common(command, arguments);
   declare_policy(command, arguments);
-  command.add_option("--trials", arguments.tasks, "trials, each with another robot and another towel")
+  command.add_option("--trials", arguments.tasks, "trials of each task, each with another robot and other places")
       ->check(in_range(1, 100000))
       ->capture_default_str();
 }

@@ -1,18 +1,11 @@
 // The page of the push test.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "evaluation/push.hpp"
 
 namespace pmg::evaluation {
 
 namespace {
-
-std::string percent_with_interval(const Estimate& share) {
-  if (std::isnan(share.mean)) return "-";
-  return fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100.0 * share.mean, 100.0 * share.lower, 100.0 * share.upper);
-}
 
 struct Curve {
   std::vector<double> share, lower, upper;

@@ -1,5 +1,7 @@
 #include "evaluation/statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -45,6 +47,11 @@ Estimate share_interval(std::int64_t successes, std::int64_t trials) {
       fitting::kNormal95 * std::sqrt(share * (1.0 - share) / n + 0.25 * z2 / (n * n)) / (1.0 + z2 / n);
   // With no or only successes the interval ends exactly at 0 or 1; rounding would miss it.
   return {share, successes == 0 ? 0.0 : center - half_width, successes == trials ? 1.0 : center + half_width};
+}
+
+std::string percent_with_interval(const Estimate& share) {
+  if (std::isnan(share.mean)) return "-";
+  return fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100.0 * share.mean, 100.0 * share.lower, 100.0 * share.upper);
 }
 
 }  // namespace pmg::evaluation

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace pmg::evaluation {
 
@@ -24,5 +25,8 @@ Estimate paired_difference(std::span<const double> a, std::span<const double> b)
 ///   (p + z^2 / 2n +- z sqrt(p (1 - p) / n + z^2 / 4n^2)) / (1 + z^2 / n).
 /// It stays within [0, 1] and is good for shares near its ends. Without trials: NaN with [0, 1].
 Estimate share_interval(std::int64_t successes, std::int64_t trials);
+
+/// A share for people: "80 [49, 94]" of 8 in 10; "-" without trials.
+std::string percent_with_interval(const Estimate& share);
 
 }  // namespace pmg::evaluation

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sim/actuator_joint.hpp"
+#include "sim/box_contacts.hpp"
 #include "sim/motors_in_force.hpp"
 #include "sim/mujoco_objects.hpp"
 #include "sim/sensor_noise.hpp"
@@ -35,6 +36,7 @@ ModelPointer compile(const std::string& xml) {
   const std::scoped_lock lock(reader);
   mju_user_warning = silence_warnings;
   mju_user_error = throw_error;
+  drop_phantom_contacts();
   constexpr const char* kName = "robot.xml";
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
@@ -272,6 +274,14 @@ Eigen::Isometry3d World::pose(const std::string& name) const {
   T.translation() = Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * body);
   T.linear() = quaternion(data_->xquat + 4 * body).toRotationMatrix();
   return T;
+}
+
+bool World::touches(const std::string& one, const std::string& other) const {
+  const int a = find(model_, mjOBJ_BODY, one), b = find(model_, mjOBJ_BODY, other);
+  return std::any_of(data_->contact, data_->contact + data_->ncon, [&](const mjContact& contact) {
+    const int first = model_->geom_bodyid[contact.geom1], second = model_->geom_bodyid[contact.geom2];
+    return contact.exclude == 0 && ((first == a && second == b) || (first == b && second == a));
+  });
 }
 
 bool World::diverged() const noexcept { return impl_->diverged; }

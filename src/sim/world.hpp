@@ -29,12 +29,13 @@ struct Prop {
   std::array<double, 4> colour = {0.7, 0.6, 0.5, 1.0};
 };
 
-/// A box on a link of the robot, which touches props, the floor and other links.
+/// A box on a link of the robot. It touches props and the floor in place of the link's own shapes, and other links
+/// beside them.
 struct HandBox {
   std::string link;
   Eigen::Isometry3d T_LH = Eigen::Isometry3d::Identity();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
-  double friction = 0.8;
+  double friction = 0.8;  ///< on whatever it touches
 };
 
 struct WorldOptions {
@@ -83,6 +84,8 @@ class World {
   model::GroundTruth truth() const noexcept;
   /// Of a link or a prop. Throws std::runtime_error if there is none of this name.
   Eigen::Isometry3d pose(const std::string& name) const;
+  /// Two bodies of these names touch. Throws as pose does.
+  bool touches(const std::string& one, const std::string& other) const;
   bool diverged() const noexcept;  ///< MuJoCo warned of NaN or a bad state, or reset itself
   double time_s() const noexcept;
 

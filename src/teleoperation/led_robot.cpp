@@ -22,7 +22,8 @@ std::vector<sim::HandBox> palm_boxes(const model::RobotModel& robot) {
 }
 
 LedRobot::LedRobot(control::LoadedControl& loaded, const sim::WorldOptions& world)
-    : world_(loaded.robot, world),
+    : model_(loaded.robot),
+      world_(loaded.robot, world),
       bus_(world_),
       comms_(link_, inbox_, outbox_, loaded.robot, run_, 1.0 / control::ControlCycle::kPeriod_s, clock_),
       tick_(control::make_tick(loaded, clock_)),

@@ -48,12 +48,14 @@ class LedRobot {
   const ops::HeardArms* arms() const { return arms_.of(kName); }
 
   // For a judge alone:
+  const model::RobotModel& model() const noexcept { return model_; }
   const control::TickResult& result() const noexcept { return cycle_.record().result; }
   sim::World& world() noexcept { return world_; }
   const sim::World& world() const noexcept { return world_; }
   void set_hoist(double engaged) noexcept { world_.set_hoist(0.0, engaged); }
 
  private:
+  const model::RobotModel& model_;
   recording::RunInfo run_{.robot = kName, .session = 1};
   io::SimulationClock clock_;
   io::LcmLink link_{"memq://"};

@@ -1,6 +1,7 @@
 // The paper's table of teleoperation tasks: how often a scripted operator in a headset does them.
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,29 +9,39 @@
 
 #include "evaluation/campaign.hpp"
 #include "pages/page.hpp"
+#include "teleoperation/box_picking.hpp"
 #include "teleoperation/wiping.hpp"
 
 namespace pmg::teleoperation {
 
 inline constexpr double kPaperWiping = 0.95, kPaperBoxPicking = 0.80;  ///< over 20 trials each on the real Z1
 
-/// The wiping task. Box picking isn't in it yet.
-struct Table3 {
-  std::string robot, ranges_file;
-  evaluation::Case evaluated;
-  int trials = 0;
-  std::vector<WipingResult> wiping;  ///< by trial; kInterrupted: it didn't take place
-  bool complete = true;
+/// The trials of one task.
+struct TaskTrials {
+  std::string name, verb;        ///< "wiping", "wiped": of what was handled
+  double paper = 0.0;            ///< share of success
+  std::vector<TaskResult> runs;  ///< by trial; kInterrupted: it didn't take place
 
-  evaluation::Estimate wiped() const;  ///< share of success with Wilson's interval, over the trials that took place
+  evaluation::Estimate done() const;  ///< share of success with Wilson's interval, over the trials that took place
   std::map<std::string, int> ends() const;  ///< of those, by end_name()
   bool reached() const;                     ///< at or above the paper's share
 };
 
-/// Trial i has the same robot and towel for every policy. The result doesn't depend on the number of jobs.
+struct Table3 {
+  std::string robot, ranges_file;
+  evaluation::Case evaluated;
+  int trials = 0;
+  TaskTrials wiping{.name = "wiping", .verb = "the towel is wiped", .paper = kPaperWiping, .runs = {}};
+  TaskTrials box_picking{.name = "box picking", .verb = "the box is moved", .paper = kPaperBoxPicking, .runs = {}};
+  bool complete = true;
+
+  std::array<const TaskTrials*, 2> tasks() const { return {&wiping, &box_picking}; }
+};
+
+/// Trial i has the same robot and things for every policy. The result doesn't depend on the number of jobs.
 void run_table3(Table3& table, const evaluation::Supervision& supervision);
 
-/// Interrupted; missed, below the paper's share; partial, as box picking isn't simulated.
+/// Interrupted; missed, below the paper's share in a task.
 work::Worth worth_of(const Table3& table);
 
 nlohmann::ordered_json to_json(const Table3& table);

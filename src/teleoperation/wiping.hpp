@@ -2,27 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
 
 #include "evaluation/trial.hpp"
-#include "teleoperation/led_robot.hpp"
-#include "work/progress.hpp"
+#include "teleoperation/task.hpp"
 
 namespace pmg::teleoperation {
-
-/// How a trial ends. Names in words: end_name().
-enum class End : std::uint8_t {
-  kDone,         ///< the task's criterion holds
-  kFell,         ///< the robot fell, or the simulation diverged
-  kFault,        ///< the controller latched a fault
-  kOffTable,     ///< the towel left the table
-  kNotReached,   ///< time was up while the palm was off the towel: before it was there, or gripping anew
-  kLostTowel,    ///< time was up, and the hand had lost it on the way
-  kInterrupted,  ///< the evaluation was; counts as no trial
-};
-const char* end_name(End end) noexcept;
 
 /// Heights and sizes [m] and kilograms. The towel is a stiff patch: a cloth's folds and its hanging edges are left out.
 /// ASSUMPTIONS: the table's height and depth, and the towel's size and its friction on the table, which the paper
@@ -42,23 +27,12 @@ struct WipingPlan {
   static WipingPlan of(std::uint64_t trial);
 };
 
-struct WipingResult {
-  End end = End::kInterrupted;
-  double moved_m = 0.0;  ///< of the towel along the table, from where it lay
-  double duration_s = 0.0;
-  std::string words{};  ///< a fault's, or what the operator was last told
-  std::string stage{};  ///< what the operator was doing at the end
-};
-
 /// What the judge says of a towel that lies there; nothing: go on. The criterion: moved along the table by more than
 /// kMoved_m, while it lay on the table all the time.
 std::optional<End> judge_towel(const Eigen::Vector3d& towel_E_m, double moved_m) noexcept;
 
-/// Called after each tick, for pictures and tests; may be empty.
-using WipingObserver = std::function<void(const LedRobot& robot, const std::string& stage)>;
-
 /// world: the simulated robot's; the task's things are added. Throws what loading throws.
-WipingResult run_wiping(const evaluation::Candidate& candidate, sim::WorldOptions world, const WipingPlan& plan,
-                        const work::Progress& progress = {}, const WipingObserver& observer = {});
+TaskResult run_wiping(const evaluation::Candidate& candidate, sim::WorldOptions world, const WipingPlan& plan,
+                      const work::Progress& progress = {}, const TaskObserver& observer = {});
 
 }  // namespace pmg::teleoperation

@@ -62,5 +62,10 @@ TEST(Statistics, SharesAtTheEndsKeepAnInterval) {
   EXPECT_TRUE(std::isnan(share_interval(0, 0).mean));
 }
 
+TEST(Statistics, AShareIsWrittenWithItsIntervalAndWithoutTrialsAsADash) {
+  EXPECT_EQ(percent_with_interval(share_interval(8, 10)), "80 [49, 94]");
+  EXPECT_EQ(percent_with_interval(share_interval(0, 0)), "-");
+}
+
 }  // namespace
 }  // namespace pmg::evaluation

@@ -2,14 +2,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gamepad/hands.hpp"
 #include "operator/drive.hpp"
 #include "operator/networked_robot.hpp"
+#include "operator/operator_source.hpp"
 #include "operator/robot_driver.hpp"
+#include "pmg_msgs/mode_t.hpp"
 
 namespace pmg::gamepad {
 namespace {
@@ -71,10 +76,29 @@ class DeviceRules : public testing::TestWithParam<Row> {
     }
   }
 
+  /// In 10 ms a thousand messages, as fast as comms receives them: others' commands and wishes, and bytes that are
+  /// none.
+  void flood(bool others_stand) {
+    for (int part = 0; part < 10; ++part) {
+      for (int k = 0; k < 10; ++k) {
+        for (ops::OperatorSource& one : others_) {
+          one.send_command("biped", Command{{-0.3}}, 2.0);
+          if (others_stand) one.request("biped", pmg_msgs::mode_t::STAND, false);
+        }
+        for (const char* channel : {"COMMAND", "MODE", "ARMS", "CLAIM"}) network_.link.send(channel, junk_);
+      }
+      robot_.comms.step(0);
+    }
+  }
+
+  const std::vector<std::uint8_t> junk_ = std::vector<std::uint8_t>(200, 0x5a);
   test::Network network_;
   test::NetworkedRobot& robot_ = network_.add_robot("biped");
   ops::OperatorSource source_{network_.link, "mine.1", 1, network_.clock};
   ops::OperatorSource other_{network_.link, "other.1", 1, network_.clock};
+  std::array<ops::OperatorSource, 3> others_{ops::OperatorSource(network_.link, "flood.1", 1, network_.clock),
+                                             ops::OperatorSource(network_.link, "flood.2", 1, network_.clock),
+                                             ops::OperatorSource(network_.link, "flood.3", 1, network_.clock)};
   std::unique_ptr<Hand> hand_ = GetParam().make(network_.clock);
   ops::RobotDriver driver_{source_, "biped", hand_->device()};
 };
@@ -94,6 +118,29 @@ TEST_P(DeviceRules, AStopDampsWithinTwoTicksInEveryStateAndOnlyStandRaisesTheRob
     expect_stays(Mode::kDamping, 1.0);
     hand_->go(false);
     run(0.1);
+  }
+}
+
+TEST_P(DeviceRules, AStopDampsWithinFiftyMillisecondsWhileEverythingElseFloods) {
+  stand();
+  walk();
+  for (int tick = 0; tick < 20; ++tick) {
+    flood(true);
+    step();
+  }
+  ASSERT_EQ(mode(), Mode::kWalk) << driver_.text();
+  ASSERT_GT(robot_.comms.gate_counts().flooded, 1000);
+  hand_->press_stop();
+  const std::int64_t since_ns = network_.clock.now_ns();
+  while (robot_.bus.last_command.kp.sum() != 0.0 && network_.clock.now_ns() - since_ns < 1'000'000'000) {
+    flood(true);
+    step();
+  }
+  EXPECT_LE(network_.clock.now_ns() - since_ns, 50'000'000);
+  for (int tick = 0; tick < 20; ++tick) {
+    flood(false);  // somebody who may would make it stand
+    step();
+    ASSERT_EQ(mode(), Mode::kDamping) << driver_.text();
   }
 }
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "teleoperation/person.hpp"
-#include "teleoperation/table3.hpp"
 #include "teleoperation/view.hpp"
 #include "vr/head_motion.hpp"
 
@@ -23,14 +22,6 @@ TEST(Wiping, ATowelThatMovedMoreThanAMetreOnTheTableIsDoneAndOneThatLeftItIsNot)
   EXPECT_EQ(judge_towel({0.26, 0.0, 0.03}, 1.5), End::kOffTable);
   EXPECT_EQ(judge_towel({0.0, -1.21, 0.03}, 1.5), End::kOffTable);
   EXPECT_EQ(judge_towel({0.0, 0.0, -0.03}, 1.5), End::kOffTable) << "below its top";
-}
-
-TEST(Wiping, ShareAndEndsCountTheTrialsThatTookPlace) {
-  Table3 table;
-  table.wiping = {{.end = End::kDone}, {.end = End::kDone}, {.end = End::kFell}, {.end = End::kInterrupted}};
-  EXPECT_DOUBLE_EQ(table.wiped().mean, 2.0 / 3.0);
-  EXPECT_EQ(table.ends(), (std::map<std::string, int>{{"done", 2}, {"fell", 1}}));
-  EXPECT_FALSE(table.reached());
 }
 
 TEST(Wiping, APersonLeansAsFarAsTheShareThatIsWanted) {
@@ -49,7 +40,7 @@ TEST(Wiping, HandsInAHeadsetsControllersRaiseTheRobotsPalmsThroughTheWholeWay) {
   int asked = 0;
   double highest_m = 0.0;
   const work::Progress ends{.report = {}, .interrupted = [&] { return ++asked > 560; }};
-  const WipingResult result =
+  const TaskResult result =
       run_wiping({"pmg", {}}, {}, WipingPlan::of(0), ends, [&](const LedRobot& robot, const std::string&) {
         const Eigen::Isometry3d T_WL = robot.world().pose("right_wrist_pitch_link");
         highest_m = std::max(highest_m, T_WL.translation().z());
@@ -66,7 +57,8 @@ TEST(Wiping, TheOperatorSeesLateInexactlyAndNothingOutsideThePicture) {
                    {.name = "towel", .half_size_m = {0.1, 0.1, 0.01}, .p_WP_m = {0.6, 0.1, 0.77}},
                    {.name = "behind", .half_size_m = {0.1, 0.1, 0.01}, .p_WP_m = {-0.6, 0.1, 0.77}}};
   const sim::World world(robot, options);
-  View view(robot, world, "towel", "table", 0.5, 1), blind(robot, world, "behind", "table", 0.5, 1);
+  const Eigen::Vector3d half_m = options.props.front().half_size_m;
+  View view(robot, world, "towel", "table", half_m, 1), blind(robot, world, "behind", "table", half_m, 1);
   EXPECT_EQ(view.look(0.0), nullptr) << "no picture has arrived";
   EXPECT_EQ(view.look(0.11), nullptr);
   const Picture* picture = view.look(0.13);
@@ -86,7 +78,7 @@ TEST(Wiping, TheOperatorSeesLateInexactlyAndNothingOutsideThePicture) {
 TEST(WipingTrials, AnOperatorInAHeadsetWipesATable) {
   int done = 0;
   for (const std::uint64_t trial : {2, 3, 5}) {
-    const WipingResult result = run_wiping({"pmg", {}}, {}, WipingPlan::of(trial));
+    const TaskResult result = run_wiping({"pmg", {}}, {}, WipingPlan::of(trial));
     done += result.end == End::kDone ? 1 : 0;
     RecordProperty("trial_" + std::to_string(trial), end_name(result.end));
   }

@@ -1,0 +1,61 @@
+// The table of teleoperation tasks: what is counted, what is asked, and that both tasks get to JSON and page.
+#include "teleoperation/table3.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace pmg::teleoperation {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(Table3, ShareAndEndsCountTheTrialsThatTookPlace) {
+  Table3 table;
+  table.wiping.runs = {{.end = End::kDone}, {.end = End::kDone}, {.end = End::kFell}, {.end = End::kInterrupted}};
+  EXPECT_DOUBLE_EQ(table.wiping.done().mean, 2.0 / 3.0);
+  EXPECT_EQ(table.wiping.ends(), (std::map<std::string, int>{{"done", 2}, {"fell", 1}}));
+  EXPECT_FALSE(table.wiping.reached());
+}
+
+TEST(Table3, EitherTaskBelowThePapersShareIsAMiss) {
+  const TaskResult done{.end = End::kDone}, dropped{.end = End::kDropped};
+  Table3 table;
+  table.wiping.runs.assign(20, done);
+  table.box_picking.runs.assign(20, done);
+  for (std::size_t run = 0; run < 4; ++run) table.box_picking.runs[run] = dropped;  // 16 of 20: the paper's 0.8
+  EXPECT_EQ(worth_of(table).exit_code(), 0);
+  table.box_picking.runs[4] = dropped;
+  EXPECT_EQ(worth_of(table).exit_code(), 1);
+  table.box_picking.runs[4] = done;
+  table.wiping.runs[0] = table.wiping.runs[1] = {.end = End::kFell};
+  EXPECT_EQ(worth_of(table).exit_code(), 1);
+}
+
+TEST(Table3, BothTasksStandInTheJsonAndInTheText) {
+  Table3 table;
+  table.trials = 1;
+  table.wiping.runs = {{.end = End::kDone, .moved_m = 1.01}};
+  table.box_picking.runs = {{.end = End::kDropped, .lifted_m = 0.31, .stage = "walk aside"}};
+  const nlohmann::ordered_json json = to_json(table);
+  ASSERT_EQ(json["tasks"].size(), 2U);
+  EXPECT_EQ(json["tasks"][0]["task"], "wiping");
+  EXPECT_EQ(json["tasks"][1]["task"], "box picking");
+  EXPECT_EQ(json["tasks"][1]["success"]["share"], 0.0);
+  EXPECT_EQ(json["tasks"][1]["runs"][0]["lifted_m"], 0.31);
+  EXPECT_EQ(json["tasks"][1]["ends"]["box dropped"], 1);
+  EXPECT_THAT(text_of(table), Contains(HasSubstr("box picking: done in 0 [0, 79] % of 1 trials (the paper: 80 %)")));
+}
+
+TEST(Table3, InterruptedBeforeItsFirstTrialItShowsNoShare) {
+  Table3 table;
+  table.trials = 1;
+  table.complete = false;
+  table.wiping.runs = table.box_picking.runs = {{.end = End::kInterrupted}};
+  EXPECT_THAT(text_of(table), Contains("wiping: done in - % of 1 trials (the paper: 95 %)"));
+}
+
+}  // namespace
+}  // namespace pmg::teleoperation
