@@ -40,7 +40,7 @@ void print_likeness(const char* what, const RetargetedClip& made, Likeness retar
   const Likeness& of = made.likeness.*part;
   fmt::print("  {:5} r {:.3f}, RMS {:.1f} degrees from the human's", what, of.correlation, degrees(of.rms_rad));
   if (made.unmended) {
-    const Likeness& before = (*made.unmended).*part;
+    const Likeness& before = made.unmended->likeness.*part;
     fmt::print(" ({:.3f}, {:.1f} before the fit for blending)", before.correlation, degrees(before.rms_rad));
   }
   fmt::print("\n");
@@ -83,7 +83,7 @@ nlohmann::json clip_json(const BuiltClip& clip) {
   const RetargetedClip& made = clip.made;
   const auto likeness = [&made](Likeness retargeting::Imitation::*part) {
     const Likeness& of = made.likeness.*part;
-    const Likeness before = made.unmended.value_or(made.likeness).*part;
+    const Likeness before = made.unmended ? made.unmended->likeness.*part : of;
     return nlohmann::json{{"correlation", of.correlation},
                           {"rms_deg", degrees(of.rms_rad)},
                           {"unmended_correlation", before.correlation},

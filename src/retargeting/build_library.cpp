@@ -68,6 +68,19 @@ std::string source_of(const LibraryRecipe& recipe, const ClipRecipe& clip, const
       made.froude_ratio);
 }
 
+struct Source {
+  mocap::Recording recording;
+  mocap::GaitCycle cut;
+};
+
+/// The library's: one cycle of another kind, a turn in steps with pauses, is warped to it and not all others to that.
+double median_duty_factor(const std::vector<Source>& sources) {
+  std::vector<double> r;
+  for (const Source& source : sources) r.push_back(duty_factor_of(source.cut));
+  std::ranges::sort(r);
+  return 0.5 * (r[(r.size() - 1) / 2] + r[r.size() / 2]);
+}
+
 }  // namespace
 
 mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording) {
@@ -101,21 +114,17 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
   library.posture = making.posture;
 
   const mocap::NameTable names = mocap::read_name_table(recipe.names ? *recipe.names : mocap::default_name_table());
-  struct Source {
-    mocap::Recording recording;
-    mocap::GaitCycle cut;
-  };
   std::vector<Source> sources;
-  double duty_factor = 0.0;
   for (const ClipRecipe& clip : recipe.clips) {
     progress.report_or_throw(0.0, "reading " + clip.recording.filename().string());
     mocap::Recording recording = mocap::make_recording(
         clip.recording.string(), mocap::read_motion(clip.recording, clip.read), names, clip.options);
     if (clip.mirrored) recording = mirrored(recording);
     const mocap::GaitCycle cut = chosen_cycle(clip, recording);
-    duty_factor += duty_factor_of(cut) / static_cast<double>(recipe.clips.size());
     sources.push_back({std::move(recording), cut});
   }
+
+  const double duty_factor = median_duty_factor(sources);
 
   // Channel after channel, because each clip is made to mix with those of the channels before.
   built.clips.resize(recipe.clips.size());

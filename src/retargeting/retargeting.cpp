@@ -211,7 +211,7 @@ RetargetedClip retarget(const generator::Making& making, const mocap::Recording&
 void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
                       RetargetedClip& made, const work::Progress& progress) {
   const double begin_s = thread_cpu_s();
-  made.unmended = made.likeness;
+  made.unmended = {made.likeness, made.ground};
   make_clip(making, blending_task(making, others, made), progress, made);
   made.fit_s = thread_cpu_s() - begin_s;
 }

@@ -23,6 +23,12 @@ struct Imitation {
   Likeness thigh, knee, ankle;
 };
 
+/// A clip before fit_for_blending.
+struct Unmended {
+  Imitation likeness;
+  generator::GroundMeasure ground;
+};
+
 struct RetargetedClip {
   DynamicClip clip;
   generator::MadeGait gait;  ///< what the optimisation was asked and gave
@@ -31,7 +37,7 @@ struct RetargetedClip {
   double froude_ratio = 1.0;  ///< sqrt(length_ratio): robot's period over the human's, and its speed over the human's
   Eigen::Vector3d wanted_velocity = Eigen::Vector3d::Zero();  ///< of the clip's channel alone: vx, vy [m/s], omega
   Imitation likeness;                                         ///< of the clip
-  std::optional<Imitation> unmended;                          ///< of the clip before fit_for_blending
+  std::optional<Unmended> unmended;
   generator::GroundMeasure ground;                            ///< at full gain
   mocap::SeamJump seam;                                       ///< of the clip's joints
   double limit_margin_rad = 0.0;         ///< smallest distance from a joint limit; negative: beyond it
