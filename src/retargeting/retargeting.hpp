@@ -38,8 +38,8 @@ struct RetargetedClip {
   Eigen::Vector3d wanted_velocity = Eigen::Vector3d::Zero();  ///< of the clip's channel alone: vx, vy [m/s], omega
   Imitation likeness;                                         ///< of the clip
   std::optional<Unmended> unmended;
-  generator::GroundMeasure ground;                            ///< at full gain
-  mocap::SeamJump seam;                                       ///< of the clip's joints
+  generator::GroundMeasure ground;       ///< at full gain
+  mocap::SeamJump seam;                  ///< of the clip's joints
   double limit_margin_rad = 0.0;         ///< smallest distance from a joint limit; negative: beyond it
   double joint_speed_share = 0.0;        ///< of the joints' limits, largest
   double retarget_s = 0.0, fit_s = 0.0;  ///< CPU time of retarget and fit_for_blending
