@@ -25,7 +25,7 @@ using retargeting::RetargetedClip;
 
 /// Files of another library would be read with the new ones.
 void expect_no_other_clips(const fs::path& out, const retargeting::LibraryRecipe& recipe) {
-  std::set<std::string> made = {"bend", "lean", "squat", "inverse"};
+  std::set<std::string> made = {"bend", "lean", "squat", "inverse", "library"};
   for (const retargeting::ClipRecipe& clip : recipe.clips) made.insert(clip.name);
   for (const fs::path& file : model::clip_library_files(out)) {
     if (made.contains(file.stem().string())) continue;
@@ -36,8 +36,14 @@ void expect_no_other_clips(const fs::path& out, const retargeting::LibraryRecipe
 
 double degrees(double rad) { return rad / kRadPerDegree; }
 
-void print_likeness(const char* what, const Likeness& of) {
-  fmt::print("  {:5} r {:.3f}, RMS {:.1f} degrees from the human's\n", what, of.correlation, degrees(of.rms_rad));
+void print_likeness(const char* what, const RetargetedClip& made, Likeness retargeting::Imitation::*part) {
+  const Likeness& of = made.likeness.*part;
+  fmt::print("  {:5} r {:.3f}, RMS {:.1f} degrees from the human's", what, of.correlation, degrees(of.rms_rad));
+  if (made.unmended) {
+    const Likeness& before = made.unmended->likeness.*part;
+    fmt::print(" ({:.3f}, {:.1f} before the fit for blending)", before.correlation, degrees(before.rms_rad));
+  }
+  fmt::print("\n");
 }
 
 void print_clip(const BuiltClip& clip, const model::RobotModel& robot) {
@@ -53,9 +59,9 @@ void print_clip(const BuiltClip& clip, const model::RobotModel& robot) {
              100.0 * human.cut.loop_error_m, human.closing_moved_rad, human.warp_cycles);
   fmt::print("  robot: T {:.3f} s, vx {:.3f}, vy {:.3f} m/s, omega {:.3f} rad/s, duty factor {:.2f}\n",
              made.clip.period_s, v[0], v[1], v[2], made.clip.duty_factor[kLeft]);
-  print_likeness("thigh", made.thigh);
-  print_likeness("knee", made.knee);
-  print_likeness("ankle", made.ankle);
+  print_likeness("thigh", made, &retargeting::Imitation::thigh);
+  print_likeness("knee", made, &retargeting::Imitation::knee);
+  print_likeness("ankle", made, &retargeting::Imitation::ankle);
   fmt::print(
       "  feet: slide {:.1f} cm/s in double support (95th percentile {:.1f}), {:.1f} mm apart in height there,\n"
       "        a swinging one {:.1f} mm above the ground at least, {:.1f} mm in mid-swing, soles {:.0f} mm apart\n",
@@ -63,21 +69,25 @@ void print_clip(const BuiltClip& clip, const model::RobotModel& robot) {
       1000.0 * made.ground.lowest_swing_m, 1000.0 * made.ground.clearance_m, 1000.0 * made.ground.foot_gap_m);
   fmt::print("  joints: seam jumps {:.4f} rad and {:.3f} rad/s, {:.3f} rad from limits, {:.0f} % of speed limits\n",
              made.seam.angle_rad, made.seam.speed_rad_s, made.limit_margin_rad, 100.0 * made.joint_speed_share);
-  fmt::print("  made in {:.1f} s: {:.0f} frames a second\n", made.solve_s, made.frames_per_s);
+  fmt::print("  retargeted in {:.2f} s: {:.0f} frames a second; fitted for blending in {:.1f} s\n", made.retarget_s,
+             made.frames_per_s, made.fit_s);
   const auto c = static_cast<std::size_t>(clip.recipe.channel);
-  const double scale = clip.recipe.sign > 0.0 ? robot.velocity_scale_positive[c] : robot.velocity_scale_negative[c];
-  if (std::abs(std::abs(v[c]) - scale) > 0.05) {
-    fmt::print(
-        "  note: the clip's {} is {:.3f}, robot.yaml's velocity_scale {:.3f}: without the inverse a command of "
-        "{:.3f} gives {:.3f}\n",
-        kChannelNames[c], v[c], scale, clip.recipe.sign * scale, v[c]);
+  const double end = clip.recipe.sign > 0.0 ? robot.command_limits.upper[c] : -robot.command_limits.lower[c];
+  if (std::abs(v[c]) < end) {
+    fmt::print("  note: the clip's {} is {:.3f}, robot.yaml's range ends at {:.3f}: commands beyond the clip are cut\n",
+               kChannelNames[c], v[c], clip.recipe.sign * end);
   }
 }
 
 nlohmann::json clip_json(const BuiltClip& clip) {
   const RetargetedClip& made = clip.made;
-  const auto likeness = [](const Likeness& of) {
-    return nlohmann::json{{"correlation", of.correlation}, {"rms_deg", degrees(of.rms_rad)}};
+  const auto likeness = [&made](Likeness retargeting::Imitation::*part) {
+    const Likeness& of = made.likeness.*part;
+    const Likeness before = made.unmended ? made.unmended->likeness.*part : of;
+    return nlohmann::json{{"correlation", of.correlation},
+                          {"rms_deg", degrees(of.rms_rad)},
+                          {"unmended_correlation", before.correlation},
+                          {"unmended_rms_deg", degrees(before.rms_rad)}};
   };
   return {{"source", clip.source},
           {"notes", clip.notes},
@@ -95,9 +105,9 @@ nlohmann::json clip_json(const BuiltClip& clip) {
           {"vx_m_s", made.clip.mean_velocity[0]},
           {"vy_m_s", made.clip.mean_velocity[1]},
           {"omega_rad_s", made.clip.mean_velocity[2]},
-          {"thigh", likeness(made.thigh)},
-          {"knee", likeness(made.knee)},
-          {"ankle", likeness(made.ankle)},
+          {"thigh", likeness(&retargeting::Imitation::thigh)},
+          {"knee", likeness(&retargeting::Imitation::knee)},
+          {"ankle", likeness(&retargeting::Imitation::ankle)},
           {"slip_mean_m_s", made.ground.slip_mean_m_s},
           {"slip_p95_m_s", made.ground.slip_p95_m_s},
           {"other_foot_height_m", made.ground.other_foot_height_m},
@@ -108,7 +118,8 @@ nlohmann::json clip_json(const BuiltClip& clip) {
           {"seam_rad_s", made.seam.speed_rad_s},
           {"limit_margin_rad", made.limit_margin_rad},
           {"joint_speed_share", made.joint_speed_share},
-          {"frames_per_s", made.frames_per_s}};
+          {"frames_per_s", made.frames_per_s},
+          {"fit_s", made.fit_s}};
 }
 
 }  // namespace
@@ -137,6 +148,7 @@ int build(const BuildOptions& options,
     const auto clip = std::ranges::find(built.clips, name, [](const BuiltClip& b) { return b.recipe.name; });
     return clip != built.clips.end() ? clip->source : generator::clip_source(name);
   });
+  model::write_rules(unfinished.folder(), built.library);
   // What the generator would refuse is refused here; what `show` would fail is told below.
   const std::vector<generator::ClipReport> reports =
       generator::report(robot, model::load_clip_library(unfinished.folder(), robot));

@@ -48,7 +48,7 @@ void ControllerArguments::declare(CLI::App& app) {
   app.add_option("--policy", control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
                  "given, and none with --bench and --excite");
-  app.add_option("--clips", control.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--clips", control.clips, "clip library; the policy's own, or the robot's clips/, if not given");
   app.add_option("--lcm-url", lcm_url, "LCM network; LCM_DEFAULT_URL or this computer alone if not given");
   CLI::Option* keys_option = app.add_option(
       "--keys", keys, "folder of keys (pmg_key); ~/.config/pmg/controller-keys where messages leave this computer");

@@ -33,7 +33,7 @@ void declare_robot(CLI::App& command, EvalArguments& arguments) {
 }
 
 void declare_clips(CLI::App& command, EvalArguments& arguments) {
-  command.add_option("--clips", arguments.clips, "clip library; the robot's own clips/ if not given");
+  command.add_option("--clips", arguments.clips, "clip library; the policy's own, or the robot's clips/, if not given");
 }
 
 void declare_output(CLI::App& command, EvalArguments& arguments) {

@@ -47,7 +47,7 @@ void write_inverse(const model::RobotModel& robot, const std::filesystem::path& 
   const CommandInverse inverse = gco::make_command_inverse(robot, library, apps::shown(progress, "inverting commands"));
   progress.clear();
   model::write_command_inverse(clips, inverse);
-  if (named != kBlendNames.end()) model::write_blend(clips, library.blend);
+  if (named != kBlendNames.end()) model::write_rules(clips, library);
 }
 
 int invert(const std::string& robot_name, const std::filesystem::path& clips, const std::string& blend) {

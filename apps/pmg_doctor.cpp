@@ -53,7 +53,7 @@ void Arguments::declare(CLI::App& app) {
   app.footer(kFooter);
   app.add_option("--robot", control.robot, "robot's name below config/robots, or its folder")->capture_default_str();
   app.add_option("--policy", control.policy, "policy's name, an ONNX file, or none; robot.yaml's if not given");
-  app.add_option("--clips", control.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--clips", control.clips, "clip library; the policy's own, or the robot's clips/, if not given");
   app.add_option("--hal", hal, "the drives whose buses are looked at; sil: none")
       ->check(apps::one_of({"can", "ethercat", "sil"}))
       ->capture_default_str();

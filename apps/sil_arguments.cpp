@@ -43,7 +43,7 @@ void SilArguments::declare(CLI::App& app) {
          "the paper's weights to the letter")
       ->check(one_of({"library", "gain", "paper", "corners"}))
       ->capture_default_str();
-  app.add_option("--clips", control.clips, "clip library; the robot's own clips/ if not given");
+  app.add_option("--clips", control.clips, "clip library; the policy's own, or the robot's clips/, if not given");
   app.add_option(
       "--motor", motor,
       "motor.yaml of pmg_calibrate_motor: how the drives really are; robot.yaml's if not given, none for none");

@@ -50,6 +50,11 @@ struct CornerClip {
   DynamicClip clip;
 };
 
+/// u_max_i: the speed of a clip at gain 1, by direction; positive numbers [m/s, rad/s].
+struct VelocityScale {
+  std::array<double, kVelocityChannels> negative{}, positive{};
+};
+
 /// Everything the generator blends. If vy or omega lacks the clip of one direction, the generator mirrors the other's.
 struct ClipLibrary {
   std::array<std::optional<DynamicClip>, kVelocityChannels> positive;  ///< vx, vy, omega > 0
@@ -59,8 +64,9 @@ struct ClipLibrary {
   JointVector q_stand;                ///< [rad]
   JointVector q_lower, q_upper;       ///< joint limits [rad]
   MirrorMap mirror;
-  Blend blend = Blend::kGain;  ///< the rule that the library was made for
-  CommandInverse inverse;      ///< made for that rule; empty: commands stay as they are
+  Blend blend = Blend::kGain;                   ///< the rule that the library was made for
+  std::optional<VelocityScale> velocity_scale;  ///< of clips that differ from robot.yaml's; goes before the options'
+  CommandInverse inverse;                       ///< made for that rule; empty: commands stay as they are
 };
 
 }  // namespace pmg

@@ -39,10 +39,10 @@ enum class StanceRule {
 struct GeneratorOptions {
   std::optional<Blend> blend;  ///< the library's if not given
   CommandLimits limits;
-  std::array<double, kVelocityChannels> scale_positive{};  ///< u_max_i for positive commands
-  std::array<double, kVelocityChannels> scale_negative{};  ///< u_max_i for negative commands, positive numbers
-  double limit_margin_rad = 0.0349066;                     ///< 2 degrees
-  double contact_edge_cycle = 0.04;  ///< width of the contact weights' cosine edges, inside the stance
+  /// u_max_i for positive and for negative commands, positive numbers; the library's own go before them.
+  std::array<double, kVelocityChannels> scale_positive{}, scale_negative{};
+  double limit_margin_rad = 0.0349066;  ///< 2 degrees
+  double contact_edge_cycle = 0.04;     ///< width of the contact weights' cosine edges, inside the stance
   double rest_before_freeze_s = 0.5;
   StanceRule stance_rule = StanceRule::kRestRamp;
   double stance_ramp_s = 0.2;
@@ -95,7 +95,7 @@ class Generator {
       check::static_clip(library.posture[i], q_stand_, std::string("clip ") + kChannelNames[kVelocityChannels + i]);
     }
     posture_ = Posture(library.posture, q_stand_);
-    limits_ = realisable_limits(directions);
+    limits_ = realisable_limits(directions, library.velocity_scale);
     limiter_ = CommandLimiter(limits_, options_.double_support_rate, options_.stop_within_s, options_.turn_s);
     reset();
   }
@@ -195,12 +195,13 @@ class Generator {
   }
 
   /// The options' limits, narrowed to the directions and postures that have clips. Also sets scale_.
-  CommandLimits realisable_limits(const PerDirection<std::optional<DynamicClip>>& clips) {
+  CommandLimits realisable_limits(const PerDirection<std::optional<DynamicClip>>& clips,
+                                  const std::optional<VelocityScale>& of_library) {
     CommandLimits limits = options_.limits;
     for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
       const std::size_t forward = direction_of(channel, false), back = direction_of(channel, true);
-      scale_[forward] = options_.scale_positive[channel];
-      scale_[back] = options_.scale_negative[channel];
+      scale_[forward] = of_library ? of_library->positive[channel] : options_.scale_positive[channel];
+      scale_[back] = of_library ? of_library->negative[channel] : options_.scale_negative[channel];
       if (!clips[forward]) limits.upper[channel] = 0.0;
       if (!clips[back]) limits.lower[channel] = 0.0;
       check::require((limits.upper[channel] == 0.0 || scale_[forward] > 0.0) &&

@@ -34,11 +34,15 @@ std::vector<std::string> policy_names(const model::RobotModel& robot) {
   return names;
 }
 
-/// Below the robot's policies/, or the file itself. Nothing for none.
+/// Below the robot's policies/, or the file itself.
+fs::path place_of_policy(const std::string& name, const model::RobotModel& robot) {
+  return fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
+}
+
+/// Nothing for none.
 std::optional<fs::path> policy_file(const std::string& name, const char* named_by, const model::RobotModel& robot) {
   if (name == "none") return std::nullopt;
-  fs::path file =
-      fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
+  fs::path file = place_of_policy(name, robot);
   if (!fs::exists(file)) {
     const std::string meant = files::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
@@ -59,6 +63,10 @@ std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file,
 std::string robots_own_policy(const model::RobotModel& robot) {
   files::ConfigReader reader = files::ConfigReader::from_file(robot.directory / "robot.yaml");
   return reader.has("policy") ? reader.required<std::string>("policy") : "none";
+}
+
+std::string chosen_policy(const ControlSetup& setup, const model::RobotModel& robot) {
+  return setup.policy.empty() ? robots_own_policy(robot) : setup.policy;
 }
 
 Blend blend_named(const std::string& name, const ClipLibrary& library) {
@@ -143,14 +151,20 @@ nlohmann::ordered_json tick_json(const TickOptions& tick) {
 
 }  // namespace
 
+fs::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot) {
+  if (!setup.clips.empty()) return setup.clips;
+  const fs::path own = place_of_policy(chosen_policy(setup, robot), robot).replace_extension() / "clips";
+  return fs::is_directory(own) ? own : robot.directory / "clips";
+}
+
 LoadedControl load_control(const ControlSetup& setup) {
   LoadedControl loaded;
   loaded.robot = model::load_robot(model::find_robot(setup.robot));
-  loaded.clips = setup.clips.empty() ? loaded.robot.directory / "clips" : setup.clips;
+  loaded.clips = chosen_clips(setup, loaded.robot);
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   loaded.options = tick_options(loaded.robot);
   loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
-  loaded.policy_name = setup.policy.empty() ? robots_own_policy(loaded.robot) : setup.policy;
+  loaded.policy_name = chosen_policy(setup, loaded.robot);
   const std::optional<fs::path> policy =
       policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
   loaded.policy = load_policy(policy, loaded);

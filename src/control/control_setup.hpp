@@ -17,7 +17,7 @@ namespace pmg::control {
 
 struct ControlSetup {
   std::string robot = "z1";     ///< name below config/robots, or a folder
-  std::filesystem::path clips;  ///< empty: the robot's own
+  std::filesystem::path clips;  ///< empty: the policy's own, or the robot's (chosen_clips)
   std::string policy;  ///< name below the robot's policies/, or none: drives follow the reference; empty: robot.yaml's
   std::string blend = "library";  ///< how clips are mixed: as the library says, or gain, paper or corners
 };
@@ -34,6 +34,10 @@ struct LoadedControl {
   std::string bundle;                                      ///< as RunInfo's
   std::vector<std::pair<std::string, std::string>> files;  ///< likewise
 };
+
+/// The clip library that a setup runs on: the named one; else clips/ in the folder beside the policy that has its name
+/// (policies/NAME/clips of policies/NAME.onnx), so that one name chooses a policy with its clips; else the robot's.
+std::filesystem::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot);
 
 /// Throws files::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);

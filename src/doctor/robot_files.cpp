@@ -53,7 +53,7 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
       return fmt::format("every joint has one that covers it, on {} buses", found.buses.size());
     });
   }
-  const std::filesystem::path clips = setup.clips.empty() ? robot.directory / "clips" : setup.clips;
+  const std::filesystem::path clips = control::chosen_clips(setup, robot);
   if (!look(findings, "clips", kCorrect, [&] {
         const ClipLibrary library = model::load_clip_library(clips, robot);
         const auto given = [](const auto& clip) { return clip.has_value(); };

@@ -63,13 +63,13 @@ class Measurement {
 
 /// The command, scaled down to 90 % of the velocities' common reach. The generator scales larger ones down itself, and
 /// with them any correction.
-Command within_reach(const model::RobotModel& robot, Blend blend, const Command& command) {
-  const double reach = 0.9 * (blend == Blend::kCorners ? kCornerReach : 1.0);
+Command within_reach(const model::RobotModel& robot, const ClipLibrary& library, const Command& command) {
+  const double reach = 0.9 * (library.blend == Blend::kCorners ? kCornerReach : 1.0);
+  const VelocityScale scale =
+      library.velocity_scale.value_or(VelocityScale{robot.velocity_scale_negative, robot.velocity_scale_positive});
   double asked = 0.0;
-  for (std::size_t c = 0; c < kVelocityChannels; ++c) {
-    asked += std::abs(command.u[c]) /
-             (command.u[c] < 0.0 ? robot.velocity_scale_negative[c] : robot.velocity_scale_positive[c]);
-  }
+  for (std::size_t c = 0; c < kVelocityChannels; ++c)
+    asked += std::abs(command.u[c]) / (command.u[c] < 0.0 ? scale.negative[c] : scale.positive[c]);
   Command target = command;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) target.u[c] /= std::max(1.0, asked / reach);
   return target;
@@ -141,7 +141,7 @@ CommandInverse make_command_inverse(const model::RobotModel& robot, const ClipLi
       index /= axis[a].size();
     }
     const bool rest = command[kVx] == 0.0 && command[kVy] == 0.0 && command[kOmega] == 0.0;
-    if (!rest) correction[i] = correction_at(robot, within_reach(robot, library.blend, command), measurement);
+    if (!rest) correction[i] = correction_at(robot, within_reach(robot, library, command), measurement);
     progress.report_or_throw(static_cast<double>(i + 1) / static_cast<double>(nodes));
   }
   return {axis, correction};

@@ -33,7 +33,8 @@ GeneratorOptions generator_options(const model::RobotModel& robot) {
 MotionComposition::MotionComposition(const model::RobotModel& robot, const ClipLibrary& library, Variant variant,
                                      const GeneratorOptions& generator, const Options& gco)
     : variant_(variant),
-      forward_scale_m_s_(generator.scale_positive[kVx]),
+      forward_scale_m_s_(library.velocity_scale ? library.velocity_scale->positive[kVx]
+                                                : generator.scale_positive[kVx]),
       generator_(known_to(variant, library), generator),
       gco_(robot, gco) {
   if (variant_ == Variant::kSingleGait) forward_only_.emplace(forward_clip_only(known_to(variant, library)), generator);

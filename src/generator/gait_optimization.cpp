@@ -12,6 +12,7 @@
 #include "files/config_error.hpp"
 #include "generator/gait_measure.hpp"
 #include "generator/gait_residuals.hpp"
+#include "generator/ground_cost.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -154,10 +155,8 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
           blocks.push_back(table.knot(foot, k));
         }
       }
-      using Cost = ceres::AutoDiffCostFunction<GroundResiduals, kGroundResiduals, kLegJoints, kLegJoints, kLegJoints,
-                                               kLegJoints, kLegJoints, kLegJoints, kLegJoints, kLegJoints>;
       problem.AddResidualBlock(
-          new Cost(new GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)),
+          new GroundCost(GroundResiduals(legs, task, task.scenarios[s], phase, sample, kKnots, targets[s].correction)),
           nullptr, blocks);
     }
   }

@@ -13,9 +13,19 @@ namespace pmg::generator {
 
 inline constexpr int kGroundResiduals = 22;
 
+/// What the ground residuals take of a foot, in the heading frame H at the base's origin.
+template <typename T>
+struct FootOnGround {
+  SoleContact<T> contact;
+  T omega_z;           ///< of the foot
+  T toes_up, side_up;  ///< z of the sole's x and y axes
+  T inner_edge_y;      ///< of the sole's corners, the one nearest to the other foot
+};
+
 /// Ground residuals of one phase sample of one scenario. Parameters: four knots of the left leg, then four of the
-/// right, each kLegJoints deviations from stand. The base has the attitude of hiking_base(). Its velocity v, omega is
-/// the mean, by contact weight, of the velocities under which each stance foot stands still.
+/// right, each kLegJoints deviations from stand. Called with ceres::Jet it differentiates itself, which
+/// GroundCost (ground_cost.hpp) does faster: tests compare the two. The base has the attitude of hiking_base(). Its
+/// velocity v, omega is the mean, by contact weight, of the velocities under which each stance foot stands still.
 class GroundResiduals {
  public:
   GroundResiduals(const RobotLegs& legs, const GaitTask& task, const Scenario& scenario, double phase,
@@ -26,51 +36,61 @@ class GroundResiduals {
                   const T* r3, T* residual) const {
     const PerFoot<std::array<const T*, 4>> knots = {std::array<const T*, 4>{l0, l1, l2, l3},
                                                     std::array<const T*, 4>{r0, r1, r2, r3}};
-    PerFoot<FootMotion<T>> foot;
-    PerFoot<SoleContact<T>> contact;
+    PerFoot<FootOnGround<T>> foot;
     for (const Foot f : {kLeft, kRight}) {
       LegVector<T> q;
       LegVector<T> dq;
-      for (Eigen::Index i = 0; i < kLegJoints; ++i) {
-        T value = T(0.0);
-        T slope = T(0.0);
-        for (std::size_t k = 0; k < 4; ++k) {
-          value += basis_[f].value[k] * knots[f][k][i];
-          slope += basis_[f].slope[k] * knots[f][k][i];
-        }
-        const double sign = sign_[f][i];
-        q[i] = base_q_[f][i] + scenario_.gain * sign * value;
-        dq[i] = (base_dq_dphi_[f][i] + scenario_.gain * sign * slope) / task_.period_s;
-      }
-      foot[f] = seen_from_heading(foot_motion<T>(legs_.geometry[f], q, dq));
-      contact[f] = sole_contact<T>(legs_.geometry[f], foot[f], kSoftness_m);
+      joints(f, knots[f], q, dq);
+      const LegGeometry& leg = legs_.geometry[f];
+      const FootMotion<T> motion = seen_from_heading(foot_motion<T>(leg, q, dq));
+      foot[f] = {sole_contact<T>(leg, motion, kSoftness_m), motion.omega_BF.z(), motion.R_BF(2, 0), motion.R_BF(2, 1),
+                 inner_edge(f, motion)};
     }
-    ground(foot, contact, residual);
+    ground(foot, residual);
     return true;
   }
 
- private:
-  /// (foot in the base frame) => (foot in the heading frame with the same origin).
+  /// (knots) => (q, dq) of this foot: rad, rad/s.
   template <typename T>
-  FootMotion<T> seen_from_heading(const FootMotion<T>& foot) const {
-    const Matrix3<T> R = R_HB_.cast<T>();
-    const Vector3<T> omega = omega_HB_.cast<T>();
-    const Vector3<T> p = R * foot.p_BF;
-    return {R * foot.R_BF, p, R * foot.v_BF + omega.cross(p), R * foot.omega_BF + omega};
+  void joints(Foot f, const std::array<const T*, 4>& knots, LegVector<T>& q, LegVector<T>& dq) const {
+    for (Eigen::Index i = 0; i < kLegJoints; ++i) {
+      T value = T(0.0);
+      T slope = T(0.0);
+      for (std::size_t k = 0; k < 4; ++k) {
+        value += basis_[f].value[k] * knots[k][i];
+        slope += basis_[f].slope[k] * knots[k][i];
+      }
+      const double sign = sign_[f][i];
+      q[i] = base_q_[f][i] + scenario_.gain * sign * value;
+      dq[i] = (base_dq_dphi_[f][i] + scenario_.gain * sign * slope) / task_.period_s;
+    }
   }
 
-  static constexpr double kSoftness_m = 0.001;     ///< 0.2 degrees over the length of a foot
-  static constexpr double kAboveGround_m = 0.001;  ///< height that a swinging foot shall keep
+  /// d q_i / d knot k and d dq_i / d knot k of this foot.
+  double dq_dknot(Foot f, std::size_t k, Eigen::Index i) const {
+    return scenario_.gain * sign_[f][i] * basis_[f].value[k];
+  }
+  double drate_dknot(Foot f, std::size_t k, Eigen::Index i) const {
+    return scenario_.gain * sign_[f][i] * basis_[f].slope[k] / task_.period_s;
+  }
 
+  const LegGeometry& leg(Foot f) const { return legs_.geometry[f]; }
+  const Eigen::Matrix3d& R_HB() const { return R_HB_; }
+  const Eigen::Vector3d& omega_HB() const { return omega_HB_; }
+
+  static constexpr double kSoftness_m = 0.001;  ///< 0.2 degrees over the length of a foot
+
+  /// (feet) => (kGroundResiduals residuals).
   template <typename T>
-  void ground(const PerFoot<FootMotion<T>>& foot, const PerFoot<SoleContact<T>>& contact, T* residual) const {
+  void ground(const PerFoot<FootOnGround<T>>& foot, T* residual) const {
+    const PerFoot<SoleContact<T>> contact = {foot[kLeft].contact, foot[kRight].contact};
     const GaitWeights& w = task_.weights;
     const double total = contact_[kLeft] + contact_[kRight];
     const double both = std::sqrt(contact_[kLeft] * contact_[kRight]);
     const PerFoot<double> share = {contact_[kLeft] / total, contact_[kRight] / total};
 
     // The base velocity with which each stance foot stands still.
-    const T omega = -(share[kLeft] * foot[kLeft].omega_BF.z() + share[kRight] * foot[kRight].omega_BF.z());
+    const T omega = -(share[kLeft] * foot[kLeft].omega_z + share[kRight] * foot[kRight].omega_z);
     PerFoot<Vector3<T>> base;
     for (const Foot f : {kLeft, kRight}) {
       base[f] = Vector3<T>(-contact[f].v.x() + omega * contact[f].p.y(), -contact[f].v.y() - omega * contact[f].p.x(),
@@ -82,7 +102,7 @@ class GroundResiduals {
     int i = 0;
     residual[i++] = scale_ * w.slip * both * (base[kLeft].x() - base[kRight].x());
     residual[i++] = scale_ * w.slip * both * (base[kLeft].y() - base[kRight].y());
-    residual[i++] = scale_ * w.slip_yaw * both * (foot[kLeft].omega_BF.z() - foot[kRight].omega_BF.z());
+    residual[i++] = scale_ * w.slip_yaw * both * (foot[kLeft].omega_z - foot[kRight].omega_z);
     const T step = contact[kLeft].p.z() - contact[kRight].p.z();
     residual[i++] = scale_ * w.step_height_inside * near_both_ * step;
     residual[i++] = scale_ * w.step_height * near_both_ * beyond(step, w.step_height_free_m);
@@ -96,13 +116,17 @@ class GroundResiduals {
       const T above = contact[f].p.z() - contact[f == kLeft ? kRight : kLeft].p.z();
       residual[i++] = scale_ * w.clearance * short_of(above, clearance_m_[f]);
       residual[i++] = scale_ * w.above_ground * lifted_[f] * short_of(above, kAboveGround_m);
-      residual[i++] = scale_ * w.foot_flat * contact_[f] * foot[f].R_BF(2, 1);
-      residual[i++] = scale_ * w.foot_flat * flat_[f] * foot[f].R_BF(2, 0);
-      residual[i++] = scale_ * w.foot_flat * 0.1 * (1.0 - contact_[f]) * foot[f].R_BF(2, 1);
+      residual[i++] = scale_ * w.foot_flat * contact_[f] * foot[f].side_up;
+      residual[i++] = scale_ * w.foot_flat * flat_[f] * foot[f].toes_up;
+      residual[i++] = scale_ * w.foot_flat * 0.1 * (1.0 - contact_[f]) * foot[f].side_up;
     }
-    residual[i++] = scale_ * w.foot_gap * short_of(gap(foot), task_.foot_gap_m);
+    residual[i++] =
+        scale_ * w.foot_gap * short_of(T(foot[kLeft].inner_edge_y - foot[kRight].inner_edge_y), task_.foot_gap_m);
     residual[i++] = scale_ * w.slip * 0.1 * both * (base[kLeft].z() - base[kRight].z());
   }
+
+ private:
+  static constexpr double kAboveGround_m = 0.001;  ///< height that a swinging foot shall keep
 
   /// The part of a length beyond +-free_m.
   template <typename T>
@@ -130,18 +154,25 @@ class GroundResiduals {
     return lack - kRound_m / 2.0;
   }
 
-  /// Gap between the soles along the base's y axis. If it is positive they don't touch, whatever their headings.
+  /// y of the corner nearest to the other foot: the gap between both along the base's y axis, if it is positive, keeps
+  /// the soles apart whatever their headings.
   template <typename T>
-  T gap(const PerFoot<FootMotion<T>>& foot) const {
-    T left = T(1e9);
-    T right = T(-1e9);
-    for (std::size_t c = 0; c < 4; ++c) {
-      const T yl = foot[kLeft].p_BF.y() + (foot[kLeft].R_BF * legs_.geometry[kLeft].sole[c].cast<T>()).y();
-      const T yr = foot[kRight].p_BF.y() + (foot[kRight].R_BF * legs_.geometry[kRight].sole[c].cast<T>()).y();
-      left = yl < left ? yl : left;
-      right = yr > right ? yr : right;
+  T inner_edge(Foot f, const FootMotion<T>& foot) const {
+    T inner = T(f == kLeft ? 1e9 : -1e9);
+    for (const Eigen::Vector3d& corner : legs_.geometry[f].sole) {
+      const T y = foot.p_BF.y() + (foot.R_BF * corner.cast<T>()).y();
+      if (f == kLeft ? y < inner : y > inner) inner = y;
     }
-    return left - right;
+    return inner;
+  }
+
+  /// (foot in the base frame) => (foot in the heading frame with the same origin).
+  template <typename T>
+  FootMotion<T> seen_from_heading(const FootMotion<T>& foot) const {
+    const Matrix3<T> R = R_HB_.cast<T>();
+    const Vector3<T> omega = omega_HB_.cast<T>();
+    const Vector3<T> p = R * foot.p_BF;
+    return {R * foot.R_BF, p, R * foot.v_BF + omega.cross(p), R * foot.omega_BF + omega};
   }
 
   const RobotLegs& legs_;

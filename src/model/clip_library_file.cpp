@@ -182,12 +182,25 @@ void check_total(const fs::path& directory, const ClipLibrary& library) {
 
 fs::path library_yaml(const fs::path& directory) { return directory / "library.yaml"; }
 
-Blend read_blend(const fs::path& directory) {
-  if (!fs::exists(library_yaml(directory))) return Blend::kGain;
+VelocityScale read_velocity_scale(files::ConfigReader reader) {
+  VelocityScale scale;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    const std::vector<double> ends = reader.numbers(kChannelNames[channel], 2, files::positive());
+    scale.negative[channel] = ends[0];
+    scale.positive[channel] = ends[1];
+  }
+  reader.finish();
+  return scale;
+}
+
+/// library.yaml: what holds for all clips together.
+void read_rules(const fs::path& directory, ClipLibrary& library) {
+  if (!fs::exists(library_yaml(directory))) return;
   files::ConfigReader reader = files::ConfigReader::from_file(library_yaml(directory));
   const std::string name = reader.one_of("blend", {kBlendNames.begin(), kBlendNames.end()});
+  library.blend = static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
+  if (reader.has("velocity_scale")) library.velocity_scale = read_velocity_scale(reader.map("velocity_scale"));
   reader.finish();
-  return static_cast<Blend>(std::ranges::find(kBlendNames, name) - kBlendNames.begin());
 }
 
 }  // namespace
@@ -242,7 +255,7 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   for (std::size_t i = 0; i < library.posture.size(); ++i) {
     library.posture[i] = read_static(directory, kPostureNames[i], robot, kVelocityChannels + i);
   }
-  library.blend = read_blend(directory);
+  read_rules(directory, library);
   if (fs::exists(command_inverse_file(directory))) library.inverse = read_command_inverse(directory);
   library.q_stand = robot.q_stand();
   library.q_lower = robot.q_lower();

@@ -67,8 +67,16 @@ void write_dynamic_clip(const fs::path& directory, const std::string& name, cons
   write_clip(directory, name, format_clip_table(robot.joint_index, {}, clip.q), text);
 }
 
-void write_blend(const fs::path& directory, Blend blend) {
-  write_file(directory / "library.yaml", fmt::format("blend: {}\n", kBlendNames[static_cast<std::size_t>(blend)]));
+void write_rules(const fs::path& directory, const ClipLibrary& library) {
+  std::string text = fmt::format("blend: {}\n", kBlendNames[static_cast<std::size_t>(library.blend)]);
+  if (library.velocity_scale) {
+    text += "velocity_scale:\n";
+    for (std::size_t i = 0; i < kVelocityChannels; ++i) {
+      text += fmt::format("  {}: [{}, {}]\n", kChannelNames[i], library.velocity_scale->negative[i],
+                          library.velocity_scale->positive[i]);
+    }
+  }
+  write_file(directory / "library.yaml", text);
 }
 
 void write_static_clip(const fs::path& directory, const std::string& name, Channel channel, const StaticClip& clip,

@@ -20,9 +20,10 @@ void write_dynamic_clip(const std::filesystem::path& directory, const std::strin
                         const RobotModel& robot, const std::string& source);
 void write_static_clip(const std::filesystem::path& directory, const std::string& name, Channel channel,
                        const StaticClip& clip, const RobotModel& robot, const std::string& source);
-void write_blend(const std::filesystem::path& directory, Blend blend);  ///< library.yaml
+/// library.yaml: the blend, and the velocity scale if the library has its own.
+void write_rules(const std::filesystem::path& directory, const ClipLibrary& library);
 
-/// Writes every clip of a library; source_of(name) says where a clip comes from.
+/// Writes every clip of a library, without its rules and inverse; source_of(name) says where a clip comes from.
 void write_clips(const std::filesystem::path& directory, const ClipLibrary& library, const RobotModel& robot,
                  const std::function<std::string(const std::string& name)>& source_of);
 

@@ -116,8 +116,11 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   expect_layout(json.at("observation"), robot);
   expect_posture(joint_values(json, "stand_rad", robot), robot);
   expect_equal("its rate in Hz", json.at("policy_rate_Hz").get<double>(), control_rate_Hz);
-  expect_equal("the SHA-256 of its clip library", json.at("clip_library_sha256").get<std::string>(),
-               clip_library_sha256);
+  if (const auto trained_on = json.at("clip_library_sha256").get<std::string>(); trained_on != clip_library_sha256) {
+    refuse_metadata(
+        fmt::format("it was trained on other clips: the SHA-256 of its clip library is {}; this controller has {}",
+                    trained_on, clip_library_sha256));
+  }
   metadata.action_scale = json.at("action_scale").get<double>();
   if (!(metadata.action_scale > 0.0) || !std::isfinite(metadata.action_scale)) {
     refuse_metadata(fmt::format("action_scale is {}; expected a positive number of rad", metadata.action_scale));

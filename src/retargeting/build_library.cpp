@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <thread>
 
 #include "files/config_error.hpp"
 #include "generator/static_clips.hpp"
 #include "mocap/activities.hpp"
 #include "mocap/gait_events.hpp"
 #include "mocap_files/key_bodies.hpp"
+#include "work/parallel.hpp"
 
 namespace pmg::retargeting {
 namespace {
@@ -65,6 +68,19 @@ std::string source_of(const LibraryRecipe& recipe, const ClipRecipe& clip, const
       made.froude_ratio);
 }
 
+struct Source {
+  mocap::Recording recording;
+  mocap::GaitCycle cut;
+};
+
+/// The library's: one cycle of another kind, a turn in steps with pauses, is warped to it and not all others to that.
+double median_duty_factor(const std::vector<Source>& sources) {
+  std::vector<double> r;
+  for (const Source& source : sources) r.push_back(duty_factor_of(source.cut));
+  std::ranges::sort(r);
+  return 0.5 * (r[(r.size() - 1) / 2] + r[r.size() / 2]);
+}
+
 }  // namespace
 
 mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording) {
@@ -98,26 +114,61 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
   library.posture = making.posture;
 
   const mocap::NameTable names = mocap::read_name_table(recipe.names ? *recipe.names : mocap::default_name_table());
+  std::vector<Source> sources;
   for (const ClipRecipe& clip : recipe.clips) {
-    progress.report_or_throw(static_cast<double>(built.clips.size()) / static_cast<double>(recipe.clips.size()),
-                             "retargeting " + clip.name);
+    progress.report_or_throw(0.0, "reading " + clip.recording.filename().string());
     mocap::Recording recording = mocap::make_recording(
         clip.recording.string(), mocap::read_motion(clip.recording, clip.read), names, clip.options);
     if (clip.mirrored) recording = mirrored(recording);
-    const work::Progress within{
-        .report =
-            [&](double, std::string_view) {
-              if (progress.report)
-                progress.report(static_cast<double>(built.clips.size()) / static_cast<double>(recipe.clips.size()),
-                                "retargeting " + clip.name);
-            },
-        .interrupted = progress.interrupted};
-    RetargetedClip made = retarget(making, recording, chosen_cycle(clip, recording), clip.channel, within);
-    expect_direction(clip, made);
-    expect_limits(clip, made);
-    (clip.sign > 0.0 ? library.positive : library.negative)[clip.channel] = made.clip;
-    built.clips.push_back({clip, made, source_of(recipe, clip, made), recording.notes});
+    const mocap::GaitCycle cut = chosen_cycle(clip, recording);
+    sources.push_back({std::move(recording), cut});
   }
+
+  const double duty_factor = median_duty_factor(sources);
+
+  // Channel after channel, because each clip is made to mix with those of the channels before.
+  built.clips.resize(recipe.clips.size());
+  std::size_t done = 0;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    std::vector<const generator::MadeGait*> others;
+    std::vector<std::size_t> now;
+    for (std::size_t i = 0; i < recipe.clips.size(); ++i) {
+      if (recipe.clips[i].channel < channel) others.push_back(&built.clips[i].made.gait);
+      if (recipe.clips[i].channel == channel) now.push_back(i);
+    }
+    work::for_each_in_parallel(
+        now.size(), std::max(1U, std::thread::hardware_concurrency()),
+        [&](std::size_t k) {
+          const ClipRecipe& clip = recipe.clips[now[k]];
+          const Source& source = sources[now[k]];
+          const work::Progress within{.interrupted = progress.interrupted};
+          RetargetedClip made = retarget(making, source.recording, source.cut, clip.channel, duty_factor, within);
+          expect_direction(clip, made);
+          fit_for_blending(making, others, made, within);
+          expect_limits(clip, made);
+          built.clips[now[k]] = {clip, made, source_of(recipe, clip, made), source.recording.notes};
+        },
+        {.report =
+             [&](double share, std::string_view) {
+               if (progress.report)
+                 progress.report((static_cast<double>(done) + share * static_cast<double>(now.size())) /
+                                     static_cast<double>(recipe.clips.size()),
+                                 "retargeting");
+             },
+         .interrupted = progress.interrupted});
+    if (progress.interrupted_now()) throw work::Interrupted();
+    done += now.size();
+  }
+  VelocityScale scale;
+  for (const BuiltClip& clip : built.clips) {
+    const double speed = std::abs(clip.made.clip.mean_velocity[clip.recipe.channel]);
+    (clip.recipe.sign > 0.0 ? library.positive : library.negative)[clip.recipe.channel] = clip.made.clip;
+    (clip.recipe.sign > 0.0 ? scale.positive : scale.negative)[clip.recipe.channel] = speed;
+  }
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {  // the generator mirrors it
+    if (!library.negative[channel]) scale.negative[channel] = scale.positive[channel];
+  }
+  library.velocity_scale = scale;
   return built;
 }
 

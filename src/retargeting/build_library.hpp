@@ -28,7 +28,8 @@ struct BuiltLibrary {
 /// mocap::find_activities holds for this primitive. Throws files::ConfigError at the recipe's line if there is none.
 mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording);
 
-/// One clip after the other. Throws files::ConfigError for a recording that can't be read, has no cycle, moves in
+/// Clips are made on all cores; the result doesn't depend on how many. The library's velocity scale is the clips' own
+/// speed. Throws files::ConfigError for a recording that can't be read, has no cycle, moves in
 /// another direction than the clip's, or whose clip leaves the joints' limits; work::Interrupted where progress is
 /// over.
 BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& recipe,

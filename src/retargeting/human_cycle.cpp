@@ -133,12 +133,17 @@ double amplitude(const HumanCycle& cycle, double peak, Curve curve) {
 
 }  // namespace
 
-HumanCycle human_cycle(const mocap::Recording& recording, const mocap::GaitCycle& cut) {
+double duty_factor_of(const mocap::GaitCycle& cut) {
+  return 0.5 * (cut.contact[0].duty_factor + cut.contact[1].duty_factor);
+}
+
+HumanCycle human_cycle(const mocap::Recording& recording, const mocap::GaitCycle& cut,
+                       std::optional<double> duty_factor) {
   HumanCycle cycle;
   cycle.cut = cut;
   cycle.leg_length_m = recording.leg_length_m;
   cycle.period_s = cut.period_s();
-  cycle.duty_factor = 0.5 * (cut.contact[0].duty_factor + cut.contact[1].duty_factor);
+  cycle.duty_factor = duty_factor.value_or(duty_factor_of(cut));
   const PeriodicWarp warp = alignment(recording, cut, cycle.duty_factor);
   const PoseCurves recorded = pose_curves(recording, cut.from_s, cut.to_s);
   cycle.mean_velocity = recorded.mean_velocity;

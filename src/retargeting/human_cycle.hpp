@@ -27,8 +27,13 @@ struct HumanCycle {
 
 /// (recording, cycle) => (aligned cycle). Time is warped by a monotone periodic cubic (Fritsch and Carlson, SIAM J.
 /// Numer. Anal. 17(2), 1980) so that both feet have the same duty factor r, the left one lands at phase 0 and the right
-/// one at 0.5. Then clips of one library agree on contact centres. The sole's pitch counts from the one that it keeps
-/// in stance. Throws files::ConfigError with what was expected if the feet don't alternate as in walking.
-HumanCycle human_cycle(const mocap::Recording& recording, const mocap::GaitCycle& cut);
+/// one at 0.5. Clips of one library agree on contact centres then, and with the same r on when a foot is loaded. The
+/// sole's pitch counts from the one that it keeps in stance. Throws files::ConfigError with what was expected if the
+/// feet don't alternate as in walking.
+HumanCycle human_cycle(const mocap::Recording& recording, const mocap::GaitCycle& cut,
+                       std::optional<double> duty_factor = {});
+
+/// The mean of both feet's: r where no other is asked for.
+double duty_factor_of(const mocap::GaitCycle& cut);
 
 }  // namespace pmg::retargeting

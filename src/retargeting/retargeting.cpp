@@ -16,8 +16,17 @@ using generator::GaitTask;
 using generator::kClipSamples;
 using generator::LegTrajectory;
 
+/// Of an even mixture with another clip, and of a posture; the clip alone has 1 at each gain.
+constexpr double kMixtureWeight = 3.0, kPostureWeight = 0.2;
+
 /// Kept free at each limit: the generator keeps 2 degrees after it has added a posture.
 constexpr double kLimitMargin_rad = 4.0 * kRadPerDegree;
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 /// Slopes by central differences, for measures of the curves before the optimisation.
 LegTrajectory with_slopes(const std::vector<generator::LegPose>& q) {
@@ -30,7 +39,7 @@ LegTrajectory with_slopes(const std::vector<generator::LegPose>& q) {
   return legs;
 }
 
-GaitTask task_of(const generator::Making& making, const RetargetedClip& made) {
+GaitTask retargeting_task(const generator::Making& making, const RetargetedClip& made) {
   const HumanCycle& human = made.human;
   GaitTask task;
   task.period_s = human.period_s * made.froude_ratio;
@@ -61,6 +70,44 @@ GaitTask task_of(const generator::Making& making, const RetargetedClip& made) {
   task.rounds = 3;
   task.first_iterations = 60;
   task.later_iterations = 20;
+  return task;
+}
+
+/// The channel's part of a person's velocity, 0 to 1; turning counts as the speed of a foot at a leg's length.
+double kept_share(const RetargetedClip& made) {
+  const Eigen::Vector3d speed =
+      made.human.mean_velocity.cwiseAbs().cwiseProduct(Eigen::Vector3d(1.0, 1.0, made.human.leg_length_m));
+  const Eigen::Vector3d kept = (made.wanted_velocity.array() != 0.0).select(speed, 0.0);
+  return kept.sum() / speed.sum();
+}
+
+/// From the task of retargeting to that of a clip that blends.
+GaitTask blending_task(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
+                       const RetargetedClip& made) {
+  GaitTask task = made.gait.task;
+  // A rigid sole has no toes to bend: where the foot rolls over them, the pelvis rises on the swinging side, as in
+  // generator/synthesis.cpp.
+  constexpr double kHike_rad = 0.10;
+  if (made.wanted_velocity.x() != 0.0) task.hike_rad = std::max(task.hike_rad, kHike_rad);
+  task.clearance_m = 0.030;
+  // Curves count four times as much as in retargeting, because more scenarios pull at them. A clip that keeps little of
+  // the person's motion (a turn, of a walk along a circle) can't keep its curves.
+  task.weights.reference << 48.0, 48.0, 24.0, 48.0, 72.0, 24.0;
+  task.weights.bias << 24.0, 24.0, 12.0, 24.0, 24.0, 12.0;
+  const double kept = kept_share(made);
+  task.weights.reference *= kept;
+  task.weights.bias *= kept;
+  task.weights.velocity = 9.0;
+  task.weights.velocity_yaw = 6.0;
+  task.weights.clearance = 400.0;
+  task.weights.step_height = 2400.0;
+  task.weights.above_ground = 1800.0;
+  task.weights.foot_gap = 400.0;
+  task.scenarios = generator::scenarios(making, kPostureWeight);
+  for (const generator::MadeGait* other : others) {
+    task.scenarios.push_back(
+        {0.5, kMixtureWeight, generator::clip_addition(making, other->legs, other->task, 0.5, task.period_s)});
+  }
   return task;
 }
 
@@ -125,13 +172,29 @@ void measure_joints(const model::RobotModel& robot, RetargetedClip& made) {
   made.seam = mocap::seam_jump(curves, clip.period_s);
 }
 
+/// Solves the task and takes the clip and its measures from the result.
+void make_clip(const generator::Making& making, GaitTask task, const work::Progress& progress, RetargetedClip& made) {
+  made.gait.task = std::move(task);
+  made.gait.legs = generator::optimize_gait(making.legs, made.gait.task, progress).legs;
+  const GaitTask& asked = made.gait.task;
+  const LegTrajectory& legs = made.gait.legs;
+  made.ground = generator::measure(making.legs, legs, generator::timing(asked.period_s, asked.duty_factor),
+                                   generator::hiking_base(asked, 1.0));
+  made.clip = whole_body(making, asked, legs, made.human, made.ground);
+  made.likeness = {likeness(making, legs, asked, made.human, thigh_pitch_rad),
+                   likeness(making, legs, asked, made.human, knee_flexion_rad),
+                   likeness(making, legs, asked, made.human, ankle_flexion_rad)};
+  made.joint_speed_share = 0.0;
+  measure_joints(making.robot, made);
+}
+
 }  // namespace
 
 RetargetedClip retarget(const generator::Making& making, const mocap::Recording& recording, const mocap::GaitCycle& cut,
-                        Channel channel, const work::Progress& progress) {
-  const auto begin = std::clock();
+                        Channel channel, std::optional<double> duty_factor, const work::Progress& progress) {
+  const double begin_s = thread_cpu_s();
   RetargetedClip made;
-  made.human = human_cycle(recording, cut);
+  made.human = human_cycle(recording, cut, duty_factor);
   made.length_ratio = leg_length_m(making.legs.geometry[kLeft]) / made.human.leg_length_m;
   made.froude_ratio = std::sqrt(made.length_ratio);
   const auto component = static_cast<Eigen::Index>(channel);
@@ -139,19 +202,18 @@ RetargetedClip retarget(const generator::Making& making, const mocap::Recording&
   // The rate of turning is 1 / time; speeds are length / time.
   made.wanted_velocity[component] =
       channel == kOmega ? human_speed / made.froude_ratio : human_speed * made.froude_ratio;
-
-  const GaitTask task = task_of(making, made);
-  const LegTrajectory legs = generator::optimize_gait(making.legs, task, progress).legs;
-  made.ground = generator::measure(making.legs, legs, generator::timing(task.period_s, task.duty_factor),
-                                   generator::hiking_base(task, 1.0));
-  made.clip = whole_body(making, task, legs, made.human, made.ground);
-  made.thigh = likeness(making, legs, task, made.human, thigh_pitch_rad);
-  made.knee = likeness(making, legs, task, made.human, knee_flexion_rad);
-  made.ankle = likeness(making, legs, task, made.human, ankle_flexion_rad);
-  measure_joints(making.robot, made);
-  made.solve_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  made.frames_per_s = static_cast<double>(kClipSamples) / made.solve_s;
+  make_clip(making, retargeting_task(making, made), progress, made);
+  made.retarget_s = thread_cpu_s() - begin_s;
+  made.frames_per_s = static_cast<double>(kClipSamples) / made.retarget_s;
   return made;
+}
+
+void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
+                      RetargetedClip& made, const work::Progress& progress) {
+  const double begin_s = thread_cpu_s();
+  made.unmended = {made.likeness, made.ground};
+  make_clip(making, blending_task(making, others, made), progress, made);
+  made.fit_s = thread_cpu_s() - begin_s;
 }
 
 }  // namespace pmg::retargeting

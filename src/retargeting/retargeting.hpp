@@ -1,8 +1,8 @@
 // From one gait cycle of a human to a dynamic clip of a robot (paper III-A.1).
 #pragma once
 
-#include <array>
-#include <string>
+#include <optional>
+#include <vector>
 
 #include "generator/gait_measure.hpp"
 #include "generator/gait_parts.hpp"
@@ -18,28 +18,47 @@ struct Likeness {
   double correlation = 1.0;
 };
 
+/// Robot against human.
+struct Imitation {
+  Likeness thigh, knee, ankle;
+};
+
+/// A clip before fit_for_blending.
+struct Unmended {
+  Imitation likeness;
+  generator::GroundMeasure ground;
+};
+
 struct RetargetedClip {
   DynamicClip clip;
+  generator::MadeGait gait;  ///< what the optimisation was asked and gave
   HumanCycle human;
   double length_ratio = 1.0;  ///< robot's leg over the human's
   double froude_ratio = 1.0;  ///< sqrt(length_ratio): robot's period over the human's, and its speed over the human's
   Eigen::Vector3d wanted_velocity = Eigen::Vector3d::Zero();  ///< of the clip's channel alone: vx, vy [m/s], omega
-  Likeness thigh, knee, ankle;
-  generator::GroundMeasure ground;
-  mocap::SeamJump seam;            ///< of the clip's joints
-  double limit_margin_rad = 0.0;   ///< smallest distance from a joint limit; negative: beyond it
-  double joint_speed_share = 0.0;  ///< of the joints' limits, largest
-  double solve_s = 0.0;            ///< CPU time of the process
-  double frames_per_s = 0.0;       ///< clip samples made a second of it
+  Imitation likeness;                                         ///< of the clip
+  std::optional<Unmended> unmended;
+  generator::GroundMeasure ground;       ///< at full gain
+  mocap::SeamJump seam;                  ///< of the clip's joints
+  double limit_margin_rad = 0.0;         ///< smallest distance from a joint limit; negative: beyond it
+  double joint_speed_share = 0.0;        ///< of the joints' limits, largest
+  double retarget_s = 0.0, fit_s = 0.0;  ///< CPU time of retarget and fit_for_blending
+  double frames_per_s = 0.0;             ///< clip samples that retarget made a second
 };
 
 /// (robot, recording, cycle, channel) => (clip). Lengths scale by l = robot's leg / human's, times and speeds by
 /// sqrt(l), so that Froude's number v^2 / (g leg) stays (R. Alexander, Physiol. Rev. 69(4), 1989). Of the human's mean
 /// velocity the channel's component is kept: a primitive moves in one direction. First each pose is imitated limb by
 /// limb (leg_imitation.hpp); then generator::optimize_gait makes the feet agree with the ground near
-/// these curves, at full gain alone. Deterministic. Throws files::ConfigError, and work::Interrupted where progress is
-/// over.
+/// these curves, at full gain alone. duty_factor: of the clip; nullopt: the human's. Deterministic. Throws
+/// files::ConfigError, and work::Interrupted where progress is over.
 RetargetedClip retarget(const generator::Making& making, const mocap::Recording& recording, const mocap::GaitCycle& cut,
-                        Channel channel, const work::Progress& progress = {});
+                        Channel channel, std::optional<double> duty_factor = {}, const work::Progress& progress = {});
+
+/// Makes the clip anew, so that the feet keep to the ground at every gain, in postures, and in even mixtures with
+/// these other finished clips: joint angles blend linearly, heights of feet don't. The curves leave the human's as far
+/// as that needs; likeness says how far, unmended what it was before. Throws work::Interrupted where progress is over.
+void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
+                      RetargetedClip& made, const work::Progress& progress = {});
 
 }  // namespace pmg::retargeting

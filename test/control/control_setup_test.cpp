@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "control/fixtures.hpp"
@@ -121,6 +123,54 @@ TEST(ControlSetup, APolicyOfOtherClipsIsRefusedByName) {
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr(test::kLinearPolicy.string()), HasSubstr("clip library"),
                                     HasSubstr(test::kNoClips), HasSubstr(model::clip_library_sha256(clips_of_z1()))));
+  }
+}
+
+/// A robot with a second policy whose clips stand in the folder of its name: another person's style.
+class ARobotOfTwoStyles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(own_clips_);
+    for (const auto& entry : std::filesystem::directory_iterator(clips_of_z1()))
+      std::filesystem::copy(entry.path(), own_clips_ / entry.path().filename());
+    std::ofstream(own_clips_ / "library.yaml")
+        << "blend: gain\nvelocity_scale: {vx_m_s: [0.5, 0.9], vy_m_s: [0.35, 0.35], omega_rad_s: [0.8, 0.8]}\n";
+    for (const char* file : {"robot.yaml", "z1.urdf"})
+      std::filesystem::copy(test::z1().directory / file, robot_.path() / file);
+    std::filesystem::copy(clips_of_z1(), robot_.path() / "clips");
+    const test::LinearPolicyFile own(own_clips_, Variant::kPmg), common(clips_of_z1(), Variant::kPmg);
+    std::filesystem::copy(own.file(), robot_.path() / "policies/person.onnx");
+    std::filesystem::copy(common.file(), robot_.path() / "policies/pmg.onnx");
+  }
+  ControlSetup with(const std::string& policy, const std::filesystem::path& clips = {}) const {
+    return {.robot = robot_.path().string(), .clips = clips, .policy = policy};
+  }
+  test::TemporaryFolder robot_;
+  std::filesystem::path own_clips_ = robot_.path() / "policies/person/clips";
+};
+
+TEST_F(ARobotOfTwoStyles, RunsAPolicyOnTheClipsBesideIt) {
+  const LoadedControl person = load_control(with("person")),
+                      by_file = load_control(with((robot_.path() / "policies/person.onnx").string()));
+  for (const LoadedControl* loaded : {&person, &by_file}) {
+    EXPECT_EQ(loaded->clips, own_clips_);
+    ASSERT_TRUE(loaded->library.velocity_scale.has_value());
+    EXPECT_EQ(loaded->library.velocity_scale->positive[kVx], 0.9);
+  }
+  EXPECT_EQ(control_json(person)["clips"], own_clips_.string());
+  // Both policies without a name of their own: robot.yaml's, and none.
+  for (const char* name : {"", "none"}) EXPECT_EQ(load_control(with(name)).clips, robot_.path() / "clips") << name;
+  EXPECT_NE(person.bundle, load_control(with("pmg")).bundle);
+}
+
+TEST_F(ARobotOfTwoStyles, RefusesAPolicyOnTheOthersClips) {
+  for (const auto& [policy, clips] : {std::pair("person", robot_.path() / "clips"), std::pair("pmg", own_clips_)}) {
+    try {
+      load_control(with(policy, clips));
+      FAIL() << policy;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(std::string(policy) + ".onnx"), HasSubstr("other clips")));
+    }
   }
 }
 

@@ -101,6 +101,38 @@ TEST(Trial, AnInterruptedOneIsNotComplete) {
   EXPECT_FALSE(result.survived());
 }
 
+/// CMU's subject 69: a policy whose clips come with its name.
+Candidate another_person() { return {"cmu69", {.clips = {}, .policy = "cmu69"}}; }
+
+TEST(AnotherPersonsStyle, WalksBackAndForthSidewaysAndTurnsByThePolicysNameAlone) {
+  const auto walk = [](double start_s, Channel channel, double value) {
+    Command command;
+    command[channel] = value;
+    return step(start_s, 3.0, control::Mode::kWalk, command);
+  };
+  const sil::Scenario scenario = {
+      .name = "all ways",
+      .steps = {step(0.0, 1.5, control::Mode::kStand, {}), walk(1.5, kVx, 0.7), walk(4.5, kVx, -0.4),
+                walk(7.5, kVy, 0.3), walk(10.5, kVy, -0.3), walk(13.5, kOmega, 0.7), walk(16.5, kOmega, -0.7)}};
+  const TrialResult result = run_trial(another_person(), scenario, {}, {});
+  EXPECT_TRUE(result.survived()) << "fell at " << result.fell_at_s << " s";
+  // Commands jump from end to end here, which their rate limits alone answer with errors of this size.
+  EXPECT_LT(result.errors[kLinVel], 0.20);
+  EXPECT_LT(result.errors[kYawVel], 0.20);
+  EXPECT_LT(result.errors[kRollError], 0.04);
+  EXPECT_LT(result.errors[kPitchError], 0.04);
+}
+
+TEST(AnotherPersonsStyle, WalksTheTourOnRobotsThatDiffer) {
+  const sil::Scenario tour = sil::load_scenario("config/scenarios/tour.yaml");
+  Plants plants;
+  plants.ranges = sim::load_variation_ranges("training/randomization.yaml");
+  const CampaignRuns campaign =
+      run_campaign({{.name = "cmu69", .candidate = another_person(), .plants = plants}}, tour, 4, false, {.jobs = 2});
+  ASSERT_EQ(campaign.runs[0].size(), 4U);
+  for (const TrialResult& result : campaign.runs[0]) EXPECT_TRUE(result.survived()) << result.fell_at_s;
+}
+
 TEST(Campaign, ASeedIsTheSameRobotForEveryCaseAndResultsDontDependOnJobs) {
   const std::vector<Case> cases = {{.name = "a", .candidate = without_policy(), .plants = varied()},
                                    {.name = "b", .candidate = without_policy(), .plants = varied()}};

@@ -56,6 +56,23 @@ TEST(Generator, ReportsTheCommandThatTheReferenceRealises) {
   EXPECT_TRUE(r.command_limited);
 }
 
+TEST(Generator, ALibrarysOwnVelocityScaleGoesBeforeTheOptions) {
+  ClipLibrary library = make_library(31, 5);
+  const GeneratorOptions options = make_options();
+  Command half;
+  half[kVx] = 0.25 * options.scale_positive[kVx];
+  const auto gain_after_4_s = [&] {
+    Generator generator(library, options);
+    for (int k = 0; k < 400; ++k) generator.step(half, kDt_s);
+    EXPECT_NEAR(generator.reference().command[kVx], half[kVx], 1e-12);
+    return generator.reference().gain;
+  };
+  EXPECT_NEAR(gain_after_4_s(), 0.25, 1e-12);
+  library.velocity_scale = VelocityScale{options.scale_negative, options.scale_positive};
+  library.velocity_scale->positive[kVx] *= 0.5;
+  EXPECT_NEAR(gain_after_4_s(), 0.5, 1e-12);
+}
+
 TEST(Generator, SameInputsGiveTheSameBits) {
   Generator a(make_library(31), make_options()), b(make_library(31), make_options());
   run(b, make_command(0.4, 0.1, 0.2, 0.1, 0.1, -0.1), 1.23);

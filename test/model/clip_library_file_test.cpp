@@ -56,6 +56,21 @@ TEST(ClipLibrary, IsReadAsWritten) {
   EXPECT_EQ(again.posture[2].q, library.posture[2].q);
 }
 
+TEST(ClipLibrary, HasItsRulesAsWritten) {
+  const RobotModel robot = load_robot(kBipedFolder);
+  const TemporaryCopy copy(kBipedFolder);
+  ClipLibrary library = load_clip_library(copy.file("clips"), robot);
+  EXPECT_FALSE(library.velocity_scale.has_value());
+  library.blend = Blend::kPaper;
+  library.velocity_scale = VelocityScale{{0.41, 0.3, 0.7}, {0.9, 1.0 / 3.0, 0.75}};
+  write_rules(copy.file("clips"), library);
+  const ClipLibrary again = load_clip_library(copy.file("clips"), robot);
+  EXPECT_EQ(again.blend, Blend::kPaper);
+  ASSERT_TRUE(again.velocity_scale.has_value());
+  EXPECT_EQ(again.velocity_scale->negative, library.velocity_scale->negative);
+  EXPECT_EQ(again.velocity_scale->positive, library.velocity_scale->positive);
+}
+
 /// The correction of other clips would be believed in silence.
 TEST(UnfinishedLibrary, TakesAnInverseOfTheOldClipsAwayOnlyWhenTheNewOnesAreInPlace) {
   const TemporaryCopy copy(kBipedFolder);
@@ -154,6 +169,20 @@ TEST_F(RefusedClips, TheUnspoiledOnesAreNot) { EXPECT_EQ(refusal(), "nothing was
 
 TEST_F(RefusedClips, UnknownKey) {
   expect_changed("turn.yaml", "period_s:", "speed: 1\nperiod_s:", "speed", "is unknown");
+}
+TEST_F(RefusedClips, VelocityScaleThatIsNone) {
+  const auto expect_scale = [&](const std::string& turn, const std::string& key, const std::string& what) {
+    copy_.write("clips/library.yaml",
+                "blend: gain\nvelocity_scale:\n  vx_m_s: [0.5, 0.8]\n  vy_m_s: [0.3, 0.3]\n" + turn);
+    const std::string text = refusal();
+    EXPECT_THAT(text, HasSubstr("library.yaml:"));
+    EXPECT_THAT(text, HasSubstr(key));
+    EXPECT_THAT(text, HasSubstr(what));
+  };
+  expect_scale("", "omega_rad_s", "is missing");
+  expect_scale("  omega_rad_s: [0.0, 0.8]\n", "omega_rad_s", "above 0");
+  expect_scale("  omega_rad_s: 0.8\n", "omega_rad_s", "expected");
+  expect_scale("  omega_rad_s: [0.8, 0.8]\n  speed: 1\n", "speed", "is unknown");
 }
 TEST_F(RefusedClips, MissingKey) {
   copy_.replace("clips/turn.yaml", "period_s: 0.7\n", "");
