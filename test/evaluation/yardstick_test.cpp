@@ -50,10 +50,10 @@ TEST(Yardstick, DoingNothingAndFollowingAreThoseWorkedOutByHand) {
   EXPECT_NEAR(between.nothing.errors_raw[kPitchError], 0.2 * walked_s / judged_s, 1e-9);
   EXPECT_NEAR(between.nothing.errors[kHeightError], 0.0, 1e-12);
   // 0.2 rad at 0.4 rad/s takes 50 ticks; after the first one 0.004 rad less is missing. It is over long before the end,
-  // so the average over a gait period changes nothing.
+  // so averages over a gait period add up to the same, but for the few ticks in which the period itself changes.
   const double missing_rad_s = 0.2 * 0.5 - 0.004 * kTick_s * (50.0 * 51.0 / 2.0);
   EXPECT_NEAR(between.follower.errors_raw[kPitchError] * judged_s, missing_rad_s, 1e-6);
-  EXPECT_NEAR(between.follower.errors[kPitchError] * judged_s, missing_rad_s, 1e-6);
+  EXPECT_NEAR(between.follower.errors[kPitchError] * judged_s, missing_rad_s, 1e-4);
   // 0.4 m/s at 0.8 m/s^2 falls 0.1 m short, and up to 1 / 0.15 of that in double support.
   const double short_m = between.follower.errors_raw[kLinVel] * judged_s;
   EXPECT_GT(short_m, 0.099);

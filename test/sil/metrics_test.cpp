@@ -95,7 +95,7 @@ TEST(Metrics, EveryErrorIsAveragedOverExactlyTheGaitPeriodThatEndsThere) {
   constexpr double kOff = 0.1, kGait_s = 1.1;
   constexpr int kWindow = 110, kTicks = 600;
   Metrics metrics(kHeight_m, kDt_s);
-  TrackingSummary before, within, after;
+  TrackingSummary before, short_of, within, after;
   for (int k = 0; k < kTicks; ++k) {
     model::GroundTruth truth = moving(0.0, 0.0, 0.0);
     if (k == 300) {
@@ -105,6 +105,7 @@ TEST(Metrics, EveryErrorIsAveragedOverExactlyTheGaitPeriodThatEndsThere) {
     }
     metrics.add(truth, {}, kGait_s);
     if (k == 299) before = metrics.summary();
+    if (k == 300 + kWindow - 2) short_of = metrics.summary();
     if (k == 300 + kWindow - 1) within = metrics.summary();
     if (k == kTicks - 1) after = metrics.summary();
   }
@@ -113,6 +114,7 @@ TEST(Metrics, EveryErrorIsAveragedOverExactlyTheGaitPeriodThatEndsThere) {
        {&TrackingSummary::lin_vel_mae_m_s, &TrackingSummary::yaw_vel_mae_rad_s, &TrackingSummary::roll_mae_rad,
         &TrackingSummary::pitch_mae_rad, &TrackingSummary::height_mae_m}) {
     EXPECT_NEAR(before.*error, 0.0, kExact);
+    EXPECT_NEAR(short_of.*error * (300 + kWindow - 1), kOff * (kWindow - 1) / kWindow, kExact);
     EXPECT_NEAR(within.*error * (300 + kWindow), kOff, kExact) << "all of it is in the window's ticks";
     EXPECT_NEAR(after.*error * kTicks, kOff, kExact) << "and nothing later";
   }
