@@ -58,7 +58,7 @@ std::string film_case(const Case& filmed, const sil::Scenario& scenario, const s
 struct CaseSummary {
   int trials = 0, falls = 0, survived = 0;
   std::array<Estimate, kErrors> errors;
-  std::array<Estimate, kErrors> errors_raw;           ///< velocities not averaged over a gait period
+  std::array<Estimate, kErrors> errors_raw;           ///< not averaged over a gait period
   std::array<Estimate, kErrors> errors_beyond_reach;  ///< of the steps that ask for more than the clips give together
   std::vector<Errors> step_errors;                    ///< means over seeds, by step of the scenario
 };

@@ -45,7 +45,8 @@ void StepMeasure::report(TrialResult& result) {
 StepMeasure::Sums StepMeasure::total() const {
   const sil::TrackingSummary now = measure_.outcome().tracking;
   Sums sums{{now.lin_vel_mae_m_s, now.yaw_vel_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
-            {now.lin_vel_raw_mae_m_s, now.yaw_vel_raw_mae_rad_s, now.roll_mae_rad, now.pitch_mae_rad, now.height_mae_m},
+            {now.lin_vel_raw_mae_m_s, now.yaw_vel_raw_mae_rad_s, now.roll_raw_mae_rad, now.pitch_raw_mae_rad,
+             now.height_raw_mae_m},
             now.followed_s};
   for (std::size_t e = 0; e < kErrors; ++e) {
     sums.errors[e] *= sums.seconds;

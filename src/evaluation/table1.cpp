@@ -186,7 +186,7 @@ std::vector<std::string> text_of(const Table1& table) {
     };
     Errors raw{};
     for (std::size_t e = 0; e < kErrors; ++e) raw[e] = summary.errors_raw[e].mean;
-    figures("  raw velocities", raw);
+    figures("  raw, tick by tick", raw);
     figures("  doing nothing", table.yardsticks[c].nothing.errors);
     figures("  perfect follower", table.yardsticks[c].follower.errors);
     figures("  share left", table.shares(c));

@@ -98,7 +98,7 @@ pages::Table errors_table(const Table1& table) {
       row.push_back("");
       out.rows.push_back(row);
     };
-    row = {table.cases[c].name + ", raw velocities"};
+    row = {table.cases[c].name + ", raw: tick by tick"};
     for (const Estimate& estimate : table.summaries[c].errors_raw) row.push_back(interval_text(estimate));
     row.push_back("");
     out.rows.push_back(row);
@@ -201,8 +201,9 @@ pages::Page page_of(const Table1& table) {
   page.paragraph(fmt::format(
       "{} runs a policy of {:.1f} s ({}), the same commands, simulated robots and sensor noise for every policy ({}). "
       "Every "
-      "tick from the first standing counts, transitions included; velocities are averaged over one gait period in the "
-      "heading frame; after a fall velocity and height count as zero and attitude as measured, to the end. Intervals "
+      "tick from the first standing counts, transitions included; errors are averaged over one gait period, in the "
+      "heading frame (raw: without averaging); after a fall velocity and height count as zero and attitude as "
+      "measured, to the end. Intervals "
       "are Student's, over seeds. Doing nothing is standing upright whatever is asked; a perfect follower does at once "
       "what "
       "ranges and rates let through; both pass through the same averaging. The share left is (error - follower) / "

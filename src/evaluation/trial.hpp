@@ -38,7 +38,7 @@ struct TrialResult {
   std::vector<std::string> faults;            ///< latched ones, in words
   double judged_s = 0.0;                      ///< time over which errors are taken
   Errors errors{};                            ///< over all steps within the clips' reach
-  Errors errors_raw{};                        ///< the same; velocities not averaged over a gait period
+  Errors errors_raw{};                        ///< the same, not averaged over a gait period
   std::optional<Errors> errors_beyond_reach;  ///< over the steps beyond the clips' reach
   std::vector<Errors> step_errors;            ///< by step of the scenario; NaN for steps without judged ticks
   double duration_s = 0.0;                    ///< simulated time

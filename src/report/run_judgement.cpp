@@ -70,7 +70,8 @@ sil::TrackingSummary errors_between(const sil::TrackingSummary& before, const si
   using Summary = sil::TrackingSummary;
   for (double Summary::*error :
        {&Summary::lin_vel_mae_m_s, &Summary::lin_vel_raw_mae_m_s, &Summary::yaw_vel_mae_rad_s,
-        &Summary::yaw_vel_raw_mae_rad_s, &Summary::roll_mae_rad, &Summary::pitch_mae_rad, &Summary::height_mae_m}) {
+        &Summary::yaw_vel_raw_mae_rad_s, &Summary::roll_mae_rad, &Summary::roll_raw_mae_rad, &Summary::pitch_mae_rad,
+        &Summary::pitch_raw_mae_rad, &Summary::height_mae_m, &Summary::height_raw_mae_m}) {
     mean.*error = (after.*error * after.followed_s - before.*error * before.followed_s) / mean.followed_s;
   }
   return mean;

@@ -37,16 +37,22 @@ void Metrics::add(const model::GroundTruth& truth, const Command& user, double g
   sample.error_x_m_s = alive * (c * v_W.x() + s * v_W.y()) - user[kVx];
   sample.error_y_m_s = alive * (c * v_W.y() - s * v_W.x()) - user[kVy];
   sample.error_yaw_rad_s = alive * (R_WB * truth.omega_WB_B).z() - user[kOmega];
+  const RollPitch torso = roll_pitch(truth.q_WT);
+  sample.error_roll_rad = torso.roll_rad - user[kRoll];
+  sample.error_pitch_rad = torso.pitch_rad - user[kPitch];
+  sample.error_height_m = alive * truth.p_WB.z() - (standing_height_m_ + user[kHeight]);
 
   const Sample mean = average(gait_period_s);
-  const RollPitch torso = roll_pitch(truth.q_WT);
   sums_.lin_vel_mae_m_s += std::hypot(mean.error_x_m_s, mean.error_y_m_s);
   sums_.lin_vel_raw_mae_m_s += std::hypot(sample.error_x_m_s, sample.error_y_m_s);
   sums_.yaw_vel_mae_rad_s += std::abs(mean.error_yaw_rad_s);
   sums_.yaw_vel_raw_mae_rad_s += std::abs(sample.error_yaw_rad_s);
-  sums_.roll_mae_rad += std::abs(torso.roll_rad - user[kRoll]);
-  sums_.pitch_mae_rad += std::abs(torso.pitch_rad - user[kPitch]);
-  sums_.height_mae_m += std::abs(alive * truth.p_WB.z() - (standing_height_m_ + user[kHeight]));
+  sums_.roll_mae_rad += std::abs(mean.error_roll_rad);
+  sums_.roll_raw_mae_rad += std::abs(sample.error_roll_rad);
+  sums_.pitch_mae_rad += std::abs(mean.error_pitch_rad);
+  sums_.pitch_raw_mae_rad += std::abs(sample.error_pitch_rad);
+  sums_.height_mae_m += std::abs(mean.error_height_m);
+  sums_.height_raw_mae_m += std::abs(sample.error_height_m);
   for (const std::size_t foot : {kLeft, kRight}) {
     if (truth.foot_force_N[foot] < kLoadedFoot_N) continue;
     sums_.foot_slip_mean_m_s += truth.foot_slip_m_s[foot];
@@ -79,25 +85,25 @@ Metrics::Sample& Metrics::push() {
 Metrics::Sample Metrics::average(double gait_period_s) const {
   const auto wanted = static_cast<std::size_t>(std::max(1L, std::lround(gait_period_s / dt_s_)));
   const std::size_t count = std::min(wanted, filled_);
-  Sample sum{.cos_yaw = 0.0};
+  Sample mean{.cos_yaw = 0.0};
+  const double share = 1.0 / static_cast<double>(count);
   for (std::size_t back = 0; back < count; ++back) {
     const Sample& sample = ring_[(newest_ + ring_.size() - back) % ring_.size()];
-    sum.cos_yaw += sample.cos_yaw;
-    sum.sin_yaw += sample.sin_yaw;
-    sum.error_x_m_s += sample.error_x_m_s;
-    sum.error_y_m_s += sample.error_y_m_s;
-    sum.error_yaw_rad_s += sample.error_yaw_rad_s;
+    for (double Sample::*const value :
+         {&Sample::cos_yaw, &Sample::sin_yaw, &Sample::error_x_m_s, &Sample::error_y_m_s, &Sample::error_yaw_rad_s,
+          &Sample::error_roll_rad, &Sample::error_pitch_rad, &Sample::error_height_m}) {
+      mean.*value += share * sample.*value;
+    }
   }
-  const double share = 1.0 / static_cast<double>(count);
-  return {sum.cos_yaw * share, sum.sin_yaw * share, sum.error_x_m_s * share, sum.error_y_m_s * share,
-          sum.error_yaw_rad_s * share};
+  return mean;
 }
 
 TrackingSummary Metrics::summary() const {
   TrackingSummary mean = sums_;
   const double share = ticks_ > 0 ? 1.0 / static_cast<double>(ticks_) : 0.0;
   for (double* sum : {&mean.lin_vel_mae_m_s, &mean.lin_vel_raw_mae_m_s, &mean.yaw_vel_mae_rad_s,
-                      &mean.yaw_vel_raw_mae_rad_s, &mean.roll_mae_rad, &mean.pitch_mae_rad, &mean.height_mae_m}) {
+                      &mean.yaw_vel_raw_mae_rad_s, &mean.roll_mae_rad, &mean.roll_raw_mae_rad, &mean.pitch_mae_rad,
+                      &mean.pitch_raw_mae_rad, &mean.height_mae_m, &mean.height_raw_mae_m}) {
     *sum *= share;
   }
   mean.foot_slip_mean_m_s = slip_samples_ > 0 ? sums_.foot_slip_mean_m_s / static_cast<double>(slip_samples_) : 0.0;

@@ -9,16 +9,16 @@
 
 namespace pmg::sil {
 
-/// Mean absolute errors against the user's command over all judged ticks.
+/// Mean absolute errors against the user's command over all judged ticks. A tick's error is (measured - commanded),
+/// averaged over the gait period that ends there; `raw`: the tick's own, without the averaging.
 struct TrackingSummary {
-  double lin_vel_mae_m_s = 0.0;      ///< norm of the xy error in H, averaged over a gait period
-  double lin_vel_raw_mae_m_s = 0.0;  ///< the same without the averaging
-  double yaw_vel_mae_rad_s = 0.0;    ///< averaged over a gait period
-  double yaw_vel_raw_mae_rad_s = 0.0;
-  double roll_mae_rad = 0.0, pitch_mae_rad = 0.0;  ///< torso link in H
-  double height_mae_m = 0.0;                       ///< pelvis origin above ground
-  double foot_slip_mean_m_s = 0.0;                 ///< feet that carry load, both counted
-  double followed_s = 0.0;                         ///< how long errors were accumulated
+  double lin_vel_mae_m_s = 0.0, lin_vel_raw_mae_m_s = 0.0;  ///< norm of the xy error in H
+  double yaw_vel_mae_rad_s = 0.0, yaw_vel_raw_mae_rad_s = 0.0;
+  double roll_mae_rad = 0.0, roll_raw_mae_rad = 0.0;    ///< torso link in H
+  double pitch_mae_rad = 0.0, pitch_raw_mae_rad = 0.0;  ///< torso link in H
+  double height_mae_m = 0.0, height_raw_mae_m = 0.0;    ///< pelvis origin above ground
+  double foot_slip_mean_m_s = 0.0;                      ///< feet that carry load, both counted
+  double followed_s = 0.0;                              ///< how long errors were accumulated
 };
 
 class Metrics {
@@ -43,6 +43,7 @@ class Metrics {
   struct Sample {
     double cos_yaw = 1.0, sin_yaw = 0.0;  // pelvis
     double error_x_m_s = 0.0, error_y_m_s = 0.0, error_yaw_rad_s = 0.0;
+    double error_roll_rad = 0.0, error_pitch_rad = 0.0, error_height_m = 0.0;
   };
   void watch_for_fall(const model::GroundTruth& truth);
   Sample& push();

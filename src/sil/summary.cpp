@@ -21,8 +21,11 @@ nlohmann::ordered_json tracking_json(const TrackingSummary& tracking) {
           {"yaw_vel_mae_rad_s", tracking.yaw_vel_mae_rad_s},
           {"yaw_vel_raw_mae_rad_s", tracking.yaw_vel_raw_mae_rad_s},
           {"roll_mae_rad", tracking.roll_mae_rad},
+          {"roll_raw_mae_rad", tracking.roll_raw_mae_rad},
           {"pitch_mae_rad", tracking.pitch_mae_rad},
+          {"pitch_raw_mae_rad", tracking.pitch_raw_mae_rad},
           {"height_mae_m", tracking.height_mae_m},
+          {"height_raw_mae_m", tracking.height_raw_mae_m},
           {"foot_slip_mean_m_s", tracking.foot_slip_mean_m_s},
           {"followed_s", tracking.followed_s}};
 }

@@ -66,6 +66,65 @@ TEST(Metrics, SwayWithinAGaitPeriodIsAveragedAway) {
   EXPECT_NEAR(metrics.summary().yaw_vel_raw_mae_rad_s, kSway * 2.0 / std::numbers::pi, 1e-3);
 }
 
+/// Stands with the torso rolled and pitched and the pelvis raised by this much.
+model::GroundTruth swaying(double sway) {
+  model::GroundTruth truth = moving(0.0, 0.0, 0.0);
+  truth.q_WT = attitude(0.0, sway, sway);
+  truth.p_WB.z() += sway;
+  return truth;
+}
+
+TEST(Metrics, SwayOfAttitudeAndHeightWithinAGaitPeriodIsAveragedAway) {
+  Metrics metrics(kHeight_m, kDt_s);
+  constexpr double kSway = 0.1;
+  constexpr int kTicks = 2000;
+  for (int k = 0; k < kTicks; ++k) {
+    metrics.add(swaying(kSway * std::sin(2.0 * std::numbers::pi * kDt_s * k / kPeriod_s)), Command{}, kPeriod_s);
+  }
+  const TrackingSummary summary = metrics.summary();
+  for (const double mean : {summary.roll_mae_rad, summary.pitch_mae_rad, summary.height_mae_m}) {
+    EXPECT_LT(mean, kSway / 20.0);
+  }
+  for (const double raw : {summary.roll_raw_mae_rad, summary.pitch_raw_mae_rad, summary.height_raw_mae_m}) {
+    EXPECT_NEAR(raw, kSway * 2.0 / std::numbers::pi, 1e-3) << "mean of |sin|";
+  }
+}
+
+TEST(Metrics, EveryErrorIsAveragedOverExactlyTheGaitPeriodThatEndsThere) {
+  // One tick is off; each of the 110 ticks whose period holds it shows 1 / 110 of that, so their sum is the tick's own.
+  constexpr double kOff = 0.1, kGait_s = 1.1;
+  constexpr int kWindow = 110, kTicks = 600;
+  Metrics metrics(kHeight_m, kDt_s);
+  TrackingSummary before, short_of, within, after;
+  for (int k = 0; k < kTicks; ++k) {
+    model::GroundTruth truth = moving(0.0, 0.0, 0.0);
+    if (k == 300) {
+      truth = moving(0.0, kOff, 0.0, kOff);
+      truth.q_WT = attitude(0.0, kOff, kOff);
+      truth.p_WB.z() += kOff;
+    }
+    metrics.add(truth, {}, kGait_s);
+    if (k == 299) before = metrics.summary();
+    if (k == 300 + kWindow - 2) short_of = metrics.summary();
+    if (k == 300 + kWindow - 1) within = metrics.summary();
+    if (k == kTicks - 1) after = metrics.summary();
+  }
+  using Errors = double TrackingSummary::*;
+  for (const Errors error :
+       {&TrackingSummary::lin_vel_mae_m_s, &TrackingSummary::yaw_vel_mae_rad_s, &TrackingSummary::roll_mae_rad,
+        &TrackingSummary::pitch_mae_rad, &TrackingSummary::height_mae_m}) {
+    EXPECT_NEAR(before.*error, 0.0, kExact);
+    EXPECT_NEAR(short_of.*error * (300 + kWindow - 1), kOff * (kWindow - 1) / kWindow, kExact);
+    EXPECT_NEAR(within.*error * (300 + kWindow), kOff, kExact) << "all of it is in the window's ticks";
+    EXPECT_NEAR(after.*error * kTicks, kOff, kExact) << "and nothing later";
+  }
+  for (const Errors raw :
+       {&TrackingSummary::lin_vel_raw_mae_m_s, &TrackingSummary::yaw_vel_raw_mae_rad_s,
+        &TrackingSummary::roll_raw_mae_rad, &TrackingSummary::pitch_raw_mae_rad, &TrackingSummary::height_raw_mae_m}) {
+    EXPECT_NEAR(after.*raw * kTicks, kOff, kExact);
+  }
+}
+
 TEST(Metrics, HeadingIsThePelvisYawAveragedOverAGaitPeriod) {
   // The pelvis swings its yaw about 0 while the robot moves along x: in H the velocity is steady along x.
   Metrics metrics(kHeight_m, kDt_s);

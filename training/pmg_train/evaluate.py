@@ -189,26 +189,15 @@ def moving_average(x: np.ndarray) -> np.ndarray:
 
 
 def errors(record: Record) -> np.ndarray:
-    """(ticks, 6): |error| of velocity norm, yaw rate, pitch, roll, height, and the raw velocity error's norm."""
+    """(ticks, 6): |error| of velocity norm, yaw rate, pitch, roll, height, each averaged over AVERAGE_TICKS, and the raw velocity error's norm."""
     user, state = np.array(record.user), np.array(record.state)
     heading = moving_average(np.stack([np.cos(state[:, 6]), np.sin(state[:, 6])], 1))
     heading /= np.linalg.norm(heading, axis=1, keepdims=True)
     vx = heading[:, 0] * state[:, 0] + heading[:, 1] * state[:, 1]
     vy = -heading[:, 1] * state[:, 0] + heading[:, 0] * state[:, 1]
-    e = np.stack([vx, vy, state[:, 2]], 1) - user[:, :3]
+    e = np.column_stack([vx, vy, state[:, 2:6]]) - user
     slow = moving_average(e)
-    attitude, height = state[:, 3:5] - user[:, 3:5], state[:, 5] - user[:, 5]
-    return np.stack(
-        [
-            np.linalg.norm(slow[:, :2], axis=1),
-            np.abs(slow[:, 2]),
-            np.abs(attitude[:, 0]),
-            np.abs(attitude[:, 1]),
-            np.abs(height),
-            np.linalg.norm(e[:, :2], axis=1),
-        ],
-        1,
-    )
+    return np.stack([np.linalg.norm(slow[:, :2], axis=1), *np.abs(slow[:, 2:6]).T, np.linalg.norm(e[:, :2], axis=1)], 1)
 
 
 def joint_table(record: Record, ticks: np.ndarray, names: list[str]) -> dict[str, dict]:
