@@ -17,11 +17,11 @@ std::optional<double> yaw_rad(const RobotNews& news) {
 }
 
 Command HeadingHold::held(const Command& asked, const RobotNews* news, std::int64_t now_ns) {
-  const bool turns = asked[kOmega] != 0.0, walks = asked[kVx] != 0.0 || asked[kVy] != 0.0;
-  if (turns) turned_ns_ = now_ns;
+  const bool walks = asked[kVx] != 0.0 || asked[kVy] != 0.0;
+  if (asked[kOmega] != 0.0) turned_ns_ = now_ns;
   const bool simulated = news != nullptr && news->info && news->info->backend == "sil";
   const std::optional<double> yaw = simulated ? yaw_rad(*news) : std::nullopt;
-  if (turns || !walks || !yaw || now_ns - turned_ns_ < kSettle_ns) {
+  if (!walks || !yaw || now_ns - turned_ns_ < kSettle_ns) {
     heading_rad_.reset();
     return asked;
   }

@@ -33,7 +33,8 @@ class Drifting {
       sent_ = hold_.held(asked, &news_, now_ns_);
       changes_ += sent_ == before_ ? 0 : 1;
       before_ = sent_;
-      yaw_rad_ += (sent_[kOmega] + 0.05) * kPeriod_s;
+      rate_rad_s_ += kPeriod_s / 0.2 * (sent_[kOmega] + 0.05 - rate_rad_s_);  // it turns on for a while
+      yaw_rad_ += rate_rad_s_ * kPeriod_s;
       most_ = std::max(most_, std::abs(sent_[kOmega]));
     }
   }
@@ -41,7 +42,7 @@ class Drifting {
   HeadingHold hold_;
   RobotNews news_;
   Command sent_, before_;
-  double yaw_rad_ = 0.3, most_ = 0.0;
+  double yaw_rad_ = 0.3, rate_rad_s_ = 0.0, most_ = 0.0;
   int changes_ = 0;
   std::int64_t now_ns_ = 1'000'000'000;
 };
