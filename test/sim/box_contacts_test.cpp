@@ -79,7 +79,7 @@ class PalmAndBox {
  public:
   explicit PalmAndBox(double gap_m) : world_(z1(), options(gap_m)) {}
   bool touch() const { return world_.touches(kHand, "box"); }
-  double friction() const {
+  double friction() {
     const mjModel* model = world_.mj_model();
     for (int contact = 0; contact < data()->ncon; ++contact) {
       const int body = model->geom_bodyid[data()->contact[contact].geom1];
@@ -90,7 +90,7 @@ class PalmAndBox {
 
  private:
   static constexpr const char* kHand = "left_wrist_pitch_link";
-  const mjData* data() const { return const_cast<World&>(world_).mj_data(); }
+  const mjData* data() { return world_.mj_data(); }
   static WorldOptions options(double gap_m) {
     const HandBox palm{.link = kHand,
                        .T_LH = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.074)),
@@ -110,7 +110,7 @@ class PalmAndBox {
 };
 
 TEST(BoxContacts, APalmTouchesAThingInPlaceOfTheHandsOwnShapeAndItsFrictionCounts) {
-  const PalmAndBox apart(0.015), together(-0.008);  // Z1's hand is a ball of 4 cm, which reaches 3 cm beyond the palm
+  PalmAndBox apart(0.015), together(-0.008);  // Z1's hand is a ball of 4 cm, which reaches 3 cm beyond the palm
   EXPECT_FALSE(apart.touch());
   ASSERT_TRUE(together.touch());
   EXPECT_EQ(together.friction(), 0.7);
