@@ -133,8 +133,8 @@ class MjcfText {
     line(2, "</body>");
   }
 
-  /// MuJoCo's friction creeps: v = (1 - d) / d f A^-1 tau / 2 for a force f below the limit, d the impedance. With
-  /// its defaults (d = 0.95, tau = 0.02 s) a box of 1 kg slides out of two hands at about 1 cm/s.
+  /// MuJoCo's friction creeps at v = (1 - d) / d A f tau / 2 under a force f below its limit (d: impedance, A: inverse
+  /// inertia). With its defaults (d = 0.95, tau = 0.02 s) a box of 1 kg slides out of two hands at about 1 cm/s.
   void write_hand_box(const HandBox& box, int depth) {
     const Eigen::Vector3d& h = box.half_size_m;
     line(depth,

