@@ -17,9 +17,9 @@ inline constexpr int kGroundResiduals = 22;
 template <typename T>
 struct FootOnGround {
   SoleContact<T> contact;
-  T omega_z;           ///< of the foot
-  T toes_up, side_up;  ///< z of the sole's x and y axes
-  T inner_edge_y;      ///< of the sole's corners, the one nearest to the other foot
+  T omega_z{};             ///< of the foot
+  T toes_up{}, side_up{};  ///< z of the sole's x and y axes
+  T inner_edge_y{};        ///< of the sole's corners, the one nearest to the other foot
 };
 
 /// Ground residuals of one phase sample of one scenario. Parameters: four knots of the left leg, then four of the
