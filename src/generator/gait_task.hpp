@@ -83,6 +83,9 @@ struct GaitTask {
   double hike_rad = 0.0;      ///< amplitude of the base's roll at full gain, up on the swinging side
   double height_m = 0.0;      ///< mean base height at full gain, deviation from stand
   double clearance_m = 0.04;  ///< of the lowest sole point in mid swing (0.3 to 0.7 of it) at full gain
+  /// Exponent of the required clearance in the last 0.3 of the swing: (sin(pi s) / sin(0.3 pi))^landing. 2 comes down
+  /// gently; 1 keeps more clearance until shortly before contact, so that a leg that sags a little lands on time.
+  double landing = 2.0;
   double flat_from = 0.0;     ///< start and end of the flat part of the stance, as shares of the stance
   double flat_to = 1.0;
   double foot_gap_m = 0.03;        ///< between the soles, along the base's y axis
