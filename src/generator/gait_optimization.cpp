@@ -285,6 +285,8 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     wide[foot] = contact_weight(s, r + 2.0 * kEdgeBeyond);
     const double in_stance = s / r + 0.5;
     flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
+    const double since_contact = s + 0.5 * r;
+    sole_[foot] = since_contact >= task.sole_from && since_contact <= task.sole_to ? 1.0 : 0.0;
     const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
     lifted_[foot] = std::abs(s) > 0.5 * r ? 1.0 - 2.0 * contact_[foot] : 0.0;
     clearance_m_[foot] = std::pow(scenario.lift > 0.0 ? scenario.lift : scenario.gain, kClearanceGrowth) *

@@ -174,7 +174,7 @@ Status OnnxPolicy::act(const model::RobotState& state, const Reference& referenc
     return Status::kNotFinite;
   }
   if (!impl.action.allFinite()) return Status::kNotFinite;
-  q_des = reference.q + impl.metadata.lead_s.cwiseProduct(reference.dq);
+  q_des = reference.q;
   for (std::size_t i = 0; i < impl.action_joints.size(); ++i) {
     q_des[impl.action_joints[i]] +=
         impl.metadata.action_scale * static_cast<double>(impl.action[static_cast<Eigen::Index>(i)]);

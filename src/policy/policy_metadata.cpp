@@ -18,7 +18,6 @@ namespace {
 constexpr int kFormat = 1;
 constexpr double kLargestGoldenTolerance = 0.01;  // for actions of order one; with more the pairs would prove nothing
 constexpr double kLargestAction_rad = 3.14159265358979;  // farther than any joint of a robot moves
-constexpr double kLongestLead_s = 0.2;                 // beyond every drive's kd / kp
 constexpr double kPostureTolerance_rad = 1e-6;           // the same number after writing and reading as text
 
 [[noreturn]] void refuse_metadata(const std::string& what) { throw std::invalid_argument(what); }
@@ -89,22 +88,6 @@ void expect_posture(const JointVector& stand, const model::RobotModel& robot) {
   }
 }
 
-/// Policies from before it was trained with say nothing: no lead.
-JointVector leads(const nlohmann::json& json, const model::RobotModel& robot, const ObservationLayout& layout) {
-  if (!json.contains("lead_s")) return JointVector::Zero(robot.joint_index.size());
-  const JointVector lead_s = joint_values(json, "lead_s", robot);
-  for (Eigen::Index i = 0; i < lead_s.size(); ++i) {
-    const std::string& joint = robot.joint_index.name(static_cast<int>(i));
-    if (lead_s[i] < 0.0 || lead_s[i] > kLongestLead_s) {
-      refuse_metadata(fmt::format("lead_s of {} is {}; expected 0 to {} s", joint, lead_s[i], kLongestLead_s));
-    }
-    if (lead_s[i] > 0.0 && std::ranges::count(layout.action_joints(), joint) > 0) {
-      refuse_metadata(fmt::format("lead_s of {} is {}; expected 0 for a joint that the policy moves", joint, lead_s[i]));
-    }
-  }
-  return lead_s;
-}
-
 std::vector<GoldenPair> golden_pairs(const nlohmann::json& json, std::size_t seen, std::size_t actions) {
   std::vector<GoldenPair> pairs;
   for (const nlohmann::json& pair : json) {
@@ -147,7 +130,6 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
                                 metadata.action_scale, metadata.action_limit, kLargestAction_rad));
   }
   metadata.gains = {joint_values(json, "kp_Nm_per_rad", robot), joint_values(json, "kd_Nm_s_per_rad", robot)};
-  metadata.lead_s = leads(json, robot, layout);
   metadata.golden_tolerance = json.at("golden_tolerance").get<double>();
   if (!(metadata.golden_tolerance > 0.0) || metadata.golden_tolerance > kLargestGoldenTolerance) {
     refuse_metadata(fmt::format("golden_tolerance is {}; expected above 0 and at most {}", metadata.golden_tolerance,

@@ -20,9 +20,6 @@ struct PolicyMetadata {
   double action_scale = 0.0;  ///< q_des = q_ref + action_scale * action on the policy joints [rad]
   double action_limit = 0.0;  ///< the network's outputs are clamped to +- this
   DriveGains gains;
-  /// q_des = q_ref + lead_s * dq_ref beside the policy joints, where it is 0 [s]: a drive that is told no velocity
-  /// lags by kd / kp. All 0 where the file says nothing.
-  JointVector lead_s;
   double golden_tolerance = 0.0;
   std::vector<GoldenPair> golden;  ///< at least one
 };

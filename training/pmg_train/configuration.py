@@ -48,14 +48,6 @@ class Pairs:
         return isinstance(value, dict) and all(map(Pair.fits, value.values()))
 
 
-class Names:
-    wanted = "[name, ...]"
-
-    @staticmethod
-    def fits(value) -> bool:
-        return isinstance(value, list) and all(isinstance(name, str) for name in value)
-
-
 class Widths:
     wanted = "[number, ...]"
 
@@ -87,7 +79,6 @@ CONFIG = {
     },
     "action_scale": Number,
     "gains": Pairs,
-    "lead": Names,
     "references": {"streams": Number, "ticks": Number},
     "episode_s": Number,
     "fall": {"height_share": Number, "upright": Number},

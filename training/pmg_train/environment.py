@@ -13,7 +13,7 @@ from pmg_train.actuation import target_shares
 from pmg_train.observation import Observation
 from pmg_train.physics import Worlds
 from pmg_train.reference_pool import ReferencePool
-from pmg_train.robot import joint_kind, leads_s, training_model
+from pmg_train.robot import joint_kind, training_model
 from pmg_train.rotations import roll_pitch_yaw, rotate, rotate_back
 
 
@@ -54,7 +54,6 @@ class Environment:
         self.stand = self._tensor([j["stand_rad"] for j in joints])
         self.lower = self._tensor([j["lower_rad"] for j in joints])
         self.upper = self._tensor([j["upper_rad"] for j in joints])
-        self.lead_s = self._tensor(leads_s(description, self.config["lead"]).tolist())
         legs = [i for i, j in enumerate(joints) if j["policy"]]
         if legs != list(range(len(legs))):
             raise ValueError("the policy joints must come first in the joint order")
@@ -238,11 +237,11 @@ class Environment:
     # --------------------------------------------------------------------------------------------------------- tick
 
     def act(self, action: torch.Tensor) -> None:
-        """Targets of the next tick: q_ref + scale * action on the legs, q_ref + lead * dq_ref above, after this robot's delay."""
+        """Targets of the next tick: q_ref + scale * action on the legs, after this robot's delay."""
         self.action_2.copy_(self.action_1)
         self.action_1.copy_(self.action)
         self.action.copy_(action.clamp(-4, 4))
-        target = self.q_ref + self.lead_s * self.get("dq_ref")
+        target = self.q_ref.clone()
         target[:, : self.actions] += self.action_scale * self.action
         # The drive controls its encoder's reading, as in the controller's simulation.
         target = torch.maximum(torch.minimum(target, self.upper), self.lower) - self.robots.encoder_offset

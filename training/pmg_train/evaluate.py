@@ -101,7 +101,7 @@ class Simulation:
         self.first = True
         self.queue = [self.data.ctrl.copy()] * (conditions.delay_steps + 1)
 
-    def tick(self, batch: ReferenceBatch, q_ref: np.ndarray, dq_ref: np.ndarray) -> None:
+    def tick(self, batch: ReferenceBatch, q_ref: np.ndarray) -> None:
         d = self.data
         noisy = lambda x, size: x + self.c.noise * size * self.random.uniform(-1, 1, np.shape(x))
         quat = d.qpos[3:7] + 0.0
@@ -110,7 +110,7 @@ class Simulation:
         seen = batch.observe(noisy(d.qvel[3:6], 0.2), quat, noisy(d.qpos[7:], 0.01), noisy(d.qvel[6:], 0.75), self.last_action, self.first)
         self.first = False
         self.last_action = self.policy.act(seen)
-        target = q_ref + np.array(self.policy.meta.get("lead_s", 0.0)) * dq_ref
+        target = q_ref.copy()
         actions = len(self.last_action)
         target[:actions] += self.policy.meta["action_scale"] * self.last_action
         target = np.clip(target, self.lower, self.upper)
@@ -164,7 +164,7 @@ def run(policy: Policy, batch: ReferenceBatch, mjcf: Path, scenario, conditions:
     for index, (_, seconds, command) in enumerate(scenario):
         for _ in range(round(seconds / TICK_S)):
             row = batch.run(1, command[None, None].astype(np.float32))[0, 0]
-            sim.tick(batch, *(row[fields[name]].astype(np.float64) for name in ("q_ref", "dq_ref")))
+            sim.tick(batch, row[fields["q_ref"]].astype(np.float64))
             record.user.append(command)
             record.state.append(sim.state())
             record.joints.append(sim.data.qpos[7:].copy())

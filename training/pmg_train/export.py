@@ -15,7 +15,7 @@ import torch
 from onnx import TensorProto, helper, numpy_helper
 
 from pmg_train.inputs import clip_library_hash
-from pmg_train.robot import leads_s, policy_gains
+from pmg_train.robot import policy_gains
 
 OPSET, IR_VERSION = 17, 8  # ONNX Runtime 1.21 reads IR 10 and below
 GOLDEN_PAIRS = 8
@@ -94,7 +94,6 @@ def metadata(checkpoint: dict, robot: Path) -> dict:
         "stand_rad": [j["stand_rad"] for j in description["joints"]],
         "kp_Nm_per_rad": kp.tolist(),
         "kd_Nm_s_per_rad": kd.tolist(),
-        "lead_s": leads_s(description, config.get("lead", [])).tolist(),
         "policy_rate_Hz": round(1 / config["tick_s"]),
         "clip_library_sha256": clip_library_hash(robot),
         "golden_tolerance": GOLDEN_TOLERANCE,

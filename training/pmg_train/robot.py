@@ -28,15 +28,6 @@ def policy_gains(description: dict, gains: dict) -> tuple[np.ndarray, np.ndarray
     return np.array(kp), np.array(kd)
 
 
-def leads_s(description: dict, lead: list[str]) -> np.ndarray:
-    """kd / kp [s] of the joints named in lead, 0 of the others: by so much a drive that is told no velocity lags, and by so much of dq_ref
-    its target leads q_ref. ValueError for a name that no joint outside the policy has."""
-    led = [j["name"] for j in description["joints"] if not j["policy"]]
-    if unknown := [name for name in lead if name not in led]:
-        raise ValueError(f"lead: {', '.join(unknown)}; expected some of {', '.join(led)}")
-    return np.array([j["kd_Nm_s_per_rad"] / j["kp_Nm_per_rad"] if j["name"] in lead else 0.0 for j in description["joints"]])
-
-
 def _set_gains(spec: mujoco.MjSpec, description: dict, gains: dict) -> None:
     kp, kd = policy_gains(description, gains)
     for i, joint in enumerate(description["joints"]):
