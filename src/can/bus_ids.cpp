@@ -41,7 +41,7 @@ std::vector<SentId> sent_ids(const BusSetup& bus) {
 
 void check_ids(const DriveSetup& setup) {
   for (const BusSetup& bus : setup.buses) {
-    if (bus.first_slave != 0) continue;
+    if (!bus.on_can) continue;
     std::vector<SentId> senders;
     for (const SentId& sent : sent_ids(bus)) {
       const auto other = std::ranges::find_if(senders, [&](const SentId& one) {

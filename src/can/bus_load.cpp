@@ -43,7 +43,7 @@ BusLoad planned_load(const BusSetup& bus) {
 
 void check_load(const DriveSetup& setup) {
   for (const BusSetup& bus : setup.buses) {
-    if (bus.first_slave != 0) continue;
+    if (!bus.on_can) continue;
     const BusLoad load = planned_load(bus);
     if (load.share <= 1.0) continue;
     throw std::invalid_argument(

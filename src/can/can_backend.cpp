@@ -30,10 +30,11 @@ class CanBackend final : public hal::Backend {
   explicit CanBackend(const hal::BackendSetup& setup)
       : robot_(setup.robot), clock_(setup.clock), options_(setup.options), setup_(load_drives(setup.robot)) {
     for (const BusSetup& bus : setup_.buses) {
-      if (bus.first_slave != 0)
+      if (!bus.on_can)
         throw std::invalid_argument(bus.name + ": its drives are EtherCAT slaves; expected --hal ethercat");
     }
-    if (setup_.imu_slave) throw std::invalid_argument("the IMU is an EtherCAT slave; expected --hal ethercat");
+    if (!setup_.imu_on_can_or_line)
+      throw std::invalid_argument("the IMU is an EtherCAT slave; expected --hal ethercat");
     check_load(setup_);
     check_ids(setup_);
   }

@@ -268,7 +268,7 @@ void call_roll(const DriveSetup& setup, const std::vector<std::unique_ptr<Link>>
                const std::function<bool()>& interrupted) {
   std::vector<std::string> all;
   for (std::size_t b = 0; b < setup.buses.size(); ++b) {
-    if (setup.buses[b].first_slave != 0) continue;
+    if (!setup.buses[b].on_can) continue;
     const std::vector<std::string> found =
         problems(setup.buses[b], ask_bus(setup.buses[b], *links[b], wait, interrupted));
     all.insert(all.end(), found.begin(), found.end());

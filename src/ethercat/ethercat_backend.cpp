@@ -56,18 +56,19 @@ class EthercatBackend final : public hal::Backend {
 
 }  // namespace
 
-hal::BackendDescription description(const can::DriveSetup& setup) {
-  hal::BackendDescription description = can::description(setup);
+hal::BackendDescription description(const can::DriveSetup& drives) {
+  hal::BackendDescription description = can::description(drives);
   bool all = true;
-  for (const can::BusSetup& bus : setup.buses) {
-    const bool bridged = bus.first_slave == 0;
+  for (const can::BusSetup& bus : drives.buses) {
+    const bool bridged = bus.on_can;
     all = all && bridged;
     description.older_imu = description.older_imu || (bridged && bus.imu);
     for (const drives::MotorSetup& motor : bus.motors) {
       if (bridged) description.older_joints.push_back(motor.joint);
     }
   }
-  if (all && !setup.imu_slave) {  // the whole state is a cycle older; of an IMU on a line of its own nothing is known
+  if (all &&
+      drives.imu_on_can_or_line) {  // the whole state is a cycle older; of an IMU on a line of its own nothing is known
     description.older_joints.clear();
     description.older_imu = false;
     *description.command_delay_s += model::kBusPeriod_s;

@@ -7,7 +7,7 @@
 namespace pmg::ethercat {
 
 /// As on CAN, but a bridge's answers are a cycle late: a frame brings those that the drives gave to the frame before.
-hal::BackendDescription description(const can::DriveSetup& setup);
+hal::BackendDescription description(const can::DriveSetup& drives);
 
 /// No options: robot.yaml describes interface, bridges and drives.
 void register_backend(hal::BackendFactory& factory);

@@ -36,7 +36,7 @@ EthercatHal::EthercatHal(const EthercatSetup& setup, const can::DriveSetup& driv
                               }),
               setup.timing),
       can_(drives, robot, clock, called(pause, interrupted)) {
-  if (const auto& own = drives.imu_slave) {
+  if (const auto& own = setup.imu) {
     imu_.emplace(*own);
     imu_slave_ = static_cast<std::size_t>(own->slave - 1);
     await_imu(pause, interrupted);
@@ -55,13 +55,15 @@ void EthercatHal::prepare_drive(std::size_t bus, std::size_t motor, drives::Obje
 
 std::vector<std::unique_ptr<can::Link>> EthercatHal::make_links() {
   std::vector<std::unique_ptr<can::Link>> links;
-  for (const can::BusSetup& bus : drives_.buses) {
-    if (bus.first_slave != 0) {
+  for (std::size_t b = 0; b < drives_.buses.size(); ++b) {
+    const can::BusSetup& bus = drives_.buses[b];
+    const BusPlace& place = setup_.buses[b];
+    if (!bus.on_can) {
       std::vector<int> nodes;
       std::vector<std::size_t> slaves;
       for (const drives::MotorSetup& motor : bus.motors) {
         nodes.push_back(motor.node);
-        slaves.push_back(static_cast<std::size_t>(bus.first_slave + motor.node - 2));
+        slaves.push_back(static_cast<std::size_t>(place.first_slave + motor.node - 2));
       }
       auto link = std::make_unique<DriveLink>(nodes);
       drive_buses_.push_back({.link = link.get(), .slaves = std::move(slaves)});
@@ -69,9 +71,9 @@ std::vector<std::unique_ptr<can::Link>> EthercatHal::make_links() {
       continue;
     }
     auto link = std::make_unique<BridgeLink>();
-    const auto channel = static_cast<std::size_t>(bus.bridge_channel);
+    const auto channel = static_cast<std::size_t>(place.channel);
     channels_.push_back({.link = link.get(),
-                         .slave = static_cast<std::size_t>(bus.bridge_slave - 1),
+                         .slave = static_cast<std::size_t>(place.bridge - 1),
                          .offset_out = channel * block_bytes(setup_.frames_out),
                          .offset_in = channel * block_bytes(setup_.frames_in)});
     links.push_back(std::move(link));
@@ -83,7 +85,7 @@ std::vector<std::unique_ptr<can::Link>> EthercatHal::called(const can::Wait& pau
                                                             const std::function<bool()>& interrupted) {
   std::vector<std::unique_ptr<can::Link>> links = make_links();
   for (std::size_t b = 0; b < drives_.buses.size(); ++b) {
-    if (drives_.buses[b].first_slave == 0) continue;
+    if (drives_.buses[b].on_can) continue;
     const std::vector<std::string> found = can::problems(drives_.buses[b], drive_answers_[b]);
     if (!found.empty()) throw std::runtime_error(found.front());
   }

@@ -5,10 +5,22 @@
 #include <optional>
 #include <span>
 
-#include "can/bus_setup.hpp"
 #include "imu/mti_messages.hpp"
 
 namespace pmg::ethercat {
+
+/// An IMU that is a slave. Numbers are low byte first; offsets in bytes within its inputs.
+struct ImuSlave {
+  int slave = 0;                                  ///< position on the cable, the first being 1
+  int alias = 0;                                  ///< configured station alias; 0: any
+  std::uint32_t vendor_id = 0, product_code = 0;  ///< 0: any
+  int input_bytes = 0, output_bytes = 0;
+  int counter_at = 0;       ///< 2 bytes, another value with each sample
+  int status_at = -1;       ///< 2 bytes, 0: self-test passed and sensors in their range; -1: not given
+  int quaternion_at = 0;    ///< w, x, y, z; 32-bit floats, as all that follows
+  int rate_of_turn_at = 0;  ///< x, y, z [rad/s]
+  int acceleration_at = 0;  ///< x, y, z [m/s^2]
+};
 
 /// No heap; one thread.
 class ProcessDataImu {
@@ -16,7 +28,7 @@ class ProcessDataImu {
   /// In bus cycles since the last sample, as with an IMU on CAN.
   static constexpr int kLateCycles = 5, kSilentCycles = 10;
 
-  explicit ProcessDataImu(const can::ImuSlave& setup) noexcept : setup_(setup) {}
+  explicit ProcessDataImu(const ImuSlave& setup) noexcept : setup_(setup) {}
 
   void begin_cycle() noexcept;
   /// This cycle's inputs. A counter that stays, a status other than 0, or values that can't be (imu::believed_sample())
@@ -31,7 +43,7 @@ class ProcessDataImu {
  private:
   static constexpr int kNever = 1'000'000;
 
-  can::ImuSlave setup_;
+  ImuSlave setup_;
   imu::MtiSample sample_;
   std::optional<std::uint16_t> counter_;
   std::uint16_t status_ = 0;

@@ -118,6 +118,14 @@ const YAML::Node& ConfigReader::child(const std::string& key, const std::string&
   return found->second.value;
 }
 
+bool ConfigReader::leave(const std::string& key) {
+  known_.push_back(key);
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return false;
+  found->second.asked = true;
+  return true;
+}
+
 ConfigReader ConfigReader::map(const std::string& key) {
   const YAML::Node& node = child(key, "a mapping");
   if (!node.IsMap()) fail(key, what_it_is(node), "a mapping");

@@ -52,6 +52,8 @@ class ConfigReader {
   std::string one_of(const std::string& key, const std::vector<std::string>& choices);
 
   bool has(const std::string& key) const { return entries_.contains(key); }
+  /// Another part of the program reads this key, and finds what is wrong with its value. => has(key)
+  bool leave(const std::string& key);
   const std::vector<std::string>& keys() const { return order_; }  ///< in the file's order
   Place place() const { return place_; }                           ///< of the mapping itself
   Place place(const std::string& key) const;                       ///< of the key's value, or of the mapping

@@ -1,5 +1,5 @@
 // One optimisation problem: its unknowns, costs and rounds share the table of
-// knots. Longer than 300 lines for that.
+// knots.
 #include "generator/gait_optimization.hpp"
 
 #include <ceres/ceres.h>

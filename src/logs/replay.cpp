@@ -1,4 +1,3 @@
-// Longer than 300 lines: one pass over a log, which needs all that it has heard.
 #include "logs/replay.hpp"
 
 #include <fmt/format.h>

@@ -66,7 +66,7 @@ ImuModel read_imu(files::ConfigReader reader, const UrdfTree& tree) {
   if (reader.has("serial")) imu.serial = read_serial_imu(reader.map("serial"));
   if (reader.has("process_data")) {
     if (imu.serial) reader.fail("process_data", "stands beside `serial`", "one way to the IMU");
-    reader.map("process_data");  // read by drives/drive_setup.hpp
+    reader.leave("process_data");
   }
   reader.finish();
   return imu;

@@ -1,4 +1,3 @@
-// Longer than 300 lines: one state machine.
 #include "operator/robot_driver.hpp"
 
 #include <fmt/format.h>

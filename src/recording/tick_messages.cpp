@@ -1,4 +1,3 @@
-// Longer than 300 lines: every message of a tick, and the way back beside it.
 #include "recording/tick_messages.hpp"
 
 #include <algorithm>

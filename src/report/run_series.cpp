@@ -1,4 +1,3 @@
-// Longer than 300 lines: one gatherer, a member function for each channel of a log.
 #include "report/run_series.hpp"
 
 #include <fmt/format.h>

@@ -44,10 +44,6 @@ void visit_named(std::string_view names, Visit& visit, Members&... members) {
   void each_threshold(Visit&& visit) {                                              \
     ::pmg::work::expect_all<std::remove_reference_t<decltype(*this)>>(__VA_ARGS__); \
     ::pmg::work::visit_named(#__VA_ARGS__, visit, __VA_ARGS__);                     \
-  }                                                                                 \
-  template <typename Visit>                                                         \
-  void each_threshold(Visit&& visit) const {                                        \
-    ::pmg::work::visit_named(#__VA_ARGS__, visit, __VA_ARGS__);                     \
   }
 
 /// Refuses to compile where the members don't fill the struct.

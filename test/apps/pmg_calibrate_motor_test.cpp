@@ -8,7 +8,7 @@
 #include "apps/running_program.hpp"
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
-#include "folders.hpp"
+#include "recorded_benches.hpp"
 #include "sim/motor_file.hpp"
 
 namespace pmg {
@@ -159,12 +159,10 @@ TEST_F(PmgCalibrateMotor, ExplainsItself) {
 // Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N. Rollouts of the closed loop alone are 8 %
 // off in the inertia, because they can't separate it from a lag of the drive's velocity.
 TEST_F(PmgCalibrateMotor, AnswersWithThePublishedParametersWhereTheDriveWasRecorded) {
-  const char* named = std::getenv("PMG_BENCHES");
-  const fs::path emps =
-      (named != nullptr ? fs::path(named) : fs::path(pmg::test::project_folder()) / "../shared/data/bench") / "emps";
-  if (!fs::exists(emps)) GTEST_SKIP() << "no recordings at " << emps << "; PMG_BENCHES names another folder";
-  test::RunningProgram program("pmg_calibrate_motor",
-                               {emps.string(), "--joint", "axis", "--out", out_.string(), "--threads", "2"}, folder_);
+  PMG_NEEDS_BENCH("emps");
+  test::RunningProgram program(
+      "pmg_calibrate_motor",
+      {test::recorded_bench("emps").string(), "--joint", "axis", "--out", out_.string(), "--threads", "2"}, folder_);
   ASSERT_EQ(program.wait(), 0) << program.err();
   const model::ActuatorParameters found = sim::read_motor_file(out_ / "motor.yaml").at("axis");
   EXPECT_NEAR(found.transmission.armature_kg_m2 / 95.1, 1.0, 0.03);

@@ -13,6 +13,7 @@
 
 #include "bench/bench.hpp"
 #include "folders.hpp"
+#include "recorded_benches.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg {
@@ -100,13 +101,9 @@ class ImportedBench : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(ImportedBench, OfALoggersFilesIsTheMeasuredBenchAgain) {
   const Measured wanted = measured()[GetParam()];
-  const char* named = std::getenv("PMG_BENCHES");
-  const fs::path folder =
-      (named != nullptr ? fs::path(named) : fs::path(test::project_folder()) / "../shared/data/bench") / wanted.name;
-  if (!fs::exists(folder))
-    GTEST_SKIP() << "NOT TESTED: no recordings at " << folder << "; PMG_BENCHES names another folder";
+  PMG_NEEDS_BENCH(wanted.name);
   const test::TemporaryFolder temporary;
-  const bench::Bench original = bench::read_bench(folder);
+  const bench::Bench original = bench::read_bench(test::recorded_bench(wanted.name));
   const std::vector<bench::BenchRun> runs = original.read_runs(bench::RowFilter(""));
   for (const bench::BenchRun& run : runs) write_raw(temporary.path() / run.file, wanted, run.recording);
 

@@ -2,31 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "calib/fit_problem.hpp"
 #include "calib/inverse_dynamics.hpp"
-#include "folders.hpp"
+#include "recorded_benches.hpp"
 
 namespace pmg {
 namespace {
 
-namespace fs = std::filesystem;
-
-fs::path benches() {
-  const char* named = std::getenv("PMG_BENCHES");
-  return named != nullptr ? fs::path(named) : fs::path(pmg::test::project_folder()) / "../shared/data/bench";
-}
-
-#define PMG_NEEDS_BENCH(name)          \
-  if (!fs::exists(benches() / (name))) \
-  GTEST_SKIP() << "no recordings at " << (benches() / (name)) << "; PMG_BENCHES names another folder"
-
 // Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N, offset -3.16 N of the opposing force.
 TEST(MeasuredBench, OfALinearDriveGivesThePublishedParameters) {
   PMG_NEEDS_BENCH("emps");
-  const bench::Bench bench = bench::read_bench(benches() / "emps");
+  const bench::Bench bench = bench::read_bench(test::recorded_bench("emps"));
   const auto found = calib::inverse_dynamics(bench, bench.read_runs(bench::RowFilter("")));
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->armature_kg_m2.value / 95.1, 1.0, 0.03);
@@ -65,7 +52,7 @@ constexpr const char* kHeldOut = "kp_firmware in 12,24 and repeat == 1";
 // Open loop over 6 s, of gains and a repeat that no fit has seen. Repeats of one run differ by 9 to 10 mrad.
 TEST(MeasuredBench, OfAHobbyServoIsFollowedWithin14MilliradiansOfRunsHeldOut) {
   PMG_NEEDS_BENCH("sts3215");
-  const bench::Bench bench = bench::read_bench(benches() / "sts3215");
+  const bench::Bench bench = bench::read_bench(test::recorded_bench("sts3215"));
   const calib::RolloutError error = total(calib::errors(hobby_servo(bench), joints(bench, kHeldOut), 2));
   EXPECT_EQ(error.samples, 80U * 600U - 12U) << "12 readings are dropouts";
   EXPECT_LT(error.mean_absolute_rad(), 0.0140);
@@ -73,7 +60,7 @@ TEST(MeasuredBench, OfAHobbyServoIsFollowedWithin14MilliradiansOfRunsHeldOut) {
 
 TEST(MeasuredBench, OfAHobbyServoNeedsItsRateLimitAndItsLoadsFriction) {
   PMG_NEEDS_BENCH("sts3215");
-  const bench::Bench bench = bench::read_bench(benches() / "sts3215");
+  const bench::Bench bench = bench::read_bench(test::recorded_bench("sts3215"));
   const std::vector<calib::SingleJoint> runs = joints(bench, kHeldOut);
   const auto error_rad = [&](const char* without, double neutral) {
     calib::JointModel model = hobby_servo(bench);
@@ -87,7 +74,7 @@ TEST(MeasuredBench, OfAHobbyServoNeedsItsRateLimitAndItsLoadsFriction) {
 
 TEST(MeasuredBench, OfAWarmingServoIsRead) {
   PMG_NEEDS_BENCH("xl330");
-  const bench::Bench bench = bench::read_bench(benches() / "xl330");
+  const bench::Bench bench = bench::read_bench(test::recorded_bench("xl330"));
   EXPECT_EQ(bench.read_runs(bench::RowFilter("")).size(), 16U);
   EXPECT_EQ(bench.unknown.front(), "drive.kp_scale");
 }

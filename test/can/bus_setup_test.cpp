@@ -12,6 +12,7 @@
 #include "../model/robots.hpp"
 #include "drive_protocols/canopen_drive.hpp"
 #include "drive_protocols/mit_drive.hpp"
+#include "drives/motor_monitor.hpp"
 #include "files/config_error.hpp"
 
 namespace pmg::can {
@@ -96,6 +97,26 @@ TEST_F(DriveSetupFile, SamplePointsAreReadAndBounded) {
   EXPECT_EQ(load_drives(test::z1()).buses.front().sample_point, 0.0);
   replace("sample_point: 0.8", "sample_point: 80");
   EXPECT_THAT(refusal(), testing::HasSubstr("buses.can0.sample_point: is '80'; expected a number from 0.5 to 0.95"));
+}
+
+TEST_F(DriveSetupFile, AnotherNetworkMayCarryABusOrHaveItsDrives) {
+  replace("can0: {bitrate: 1000000}", "can0: {bitrate: 1000000, bridge: {slave: 1}}");
+  EXPECT_EQ(refusal(), "taken");
+  const DriveSetup bridged = load_drives(model::load_robot(folder_));
+  EXPECT_TRUE(bridged.buses[0].on_can);
+  EXPECT_EQ(bridged.buses[0].fresh_cycles(), drives::MotorMonitor::kFreshOverBridge) << "its answers are a cycle older";
+  EXPECT_EQ(bridged.buses[1].fresh_cycles(), drives::MotorMonitor::kFreshCycles);
+  replace("can0: {bitrate: 1000000, bridge: {slave: 1}}", "can0: {first_slave: 1}");
+  EXPECT_THAT(refusal(), testing::HasSubstr("buses.can0: has drives of the MIT protocol as EtherCAT slaves"));
+}
+
+TEST_F(DriveSetupFile, AnImuOfAnotherNetworkIsOnNoBus) {
+  replace("  rpy_rad: [0.0, 0.0, 0.0]\n", "  rpy_rad: [0.0, 0.0, 0.0]\n  process_data: {slave: 9}\n");
+  EXPECT_THAT(refusal(), testing::HasSubstr("expected none: robot.yaml has `imu.process_data`"));
+  replace(", imu: xsens_can", "");
+  EXPECT_EQ(refusal(), "taken");
+  EXPECT_FALSE(load_drives(model::load_robot(folder_)).imu_on_can_or_line);
+  EXPECT_TRUE(load_drives(test::z1()).imu_on_can_or_line);
 }
 
 TEST_F(DriveSetupFile, AJointsDriveMayReplyWithAnIdentifierOfItsOwn) {

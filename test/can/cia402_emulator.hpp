@@ -142,7 +142,14 @@ class Cia402Emulator final : public DriveEmulator {
     lose_bus();
   }
 
-  drives::MotorCommand command() const noexcept override {
+  bool enabled() const noexcept override { return state_ == kOn; }
+  bool tripped() const noexcept override { return tripped_; }
+
+  ObjectStore objects;
+  std::uint16_t fault_code = 0;  ///< shown instead of the one that belongs to `fault`
+
+ private:
+  drives::MotorCommand told() const noexcept override {
     if (state_ == kQuickStop) return {.kd_Nm_s_per_rad = kBrake_Nm_s_per_rad};
     if (state_ != kOn || fault != drives::DriveFault::kNone) return {};
     if (objects.value(0x6060) == 10)
@@ -153,13 +160,6 @@ class Cia402Emulator final : public DriveEmulator {
             .kp_Nm_per_rad = settings_.kp_Nm_per_rad,
             .kd_Nm_s_per_rad = settings_.kd_Nm_s_per_rad};
   }
-  bool enabled() const noexcept override { return state_ == kOn; }
-  bool tripped() const noexcept override { return tripped_; }
-
-  ObjectStore objects;
-  std::uint16_t fault_code = 0;  ///< shown instead of the one that belongs to `fault`
-
- private:
   // Status words without the bits that have no part in the state, but for "quick stop" and "voltage".
   static constexpr std::uint16_t kDisabled = 0x50, kReady = 0x31, kSwitchedOn = 0x33, kOn = 0x37, kQuickStop = 0x17,
                                  kFault = 0x18;

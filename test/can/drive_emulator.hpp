@@ -27,8 +27,13 @@ class DriveEmulator {
 
   virtual int hear(const drives::Message& frame, Replies& replies) noexcept = 0;  ///< => how many replies
   virtual void tick() noexcept = 0;                                               ///< 2 ms pass
-  /// What the motor is given: without torque while the drive is off; braked after its watchdog acted.
-  virtual drives::MotorCommand command() const noexcept = 0;
+  /// What the motor is given: without torque while the drive is off; braked after its watchdog acted. The drive closes
+  /// its loop on what its encoder shows, wherever the motor is: after its zero was set, or with a turn too many.
+  drives::MotorCommand command() const noexcept {
+    drives::MotorCommand given = told();
+    given.q_rad += motor_.q_rad - shown().q_rad;
+    return given;
+  }
   virtual bool enabled() const noexcept = 0;
   virtual bool tripped() const noexcept = 0;  ///< its watchdog has acted
 
@@ -58,6 +63,7 @@ class DriveEmulator {
   int obeyed = 0;  ///< commands of a CANopen drive
 
  protected:
+  virtual drives::MotorCommand told() const noexcept = 0;  ///< in the encoder's angles
   drives::MotorReading shown() const noexcept {
     drives::MotorReading shown = motor_;
     shown.q_rad = stuck_q ? *stuck_q : shown.q_rad + turn_rad - zero_rad_;

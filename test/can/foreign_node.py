@@ -175,4 +175,5 @@ def main():
     network.disconnect()
 
 
-main()
+if __name__ == "__main__":
+    main()

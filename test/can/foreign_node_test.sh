@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The client against a CANopen node that this project did not write: the Python package `canopen` (third_party/python/canopen.txt) as a CiA 402
+# The client against a CANopen node that this project did not write: the Python package `canopen` (third_party/python/foreign_can.txt) as a CiA 402
 # drive on vcan. pmg_bus: scan, set-up by SDO, network states, PDOs, position, a fault. TEST_CAN: motion in both modes and a fault in motion, in
 # lockstep: the node answers each SYNC before the next, so that no clock decides.
 # Usage: foreign_node_test.sh BIN TEST_CAN
@@ -8,7 +8,7 @@ set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$1 tests=$2
 if [ -z "${3:-}" ]; then
-  packages=$("$here/../../third_party/python-packages" canopen --cached) || exit 77
+  packages=$("$here/../../third_party/python-packages" foreign_can --cached) || exit 77
   exec "$here/canrun" "$here/foreign_node_test.sh" "$bin" "$tests" "$packages"
 fi
 export PYTHONPATH=$3 PYTHONDONTWRITEBYTECODE=1

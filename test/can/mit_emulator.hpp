@@ -49,14 +49,14 @@ class MitEmulator final : public DriveEmulator {
     fault_passed = true;
   }
 
-  drives::MotorCommand command() const noexcept override {
-    if (tripped_) return {.kd_Nm_s_per_rad = kBrake_Nm_s_per_rad};
-    return enabled_ && fault == drives::DriveFault::kNone ? command_ : drives::MotorCommand{};
-  }
   bool enabled() const noexcept override { return enabled_; }
   bool tripped() const noexcept override { return tripped_; }
 
  private:
+  drives::MotorCommand told() const noexcept override {
+    if (tripped_) return {.kd_Nm_s_per_rad = kBrake_Nm_s_per_rad};
+    return enabled_ && fault == drives::DriveFault::kNone ? command_ : drives::MotorCommand{};
+  }
   drives::Message reply(drives::MotorReading reading, bool fd) const noexcept {
     reading.follows = enabled_ ? drives::Follows::kYes : drives::Follows::kNo;
     drives::Message frame = type_->reply({type_->named(node), reading});

@@ -31,28 +31,35 @@ class CabledDrives {
 
   /// Where robot.yaml has the bus's bridge, the bridge has that place and alias.
   explicit CabledDrives(const model::RobotModel& robot, const CableForm& form = {}) : setup(can::load_drives(robot)) {
+    cable.buses = ethercat::load_places(robot, setup);
     std::vector<std::unique_ptr<MemoryLink>> near;
     std::vector<std::unique_ptr<can::Link>> far;
     int slave = 0;
     for (std::size_t b = 0; b < setup.buses.size(); ++b) {
       can::BusSetup& bus = setup.buses[b];
+      ethercat::BusPlace& at = cable.buses[b];
       if (form.imu) bus.imu = false;
       if (form.leg_drives && b < kLegs) {
-        bus.first_slave = slave + 1;
-        bus.first_alias = kFirstAlias + bus.first_slave;
+        bus.on_can = false;
+        at.first_slave = slave + 1;
+        at.first_alias = kFirstAlias + at.first_slave;
         for (drives::MotorSetup& motor : bus.motors)
           motor.drive = drives::cia402_drive(cia402_for(motor, robot, drives::Cia402Mode::kTorque));
         slave += static_cast<int>(bus.motors.size());
-      } else if (bus.bridge_slave == 0) {
-        bus.bridge_slave = ++slave;
-        bus.bridge_alias = kFirstAlias + slave;
+      } else if (at.bridge == 0) {
+        bus.relayed = true;
+        at.bridge = ++slave;
+        at.bridge_alias = kFirstAlias + slave;
       }
       auto [here, there] = MemoryLink::pair();
       near.push_back(std::move(here));
       far.push_back(std::move(there));
     }
     ++slave;
-    if (form.imu) setup.imu_slave = EmulatedImu::model(slave, kFirstAlias + slave);
+    if (form.imu) {
+      setup.imu_on_can_or_line = false;
+      cable.imu = EmulatedImu::model(slave, kFirstAlias + slave);
+    }
     drives.emplace(setup, std::move(far));
     std::map<int, std::unique_ptr<EmulatedSlave>> places;
     const auto place = [&](int at, int alias, std::unique_ptr<EmulatedSlave> made) {
@@ -61,14 +68,15 @@ class CabledDrives {
     };
     for (std::size_t b = 0; b < setup.buses.size(); ++b) {
       const can::BusSetup& bus = setup.buses[b];
-      if (bus.first_slave == 0) {
-        place(bus.bridge_slave, bus.bridge_alias,
+      const ethercat::BusPlace& at = cable.buses[b];
+      if (bus.on_can) {
+        place(at.bridge, at.bridge_alias,
               std::make_unique<EmulatedBridge>(kFramesOut, kFramesIn, std::move(near[b]), form.clocks));
         continue;
       }
       for (std::size_t m = 0; m < bus.motors.size(); ++m) {
         const int from_first = bus.motors[m].node - 1;
-        place(bus.first_slave + from_first, bus.first_alias + from_first,
+        place(at.first_slave + from_first, at.first_alias + from_first,
               std::make_unique<EmulatedDriveSlave>(drives->cia402(b, m), false));
       }
       unused_.push_back(std::move(near[b]));
@@ -76,7 +84,7 @@ class CabledDrives {
     if (form.imu) {
       auto own = std::make_unique<EmulatedImu>();
       imu = own.get();
-      place(setup.imu_slave->slave, setup.imu_slave->alias, std::move(own));
+      place(cable.imu->slave, cable.imu->alias, std::move(own));
     }
     for (auto& [at, made] : places) wire.slaves.push_back(std::move(made));
   }
@@ -91,8 +99,9 @@ class CabledDrives {
     for (const auto& slave : wire.slaves) slave->tick();
   }
 
-  ethercat::EthercatSetup cable{.interface = "eth9", .frames_out = kFramesOut, .frames_in = kFramesIn};
   can::DriveSetup setup;
+  ethercat::EthercatSetup cable{
+      .interface = "eth9", .buses = {}, .imu = {}, .frames_out = kFramesOut, .frames_in = kFramesIn};
   MemoryWire wire;
   std::optional<EmulatedDrives> drives;
   EmulatedImu* imu = nullptr;

@@ -70,7 +70,7 @@ void check_outputs(std::span<const std::uint8_t> frame, const can::DriveSetup& s
     return part;
   };
   for (const can::BusSetup& bus : setup.buses) {
-    if (bus.first_slave == 0) {
+    if (bus.on_can) {
       ethercat::for_frames(next(ethercat::block_bytes(test::CabledDrives::kFramesOut)),
                            [&](const drives::Message& sent) { test::check_limits(sent, bus); });
       continue;

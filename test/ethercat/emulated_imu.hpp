@@ -3,8 +3,8 @@
 
 #include <bit>
 
-#include "can/bus_setup.hpp"
 #include "ethercat/emulated_slave.hpp"
+#include "ethercat/process_data_imu.hpp"
 #include "model/robot_io.hpp"
 
 namespace pmg::test {
@@ -13,7 +13,7 @@ class EmulatedImu final : public EmulatedSlave {
  public:
   static constexpr int kInputBytes = 44;
   static constexpr std::uint32_t kVendor = 0x4321, kProduct = 0x8765;
-  static can::ImuSlave model(int slave, int alias) {
+  static ethercat::ImuSlave model(int slave, int alias) {
     return {.slave = slave,
             .alias = alias,
             .vendor_id = kVendor,

@@ -180,7 +180,7 @@ TEST_F(DriveSlaves, AnImuThatIsNotSureOfItselfIsRefusedAndThenNotBelieved) {
 }
 
 TEST_F(DriveSlaves, AnotherSlaveInTheImusPlaceIsRefused) {
-  cabled.setup.imu_slave->product_code = 0x9999;
+  cabled.cable.imu->product_code = 0x9999;
   EXPECT_THAT(refusal(), HasSubstr("slave 16 (IMU) has product code 0x8765; expected 0x9999"));
 }
 

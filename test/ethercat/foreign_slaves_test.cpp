@@ -163,8 +163,8 @@ class ForeignSlaves : public testing::Test {
     can::BusSetup& bus = setup_.buses[0];
     bus.motors.erase(bus.motors.begin(), bus.motors.begin() + 3);
     bus.motors.erase(bus.motors.begin() + count, bus.motors.end());
-    bus.first_slave = 1;
-    bus.first_alias = kAlias;
+    bus.on_can = false;
+    cable_.buses = {{.first_slave = 1, .first_alias = kAlias}};
     int node = 0;
     for (drives::MotorSetup& motor : bus.motors) {
       motor.node = ++node;
@@ -231,7 +231,7 @@ class ForeignSlaves : public testing::Test {
   std::filesystem::path kickcat_;
   test::TemporaryFolder folder_;
   std::optional<Simulator> simulator_;
-  EthercatSetup cable_{.interface = "ecat0"};
+  EthercatSetup cable_{.interface = "ecat0", .buses = {}, .imu = {}};
   can::DriveSetup setup_;
   io::WallClock clock_;
   std::optional<LockstepWire> wire_;
@@ -366,7 +366,7 @@ TEST_F(ForeignSlaves, OneThatIsKilledIsLostInItsSecondCycleAndNeedsANewStart) {
 /// no encoder object.
 TEST_F(ForeignSlaves, KickcatsOwnSlavesAreFoundAndRefusedInOneLine) {
   expect(Cia402Mode::kPosition);
-  setup_.buses[0].first_alias = 0;
+  cable_.buses[0].first_alias = 0;
   const std::vector<std::pair<const char*, const char*>> slaves = {
       {"freedom-k64f.json", "object 0x1000 (device type) is profile 0; expected profile 402"},
       {"xmc4800.json", "object 0x1000 (device type) is profile 0; expected profile 402"},

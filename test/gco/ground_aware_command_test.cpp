@@ -1,5 +1,4 @@
-// The promises of the ground-aware command on several robots. Longer than 300 lines: they share these
-// robots.
+// The promises of the ground-aware command on several robots.
 #include "gco/ground_aware_command.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// One hidden plant: every effect beside the others. Longer than 300 lines: they act on one state.
+// One hidden plant: every effect beside the others. They act on one state.
 #include "plant.hpp"
 
 #include <algorithm>

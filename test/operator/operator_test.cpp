@@ -1,5 +1,4 @@
-// An operator's requests to a controller, over the network and back. Longer than 300 lines: all share one
-// network.
+// An operator's requests to a controller, over the network and back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

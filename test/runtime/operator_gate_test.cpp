@@ -1,5 +1,4 @@
 // OperatorGate: no messages of strangers can fill the controller's queues, end it, or hold back a stop.
-// Longer than 300 lines: every stranger that the gate must refuse, over one gate.
 #include "runtime/operator_gate.hpp"
 
 #include <gtest/gtest.h>

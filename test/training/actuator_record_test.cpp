@@ -1,6 +1,5 @@
 // The record of actuator models at work, which training's batched ones are tested against, is what src/sim's do.
 // Written anew with PMG_WRITE_RECORDS=1 when an effect is added or changed.
-// Longer than 300 lines: the cases are data.
 #include <gtest/gtest.h>
 
 #include <cmath>
