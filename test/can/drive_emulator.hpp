@@ -19,6 +19,7 @@ class DriveEmulator {
   /// Cycles of 2 ms without a frame after which an MIT drive lets go: 20 ms.
   static constexpr int kWatchdogCycles = 10;
   static constexpr double kBrake_Nm_s_per_rad = 2.0;  ///< of a watchdog, and of a quick stop
+  static constexpr double kCool_degC = 35.0;
 
   explicit DriveEmulator(const drives::MotorSetup& setup) : node(setup.node), setup_(&setup) {}
   virtual ~DriveEmulator() = default;
@@ -43,6 +44,7 @@ class DriveEmulator {
     turn_rad += drift_rad;
   }
   const drives::MotorSetup& setup() const noexcept { return *setup_; }
+  double shown_rad() const noexcept { return shown().q_rad; }  ///< by its encoder
 
   int patience =
       1;  ///< its watchdog takes so many times its time: for a computer on which programs wait for each other
@@ -54,7 +56,7 @@ class DriveEmulator {
   double turn_rad = 0.0;                      ///< added to the encoder: a wrapped or lost turn
   double drift_rad = 0.0;                     ///< by which the encoder's zero moves every 2 ms
   double speed_rad_s = 0.0, torque_Nm = 0.0;  ///< added to what the drive reads
-  double temperature_degC = 35.0;
+  double temperature_degC = kCool_degC;
   drives::DriveFault fault = drives::DriveFault::kNone;
   bool fault_passed = false;  ///< its cause is gone: the message that clears faults clears it
   int node;                   ///< that it answers as; another than its own: a wrong id
