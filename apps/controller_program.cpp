@@ -116,7 +116,7 @@ void announce(const Arguments& arguments, const recording::RunInfo& run, Variant
   spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", recording::software_version(), run.robot,
                run.backend, run.bundle.substr(0, 12), run.policy);
   if (run.policy == "none") spdlog::warn("no policy: drives follow the reference, and nothing balances the robot");
-  if (variant != Variant::kPmg) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
+  if (is_baseline(variant)) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
   spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
                arguments.no_log ? " (after a fault only)" : "");
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
