@@ -27,15 +27,20 @@ const std::map<std::string, Signal>& signals() {
   static const std::map<std::string, Signal> names = {{"gyro", Signal::kGyro},
                                                       {"gravity_direction", Signal::kGravityDirection},
                                                       {"command", Signal::kCommand},
+                                                      {"command_linear", Signal::kCommandLinear},
+                                                      {"command_angular", Signal::kCommandAngular},
                                                       {"joint_position", Signal::kJointPosition},
                                                       {"joint_velocity", Signal::kJointVelocity},
                                                       {"last_action", Signal::kLastAction},
-                                                      {"clock", Signal::kClock}};
+                                                      {"clock_sin", Signal::kClockSin},
+                                                      {"clock_cos", Signal::kClockCos}};
   return names;
 }
 
-int size_of(Signal signal, int joints) {
-  switch (signal) {
+bool tells_time(Signal signal) { return signal == Signal::kClockSin || signal == Signal::kClockCos; }
+
+int size_of(const SignalTerm& term, int joints) {
+  switch (term.signal) {
     case Signal::kGyro:
     case Signal::kGravityDirection:
     case Signal::kCommand:
@@ -44,8 +49,13 @@ int size_of(Signal signal, int joints) {
     case Signal::kJointVelocity:
     case Signal::kLastAction:
       return joints;
-    case Signal::kClock:
+    case Signal::kCommandLinear:
       return 2;
+    case Signal::kCommandAngular:
+      return 1;
+    case Signal::kClockSin:
+    case Signal::kClockCos:
+      return static_cast<int>(term.clock.offsets_cycle.size());
   }
   return 0;
 }
@@ -132,20 +142,29 @@ Signal read_signal(files::ConfigReader& reader) {
               fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
+StepClock read_clock(files::ConfigReader& reader) {
+  StepClock clock;
+  clock.period_s = reader.required<double>("period_s", files::positive());
+  clock.offsets_cycle = reader.required<std::vector<double>>("offsets_cycle", files::in_range(0.0, 1.0));
+  if (clock.offsets_cycle.empty()) reader.fail("offsets_cycle", "is empty", "one a foot, or one");
+  if (reader.has("at_rest_cycle")) {
+    clock.at_rest_cycle = reader.required<double>("at_rest_cycle", files::in_range(0.0, 1.0));
+  }
+  return clock;
+}
+
 SignalTerm read_term(files::ConfigReader reader, int joints) {
   SignalTerm term;
   term.signal = read_signal(reader);
-  term.size = size_of(term.signal, joints);
+  if (tells_time(term.signal)) term.clock = read_clock(reader);
+  term.size = size_of(term, joints);
   term.scale = reader.required<std::vector<double>>("scale");
   if (term.scale.size() == 1) term.scale.resize(static_cast<std::size_t>(term.size), term.scale.front());
   if (term.scale.size() != static_cast<std::size_t>(term.size)) {
     reader.fail("scale", fmt::format("has {} numbers", term.scale.size()), fmt::format("1 or {}", term.size));
   }
-  term.clip = reader.required<double>("clip", files::positive());
-  term.history = reader.required<int>("history", files::in_range(1, kLongestHistory));
-  if (term.signal == Signal::kClock) {
-    term.clock_period_s = reader.required<double>("period_s", files::positive());
-  }
+  term.clip = reader.optional<double>("clip", term.clip, files::positive());
+  term.history = reader.optional<int>("history", 1, files::in_range(1, kLongestHistory));
   reader.finish();
   return term;
 }

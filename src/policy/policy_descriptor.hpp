@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,20 +25,31 @@ enum class Signal {
   kGyro,              ///< angular velocity of the base, in its frame [rad/s]
   kGravityDirection,  ///< unit vector down, in the base's frame
   kCommand,           ///< vx, vy [m/s], omega [rad/s]
+  kCommandLinear,     ///< vx, vy [m/s]
+  kCommandAngular,    ///< omega [rad/s]
   kJointPosition,     ///< q - default_rad of the policy's joints [rad]
   kJointVelocity,     ///< dq of the policy's joints [rad/s]
   kLastAction,        ///< the network's previous output
-  kClock,             ///< sin and cos of 2 pi t / period_s
+  kClockSin,          ///< sin 2 pi (t / period_s + offset) of each offset
+  kClockCos,          ///< cos of the same
 };
 
-/// One term: each element is scale * clamp(value, -clip, clip), for each of `history` frames.
+/// Of the terms that tell the time: a policy may step to a clock.
+struct StepClock {
+  double period_s = 0.0;
+  std::vector<double> offsets_cycle;    ///< of each foot, or one
+  std::optional<double> at_rest_cycle;  ///< all phases while no velocity is asked for, and then the clock begins again;
+                                        ///< nullopt: it goes on
+};
+
+/// One term: each element is scale * clamp(value, -clip, clip), of each of `history` frames.
 struct SignalTerm {
   Signal signal = Signal::kGyro;
   int size = 0;                ///< elements of one frame
   std::vector<double> scale;   ///< one an element
-  double clip = 0.0;           ///< in the value's own unit
+  double clip = std::numeric_limits<double>::infinity();  ///< in the value's own unit
   int history = 1;             ///< frames, this one among them
-  double clock_period_s = 0.0; ///< of kClock
+  StepClock clock;             ///< of kClockSin and kClockCos
 };
 
 /// How frames of several ticks lie in the vector.

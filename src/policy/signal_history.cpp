@@ -43,8 +43,14 @@ SignalHistory::SignalHistory(const PolicyDescriptor& descriptor, const model::Ro
   vector_.setZero(descriptor.observation_size);
 }
 
-Eigen::VectorXd& SignalHistory::measured(const SignalTerm& term, const model::RobotState& state, const Command& command,
-                                         const Eigen::VectorXf& last_action) noexcept {
+double SignalHistory::phase_cycle(const StepClock& clock, double offset_cycle) const noexcept {
+  if (clock.at_rest_cycle && moving_frames_ == 0) return *clock.at_rest_cycle;
+  const std::int64_t frames = clock.at_rest_cycle ? moving_frames_ - 1 : frames_;
+  return static_cast<double>(frames) * period_s_ / clock.period_s + offset_cycle;
+}
+
+const Eigen::VectorXd& SignalHistory::measured(const SignalTerm& term, const model::RobotState& state,
+                                               const Command& command, const Eigen::VectorXf& last_action) noexcept {
   switch (term.signal) {
     case Signal::kGyro:
       measured_.head<3>() = R_BI_ * state.gyro_rad_s;
@@ -65,19 +71,28 @@ Eigen::VectorXd& SignalHistory::measured(const SignalTerm& term, const model::Ro
     case Signal::kLastAction:
       measured_.head(last_action.size()) = last_action.cast<double>();
       break;
-    case Signal::kClock: {
-      const double cycles = static_cast<double>(frames_) * period_s_ / term.clock_period_s;
-      const double angle = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
-      measured_[0] = std::sin(angle);
-      measured_[1] = std::cos(angle);
+    case Signal::kCommandLinear:
+      measured_.head<2>() << command[kVx], command[kVy];
       break;
-    }
+    case Signal::kCommandAngular:
+      measured_[0] = command[kOmega];
+      break;
+    case Signal::kClockSin:
+    case Signal::kClockCos:
+      for (std::size_t i = 0; i < term.clock.offsets_cycle.size(); ++i) {
+        const double angle = 2.0 * std::numbers::pi * phase_cycle(term.clock, term.clock.offsets_cycle[i]);
+        measured_[static_cast<Eigen::Index>(i)] = term.signal == Signal::kClockSin ? std::sin(angle) : std::cos(angle);
+      }
+      break;
   }
   return measured_;
 }
 
 const Eigen::VectorXf& SignalHistory::assemble(const model::RobotState& state, const Command& command,
                                                const Eigen::VectorXf& last_action) noexcept {
+  constexpr double kMoves = 0.01;  // [m/s, rad/s]: below it nobody asks for a step
+  const bool moves = std::hypot(command[kVx], command[kVy]) >= kMoves || std::abs(command[kOmega]) >= kMoves;
+  moving_frames_ = moves ? moving_frames_ + 1 : 0;
   for (Track& track : tracks_) {
     const SignalTerm& term = track.term;
     const Eigen::VectorXd& now = measured(term, state, command, last_action);

@@ -19,7 +19,7 @@ class SignalHistory {
   SignalHistory(const PolicyDescriptor& descriptor, const model::RobotModel& robot);
 
   /// Forgets the history; the next frame counts as the first, and the clock begins again.
-  void reset() noexcept { frames_ = 0; }
+  void reset() noexcept { frames_ = moving_frames_ = 0; }
 
   /// (state, command, last action in the network's unit) => (observation), once an inference.
   const Eigen::VectorXf& assemble(const model::RobotState& state, const Command& command,
@@ -33,7 +33,8 @@ class SignalHistory {
     int offset = 0;        ///< in the vector, of the frame that comes first
     int stride = 0;        ///< from a frame to the next in the vector
   };
-  Eigen::VectorXd& measured(const SignalTerm& term, const model::RobotState& state, const Command& command,
+  double phase_cycle(const StepClock& clock, double offset_cycle) const noexcept;
+  const Eigen::VectorXd& measured(const SignalTerm& term, const model::RobotState& state, const Command& command,
                             const Eigen::VectorXf& last_action) noexcept;
 
   std::vector<int> joints_;
@@ -42,7 +43,7 @@ class SignalHistory {
   bool oldest_first_;
   double period_s_;
   std::vector<Track> tracks_;
-  std::int64_t frames_ = 0;
+  std::int64_t frames_ = 0, moving_frames_ = 0;  ///< since the reset; since a velocity was asked for
   Eigen::VectorXd measured_;  ///< of the term at hand; room for the largest
   Eigen::VectorXf vector_;
 };
