@@ -37,8 +37,8 @@ enum class Signal {
 /// Of the terms that tell the time: a policy may step to a clock.
 struct StepClock {
   double period_s = 0.0;
-  std::vector<double> offsets_cycle;    ///< of each foot, or one
-  std::optional<double> at_rest_cycle;  ///< all phases while no velocity is asked for, and then the clock begins again;
+  std::vector<double> offsets_cycle{};    ///< of each foot, or one
+  std::optional<double> at_rest_cycle{};  ///< all phases while no velocity is asked for, and then the clock begins again;
                                         ///< nullopt: it goes on
 };
 
@@ -49,7 +49,7 @@ struct SignalTerm {
   std::vector<double> scale;   ///< one an element
   double clip = std::numeric_limits<double>::infinity();  ///< in the value's own unit
   int history = 1;             ///< frames, this one among them
-  StepClock clock;             ///< of kClockSin and kClockCos
+  StepClock clock{};           ///< of kClockSin and kClockCos
 };
 
 /// How frames of several ticks lie in the vector.

@@ -19,7 +19,7 @@ using test::DescriptorFile;
 using test::z1;
 using testing::HasSubstr;
 
-std::string refusal(const std::filesystem::path& file, const model::RobotModel& robot = z1(), double rate_Hz = 100.0) {
+std::string descriptor_refusal(const std::filesystem::path& file, const model::RobotModel& robot = z1(), double rate_Hz = 100.0) {
   try {
     read_policy_descriptor(file, robot, rate_Hz);
   } catch (const files::ConfigError& error) {
@@ -29,10 +29,10 @@ std::string refusal(const std::filesystem::path& file, const model::RobotModel& 
   return "was accepted";
 }
 
-std::string refusal_after(const std::string& text, const std::string& instead) {
+std::string descriptor_refusal_after(const std::string& text, const std::string& instead) {
   DescriptorFile file;
   file.exchange(text, instead);
-  return refusal(file.file());
+  return descriptor_refusal(file.file());
 }
 
 TEST(PolicyDescriptor, IsReadInItsOwnOrderOfJoints) {
@@ -48,38 +48,38 @@ TEST(PolicyDescriptor, IsReadInItsOwnOrderOfJoints) {
 }
 
 TEST(PolicyDescriptor, AJointThatTheRobotLacksOrKeepsIsNamed) {
-  EXPECT_THAT(refusal_after("right_knee,", "right_kne,"), HasSubstr("'right_kne' is no joint of z1"));
-  EXPECT_THAT(refusal_after("right_knee,", "right_kne,"), HasSubstr("as right_knee"));
-  EXPECT_THAT(refusal_after("right_knee,", "head_yaw,"), HasSubstr("'head_yaw' is given to no policy"));
-  EXPECT_THAT(refusal_after("right_knee,", "left_knee,"), HasSubstr("'left_knee' stands twice"));
+  EXPECT_THAT(descriptor_refusal_after("right_knee,", "right_kne,"), HasSubstr("'right_kne' is no joint of z1"));
+  EXPECT_THAT(descriptor_refusal_after("right_knee,", "right_kne,"), HasSubstr("as right_knee"));
+  EXPECT_THAT(descriptor_refusal_after("right_knee,", "head_yaw,"), HasSubstr("'head_yaw' is given to no policy"));
+  EXPECT_THAT(descriptor_refusal_after("right_knee,", "left_knee,"), HasSubstr("'left_knee' stands twice"));
 }
 
 TEST(PolicyDescriptor, ATermThatIsNotMeasuredIsNamed) {
-  EXPECT_THAT(refusal_after("term: gyro", "term: base_lin_vel"), HasSubstr("'base_lin_vel' isn't measured"));
-  EXPECT_THAT(refusal_after("scale: [2, 2, 0.25]", "scale: [2, 2]"), HasSubstr("has 2 numbers; expected 1 or 3"));
-  EXPECT_THAT(refusal_after("history: 5", "history: 0"), HasSubstr("history"));
-  EXPECT_THAT(refusal_after("term: gyro, scale: [0.2], history: 5", "term: clock_sin, scale: [1]"),
+  EXPECT_THAT(descriptor_refusal_after("term: gyro", "term: base_lin_vel"), HasSubstr("'base_lin_vel' isn't measured"));
+  EXPECT_THAT(descriptor_refusal_after("scale: [2, 2, 0.25]", "scale: [2, 2]"), HasSubstr("has 2 numbers; expected 1 or 3"));
+  EXPECT_THAT(descriptor_refusal_after("history: 5", "history: 0"), HasSubstr("history"));
+  EXPECT_THAT(descriptor_refusal_after("term: gyro, scale: [0.2], history: 5", "term: clock_sin, scale: [1]"),
               HasSubstr("period_s"));
 }
 
 TEST(PolicyDescriptor, WhatWouldMoveTheRobotOtherwiseThanTrainedIsRefused) {
-  EXPECT_THAT(refusal_after("rate_Hz: 50", "rate_Hz: 60"), HasSubstr("divided by a whole number"));
-  EXPECT_THAT(refusal_after("rate_Hz: 50", "rate_Hz: 200"), HasSubstr("divided by a whole number"));
-  EXPECT_THAT(refusal_after("default_rad: [-0.2, 0, 0, 0.4", "default_rad: [-0.2, 0, 0, 4.0"),
+  EXPECT_THAT(descriptor_refusal_after("rate_Hz: 50", "rate_Hz: 60"), HasSubstr("divided by a whole number"));
+  EXPECT_THAT(descriptor_refusal_after("rate_Hz: 50", "rate_Hz: 200"), HasSubstr("divided by a whole number"));
+  EXPECT_THAT(descriptor_refusal_after("default_rad: [-0.2, 0, 0, 0.4", "default_rad: [-0.2, 0, 0, 4.0"),
               HasSubstr("has right_knee at 4 rad"));
-  EXPECT_THAT(refusal_after("kp_Nm_per_rad: [101,", "kp_Nm_per_rad: ["), HasSubstr("kp_Nm_per_rad"));
-  EXPECT_THAT(refusal_after("kd_Nm_s_per_rad: [1,", "kd_Nm_s_per_rad: [0,"), HasSubstr("kd_Nm_s_per_rad"));
-  EXPECT_THAT(refusal_after("vx_m_s: [-0.3, 0.6]", "vx_m_s: [0.3, 0.6]"), HasSubstr("a range with 0 in it"));
-  EXPECT_THAT(refusal_after("frames: by_term", "frames: by_frame"), HasSubstr("the same history of all terms"));
-  EXPECT_THAT(refusal_after("rate_Hz", "rate_hz"), HasSubstr("rate_Hz"));
-  EXPECT_THAT(refusal_after("format: 1", "format: 1\nobservations: []"), HasSubstr("observations"));
+  EXPECT_THAT(descriptor_refusal_after("kp_Nm_per_rad: [101,", "kp_Nm_per_rad: ["), HasSubstr("kp_Nm_per_rad"));
+  EXPECT_THAT(descriptor_refusal_after("kd_Nm_s_per_rad: [1,", "kd_Nm_s_per_rad: [0,"), HasSubstr("kd_Nm_s_per_rad"));
+  EXPECT_THAT(descriptor_refusal_after("vx_m_s: [-0.3, 0.6]", "vx_m_s: [0.3, 0.6]"), HasSubstr("a range with 0 in it"));
+  EXPECT_THAT(descriptor_refusal_after("frames: by_term", "frames: by_frame"), HasSubstr("the same history of all terms"));
+  EXPECT_THAT(descriptor_refusal_after("rate_Hz", "rate_hz"), HasSubstr("rate_Hz"));
+  EXPECT_THAT(descriptor_refusal_after("format: 1", "format: 1\nobservations: []"), HasSubstr("observations"));
 }
 
 TEST(PolicyDescriptor, AnImuThatMovesAgainstTheBaseIsRefused) {
   const DescriptorFile file;
   model::RobotModel robot = z1();
   robot.imu.link = robot.torso_link;
-  EXPECT_THAT(refusal(file.file(), robot), HasSubstr("joint waist_pitch is between the base and the IMU"));
+  EXPECT_THAT(descriptor_refusal(file.file(), robot), HasSubstr("joint waist_pitch is between the base and the IMU"));
 }
 
 TEST(PolicyDescriptor, AGoldenPairOfAnotherSizeIsNamedWithItsLine) {
@@ -89,7 +89,7 @@ TEST(PolicyDescriptor, AGoldenPairOfAnotherSizeIsNamedWithItsLine) {
   std::string row = "0";
   for (int i = 1; i < 264 + 12; ++i) row += ",0";
   pairs << row << "\n" << row << ",0\n" << std::flush;
-  EXPECT_THAT(refusal(file.file()), HasSubstr("foreign_golden.csv:2"));
+  EXPECT_THAT(descriptor_refusal(file.file()), HasSubstr("foreign_golden.csv:2"));
 }
 
 }  // namespace

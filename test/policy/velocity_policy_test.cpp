@@ -99,7 +99,7 @@ TEST_F(AForeignPolicy, AStateThatIsNoNumberGivesNoTarget) {
   EXPECT_EQ(policy.act(state_, reference_, {}, q_des), Status::kNotFinite);
 }
 
-std::string refusal(const DescriptorFile& file) {
+std::string policy_refusal(const DescriptorFile& file) {
   try {
     const VelocityPolicy policy(file.file(), z1());
   } catch (const std::invalid_argument& error) {
@@ -110,7 +110,7 @@ std::string refusal(const DescriptorFile& file) {
 
 TEST_F(AForeignPolicy, WhoseNetworkDoesNotFitItsDescriptorIsRefused) {
   file_.exchange("  - {term: command_angular, scale: [1]}\n", "");
-  EXPECT_THAT(refusal(file_), testing::AllOf(HasSubstr("foreign.onnx"), HasSubstr("expected single-precision [1, 263]")));
+  EXPECT_THAT(policy_refusal(file_), testing::AllOf(HasSubstr("foreign.onnx"), HasSubstr("expected single-precision [1, 263]")));
 }
 
 TEST_F(AForeignPolicy, ThatComputesOtherActionsThanItsGoldenPairsIsRefused) {
@@ -121,12 +121,12 @@ TEST_F(AForeignPolicy, ThatComputesOtherActionsThanItsGoldenPairsIsRefused) {
   for (int i = 0; i < 12; ++i) actions += ",9";
   file_.append("golden: pairs.csv\ngolden_tolerance: 0.001\n");
   std::ofstream(file_.file().parent_path() / "pairs.csv") << zeros << actions << "\n";
-  EXPECT_THAT(refusal(file_), HasSubstr("golden pair 0, action 0"));
+  EXPECT_THAT(policy_refusal(file_), HasSubstr("golden pair 0, action 0"));
 }
 
 TEST_F(AForeignPolicy, IsRefusedWithoutItsNetwork) {
   file_.exchange("network: foreign.onnx", "network: absent.onnx");
-  EXPECT_THAT(refusal(file_), HasSubstr("absent.onnx"));
+  EXPECT_THAT(policy_refusal(file_), HasSubstr("absent.onnx"));
 }
 
 }  // namespace

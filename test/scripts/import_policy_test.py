@@ -213,6 +213,17 @@ class ImportPolicy(unittest.TestCase):
         numpy.savetxt(rollout, seen, delimiter=",")
         self.expect_refused("rollout.csv:1: has 24 numbers", network, *self.unitree(), "--rollout", rollout)
 
+    def test_a_violent_start_is_told(self):
+        network, weights = self.network(18, metadata=self.METADATA)
+        gravity = -weights[5] * 0.5  # base_ang_vel has the first three numbers, then projected_gravity
+        worst = int(numpy.argmax(abs(gravity)))
+        done = self.run_import(network, *self.TOLD)
+        self.assertIn(f"from rest it moves {JOINTS[worst]} most, by {abs(gravity[worst]):.2f} rad", done.stdout)
+        self.assertEqual(done.stderr != "", abs(gravity[worst]) > 0.5)
+        self.out = self.folder / "robot/policies/wild"
+        network, _ = self.network(18, metadata=self.METADATA | {"action_scale": "50"})
+        self.assertIn("refused by the controller", self.run_import(network, *self.TOLD).stderr)
+
     def test_a_network_that_remembers_or_is_none_is_refused(self):
         self.expect_refused("with a memory of its own", self.network(24, extra=["h_in"])[0], *self.unitree())
         memory = onnx.helper.make_node("GRU", ["x", "w", "r"], ["y"])
