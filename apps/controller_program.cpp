@@ -207,8 +207,9 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
 void complete(Arguments& arguments, const model::RobotModel& robot) {
   if (arguments.name.empty()) arguments.name = robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
+  if (!arguments.log.has_filename()) arguments.log = arguments.log.parent_path();  // "out/first/" is out/first
   const fs::path asked = std::exchange(arguments.log, recording::run_folder(arguments.log));
-  if (asked != arguments.log && asked != arguments.log / "") {
+  if (asked != arguments.log) {
     spdlog::warn("{} has the log of another run: this one's goes to {}", asked.string(), arguments.log.string());
   }
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);

@@ -56,10 +56,11 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   if (!fs::exists(file)) {
     const std::string meant = files::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
-        meant.empty() ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file or its descriptor "
-                                    "(YAML), or none",
-                                    named_by, name, file.string())
-                      : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
+        meant.empty()
+            ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file or its descriptor "
+                          "(YAML), or none",
+                          named_by, name, file.string())
+            : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
   }
   return file;
 }
@@ -94,17 +95,15 @@ std::vector<fs::path> load_velocity_policy(const fs::path& descriptor, LoadedCon
   return files;
 }
 
-/// (policy's file, nothing for none) => (clips, library, policy, files of it).
-std::vector<fs::path> load_clips_and_policy(const ControlSetup& setup, const std::optional<fs::path>& file,
-                                            LoadedControl& loaded) {
-  loaded.clips = chosen_clips(setup, loaded.robot);
+/// (policy's file, nothing for none; clips) => (library, policy, files of it).
+std::vector<fs::path> load_trained_policy(const std::optional<fs::path>& file, LoadedControl& loaded) {
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   if (!file) {
     loaded.policy = std::make_unique<policy::ReferencePolicy>();
     return {};
   }
-  loaded.policy = std::make_unique<policy::OnnxPolicy>(
-      *file, loaded.robot, model::clip_library_sha256(loaded.clips), 1.0 / loaded.options.dt_s);
+  loaded.policy = std::make_unique<policy::OnnxPolicy>(*file, loaded.robot, model::clip_library_sha256(loaded.clips),
+                                                       1.0 / loaded.options.dt_s);
   return {*file};
 }
 
@@ -215,13 +214,13 @@ fs::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot)
 LoadedControl load_control(const ControlSetup& setup) {
   LoadedControl loaded;
   loaded.robot = model::load_robot(model::find_robot(setup.robot));
+  loaded.clips = chosen_clips(setup, loaded.robot);
   loaded.options = tick_options(loaded.robot);
   loaded.policy_name = chosen_policy(setup, loaded.robot);
   const std::optional<fs::path> policy =
       policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
-  const std::vector<fs::path> policy_files = policy && is_descriptor(*policy)
-                                                 ? load_velocity_policy(*policy, loaded)
-                                                 : load_clips_and_policy(setup, policy, loaded);
+  const std::vector<fs::path> policy_files =
+      policy && is_descriptor(*policy) ? load_velocity_policy(*policy, loaded) : load_trained_policy(policy, loaded);
   loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
   loaded.variant = loaded.policy->variant();
   model::Bundle bundle = model::bundle(loaded.robot, loaded.clips, policy_files);

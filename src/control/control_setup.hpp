@@ -27,7 +27,7 @@ struct LoadedControl {
   model::RobotModel robot;
   std::filesystem::path clips;  ///< empty: the policy steps by itself
   ClipLibrary library;          ///< then the standing posture alone
-  std::string policy_name;  ///< as ControlSetup's, and never empty
+  std::string policy_name;      ///< as ControlSetup's, and never empty
   std::unique_ptr<policy::Policy> policy;
   Variant variant = Variant::kPmg;  ///< the policy's
   TickOptions options;

@@ -69,9 +69,10 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
       findings.push_back(warn("policy", "none: nothing balances the robot",
                               "give --policy, or write `policy` into robot.yaml; else keep the robot in its gantry"));
     } else {
-      findings.push_back(ok("policy", loaded.policy_name + (loaded.variant == Variant::kVelocity
-                                                                ? " fits the robot"
-                                                                : " fits robot and clips, and computes its golden actions")));
+      findings.push_back(
+          ok("policy", loaded.policy_name + (loaded.variant == Variant::kVelocity
+                                                 ? " fits the robot"
+                                                 : " fits robot and clips, and computes its golden actions")));
     }
     findings.push_back(bundle_finding(loaded.bundle, bundle));
   } catch (const std::exception& error) {

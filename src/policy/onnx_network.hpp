@@ -27,7 +27,8 @@ class OnnxNetwork {
   /// The text of a metadata entry; nullopt without it. Throws std::invalid_argument when it is implausibly long.
   std::optional<std::string> metadata(const char* key) const;
 
-  /// Checks shapes and makes the buffers; once, before the first run(). Throws std::invalid_argument saying what differs.
+  /// Checks shapes and makes the buffers; once, before the first run(). Throws std::invalid_argument saying what
+  /// differs.
   void bind(const TensorExpected& input, const TensorExpected& output);
 
   Eigen::VectorXf& input() noexcept { return input_; }    ///< its size stays as bound

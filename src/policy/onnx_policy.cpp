@@ -23,9 +23,10 @@ constexpr const char* kMetadataKey = "pmg_policy";
 std::string metadata_text(const OnnxNetwork& network) {
   const std::optional<std::string> text = network.metadata(kMetadataKey);
   if (!text) {
-    refuse(fmt::format("it has no metadata {}; expected a policy exported by training, or a descriptor beside a policy "
-                       "of another project (scripts/import-policy)",
-                       kMetadataKey));
+    refuse(
+        fmt::format("it has no metadata {}; expected a policy exported by training, or a descriptor beside a policy "
+                    "of another project (scripts/import-policy)",
+                    kMetadataKey));
   }
   return *text;
 }

@@ -113,10 +113,9 @@ void read_action(files::ConfigReader& reader, PolicyDescriptor& descriptor) {
   descriptor.action_scale_rad = reader.numbers("action_scale_rad", descriptor.joints.size(), files::positive());
   if (reader.has("action_limit")) descriptor.action_limit = reader.required<double>("action_limit", files::positive());
   if (!reader.has("action_bound_rad")) return;
-  descriptor.action_bound_rad =
-      reader.required<double>("action_bound_rad", {"more than 0 and at most half a turn", [](double value) {
-                                                     return value > 0.0 && value <= std::numbers::pi;
-                                                   }});
+  descriptor.action_bound_rad = reader.required<double>(
+      "action_bound_rad",
+      {"more than 0 and at most half a turn", [](double value) { return value > 0.0 && value <= std::numbers::pi; }});
 }
 
 void read_command(files::ConfigReader reader, VelocityRange& range) {
@@ -255,8 +254,8 @@ PolicyDescriptor read_policy_descriptor(const std::filesystem::path& file, const
     descriptor.golden_tolerance =
         reader.required<double>("golden_tolerance", files::in_range(1e-7, kLargestGoldenTolerance));
     descriptor.files.push_back(file.parent_path() / reader.required<std::string>("golden"));
-    descriptor.golden = read_golden(descriptor.files.back(),
-                                    static_cast<std::size_t>(descriptor.observation_size), descriptor.joints.size());
+    descriptor.golden = read_golden(descriptor.files.back(), static_cast<std::size_t>(descriptor.observation_size),
+                                    descriptor.joints.size());
   }
   reader.finish();
   return descriptor;

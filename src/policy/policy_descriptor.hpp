@@ -1,4 +1,5 @@
-// What another project's policy sees and commands, read from a YAML file beside its network (docs/reference/file-formats.md).
+// What another project's policy sees and commands, read from a YAML file beside its network
+// (docs/reference/file-formats.md).
 #pragma once
 
 #include <array>
@@ -38,47 +39,48 @@ enum class Signal {
 struct StepClock {
   double period_s = 0.0;
   std::vector<double> offsets_cycle{};    ///< of each foot, or one
-  std::optional<double> at_rest_cycle{};  ///< all phases while no velocity is asked for, and then the clock begins again;
-                                        ///< nullopt: it goes on
+  std::optional<double> at_rest_cycle{};  ///< all phases while no velocity is asked for, and then the clock begins
+                                          ///< again; nullopt: it goes on
 };
 
 /// One term: each element is scale * clamp(value, -clip, clip), of each of `history` frames.
 struct SignalTerm {
   Signal signal = Signal::kGyro;
-  int size = 0;                ///< elements of one frame
-  std::vector<double> scale;   ///< one an element
+  int size = 0;                                           ///< elements of one frame
+  std::vector<double> scale;                              ///< one an element
   double clip = std::numeric_limits<double>::infinity();  ///< in the value's own unit
-  int history = 1;             ///< frames, this one among them
-  StepClock clock{};           ///< of kClockSin and kClockCos
+  int history = 1;                                        ///< frames, this one among them
+  StepClock clock{};                                      ///< of kClockSin and kClockCos
 };
 
 /// How frames of several ticks lie in the vector.
 struct HistoryOrder {
-  bool by_term = true;       ///< all frames of a term, then the next term; otherwise all terms of a frame
+  bool by_term = true;  ///< all frames of a term, then the next term; otherwise all terms of a frame
   bool oldest_first = true;
 };
 
 struct PolicyDescriptor {
-  std::filesystem::path network;  ///< the ONNX file
-  std::vector<std::filesystem::path> files;  ///< the network, and what else the descriptor names
-  std::string input, output;      ///< the network's names of them
-  double rate_Hz = 0.0;           ///< of inferences
-  std::vector<int> joints;        ///< in the network's order, indices of the robot's joint order
+  std::filesystem::path network;                      ///< the ONNX file
+  std::vector<std::filesystem::path> files;           ///< the network, and what else the descriptor names
+  std::string input, output;                          ///< the network's names of them
+  double rate_Hz = 0.0;                               ///< of inferences
+  std::vector<int> joints;                            ///< in the network's order, indices of the robot's joint order
   std::vector<double> default_rad, action_scale_rad;  ///< one a joint: q_des = default + scale * action
-  std::optional<double> action_limit;      ///< the network's outputs are clamped to +- this; nullopt: they are not
-  std::optional<double> action_bound_rad;  ///< largest |q_des - default| in normal operation; nullopt: the monitor's own
-  DriveGains gains;               ///< in the robot's joint order; robot.yaml's for joints that aren't the policy's
-  VelocityRange command;          ///< that the policy was trained for
+  std::optional<double> action_limit;  ///< the network's outputs are clamped to +- this; nullopt: they are not
+  std::optional<double>
+      action_bound_rad;   ///< largest |q_des - default| in normal operation; nullopt: the monitor's own
+  DriveGains gains;       ///< in the robot's joint order; robot.yaml's for joints that aren't the policy's
+  VelocityRange command;  ///< that the policy was trained for
   std::vector<SignalTerm> observation;
   HistoryOrder order;
-  int observation_size = 0;       ///< of all frames of all terms
+  int observation_size = 0;  ///< of all frames of all terms
   double golden_tolerance = 0.0;
-  std::vector<GoldenPair> golden; ///< may be empty
+  std::vector<GoldenPair> golden;  ///< may be empty
 };
 
-/// Reads and checks against the robot. Throws files::ConfigError with file, line and key, and what was expected: a joint
-/// that the robot hasn't or gives to no policy, a term that isn't known, sizes, gains, a rate that doesn't divide the
-/// controller's, an IMU that isn't fixed to the base.
+/// Reads and checks against the robot. Throws files::ConfigError with file, line and key, and what was expected: a
+/// joint that the robot hasn't or gives to no policy, a term that isn't known, sizes, gains, a rate that doesn't divide
+/// the controller's, an IMU that isn't fixed to the base.
 PolicyDescriptor read_policy_descriptor(const std::filesystem::path& file, const model::RobotModel& robot,
                                         double control_rate_Hz);
 

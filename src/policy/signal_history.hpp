@@ -35,7 +35,7 @@ class SignalHistory {
   };
   double phase_cycle(const StepClock& clock, double offset_cycle) const noexcept;
   const Eigen::VectorXd& measured(const SignalTerm& term, const model::RobotState& state, const Command& command,
-                            const Eigen::VectorXf& last_action) noexcept;
+                                  const Eigen::VectorXf& last_action) noexcept;
 
   std::vector<int> joints_;
   std::vector<double> default_rad_;
@@ -44,7 +44,7 @@ class SignalHistory {
   double period_s_;
   std::vector<Track> tracks_;
   std::int64_t frames_ = 0, moving_frames_ = 0;  ///< since the reset; since a velocity was asked for
-  Eigen::VectorXd measured_;  ///< of the term at hand; room for the largest
+  Eigen::VectorXd measured_;                     ///< of the term at hand; room for the largest
   Eigen::VectorXf vector_;
 };
 

@@ -85,8 +85,8 @@ Status VelocityPolicy::act(const model::RobotState& state, const Reference& refe
     }
     for (std::size_t i = 0; i < impl.descriptor.joints.size(); ++i) {
       impl.target[impl.descriptor.joints[i]] =
-          impl.descriptor.default_rad[i] + impl.descriptor.action_scale_rad[i] *
-                                               static_cast<double>(impl.action[static_cast<Eigen::Index>(i)]);
+          impl.descriptor.default_rad[i] +
+          impl.descriptor.action_scale_rad[i] * static_cast<double>(impl.action[static_cast<Eigen::Index>(i)]);
     }
   }
   --impl.ticks_until_inference;

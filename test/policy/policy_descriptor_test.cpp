@@ -19,7 +19,8 @@ using test::DescriptorFile;
 using test::z1;
 using testing::HasSubstr;
 
-std::string descriptor_refusal(const std::filesystem::path& file, const model::RobotModel& robot = z1(), double rate_Hz = 100.0) {
+std::string descriptor_refusal(const std::filesystem::path& file, const model::RobotModel& robot = z1(),
+                               double rate_Hz = 100.0) {
   try {
     read_policy_descriptor(file, robot, rate_Hz);
   } catch (const files::ConfigError& error) {
@@ -56,7 +57,8 @@ TEST(PolicyDescriptor, AJointThatTheRobotLacksOrKeepsIsNamed) {
 
 TEST(PolicyDescriptor, ATermThatIsNotMeasuredIsNamed) {
   EXPECT_THAT(descriptor_refusal_after("term: gyro", "term: base_lin_vel"), HasSubstr("'base_lin_vel' isn't measured"));
-  EXPECT_THAT(descriptor_refusal_after("scale: [2, 2, 0.25]", "scale: [2, 2]"), HasSubstr("has 2 numbers; expected 1 or 3"));
+  EXPECT_THAT(descriptor_refusal_after("scale: [2, 2, 0.25]", "scale: [2, 2]"),
+              HasSubstr("has 2 numbers; expected 1 or 3"));
   EXPECT_THAT(descriptor_refusal_after("history: 5", "history: 0"), HasSubstr("history"));
   EXPECT_THAT(descriptor_refusal_after("term: gyro, scale: [0.2], history: 5", "term: clock_sin, scale: [1]"),
               HasSubstr("period_s"));
@@ -70,7 +72,8 @@ TEST(PolicyDescriptor, WhatWouldMoveTheRobotOtherwiseThanTrainedIsRefused) {
   EXPECT_THAT(descriptor_refusal_after("kp_Nm_per_rad: [101,", "kp_Nm_per_rad: ["), HasSubstr("kp_Nm_per_rad"));
   EXPECT_THAT(descriptor_refusal_after("kd_Nm_s_per_rad: [1,", "kd_Nm_s_per_rad: [0,"), HasSubstr("kd_Nm_s_per_rad"));
   EXPECT_THAT(descriptor_refusal_after("vx_m_s: [-0.3, 0.6]", "vx_m_s: [0.3, 0.6]"), HasSubstr("a range with 0 in it"));
-  EXPECT_THAT(descriptor_refusal_after("frames: by_term", "frames: by_frame"), HasSubstr("the same history of all terms"));
+  EXPECT_THAT(descriptor_refusal_after("frames: by_term", "frames: by_frame"),
+              HasSubstr("the same history of all terms"));
   EXPECT_THAT(descriptor_refusal_after("rate_Hz", "rate_hz"), HasSubstr("rate_Hz"));
   EXPECT_THAT(descriptor_refusal_after("format: 1", "format: 1\nobservations: []"), HasSubstr("observations"));
 }

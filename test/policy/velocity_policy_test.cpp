@@ -110,7 +110,8 @@ std::string policy_refusal(const DescriptorFile& file) {
 
 TEST_F(AForeignPolicy, WhoseNetworkDoesNotFitItsDescriptorIsRefused) {
   file_.exchange("  - {term: command_angular, scale: [1]}\n", "");
-  EXPECT_THAT(policy_refusal(file_), testing::AllOf(HasSubstr("foreign.onnx"), HasSubstr("expected single-precision [1, 263]")));
+  EXPECT_THAT(policy_refusal(file_),
+              testing::AllOf(HasSubstr("foreign.onnx"), HasSubstr("expected single-precision [1, 263]")));
 }
 
 TEST_F(AForeignPolicy, ThatComputesOtherActionsThanItsGoldenPairsIsRefused) {

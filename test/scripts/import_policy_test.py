@@ -1,16 +1,26 @@
 """scripts/import-policy and scripts/import-robot on the files of other projects: what they write, and what they name instead of guessing."""
 
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
+from typing import ClassVar
 
+sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOUND = subprocess.run([ROOT / "third_party/python-packages", "policies", "--cached"], capture_output=True, text=True)
 if FOUND.returncode == 0:
     sys.path.insert(0, FOUND.stdout.strip())
+    loader = importlib.machinery.SourceFileLoader("import_policy", str(ROOT / "scripts/import-policy"))
+    SCRIPT = importlib.util.module_from_spec(importlib.util.spec_from_loader("import_policy", loader))
+    loader.exec_module(SCRIPT)
     import numpy
     import onnx
     import yaml
@@ -19,9 +29,12 @@ JOINTS = ["left_knee", "right_knee", "waist"]
 RANGES = ["--vx", "-0.5", "1", "--vy", "-0.3", "0.3", "--omega", "-0.4", "0.4"]
 
 # Two legs of one joint and a waist; the foot's spheres; a frame without mass for the IMU, turned by a quarter about z; a mesh.
-LINK = '<link name="{0}"><inertial><origin xyz="0 0 0"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{1}</link>'
+LINK = (
+    '<link name="{0}"><inertial><origin xyz="0 0 0"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{1}</link>'
+)
 JOINT = (
-    '<joint name="{0}" type="revolute"><parent link="pelvis"/><child link="{1}"/><axis xyz="0 1 0"/><limit lower="{2}" upper="2" effort="100" velocity="20"/></joint>'
+    '<joint name="{0}" type="revolute"><parent link="pelvis"/><child link="{1}"/><axis xyz="0 1 0"/>'
+    '<limit lower="{2}" upper="2" effort="100" velocity="20"/></joint>'
 )
 SPHERES = "".join(
     f'<collision><origin xyz="{x} {y} -0.02"/><geometry><sphere radius="0.01"/></geometry></collision>' for x in (-0.1, 0.2) for y in (-0.05, 0.05)
@@ -30,7 +43,8 @@ MESH = '<visual><geometry><mesh filename="torso.stl"/></geometry></visual>'
 URDF = "<robot name='r'>" + "".join(
     [
         LINK.format("pelvis", ""), LINK.format("left_foot", SPHERES), LINK.format("right_foot", SPHERES), LINK.format("torso", MESH),
-        '<link name="imu"/>', JOINT.format("left_knee", "left_foot", -0.1), JOINT.format("right_knee", "right_foot", -0.1), JOINT.format("waist", "torso", -2),
+        '<link name="imu"/>', JOINT.format("left_knee", "left_foot", -0.1),
+        JOINT.format("right_knee", "right_foot", -0.1), JOINT.format("waist", "torso", -2),
         '<joint name="imu_joint" type="fixed"><origin xyz="0.1 0 0.2" rpy="0 0 1.5707963"/><parent link="pelvis"/><child link="imu"/></joint>',
     ]
 ) + "</robot>"  # fmt: skip
@@ -39,7 +53,8 @@ URDF = "<robot name='r'>" + "".join(
 def deploy():
     """As unitree_rl_lab writes it: gains in the motors' order, the rest in the policy's (right knee, waist, left knee)."""
     return {
-        "joint_ids_map": [1, 2, 0], "step_dt": 0.02, "stiffness": [10.0, 20.0, 30.0], "damping": [1.0, 2.0, 3.0], "default_joint_pos": [0.2, 0.0, 0.3],
+        "joint_ids_map": [1, 2, 0], "step_dt": 0.02, "stiffness": [10.0, 20.0, 30.0], "damping": [1.0, 2.0, 3.0],
+        "default_joint_pos": [0.2, 0.0, 0.3],
         "commands": {"base_velocity": {"ranges": {"lin_vel_x": [-0.5, 1.0], "lin_vel_y": [-0.3, 0.3], "ang_vel_z": [-0.2, 0.2], "heading": None}}},
         "actions": {"JointPositionAction": {"clip": None, "scale": [0.25, 0.25, 0.5], "offset": [0.2, 0.0, 0.3]}},
         "observations": {
@@ -78,8 +93,11 @@ class ImportPolicy(unittest.TestCase):
         return path, weights
 
     def run_import(self, network, *words):
-        command = [sys.executable, ROOT / "scripts/import-policy", network, "--robot", self.urdf, "--out", self.out, *words]
-        return subprocess.run(list(map(str, command)), capture_output=True, text=True)
+        """In this process: a new one would import onnx again."""
+        said, complained = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
+            code = SCRIPT.main([str(word) for word in (network, "--robot", self.urdf, "--out", self.out, *words)])
+        return types.SimpleNamespace(returncode=code, stdout=said.getvalue(), stderr=complained.getvalue())
 
     def expect_descriptor(self, network, *words):
         done = self.run_import(network, *words)
@@ -146,7 +164,8 @@ class ImportPolicy(unittest.TestCase):
             "num_observations": 15, "observations": ["ang_vel", "gravity_vec", "commands", "dof_pos", "actions"], "observations_history": [1, 0],
             "observations_history_priority": "time", "clip_obs": 100.0, "clip_actions_lower": [-20.0] * 3, "clip_actions_upper": [20.0] * 3,
             "rl_kp": [10.0, 20.0, 30.0], "rl_kd": [1.0, 2.0, 3.0], "action_scale": [0.25] * 3, "wheel_indices": [], "ang_vel_scale": 0.25,
-            "dof_pos_scale": 1.0, "dof_vel_scale": 0.05, "commands_scale": [2.0, 2.0, 0.25], "default_dof_pos": [0.1, 0.2, 0.3], "joint_mapping": [2, 0, 1],
+            "dof_pos_scale": 1.0, "dof_vel_scale": 0.05, "commands_scale": [2.0, 2.0, 0.25], "default_dof_pos": [0.1, 0.2, 0.3],
+            "joint_mapping": [2, 0, 1],
         }  # fmt: skip
         (self.folder / "base.yaml").write_text(yaml.safe_dump({"r": base}))
         (self.folder / "config.yaml").write_text(yaml.safe_dump({"r/walk": told | change}))
@@ -167,11 +186,12 @@ class ImportPolicy(unittest.TestCase):
         self.expect_refused("drives wheels", network, *self.rl_sar(wheel_indices=[2]))
         self.expect_refused("expected all ages", network, *self.rl_sar(observations_history=[0, 2]))
 
-    METADATA = {
-        "joint_names": ",".join(JOINTS), "joint_stiffness": "10.000,20.000,30.000", "joint_damping": "1.0,2.0,3.0", "default_joint_pos": "0.1,0.2,0.3",
+    METADATA: ClassVar = {
+        "joint_names": ",".join(JOINTS), "joint_stiffness": "10.000,20.000,30.000", "joint_damping": "1.0,2.0,3.0",
+        "default_joint_pos": "0.1,0.2,0.3",
         "action_scale": "0.5", "observation_names": "base_ang_vel,projected_gravity,joint_pos,joint_vel,actions,command",
     }  # fmt: skip
-    TOLD = ["--metadata", "--rate-Hz", "50", "--history", "1", "--scale", "all=1", *RANGES]
+    TOLD: ClassVar = ["--metadata", "--rate-Hz", "50", "--history", "1", "--scale", "all=1", *RANGES]
 
     def test_the_entries_of_mjlab_and_isaaclab_become_a_descriptor(self):
         told = self.expect_descriptor(self.network(18, metadata=self.METADATA)[0], *self.TOLD, "--scale", "joint_vel=0.05")
@@ -198,7 +218,9 @@ class ImportPolicy(unittest.TestCase):
         self.expect_refused("--clock-period", network, *words)
         told = self.expect_descriptor(network, *words, "--clock-period", "1", "--clock-offsets", "0,0.5", "--clock-at-rest", "0.5")
         self.assertEqual((told["default_rad"], told["command"]["vy_m_s"]), ([0.4, 0, 0], [-0.5, 0.5]))
-        self.assertEqual(told["observation"][3], {"term": "clock_cos", "scale": [1], "history": 1, "period_s": 1, "offsets_cycle": [0, 0.5], "at_rest_cycle": 0.5})
+        self.assertEqual(
+            told["observation"][3], {"term": "clock_cos", "scale": [1], "history": 1, "period_s": 1, "offsets_cycle": [0, 0.5], "at_rest_cycle": 0.5}
+        )
 
     def test_a_recorded_rollout_is_replayed_before_it_is_believed(self):
         network, weights = self.network(24)
@@ -233,8 +255,30 @@ class ImportPolicy(unittest.TestCase):
         self.expect_refused("torch.onnx.export", self.folder / "policy.pt", *self.unitree())
 
     def robot(self, *words):
-        command = [sys.executable, ROOT / "scripts/import-robot", self.urdf, "--policy", self.out.with_suffix(".yaml"), "--name", "r", "--base", "pelvis"]
-        command += ["--torso", "torso", "--imu", "imu", "--left-foot", "left_foot", "--right-foot", "right_foot", "--out", self.folder / "robot", *words]
+        command = [
+            sys.executable,
+            ROOT / "scripts/import-robot",
+            self.urdf,
+            "--policy",
+            self.out.with_suffix(".yaml"),
+            "--name",
+            "r",
+            "--base",
+            "pelvis",
+        ]
+        command += [
+            "--torso",
+            "torso",
+            "--imu",
+            "imu",
+            "--left-foot",
+            "left_foot",
+            "--right-foot",
+            "right_foot",
+            "--out",
+            self.folder / "robot",
+            *words,
+        ]
         return subprocess.run(list(map(str, command)), capture_output=True, text=True)
 
     def test_the_robot_stands_as_its_policy_was_trained_to(self):
