@@ -171,16 +171,22 @@ class ImportBench(unittest.TestCase):
             writer = Writer(file)
             writer.start()
             schema = writer.register_schema("joints", "jsonschema", b"{}")
-            channels = {topic: writer.register_channel(topic, encoding, schema) for topic, encoding in (("/joints", "json"), ("/other", "protobuf"))}
+            channels = {
+                topic: writer.register_channel(topic, encoding, schema)
+                for topic, encoding in (("/joints", "json"), ("/odd", "json"), ("/other", "protobuf"))
+            }
+            for k in range(12):
+                writer.add_message(channels["/odd"], 10**9 + k, json.dumps({"position": 1.0, **({"extra": 1} if k == 7 else {})}).encode(), 0)
             for k in range(20):
                 message = {"name": ["hip", "knee"], "position": [7.0, float(k)], "velocity": [0.0, 10.0 + k], "goal": {"kp": 3}}
                 writer.add_message(channels["/joints"], 10**9 + 10_000_000 * k, json.dumps(message).encode(), 0)
             writer.add_message(channels["/other"], 10**9, b"x", 0)
             writer.finish()
-        self.expect_refused("choose one by --topic: /joints, /other", path, *BASE, *self.TOPIC_MAPS)
+        self.expect_refused("choose one by --topic: /joints, /odd, /other", path, *BASE, *self.TOPIC_MAPS)
         self.expect_refused("has no topic '/join'", path, *BASE, *self.TOPIC_MAPS, "--topic", "/join")
         self.expect_bag(path)
         self.out = self.folder / "second"
+        self.expect_refused("message 7 of /odd has other fields than the first: extra", path, *BASE, *self.TOPIC_MAPS, "--topic", "/odd")
         self.expect_refused("/other is encoded as protobuf", path, *BASE, *self.TOPIC_MAPS, "--topic", "/other")
         self.expect_refused("no column 'goal.kd'", path, *BASE, *self.TOPIC_MAPS[:4], "--map", "q_rad=goal.kd[deg]", "--topic", "/joints")
         path.write_bytes(path.read_bytes()[:100])

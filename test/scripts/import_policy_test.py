@@ -136,6 +136,9 @@ class ImportPolicy(unittest.TestCase):
             told["observations"]["gait_phase"] = {"params": {"period": 0.8}, "clip": None, "scale": [1, 2], "history_length": 1}
 
         told = self.expect_descriptor(self.network(26)[0], *self.unitree(clock))
+        self.out = self.folder / "robot/policies/remembers"
+        remembers = {"params": {"period": 0.8}, "clip": None, "scale": [1, 2], "history_length": 2}
+        self.expect_refused("has a history of 2", self.network(28)[0], *self.unitree(lambda told: told["observations"].update(gait_phase=remembers)))
         clock = {"period_s": 0.8, "offsets_cycle": [0]}
         self.assertEqual(told["observation"][-2:], [{"term": "clock_sin", "scale": [1]} | clock, {"term": "clock_cos", "scale": [2]} | clock])
 
