@@ -87,8 +87,6 @@ OnnxNetwork::OnnxNetwork(const std::filesystem::path& file) {
 }
 
 OnnxNetwork::~OnnxNetwork() = default;
-OnnxNetwork::OnnxNetwork(OnnxNetwork&&) noexcept = default;
-OnnxNetwork& OnnxNetwork::operator=(OnnxNetwork&&) noexcept = default;
 
 std::optional<std::string> OnnxNetwork::metadata(const char* key) const {
   const Ort::AllocatorWithDefaultOptions allocator;

@@ -21,8 +21,8 @@ class OnnxNetwork {
   /// Reads the file. Throws files::ConfigError when it is missing or too large, Ort::Exception when it is no network.
   explicit OnnxNetwork(const std::filesystem::path& file);
   ~OnnxNetwork();
-  OnnxNetwork(OnnxNetwork&&) noexcept;
-  OnnxNetwork& operator=(OnnxNetwork&&) noexcept;
+  OnnxNetwork(const OnnxNetwork&) = delete;  ///< the runtime has the buffers' addresses
+  OnnxNetwork& operator=(const OnnxNetwork&) = delete;
 
   /// The text of a metadata entry; nullopt without it. Throws std::invalid_argument when it is implausibly long.
   std::optional<std::string> metadata(const char* key) const;
