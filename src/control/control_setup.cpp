@@ -97,6 +97,12 @@ std::vector<fs::path> load_velocity_policy(const fs::path& descriptor, LoadedCon
 
 /// (policy's file, nothing for none; clips) => (library, policy, files of it).
 std::vector<fs::path> load_trained_policy(const std::optional<fs::path>& file, LoadedControl& loaded) {
+  if (!fs::exists(loaded.clips)) {
+    throw std::invalid_argument(
+        fmt::format("{}: there are no clips; pmg_clips synth makes them. A policy of another project needs none: "
+                    "scripts/import-policy makes its descriptor",
+                    loaded.clips.string()));
+  }
   loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   if (!file) {
     loaded.policy = std::make_unique<policy::ReferencePolicy>();

@@ -136,6 +136,16 @@ TEST_F(ARobotWithoutClips, IsRefusedClipsForAPolicyThatStepsByItself) {
   }
 }
 
+TEST_F(ARobotWithoutClips, IsToldWhatMakesThemOrDoesWithout) {
+  try {
+    load_control(with("none"));
+    FAIL() << "it has no reference to play";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr((robot_.path() / "clips").string()), HasSubstr("pmg_clips synth"),
+                                    HasSubstr("scripts/import-policy")));
+  }
+}
+
 TEST_F(ARobotWithoutClips, StandsByItsReferenceAndTellsItsPolicyTheVelocities) {
   TurningRobot robot(with("foreign"));
   int ticks = 0;

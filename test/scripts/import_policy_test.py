@@ -185,6 +185,9 @@ class ImportPolicy(unittest.TestCase):
     def test_what_rl_sars_files_dont_say_is_asked_for(self):
         network, _ = self.network(30)
         self.expect_refused("by --omega LOWER UPPER", network, *self.rl_sar()[:-3])
+        told = self.rl_sar()
+        self.expect_refused("base.yaml first", network, told[0], told[2], told[1], *RANGES)
+        self.expect_refused("can't be opened: No such file", network, told[0], self.folder / "absent.yaml", told[2], *RANGES)
         self.expect_refused("observes lin_vel", network, *self.rl_sar(observations=["lin_vel"]))
         self.expect_refused("drives wheels", network, *self.rl_sar(wheel_indices=[2]))
         self.expect_refused("expected all ages", network, *self.rl_sar(observations_history=[0, 2]))
