@@ -116,7 +116,7 @@ void announce(const Arguments& arguments, const recording::RunInfo& run, Variant
   spdlog::info("pmg_controller {}: {} on {}, bundle {}, policy {}", recording::software_version(), run.robot,
                run.backend, run.bundle.substr(0, 12), run.policy);
   if (run.policy == "none") spdlog::warn("no policy: drives follow the reference, and nothing balances the robot");
-  if (variant != Variant::kPmg) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
+  if (is_baseline(variant)) spdlog::warn("BASELINE {}: this policy is there for comparison", to_string(variant));
   spdlog::info("LCM {}, log {}{}", arguments.lcm_url, arguments.log.string(),
                arguments.no_log ? " (after a fault only)" : "");
   for (const std::string& refused : run.refused) spdlog::warn("NOT REAL-TIME: {}", refused);
@@ -207,8 +207,9 @@ void report(const Arguments& arguments, const runtime::Controller& controller, c
 void complete(Arguments& arguments, const model::RobotModel& robot) {
   if (arguments.name.empty()) arguments.name = robot.name;
   if (arguments.log.empty()) arguments.log = fs::path("out") / (arguments.name + "-" + utc_time());
+  if (!arguments.log.has_filename()) arguments.log = arguments.log.parent_path();  // "out/first/" is out/first
   const fs::path asked = std::exchange(arguments.log, recording::run_folder(arguments.log));
-  if (asked != arguments.log && asked != arguments.log / "") {
+  if (asked != arguments.log) {
     spdlog::warn("{} has the log of another run: this one's goes to {}", asked.string(), arguments.log.string());
   }
   arguments.lcm_url = io::choose_lcm_url(arguments.lcm_url);

@@ -90,7 +90,7 @@ int simulate(Arguments arguments) {
   if (arguments.video) sim::expect_ffmpeg();
   fs::create_directories(arguments.out);
   io::LogWriter log_file(arguments.out / "log.lcm");
-  if (loaded.variant != Variant::kPmg) {
+  if (is_baseline(loaded.variant)) {
     std::cerr << fmt::format("baseline {}: this policy is there for comparison\n", to_string(loaded.variant));
   }
   const io::WallClock wall_clock;

@@ -15,6 +15,7 @@
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
 #include "policy/onnx_policy.hpp"
+#include "policy/velocity_policy.hpp"
 
 namespace pmg::control {
 
@@ -28,15 +29,24 @@ std::vector<std::string> policy_names(const model::RobotModel& robot) {
   std::error_code error;
   for (fs::directory_iterator entry(robot.directory / "policies", error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->path().extension() == ".onnx") names.push_back(entry->path().stem().string());
+    const fs::path kind = entry->path().extension();
+    if (kind == ".onnx" || kind == ".yaml") names.push_back(entry->path().stem().string());
   }
   std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
   return names;
 }
 
-/// Below the robot's policies/, or the file itself.
+/// A policy of another project: its descriptor, not its network.
+bool is_descriptor(const fs::path& file) { return file.extension() == ".yaml"; }
+
+/// Below the robot's policies/, or the file itself. Where a descriptor stands beside a network, the descriptor.
 fs::path place_of_policy(const std::string& name, const model::RobotModel& robot) {
-  return fs::path(name).extension() == ".onnx" ? fs::path(name) : robot.directory / "policies" / (name + ".onnx");
+  fs::path file(name);
+  if (is_descriptor(file)) return file;
+  if (file.extension() != ".onnx") file = robot.directory / "policies" / (name + ".onnx");
+  const fs::path descriptor = fs::path(file).replace_extension(".yaml");
+  return fs::exists(descriptor) ? descriptor : file;
 }
 
 /// Nothing for none.
@@ -46,17 +56,61 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   if (!fs::exists(file)) {
     const std::string meant = files::nearest_name(name, policy_names(robot));
     throw std::invalid_argument(
-        meant.empty() ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file, or none",
-                                    named_by, name, file.string())
-                      : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
+        meant.empty()
+            ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file or its descriptor "
+                          "(YAML), or none",
+                          named_by, name, file.string())
+            : fmt::format("{} {}: there is no {}; did you mean {}?", named_by, name, file.string(), meant));
   }
   return file;
 }
 
-std::unique_ptr<policy::Policy> load_policy(const std::optional<fs::path>& file, const LoadedControl& loaded) {
-  if (!file) return std::make_unique<policy::ReferencePolicy>();
-  return std::make_unique<policy::OnnxPolicy>(*file, loaded.robot, model::clip_library_sha256(loaded.clips),
-                                              1.0 / loaded.options.dt_s);
+/// Without clips: the posture in which this policy was trained to stand.
+ClipLibrary standing_library(const model::RobotModel& robot, const JointVector& stand_rad) {
+  ClipLibrary library;
+  library.q_stand = stand_rad;
+  library.q_lower = robot.q_lower();
+  library.q_upper = robot.q_upper();
+  library.mirror = robot.mirror;
+  return library;
+}
+
+/// The velocities that robot and policy both can; no posture, of which such a policy knows nothing.
+void narrow(const policy::VelocityRange& range, CommandLimits& limits) {
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    const bool velocity = channel < kVelocityChannels;
+    limits.lower[channel] = velocity ? std::max(limits.lower[channel], range.lower[channel]) : 0.0;
+    limits.upper[channel] = velocity ? std::min(limits.upper[channel], range.upper[channel]) : 0.0;
+  }
+}
+
+/// (descriptor) => (policy, library, limits, names and files of it).
+std::vector<fs::path> load_velocity_policy(const fs::path& descriptor, LoadedControl& loaded) {
+  auto policy = std::make_unique<policy::VelocityPolicy>(descriptor, loaded.robot, 1.0 / loaded.options.dt_s);
+  loaded.library = standing_library(loaded.robot, policy->stand_rad());
+  narrow(policy->descriptor().command, loaded.options.generator.limits);
+  std::vector<fs::path> files = policy->descriptor().files;
+  files.push_back(descriptor);
+  loaded.policy = std::move(policy);
+  return files;
+}
+
+/// (policy's file, nothing for none; clips) => (library, policy, files of it).
+std::vector<fs::path> load_trained_policy(const std::optional<fs::path>& file, LoadedControl& loaded) {
+  if (!fs::exists(loaded.clips)) {
+    throw std::invalid_argument(
+        fmt::format("{}: there are no clips; pmg_clips synth makes them. A policy of another project needs none: "
+                    "scripts/import-policy makes its descriptor",
+                    loaded.clips.string()));
+  }
+  loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
+  if (!file) {
+    loaded.policy = std::make_unique<policy::ReferencePolicy>();
+    return {};
+  }
+  loaded.policy = std::make_unique<policy::OnnxPolicy>(*file, loaded.robot, model::clip_library_sha256(loaded.clips),
+                                                       1.0 / loaded.options.dt_s);
+  return {*file};
 }
 
 /// The one that runs unless another is asked for; none where robot.yaml names none.
@@ -152,8 +206,14 @@ nlohmann::ordered_json tick_json(const TickOptions& tick) {
 }  // namespace
 
 fs::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot) {
+  const fs::path policy = place_of_policy(chosen_policy(setup, robot), robot);
+  if (is_descriptor(policy)) {
+    if (setup.clips.empty()) return {};
+    throw std::invalid_argument(fmt::format("--clips {}: the policy of {} steps by itself and plays none",
+                                            setup.clips.string(), policy.string()));
+  }
   if (!setup.clips.empty()) return setup.clips;
-  const fs::path own = place_of_policy(chosen_policy(setup, robot), robot).replace_extension() / "clips";
+  const fs::path own = fs::path(policy).replace_extension() / "clips";
   return fs::is_directory(own) ? own : robot.directory / "clips";
 }
 
@@ -161,17 +221,15 @@ LoadedControl load_control(const ControlSetup& setup) {
   LoadedControl loaded;
   loaded.robot = model::load_robot(model::find_robot(setup.robot));
   loaded.clips = chosen_clips(setup, loaded.robot);
-  loaded.library = model::load_clip_library(loaded.clips, loaded.robot);
   loaded.options = tick_options(loaded.robot);
-  loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
   loaded.policy_name = chosen_policy(setup, loaded.robot);
   const std::optional<fs::path> policy =
       policy_file(loaded.policy_name, setup.policy.empty() ? "robot.yaml's policy" : "--policy", loaded.robot);
-  loaded.policy = load_policy(policy, loaded);
+  const std::vector<fs::path> policy_files =
+      policy && is_descriptor(*policy) ? load_velocity_policy(*policy, loaded) : load_trained_policy(policy, loaded);
+  loaded.options.generator.blend = blend_named(setup.blend, loaded.library);
   loaded.variant = loaded.policy->variant();
-  std::vector<fs::path> policies;
-  if (policy) policies.push_back(*policy);
-  model::Bundle bundle = model::bundle(loaded.robot, loaded.clips, policies);
+  model::Bundle bundle = model::bundle(loaded.robot, loaded.clips, policy_files);
   loaded.bundle = std::move(bundle.sha256);
   loaded.files = std::move(bundle.files);
   return loaded;

@@ -25,9 +25,9 @@ struct ControlSetup {
 /// What a setup names, read from its files and checked. The tick refers to nothing of it but robot.
 struct LoadedControl {
   model::RobotModel robot;
-  std::filesystem::path clips;
-  ClipLibrary library;
-  std::string policy_name;  ///< as ControlSetup's, and never empty
+  std::filesystem::path clips;  ///< empty: the policy steps by itself
+  ClipLibrary library;          ///< then the standing posture alone
+  std::string policy_name;      ///< as ControlSetup's, and never empty
   std::unique_ptr<policy::Policy> policy;
   Variant variant = Variant::kPmg;  ///< the policy's
   TickOptions options;
@@ -37,6 +37,8 @@ struct LoadedControl {
 
 /// The clip library that a setup runs on: the named one; else clips/ in the folder beside the policy that has its name
 /// (policies/NAME/clips of policies/NAME.onnx), so that one name chooses a policy with its clips; else the robot's.
+/// Empty for a policy that steps by itself (policies/NAME.yaml). Throws std::invalid_argument when clips are named for
+/// such a one.
 std::filesystem::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot);
 
 /// Throws files::ConfigError or std::invalid_argument.

@@ -53,8 +53,9 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
       return fmt::format("every joint has one that covers it, on {} buses", found.buses.size());
     });
   }
-  const std::filesystem::path clips = control::chosen_clips(setup, robot);
-  if (!look(findings, "clips", kCorrect, [&] {
+  if (!look(findings, "clips", kCorrect, [&]() -> std::string {
+        const std::filesystem::path clips = control::chosen_clips(setup, robot);
+        if (clips.empty()) return "none: the policy steps by itself";
         const ClipLibrary library = model::load_clip_library(clips, robot);
         const auto given = [](const auto& clip) { return clip.has_value(); };
         const auto dynamic =
@@ -68,7 +69,10 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
       findings.push_back(warn("policy", "none: nothing balances the robot",
                               "give --policy, or write `policy` into robot.yaml; else keep the robot in its gantry"));
     } else {
-      findings.push_back(ok("policy", loaded.policy_name + " fits robot and clips, and computes its golden actions"));
+      findings.push_back(
+          ok("policy", loaded.policy_name + (loaded.variant == Variant::kVelocity
+                                                 ? " fits the robot"
+                                                 : " fits robot and clips, and computes its golden actions")));
     }
     findings.push_back(bundle_finding(loaded.bundle, bundle));
   } catch (const std::exception& error) {

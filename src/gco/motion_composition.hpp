@@ -7,6 +7,7 @@
 #include "gco/ground_aware_command.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
+#include "pmg/command_limiter.hpp"
 #include "pmg/generator.hpp"
 #include "pmg/reference.hpp"
 #include "pmg/variant.hpp"
@@ -30,7 +31,8 @@ class MotionComposition {
   void set_rate(Channel channel, double rate_per_s) noexcept { generator_.set_rate(channel, rate_per_s); }
 
   /// (user, dt) => (reference). PMG's generator applies the library's inverse, so u' averages to the user's command.
-  /// The baselines, which don't know u', ask their clips for the user's command itself.
+  /// The baselines, which don't know u', ask their clips for the user's command itself. For a policy that steps by
+  /// itself the reference stands still, with a gain and the command's velocities within their limits.
   const Reference& advance(const Command& user, double dt_s) noexcept;
 
   /// (reference) => (observed command, slip). Baselines observe u: their status is kNotAsked, slip and v'z are zero.
@@ -41,11 +43,14 @@ class MotionComposition {
 
  private:
   void play_forward_clip(double dt_s) noexcept;
+  void take_velocities(const Command& user, const Command& before, double dt_s) noexcept;
 
   Variant variant_;
   double forward_scale_m_s_;  ///< vx of the forward clip at full amplitude
   Generator generator_;
-  std::optional<Generator> forward_only_;  ///< only for the single gait
+  std::optional<Generator> forward_only_;     ///< only for the single gait
+  CommandLimits limits_;                      ///< robot.yaml's, or narrower ones
+  std::optional<CommandLimiter> velocities_;  ///< only for a policy that steps by itself
   GroundAwareCommand gco_;
   Reference reference_;
   Result unasked_;

@@ -87,7 +87,7 @@ Bundle bundle(const RobotModel& robot, const fs::path& clips, const std::vector<
   const std::string urdf = urdf_name(robot_yaml);
   add("robot.yaml", robot_yaml);
   add(urdf, robot.directory / urdf);
-  add_all("clips", clip_library_files(clips));
+  if (!clips.empty()) add_all("clips", clip_library_files(clips));
   add_all("policies", policies);
   add_all("calibration", regular_files(robot.directory / "calibration"));
   std::ranges::sort(result.files);

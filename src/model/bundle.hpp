@@ -18,8 +18,8 @@ struct Bundle {
   std::string sha256;
 };
 
-/// Hashes robot.yaml, its URDF, the files of this clip library, these policy files, and every file in calibration/
-/// beside robot.yaml. Throws ConfigError naming a file that can't be read.
+/// Hashes robot.yaml, its URDF, the files of this clip library (empty: none), these policy files, and every file in
+/// calibration/ beside robot.yaml. Throws ConfigError naming a file that can't be read.
 Bundle bundle(const RobotModel& robot, const std::filesystem::path& clips,
               const std::vector<std::filesystem::path>& policies = {});
 

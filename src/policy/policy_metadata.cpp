@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -43,7 +44,9 @@ void expect_names(const char* name, const std::vector<std::string>& found, const
 Variant known_variant(const std::string& name) {
   const std::optional<Variant> variant = variant_named(name);
   if (!variant)
-    refuse_metadata(fmt::format("its variant is {}; this controller has {}", name, fmt::join(kVariantNames, ", ")));
+    refuse_metadata(
+        fmt::format("its variant is {}; this controller has {}", name,
+                    fmt::join(std::begin(kVariantNames), std::begin(kVariantNames) + kTrainedVariants, ", ")));
   return *variant;
 }
 

@@ -5,14 +5,10 @@
 #include <vector>
 
 #include "model/robot_model.hpp"
+#include "policy/golden_pairs.hpp"
 #include "policy/policy.hpp"
 
 namespace pmg::policy {
-
-/// An observation and the action that training computed for it; replayed when a policy is loaded.
-struct GoldenPair {
-  std::vector<float> observation, action;
-};
 
 struct PolicyMetadata {
   std::string robot;

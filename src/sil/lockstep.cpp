@@ -86,10 +86,17 @@ void Lockstep::control(double time_s) {
   if (after_record) after_record(control_cycle_.record());
 
   if (!options_.always_hoisted) {
-    hoist_.step(options_.balanced_by_policy ? Support::kNone : player_.current().support_without_policy(),
-                control::ControlCycle::kPeriod_s);
+    hoist_.step(support(), control::ControlCycle::kPeriod_s);
     plant_.set_hoist(hoist_.lift_m(), hoist_.engaged());
   }
+}
+
+/// A policy that is still rehearsed balances nobody: until it has the drives the robot is supported as without one.
+Support Lockstep::support() noexcept {
+  balanced_ = balanced_ || (options_.balanced_by_policy && control::runs_policy(tick_.result().maker));
+  const bool waits = control::policy_waits(tick_.result().maker);
+  return balanced_ || (options_.balanced_by_policy && !waits) ? Support::kNone
+                                                              : player_.current().support_without_policy();
 }
 
 void Lockstep::measure(double time_s) {

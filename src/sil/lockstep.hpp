@@ -21,7 +21,7 @@
 namespace pmg::sil {
 
 struct LockstepOptions {
-  bool balanced_by_policy = false;  ///< then the gantry stays away
+  bool balanced_by_policy = false;  ///< then the gantry stays away once the policy has the drives
   bool always_hoisted = false;      ///< the world began on the gantry and stays there
 };
 
@@ -57,6 +57,7 @@ class Lockstep {
  private:
   void advance();
   void control(double time_s);
+  Support support() noexcept;
   void measure(double time_s);
 
   Plant& plant_;
@@ -72,6 +73,7 @@ class Lockstep {
   control::ControlCycle control_cycle_;
   ScenarioPlayer player_;
   Hoist hoist_;
+  bool balanced_ = false;  // the policy had the drives
   RunMeasure measure_;
   StageTiming timing_;
 };

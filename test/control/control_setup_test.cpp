@@ -4,12 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "control/fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
+#include "policy/descriptor_file.hpp"
 #include "policy/linear_policy.hpp"
 
 namespace pmg::control {
@@ -88,6 +92,87 @@ TEST(ControlSetup, EveryVariantRunsAsItsFileSays) {
       EXPECT_GT(hip_swing_rad, 0.1) << to_string(variant);
     }
   }
+}
+
+/// A robot of robot.yaml and URDF alone, and another project's policy beside them.
+class ARobotWithoutClips : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* file : {"robot.yaml", "z1.urdf"})
+      std::filesystem::copy(test::z1().directory / file, robot_.path() / file);
+    std::filesystem::create_directories(robot_.path() / "policies");
+    policy_.emplace(robot_.path() / "policies");
+  }
+  ControlSetup with(const std::string& policy, const std::filesystem::path& clips = {}) const {
+    return {.robot = robot_.path().string(), .clips = clips, .policy = policy};
+  }
+  test::TemporaryFolder robot_;
+  std::optional<test::DescriptorFile> policy_;
+};
+
+TEST_F(ARobotWithoutClips, RunsAVelocityPolicyByItsDescriptor) {
+  const std::filesystem::path network = robot_.path() / "policies/foreign.onnx";
+  for (const std::string& name : {std::string("foreign"), policy_->file().string(), network.string()}) {
+    const LoadedControl loaded = load_control(with(name));
+    EXPECT_EQ(loaded.variant, Variant::kVelocity) << name;
+    EXPECT_TRUE(loaded.clips.empty()) << name;
+    EXPECT_EQ(loaded.library.q_stand[loaded.robot.joint_index.at("right_knee")], 0.4) << "its own posture";
+    const CommandLimits& limits = loaded.options.generator.limits;
+    EXPECT_EQ(limits.upper[kVx], 0.6) << "the policy's";
+    EXPECT_EQ(limits.lower[kOmega], loaded.robot.command_limits.lower[kOmega]) << "robot.yaml's";
+    EXPECT_EQ(limits.lower[kHeight], 0.0) << "it knows no posture";
+    EXPECT_EQ(limits.upper[kPitch], 0.0) << "it knows no posture";
+    for (const char* file : {"policies/foreign.yaml", "policies/foreign.onnx"})
+      EXPECT_TRUE(std::ranges::any_of(loaded.files, [&](const auto& entry) { return entry.first == file; })) << file;
+  }
+}
+
+TEST_F(ARobotWithoutClips, IsRefusedClipsForAPolicyThatStepsByItself) {
+  try {
+    load_control(with("foreign", clips_of_z1()));
+    FAIL() << "they would never be played";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("--clips"), HasSubstr("steps by itself")));
+  }
+}
+
+TEST_F(ARobotWithoutClips, IsToldWhatMakesThemOrDoesWithout) {
+  try {
+    load_control(with("none"));
+    FAIL() << "it has no reference to play";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr((robot_.path() / "clips").string()), HasSubstr("pmg_clips synth"),
+                                    HasSubstr("scripts/import-policy")));
+  }
+}
+
+TEST_F(ARobotWithoutClips, StandsByItsReferenceAndTellsItsPolicyTheVelocities) {
+  TurningRobot robot(with("foreign"));
+  int ticks = 0;
+  for (int k = 0; k < 300; ++k) {
+    const TickResult& result = robot.step();
+    if (result.mode != Mode::kWalk) continue;
+    ++ticks;
+    ASSERT_EQ(result.reference.q, robot.loaded.library.q_stand);
+    ASSERT_EQ(result.optimised.command, result.reference.command);
+    ASSERT_EQ(result.optimised.status, gco::Status::kNotAsked);
+  }
+  EXPECT_GT(ticks, 50);
+  EXPECT_NEAR(robot.tick->result().reference.command[kOmega], 0.4, 1e-9);
+  EXPECT_GT(robot.tick->result().reference.gain, 0.0) << "or Walk would end as at rest";
+}
+
+/// The same half second unsent as for a policy of this project, and the same bound of its first step.
+TEST_F(ARobotWithoutClips, RefusesAVelocityPolicyThatBeginsViolently) {
+  policy_->exchange("action_scale_rad: [0.25, 0.25, 0.25, 0.25", "action_scale_rad: [0.25, 0.25, 0.25, 90");
+  TurningRobot robot(with("foreign"));
+  faults::Fault fault;
+  for (int k = 0; k < 300 && fault.code == faults::FaultCode::kNone; ++k) {
+    fault = robot.step().fault;
+    ASSERT_NE(robot.tick->result().maker, TargetMaker::kPolicy) << "it never gets the drives";
+  }
+  EXPECT_EQ(fault.code, faults::FaultCode::kActionOutOfRange);
+  EXPECT_EQ(fault.joint, robot.loaded.robot.joint_index.at("right_knee"));
 }
 
 TEST(ControlSetup, EveryTickOfAWalkWithAPolicyAllocatesAsOften) {

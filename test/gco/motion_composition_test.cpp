@@ -49,6 +49,37 @@ TEST(MotionComposition, WithoutGcoImitatesTheSameAndObservesTheAdmissibleCommand
   EXPECT_GT(largest, 0.02) << "u' must differ from u, or there is nothing to compare";
 }
 
+TEST(MotionComposition, OfAPolicyThatStepsByItselfStandsAndTellsTheVelocitiesWithinLimits) {
+  ClipLibrary library;  // of a standing posture alone
+  library.q_stand = z1().q_stand();
+  library.q_lower = z1().q_lower();
+  library.q_upper = z1().q_upper();
+  library.mirror = z1().mirror;
+  GeneratorOptions options = generator_options(z1());
+  for (const Channel channel : {kPitch, kRoll, kHeight})
+    options.limits.lower[channel] = options.limits.upper[channel] = 0.0;
+  MotionComposition motion(z1(), library, Variant::kVelocity, options);
+  const Command fast{{9.0, -0.1, 0.0, 0.1, 0.0, -0.1}};
+  Command before;
+  for (int k = 0; k < 300; ++k) {
+    const Reference& reference = motion.advance(fast, 0.01);
+    ASSERT_EQ(reference.q, library.q_stand);
+    ASSERT_EQ(reference.dq.norm(), 0.0);
+    ASSERT_LE(reference.command[kVx] - before[kVx], options.limits.rate_per_s[kVx] * 0.01 + 1e-12);
+    ASSERT_NEAR(reference.command_rate[kVx], (reference.command[kVx] - before[kVx]) / 0.01, 1e-9);
+    ASSERT_TRUE(reference.command_limited);
+    before = reference.command;
+    ASSERT_EQ(motion.ground().command, before);
+  }
+  EXPECT_EQ(before[kVx], options.limits.upper[kVx]);
+  EXPECT_EQ(before[kVy], -0.1);
+  EXPECT_EQ(before[kHeight], 0.0);
+  EXPECT_EQ(motion.reference().gain, 1.0);
+  settle(motion, {}, 50);
+  EXPECT_EQ(motion.reference().command, Command{});
+  EXPECT_EQ(motion.reference().gain, 0.0) << "at rest";
+}
+
 TEST(MotionComposition, ASingleGaitPlaysTheForwardClipWhateverIsAskedAndObservesThat) {
   MotionComposition pmg = composition(Variant::kPmg), single = composition(Variant::kSingleGait);
   settle(pmg, kTurning);

@@ -1,12 +1,14 @@
 """scripts/import-bench on files as people have them: what it writes, and what it refuses because no file says it."""
 
 import csv
+import json
 import math
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+from typing import ClassVar
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BASE = ["--rig", "horizontal", "--law", "position_pd", "--row", "kp_Nm_per_rad=60", "--row", "kd_Nm_s_per_rad=2"]
@@ -18,8 +20,8 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
-def parquet_packages():
-    """The folder of the pinned pyarrow, or nothing."""
+def reader_packages():
+    """The folder of the pinned readers of Parquet, MCAP and bags, or nothing."""
     found = subprocess.run([ROOT / "third_party/python-packages", "recordings", "--cached"], capture_output=True, text=True)
     return found.stdout.strip() if found.returncode == 0 else None
 
@@ -141,11 +143,109 @@ class ImportBench(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("is there already", done.stderr)
 
-    def test_episodes_of_a_parquet_file_are_runs(self):
-        packages = parquet_packages()
+    def need_readers(self):
+        packages = reader_packages()
         if packages is None:
-            self.skipTest("NOT TESTED: Parquet: third_party/python-packages recordings makes its reader")
-        sys.path.insert(0, packages)
+            self.skipTest("NOT TESTED: Parquet, MCAP, ROS bags: third_party/python-packages recordings makes their readers")
+        if packages not in sys.path:
+            sys.path.insert(0, packages)
+
+    TOPIC_MAPS: ClassVar = ["--map", "t_s=log_time[ns]", "--map", "q_cmd_rad=velocity.knee[rad]", "--map", "q_rad=position.knee[deg]", "--from-zero"]
+
+    def expect_bag(self, path):
+        """20 messages 10 ms apart of two joints, whose knee goes a degree a message."""
+        (run,) = self.expect_bench(path, *BASE, *self.TOPIC_MAPS, "--topic", "/joints")
+        rows = rows_of(self.out / "runs" / run["file"])
+        self.assertEqual(len(rows), 20)
+        for k, row in enumerate(rows):
+            self.assertAlmostEqual(float(row["t_s"]), 0.01 * k, 6)
+            self.assertAlmostEqual(float(row["q_rad"]), math.radians(k), 8)
+            self.assertAlmostEqual(float(row["q_cmd_rad"]), 10 + k, 8)
+
+    def test_a_topic_of_an_mcap_file_in_json_is_a_run(self):
+        self.need_readers()
+        from mcap.writer import Writer
+
+        path = self.folder / "log.mcap"
+        with open(path, "wb") as file:
+            writer = Writer(file)
+            writer.start()
+            schema = writer.register_schema("joints", "jsonschema", b"{}")
+            channels = {
+                topic: writer.register_channel(topic, encoding, schema)
+                for topic, encoding in (("/joints", "json"), ("/odd", "json"), ("/other", "protobuf"))
+            }
+            for k in range(12):
+                writer.add_message(channels["/odd"], 10**9 + k, json.dumps({"position": 1.0, **({"extra": 1} if k == 7 else {})}).encode(), 0)
+            for k in range(20):
+                message = {"name": ["hip", "knee"], "position": [7.0, float(k)], "velocity": [0.0, 10.0 + k], "goal": {"kp": 3}}
+                writer.add_message(channels["/joints"], 10**9 + 10_000_000 * k, json.dumps(message).encode(), 0)
+            writer.add_message(channels["/other"], 10**9, b"x", 0)
+            writer.finish()
+        self.expect_refused("choose one by --topic: /joints, /odd, /other", path, *BASE, *self.TOPIC_MAPS)
+        self.expect_refused("has no topic '/join'", path, *BASE, *self.TOPIC_MAPS, "--topic", "/join")
+        self.expect_bag(path)
+        self.out = self.folder / "second"
+        self.expect_refused("message 7 of /odd has other fields than the first: extra", path, *BASE, *self.TOPIC_MAPS, "--topic", "/odd")
+        self.expect_refused("/other is encoded as protobuf", path, *BASE, *self.TOPIC_MAPS, "--topic", "/other")
+        self.expect_refused("no column 'goal.kd'", path, *BASE, *self.TOPIC_MAPS[:4], "--map", "q_rad=goal.kd[deg]", "--topic", "/joints")
+        path.write_bytes(path.read_bytes()[:100])
+        self.expect_refused("can't be read as MCAP", path, *BASE, *self.TOPIC_MAPS)
+
+    def test_a_topic_of_a_ros_2_bag_is_a_run(self):
+        self.need_readers()
+        import numpy
+        from rosbags.rosbag2 import StoragePlugin, Writer
+        from rosbags.typesys import Stores, get_typestore
+
+        store = get_typestore(Stores.ROS2_HUMBLE)
+        for name, plugin in (("sqlite", StoragePlugin.SQLITE3), ("mcap", StoragePlugin.MCAP)):
+            with self.subTest(name):
+                self.out = self.folder / f"bench-{name}"
+                bag = self.folder / f"bag-{name}"
+                kind = "sensor_msgs/msg/JointState"
+                with Writer(bag, version=9, storage_plugin=plugin) as writer:
+                    joints, other = (writer.add_connection(topic, kind, typestore=store) for topic in ("/joints", "/other"))
+                    for k in range(20):
+                        stamp = store.types["builtin_interfaces/msg/Time"](sec=5, nanosec=10_000_000 * k)
+                        message = store.types[kind](
+                            header=store.types["std_msgs/msg/Header"](stamp=stamp, frame_id=""),
+                            name=["hip", "knee"], position=numpy.array([7.0, k]), velocity=numpy.array([0.0, 10.0 + k]), effort=numpy.array([]),
+                        )  # fmt: skip
+                        writer.write(joints, 10**9 + 10_000_000 * k, store.serialize_cdr(message, kind))
+                        writer.write(other, 10**9 + 7_000_000 * k, store.serialize_cdr(message, kind))
+                self.expect_bag(bag if name == "sqlite" else next(bag.glob("*.mcap")))
+                self.out = self.folder / f"stamp-{name}"
+                maps = ["--map", "t_s=header.stamp[ns]", *self.TOPIC_MAPS[2:6]]
+                (run,) = self.expect_bench(bag, *BASE, *maps, "--topic", "/joints")
+                self.assertAlmostEqual(float(rows_of(self.out / "runs" / run["file"])[3]["t_s"]), 5.03, 6)
+
+    def test_a_topic_of_a_ros_1_bag_is_a_run(self):
+        self.need_readers()
+        import numpy
+        from rosbags.rosbag1 import Writer
+        from rosbags.typesys import Stores, get_typestore
+
+        store = get_typestore(Stores.ROS1_NOETIC)
+        path, kind = self.folder / "log.bag", "sensor_msgs/msg/JointState"
+        with Writer(path) as writer:
+            joints, other = (writer.add_connection(topic, kind, typestore=store) for topic in ("/joints", "/other"))
+            for k in range(20):
+                stamp = store.types["builtin_interfaces/msg/Time"](sec=5, nanosec=10_000_000 * k)
+                message = store.types[kind](
+                    header=store.types["std_msgs/msg/Header"](seq=k, stamp=stamp, frame_id=""),
+                    name=["hip", "knee"], position=numpy.array([7.0, k]), velocity=numpy.array([0.0, 10.0 + k]), effort=numpy.array([]),
+                )  # fmt: skip
+                writer.write(joints, 10**9 + 10_000_000 * k, store.serialize_ros1(message, kind))
+                writer.write(other, 10**9 + 10_000_000 * k, store.serialize_ros1(message, kind))
+        self.expect_bag(path)
+
+    def test_a_topic_is_asked_of_recordings_that_have_some(self):
+        self.expect_refused("has no topics", self.sine(), *BASE, *MAPS, "--topic", "/joints")
+        self.expect_refused("a folder without metadata.yaml", self.folder, *BASE, *MAPS)
+
+    def test_episodes_of_a_parquet_file_are_runs(self):
+        self.need_readers()
         import pyarrow
         import pyarrow.parquet
 

@@ -185,6 +185,27 @@ TEST_F(LockstepRun, GantryTimeIsReportedAndNotJudged) {
   }
 }
 
+/// Needs the ground, which a scripted robot never shows it: it runs unsent for ever.
+class NeverReady final : public policy::Policy {
+ public:
+  policy::Status act(const model::RobotState& /*state*/, const Reference& reference, const Command& /*observed*/,
+                     JointVector& q_des) noexcept override {
+    q_des = reference.q;
+    return policy::Status::kOk;
+  }
+};
+
+TEST_F(LockstepRun, APolicyThatIsStillRehearsedIsNoReasonToTakeTheGantryAway) {
+  const model::RobotModel& robot = test::z1();
+  test::IdealBus bus(robot);
+  test::ScriptedPlant plant;
+  plant.value.p_WB.z() = robot.standing_height_m;
+  control::Tick tick(robot, test::clips(robot), std::make_unique<NeverReady>(), clock_, control::tick_options(robot));
+  const Scenario scenario = walk(2.0, true);
+  const RunOutcome outcome = Lockstep(robot, bus, plant, tick, scenario, nullptr, {.balanced_by_policy = true}).run();
+  EXPECT_NEAR(outcome.hoisted_s, 2.0, 0.05);
+}
+
 TEST_F(LockstepRun, InterruptionKeepsWhatWasDone) {
   const model::RobotModel& robot = test::z1();
   test::IdealBus bus(robot);
