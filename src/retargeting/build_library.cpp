@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "files/config_error.hpp"
+#include "fitting/statistics.hpp"
 #include "generator/static_clips.hpp"
 #include "mocap/activities.hpp"
 #include "mocap/gait_events.hpp"
@@ -73,12 +75,12 @@ struct Source {
   mocap::GaitCycle cut;
 };
 
-/// The library's: one cycle of another kind, a turn in steps with pauses, is warped to it and not all others to that.
+/// The library's where its recipe states none: one cycle of another kind, a turn in steps with pauses, is warped to it
+/// and not all others to that.
 double median_duty_factor(const std::vector<Source>& sources) {
   std::vector<double> r;
   for (const Source& source : sources) r.push_back(duty_factor_of(source.cut));
-  std::ranges::sort(r);
-  return 0.5 * (r[(r.size() - 1) / 2] + r[r.size() / 2]);
+  return fitting::median(std::move(r));
 }
 
 }  // namespace
@@ -124,7 +126,7 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
     sources.push_back({std::move(recording), cut});
   }
 
-  const double duty_factor = median_duty_factor(sources);
+  const double duty_factor = recipe.duty_factor.value_or(median_duty_factor(sources));
 
   // Channel after channel, because each clip is made to mix with those of the channels before.
   built.clips.resize(recipe.clips.size());

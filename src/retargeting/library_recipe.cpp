@@ -62,6 +62,8 @@ LibraryRecipe read_library_recipe(const fs::path& file) {
   // The only way so far: postures of recorded people aren't retargeted. The file says it, so that nobody is surprised.
   reader.one_of("postures", {"synthesised"});
   if (reader.has("names")) recipe.names = beside(file, reader.required<std::string>("names"));
+  if (reader.has("duty_factor"))
+    recipe.duty_factor = reader.required<double>("duty_factor", files::in_range(0.51, 0.95));
   files::ConfigReader clips = reader.map("clips");
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
     for (const double sign : {1.0, -1.0}) {

@@ -29,6 +29,7 @@ struct ClipRecipe {
 struct LibraryRecipe {
   std::string source;  ///< who recorded it, under which terms: stands in every clip
   std::optional<std::filesystem::path> names;
+  std::optional<double> duty_factor;  ///< of all dynamic clips; nullopt: the median of the recorded cycles
   std::vector<ClipRecipe> clips;
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "folders.hpp"
 #include "generator/clip_report.hpp"
@@ -249,6 +251,34 @@ TEST_F(RecordedPeople, GiveALibraryThatLoadsAndThatTheGeneratorPlaysWithinLimits
         ASSERT_LE(q, robot.joints[j].upper_rad) << robot.joints[j].name;
       }
     }
+  }
+}
+
+/// The clips that a policy was trained with are those of its recipe. Another compiler's rounding may differ: by far
+/// less than an encoder can tell.
+TEST_F(RecordedPeople, GiveTheClipsOfTheCommittedPersonAgain) {
+  const std::filesystem::path committed = z1().robot.directory / "policies/cmu69";
+  for (const char* name : {"69_02_1", "69_51_1", "69_59_1", "69_56_1", "69_31_1", "69_28_1"}) {
+    const std::string file = std::string(name) + ".bvh";
+    std::filesystem::create_symlink(std::filesystem::absolute(folder_ / file), scratch_.file(file));
+  }
+  std::filesystem::copy_file(committed / "recipe.yaml", scratch_.file("recipe.yaml"));
+  const ClipLibrary made = build_library(z1().robot, read_library_recipe(scratch_.file("recipe.yaml"))).library;
+  const ClipLibrary kept = model::load_clip_library(committed / "clips", z1().robot);
+  const auto expect_same = [](const std::optional<DynamicClip>& a, const std::optional<DynamicClip>& b) {
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->q.size(), b->q.size());
+    EXPECT_NEAR(a->period_s, b->period_s, 1e-9);
+    EXPECT_NEAR(a->duty_factor[kLeft], b->duty_factor[kLeft], 1e-9);
+    for (std::size_t i = 0; i < kVelocityChannels; ++i) EXPECT_NEAR(a->mean_velocity[i], b->mean_velocity[i], 1e-6);
+    double largest_rad = 0.0;
+    for (std::size_t k = 0; k < a->q.size(); ++k)
+      largest_rad = std::max(largest_rad, (a->q[k] - b->q[k]).cwiseAbs().maxCoeff());
+    EXPECT_LE(largest_rad, 1e-6);
+  };
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    expect_same(made.positive[channel], kept.positive[channel]);
+    expect_same(made.negative[channel], kept.negative[channel]);
   }
 }
 
