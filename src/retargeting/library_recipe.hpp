@@ -33,8 +33,8 @@ struct LibraryRecipe {
   std::vector<ClipRecipe> clips;
 };
 
-/// Reads docs/reference/file-formats.md's LIBRARY.yaml; paths in it count from its folder. Throws files::ConfigError
-/// with file, line, key and what was expected.
-LibraryRecipe read_library_recipe(const std::filesystem::path& file);
+/// Reads docs/reference/file-formats.md's LIBRARY.yaml. Paths in it count from its folder; those of recordings from
+/// `recordings` if that is given. Throws files::ConfigError with file, line, key and what was expected.
+LibraryRecipe read_library_recipe(const std::filesystem::path& file, const std::filesystem::path& recordings = {});
 
 }  // namespace pmg::retargeting

@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include <optional>
+#include <span>
 
 #include "sim/world.hpp"
 
@@ -18,12 +19,12 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// The floor, the robot's visual shapes and the gantry's rope, as the camera sees them.
-  mjvScene& update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope);
+  /// The floor, the robot's visual shapes, the gantry's rope and the bars, as the camera sees them.
+  mjvScene& update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope, std::span<const Bar> bars = {});
   mjvScene& last() { return scene_; }
 
  private:
-  void add(const Rope& rope);
+  void add(const Bar& bar);
 
   const mjModel* model_;
   mjvOption visible_{};

@@ -64,6 +64,15 @@ TEST_F(Recipe, MayStateTheDutyFactorOfAWalk) {
     expect_refused(std::string("duty_factor: ") + r + "\n" + clips, ":1:", "expected a number");
 }
 
+TEST_F(Recipe, FindsRecordingsInAnotherFolderThanItsOwn) {
+  const std::filesystem::path recordings = folder_.file("recordings");
+  std::filesystem::create_directory(recordings);
+  const std::filesystem::path recipe = written(with_forward("{recording: walk.bvh, frames: auto}"));
+  EXPECT_THROW(read_library_recipe(recipe, recordings), files::ConfigError) << "walk.bvh is beside the recipe";
+  std::filesystem::rename(folder_.file("walk.bvh"), recordings / "walk.bvh");
+  EXPECT_EQ(read_library_recipe(recipe, recordings).clips[0].recording, recordings / "walk.bvh");
+}
+
 TEST_F(Recipe, RefusesFramesThatAreNoRange) {
   expect_refused(with_forward("{recording: walk.bvh, frames: all}"), ":4:", "expected auto, or [first frame");
   expect_refused(with_forward("{recording: walk.bvh, frames: [90, 10]}"), ":4:", "expected auto, or [first frame");
