@@ -47,6 +47,24 @@ Judged judge_speed(const ReviewedClip& clip) {
                 fmt::format("{:.3f} within {}", wanted, kTolerance), std::abs(made - wanted) <= kTolerance);
 }
 
+/// A recording without plates has no such figure.
+Judged judge_events(const retargeting::PlateReview& plates, const ClipGoals& goals) {
+  const char* what = "gait events against force plates";
+  const std::string limit =
+      fmt::format("{:.0f} ms in the mean, {:.0f} at most", 1000.0 * goals.event_mean_s, 1000.0 * goals.event_largest_s);
+  if (plates.errors_s.empty()) return not_measured("events", what, "no foot on a plate", limit);
+  double sum_s = 0.0, largest_s = 0.0;
+  for (const double error_s : plates.errors_s) {
+    sum_s += std::abs(error_s);
+    largest_s = std::max(largest_s, std::abs(error_s));
+  }
+  const double mean_s = sum_s / static_cast<double>(plates.errors_s.size());
+  return judged("events", what,
+                fmt::format("{:.1f} ms in the mean of {}, {:.1f} at most", 1000.0 * mean_s, plates.errors_s.size(),
+                            1000.0 * largest_s),
+                limit, mean_s <= goals.event_mean_s && largest_s <= goals.event_largest_s);
+}
+
 void add_ground(const ReviewedClip& clip, const ClipGoals& goals, std::vector<Judged>& list) {
   const generator::GroundMeasure& full = clip.ground.gains.back().ground;
   list.push_back(judged("slide", "stance feet slide, mean in double support",
@@ -89,6 +107,7 @@ std::vector<Judged> judge(const ReviewedClip& clip, const Measured& measured, co
   list.push_back(judged("joint limits", "distance from the nearest joint limit",
                         fmt::format("{:.3f} rad", clip.ground.limit_margin_rad), "0 or more",
                         clip.ground.limit_margin_rad >= 0.0));
+  if (clip.plates) list.push_back(judge_events(*clip.plates, goals));
   const auto self = measured.self_collision.find(clip.recipe.name);
   if (self == measured.self_collision.end()) {
     list.push_back(

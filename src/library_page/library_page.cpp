@@ -193,6 +193,17 @@ void add_contacts(const ReviewedClip& clip, pages::Page& page) {
                            stretches(clip.clip.contact_center[foot] + left_lands, clip.clip.duty_factor[foot],
                                      cut.from_s, cut.period_s(), pages::colour::kGrey)});
   }
+  if (clip.plates) {
+    for (const Foot foot : {kLeft, kRight}) {
+      pages::Lanes::Lane lane{fmt::format("{}, force plate", foot == kLeft ? "left" : "right"), {}};
+      for (const mocap::PlateContact& contact : clip.plates->plates.contacts[foot]) {
+        const double from_s = std::max(contact.contact_s.value_or(clip.plates->plates.from_s), cut.from_s);
+        const double to_s = std::min(contact.off_s.value_or(clip.plates->plates.to_s), cut.to_s);
+        if (to_s > from_s) lane.stretches.push_back({from_s, to_s, "", pages::colour::kGreen});
+      }
+      lanes.lanes.push_back(lane);
+    }
+  }
   page.lanes(lanes);
 }
 

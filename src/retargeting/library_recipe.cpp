@@ -40,6 +40,7 @@ ClipRecipe read_clip(const fs::path& recordings, const std::string& name, Channe
   clip.frames = read_frames(reader);
   clip.frames_place = reader.place("frames");
   clip.mirrored = reader.optional<bool>("mirrored", false);
+  clip.force_plates = within(recordings, reader.optional<std::string>("force_plates", ""));
   clip.read.skeleton = within(recordings, reader.optional<std::string>("skeleton", ""));
   clip.read.rest_pose = within(recordings, reader.optional<std::string>("rest_pose", ""));
   if (reader.has("rate_hz")) clip.options.rate_hz = reader.required<double>("rate_hz", files::positive());

@@ -21,6 +21,7 @@ struct ClipRecipe {
   std::filesystem::path recording;
   std::optional<std::pair<double, double>> frames;  ///< first, and the one after the last; nullopt: auto
   bool mirrored = false;
+  std::filesystem::path force_plates;  ///< beside the recording; empty: none
   mocap::ReadOptions read;
   mocap::RecordingOptions options;
   files::Place place, frames_place;

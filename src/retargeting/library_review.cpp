@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
+#include <utility>
 
 #include "files/config_error.hpp"
 #include "generator/gait_parts.hpp"
+#include "mocap/gait_events.hpp"
 #include "model/leg_kinematics.hpp"
 #include "retargeting/build_library.hpp"
 #include "retargeting/leg_imitation.hpp"
@@ -90,6 +93,24 @@ void measure_limbs(ReviewedClip& of) {
   }
 }
 
+PlateReview review_plates(const ClipRecipe& recipe, const mocap::Recording& recording) {
+  PlateReview out{mocap::read_force_plates(recipe.force_plates), {}};
+  if (recipe.mirrored) std::swap(out.plates.contacts[0], out.plates.contacts[1]);
+  const auto found = mocap::events_of(mocap::find_steps(recording));
+  const auto add = [&out](const std::optional<double>& truth_s, const std::vector<double>& found_s) {
+    if (!truth_s) return;
+    const auto nearest = std::ranges::min_element(found_s, {}, [&](double t_s) { return std::abs(t_s - *truth_s); });
+    out.errors_s.push_back(nearest == found_s.end() ? std::numeric_limits<double>::infinity() : *nearest - *truth_s);
+  };
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const mocap::PlateContact& contact : out.plates.contacts[side]) {
+      add(contact.contact_s, found[side].contact_s);
+      add(contact.off_s, found[side].off_s);
+    }
+  }
+  return out;
+}
+
 ReviewedClip review_clip(const generator::Making& making, const DynamicClip& clip, const ClipRecipe& recipe,
                          const mocap::NameTable& names, const work::Progress& progress) {
   const Source source = read_source(recipe, names);
@@ -119,6 +140,7 @@ ReviewedClip review_clip(const generator::Making& making, const DynamicClip& cli
     }
   }
   measure_limbs(out);
+  if (!recipe.force_plates.empty()) out.plates = review_plates(recipe, source.recording);
   return out;
 }
 

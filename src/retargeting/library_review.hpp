@@ -7,6 +7,7 @@
 
 #include "generator/clip_report.hpp"
 #include "mocap/gait_cycle.hpp"
+#include "mocap_files/force_plates.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
 #include "retargeting/figure.hpp"
@@ -23,8 +24,15 @@ struct ClipGoals {
   double penetration_m = 0.010;  ///< of a sole
   double correlation = 0.98;     ///< of thigh, knee and ankle with the same human's
   double rms_rad = 5.0 * kRadPerDegree;
-  double scaled_off_m = 0.03;     ///< hands and feet from the human's, limbs scaled
-  double dynamic_total_s = 10.0;  ///< all dynamic clips
+  double scaled_off_m = 0.03;                            ///< hands and feet from the human's, limbs scaled
+  double dynamic_total_s = 10.0;                         ///< all dynamic clips
+  double event_mean_s = 0.015, event_largest_s = 0.030;  ///< gait events from those on force plates
+};
+
+/// Gait events by the motion against force plates.
+struct PlateReview {
+  mocap::ForcePlates plates;     ///< sides exchanged as the recording's
+  std::vector<double> errors_s;  ///< for each event on a plate: the nearest one found minus it
 };
 
 struct ReviewedClip {
@@ -42,7 +50,8 @@ struct ReviewedClip {
   mocap::SeamJump seam;
   double feet_off_m = 0.0;            ///< ankles seen from the hips, largest over cycle and sides
   std::optional<double> hands_off_m;  ///< wrists seen from the shoulders; nullopt: person or robot lacks an arm
-  double frames_per_s = 0.0;          ///< of retargeting up to full gain, CPU time
+  std::optional<PlateReview> plates;
+  double frames_per_s = 0.0;  ///< of retargeting up to full gain, CPU time
 };
 
 struct LibraryReview {

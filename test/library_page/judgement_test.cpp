@@ -75,6 +75,14 @@ TEST(ALibrarysFigures, AreMissedEachByItself) {
       {"stance height", [](ReviewedClip& c) { c.ground.gains.back().ground.other_foot_height_m = 0.011; }},
       {"swing", [](ReviewedClip& c) { c.ground.gains.back().ground.lowest_swing_m = -0.011; }},
       {"gains", [](ReviewedClip& c) { c.ground.failure = "feet slip"; }},
+      {"events",
+       [](ReviewedClip& c) {
+         c.plates = retargeting::PlateReview{{}, {0.016, -0.016}};
+       }},
+      {"events",
+       [](ReviewedClip& c) {
+         c.plates = retargeting::PlateReview{{}, {0.0, 0.0, 0.031}};
+       }},
       {"joint limits", [](ReviewedClip& c) { c.ground.limit_margin_rad = -0.001; }}};
   for (const auto& [word, spoil] : breaks) {
     ReviewedClip clip = good();
@@ -92,6 +100,9 @@ TEST(ALibrarysFigures, AreNotMeasuredRatherThanGoodWhereNobodyMeasuredThem) {
   clip.hands_off_m.reset();
   EXPECT_THAT(words(clip, {}, work::Grade::kPartial), ElementsAre("hands", "self-collision"));
   EXPECT_FALSE(worth_of({.source = "", .robot = "z1", .clips = {clip}}, {}).usable());
+  clip = good();
+  clip.plates.emplace();  // and no foot on them
+  EXPECT_THAT(words(clip, kApart, work::Grade::kPartial), ElementsAre("events"));
 }
 
 TEST(ALibrarysFigures, CountTheLengthOfAllClipsTogether) {
