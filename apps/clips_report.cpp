@@ -15,7 +15,6 @@
 
 namespace pmg::apps {
 namespace {
-namespace fs = std::filesystem;
 
 CLI::App* add(CLI::App& app, ReportOptions& options, const char* name, const char* what, const char* out) {
   CLI::App* command = app.add_subcommand(name, what);

@@ -8,6 +8,7 @@
 
 #include "library_film/clip_player.hpp"
 #include "sim/renderer.hpp"
+#include "sim/scene.hpp"
 #include "sim/video_writer.hpp"
 
 namespace pmg::library_film {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/scene.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sim {

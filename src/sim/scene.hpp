@@ -3,12 +3,21 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 
 #include "sim/world.hpp"
 
 namespace pmg::sim {
+
+/// A round bar that is only seen: a line of a stick figure.
+struct Bar {
+  Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();  ///< [m]
+  double radius_m = 0.01;
+  std::array<float, 4> colour = {0.1F, 0.1F, 0.1F, 1.0F};
+};
 
 class Scene {
  public:

@@ -59,13 +59,6 @@ struct Rope {
   Eigen::Vector3d top_W = Eigen::Vector3d::Zero();     ///< above the picture's top [m]
 };
 
-/// A round bar that is only seen: a line of a stick figure.
-struct Bar {
-  Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();  ///< [m]
-  double radius_m = 0.01;
-  std::array<float, 4> colour = {0.1F, 0.1F, 0.1F, 1.0F};
-};
-
 /// The MJCF text of this robot in this world. Deterministic: same input, same bytes. It also runs in MuJoCo without
 /// World: then its actuators are position servos (ctrl = q_des [rad]) with robot.yaml's gains, and its joints have
 /// MuJoCo's dry friction; World replaces both by the actuator model. The keyframe "stand" is the standing posture on
