@@ -127,6 +127,7 @@ nlohmann::json clip_json(const BuiltClip& clip) {
 CLI::App* add_build(CLI::App& app, BuildOptions& options) {
   CLI::App* command = app.add_subcommand("build", "Make a clip library from recordings of people");
   command->add_option("library", options.recipe, "LIBRARY.yaml: which recording becomes which clip")->required();
+  command->add_option("--recordings", options.recordings, "folder of its recordings; the recipe's own if left out");
   command->add_option("--robot", options.robot, "robot's name, or its directory")->capture_default_str();
   command->add_option("--out", options.out, "directory for the clips")->required();
   command->add_flag("--no-inverse", options.no_inverse, "leave out inverse.csv, which takes minutes");
@@ -137,7 +138,7 @@ CLI::App* add_build(CLI::App& app, BuildOptions& options) {
 int build(const BuildOptions& options,
           const std::function<void(const model::RobotModel&, const fs::path&)>& add_inverse) {
   const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
-  const retargeting::LibraryRecipe recipe = retargeting::read_library_recipe(options.recipe);
+  const retargeting::LibraryRecipe recipe = retargeting::read_library_recipe(options.recipe, options.recordings);
   model::require_writable(options.out);
   expect_no_other_clips(options.out, recipe);
   ProgressLine progress;

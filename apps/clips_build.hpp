@@ -12,7 +12,7 @@ namespace pmg::apps {
 
 struct BuildOptions {
   std::string robot = "z1";
-  std::filesystem::path recipe, out;
+  std::filesystem::path recipe, recordings, out;
   bool no_inverse = false;
   bool json = false;
 };

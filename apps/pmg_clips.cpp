@@ -18,6 +18,7 @@
 
 #include "clips_build.hpp"
 #include "clips_inspect.hpp"
+#include "clips_report.hpp"
 #include "files/config_error.hpp"
 #include "gco/make_command_inverse.hpp"
 #include "gco/steady_walk.hpp"
@@ -295,11 +296,16 @@ int main(int argc, char** argv) {
   CLI::App* inspect_command = apps::add_inspect(app, inspecting);
   apps::BuildOptions building;
   CLI::App* build_command = apps::add_build(app, building);
+  apps::ReportOptions reporting, previewing;
+  CLI::App* report_command = apps::add_report(app, reporting);
+  CLI::App* preview_command = apps::add_preview(app, previewing);
   return apps::run_program(app, argc, argv, [&]() -> int {
     if (inspect_command->parsed()) return apps::inspect(inspecting);
     apps::notice({SIGINT, SIGTERM}, "leaving the old clips as they were");
     try {
       if (walk_command->parsed()) return walk(walking);
+      if (report_command->parsed()) return apps::report(reporting);
+      if (preview_command != nullptr && preview_command->parsed()) return apps::preview(previewing);
       if (build_command->parsed()) {
         return apps::build(building, [](const auto& of, const auto& clips) { write_inverse(of, clips, "library"); });
       }

@@ -49,7 +49,9 @@ std::vector<double> resampled(const std::vector<double>& values) {
 
 GaitNorms built_in_norms() {
   const generator::PublishedGait& gait = generator::published_gait();
-  GaitNorms norms{.source = "CGM2.3 adults at spontaneous speed (Leboeuf et al. 2019)", .deg = {}};
+  GaitNorms norms{.source = "CGM2.3 adults at spontaneous speed (Leboeuf et al. 2019)",
+                  .deg = {},
+                  .deviation_deg = {gait.hip_deviation_deg, gait.knee_deviation_deg, gait.ankle_deviation_deg}};
   for (std::size_t k = 0; k < kCyclePoints; ++k) {
     const double phase = static_cast<double>(k) / kCyclePoints;
     norms.deg[kHip].push_back(gait.hip_flexion.at_rad(phase) / kRadPerDegree - gait.pelvic_tilt_deg);
@@ -65,7 +67,7 @@ GaitNorms load_norms(const std::filesystem::path& file) {
     files::raise({file.string()}, "", fmt::format("{} rows", table.rows.size()),
                  fmt::format("at least {}, from 0 to 100 % of the cycle", kFewestRows));
   }
-  GaitNorms norms{.source = file.filename().string(), .deg = {}};
+  GaitNorms norms{.source = file.filename().string(), .deg = {}, .deviation_deg = built_in_norms().deviation_deg};
   norms.deg[kHip] = resampled(means(table, "hip_flexion"));
   norms.deg[kKneeFlexion] = resampled(means(table, "knee_flexion"));
   norms.deg[kAnkle] = resampled(means(table, "ankle_dorsiflexion"));

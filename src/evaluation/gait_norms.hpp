@@ -20,7 +20,7 @@ struct GaitNorms {
   std::array<std::vector<double>, kGaitJoints> deg;
   /// One standard deviation between persons, rms over the cycle. Of files without columns ..._sd that of the built-in
   /// norms.
-  std::array<double, kGaitJoints> deviation_deg = {6.1, 5.1, 3.8};
+  std::array<double, kGaitJoints> deviation_deg{};
 };
 
 /// The curves from which the forward clip is made (generator/published_gait.hpp).

@@ -20,8 +20,10 @@ struct PublishedCurve {
 /// implementation that reproduces the past but prepares for the future", Gait & Posture 69:235-241, 2019 (pyCGM2). We
 /// fitted the coefficients to the published means. Flexion, dorsiflexion and anterior pelvic tilt are positive.
 struct PublishedGait {
-  PublishedCurve hip_flexion, knee_flexion, ankle_dorsiflexion, shoulder_flexion, elbow_flexion;
-  double pelvic_tilt_deg;  ///< mean; it varies by less than a degree
+  PublishedCurve hip_flexion{}, knee_flexion{}, ankle_dorsiflexion{}, shoulder_flexion{}, elbow_flexion{};
+  double pelvic_tilt_deg = 0.0;  ///< mean; it varies by less than a degree
+  /// One standard deviation between people, RMS over the cycle.
+  double hip_deviation_deg = 6.1, knee_deviation_deg = 5.1, ankle_deviation_deg = 3.8;
 };
 const PublishedGait& published_gait();
 

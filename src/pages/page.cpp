@@ -11,6 +11,7 @@
 
 #include "pages/assets.hpp"
 #include "pages/bar_picture.hpp"
+#include "pages/figure_picture.hpp"
 #include "pages/histogram_picture.hpp"
 #include "pages/line_data.hpp"
 #include "pages/plot_picture.hpp"
@@ -136,6 +137,18 @@ void Page::table(const Table& table) {
   body_ += "</table></div>\n";
 }
 
+void Page::judgements(const std::vector<Judgement>& judgements) {
+  body_ +=
+      "<div class=\"scroll\"><table "
+      "class=\"data\"><tr><th>quantity</th><th>measured</th><th>asked</th><th></th></tr>\n";
+  for (const Judgement& one : judgements) {
+    body_ += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"word {}\">{}</td></tr>\n",
+                         escape_markup(one.what), escape_markup(one.measured), escape_markup(one.limit),
+                         colour_class(one.grade), escape_markup(one.word.empty() ? name(one.grade) : one.word));
+  }
+  body_ += "</table></div>\n";
+}
+
 void Page::chart(const Chart& chart) {
   const auto groups = tracks(chart.lines);
   const std::string axis = axis_name(chart.axis, chart.x_name, chart.x_unit);
@@ -188,6 +201,8 @@ void Page::lanes(const Lanes& lanes) {
 void Page::bars(const Bars& bars) { picture(bars.title, svg(bars)); }
 void Page::histogram(const Histogram& histogram) { picture(histogram.title, svg(histogram)); }
 void Page::plot(const Plot& plot) { picture(plot.title, svg(plot)); }
+void Page::figures(const Figures& figures) { picture(figures.title, svg(figures)); }
+void Page::figures(const MovingFigures& figures) { picture(figures.title, svg(figures)); }
 
 void Page::columns(const std::function<void()>& fill) {
   body_ += "<div class=\"columns\">\n";

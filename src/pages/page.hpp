@@ -29,11 +29,15 @@ class Page {
   void heading(const std::string& text);  ///< begins a section, which the list at the top names
   void paragraph(const std::string& text);
   void table(const Table& table);
+  /// A table of these; the last column has each one's own grade as a word of its colour.
+  void judgements(const std::vector<Judgement>& judgements);
   void chart(const Chart& chart);  ///< throws std::invalid_argument if a line's x decreases or y has another size
   void lanes(const Lanes& lanes);
   void bars(const Bars& bars);
   void histogram(const Histogram& histogram);
   void plot(const Plot& plot);  ///< throws std::invalid_argument as svg(Plot) does
+  void figures(const Figures& figures);
+  void figures(const MovingFigures& figures);  ///< throws std::invalid_argument as svg(MovingFigures) does
 
   void columns(const std::function<void()>& fill);  ///< pictures side by side if the window is wide enough
   void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown after a click

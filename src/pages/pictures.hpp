@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "work/worth.hpp"
+
 namespace pmg::pages {
 
 /// Okabe and Ito's colours on a light ground; colour-blind readers can distinguish them.
@@ -129,6 +131,41 @@ struct Plot {
   bool logarithmic_x = false, logarithmic_y = false;
   bool show_zero = false;  ///< y = 0 is in the picture, with a line
   int height_px = 170;
+};
+
+/// One stick figure, y up from the ground, in one unit of length.
+struct StickFigure {
+  struct Bone {
+    double from_x, from_y, to_x, to_y;
+    std::string colour = colour::kInk;
+  };
+  std::vector<Bone> bones;
+};
+
+/// Rows of stick figures, each row one name and one figure a column. Every cell has the same scale, its middle at x =
+/// 0.
+struct Figures {
+  struct Row {
+    std::string name;
+    std::vector<StickFigure> figures;
+  };
+  std::string title;
+  std::vector<std::string> columns;  ///< words below the last row
+  std::vector<Row> rows;
+};
+
+/// Stick figures beside each other that move, over and over. The figures of one row have the same bones.
+struct MovingFigures {
+  std::string title;
+  std::vector<Figures::Row> rows;  ///< of each the figures in the order of time, at equal steps over period_s
+  double period_s = 1.0;
+};
+
+/// A value against its limit, in words.
+struct Judgement {
+  std::string what, measured, limit;
+  work::Grade grade = work::Grade::kHolds;
+  std::string word = {};  ///< in place of the grade's
 };
 
 struct Table {

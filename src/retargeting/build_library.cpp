@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "files/config_error.hpp"
+#include "fitting/statistics.hpp"
 #include "generator/static_clips.hpp"
 #include "mocap/activities.hpp"
 #include "mocap/gait_events.hpp"
@@ -68,17 +70,12 @@ std::string source_of(const LibraryRecipe& recipe, const ClipRecipe& clip, const
       made.froude_ratio);
 }
 
-struct Source {
-  mocap::Recording recording;
-  mocap::GaitCycle cut;
-};
-
-/// The library's: one cycle of another kind, a turn in steps with pauses, is warped to it and not all others to that.
+/// The library's where its recipe states none: one cycle of another kind, a turn in steps with pauses, is warped to it
+/// and not all others to that.
 double median_duty_factor(const std::vector<Source>& sources) {
   std::vector<double> r;
   for (const Source& source : sources) r.push_back(duty_factor_of(source.cut));
-  std::ranges::sort(r);
-  return 0.5 * (r[(r.size() - 1) / 2] + r[r.size() / 2]);
+  return fitting::median(std::move(r));
 }
 
 }  // namespace
@@ -99,6 +96,18 @@ mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& 
   return *cycle;
 }
 
+Source read_source(const ClipRecipe& recipe, const mocap::NameTable& names) {
+  mocap::Recording recording = mocap::make_recording(
+      recipe.recording.string(), mocap::read_motion(recipe.recording, recipe.read), names, recipe.options);
+  if (recipe.mirrored) recording = mirrored(recording);
+  const mocap::GaitCycle cut = chosen_cycle(recipe, recording);
+  return {std::move(recording), cut};
+}
+
+mocap::NameTable names_of(const LibraryRecipe& recipe) {
+  return mocap::read_name_table(recipe.names ? *recipe.names : mocap::default_name_table());
+}
+
 BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& recipe,
                            const work::Progress& progress) {
   const generator::JointRoles roles = generator::find_joint_roles(robot);
@@ -113,18 +122,14 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
                     generator::make_squat(robot, roles, making.legs)};
   library.posture = making.posture;
 
-  const mocap::NameTable names = mocap::read_name_table(recipe.names ? *recipe.names : mocap::default_name_table());
+  const mocap::NameTable names = names_of(recipe);
   std::vector<Source> sources;
   for (const ClipRecipe& clip : recipe.clips) {
     progress.report_or_throw(0.0, "reading " + clip.recording.filename().string());
-    mocap::Recording recording = mocap::make_recording(
-        clip.recording.string(), mocap::read_motion(clip.recording, clip.read), names, clip.options);
-    if (clip.mirrored) recording = mirrored(recording);
-    const mocap::GaitCycle cut = chosen_cycle(clip, recording);
-    sources.push_back({std::move(recording), cut});
+    sources.push_back(read_source(clip, names));
   }
 
-  const double duty_factor = median_duty_factor(sources);
+  const double duty_factor = recipe.duty_factor.value_or(median_duty_factor(sources));
 
   // Channel after channel, because each clip is made to mix with those of the channels before.
   built.clips.resize(recipe.clips.size());

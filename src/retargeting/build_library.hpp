@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "mocap/gait_cycle.hpp"
+#include "mocap_files/key_bodies.hpp"
+#include "mocap_files/recording.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
 #include "retargeting/library_recipe.hpp"
@@ -27,6 +30,16 @@ struct BuiltLibrary {
 /// The cycle with the least loop error of the recipe's frames; for `auto`, of the stretches that
 /// mocap::find_activities holds for this primitive. Throws files::ConfigError at the recipe's line if there is none.
 mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording);
+
+/// A clip's recording, and the cycle that is cut from it.
+struct Source {
+  mocap::Recording recording;
+  mocap::GaitCycle cut;
+};
+/// Throws files::ConfigError as build_library.
+Source read_source(const ClipRecipe& recipe, const mocap::NameTable& names);
+/// The recipe's table of names, or the default one. Throws files::ConfigError.
+mocap::NameTable names_of(const LibraryRecipe& recipe);
 
 /// Clips are made on all cores; the result doesn't depend on how many. The library's velocity scale is the clips' own
 /// speed. Throws files::ConfigError for a recording that can't be read, has no cycle, moves in

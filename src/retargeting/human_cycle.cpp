@@ -155,6 +155,7 @@ HumanCycle human_cycle(const mocap::Recording& recording, const mocap::GaitCycle
   for (std::size_t k = 0; k < kClipSamples; ++k) shift += (warp(phase_of(k)) - phase_of(k)) / kClipSamples;
   for (std::size_t k = 0; k < kClipSamples; ++k) {
     const double phase = warp(phase_of(k));
+    cycle.recorded_phase.push_back(wrapped(phase));
     cycle.warp_cycles = std::max(cycle.warp_cycles, std::abs(phase - phase_of(k) - shift));
     const double at = wrapped(phase) * static_cast<double>(kFineSamples);
     const auto before = static_cast<std::size_t>(at) % kFineSamples, after = (before + 1) % kFineSamples;

@@ -17,6 +17,7 @@ struct HumanCycle {
   double duty_factor = 0.0;                                 ///< mean of both feet
   Eigen::Vector3d mean_velocity = Eigen::Vector3d::Zero();  ///< vx, vy [m/s], omega [rad/s]
   std::vector<HumanPose> pose;                              ///< kClipSamples, sample k at phase k / kClipSamples
+  std::vector<double> recorded_phase;  ///< of each sample: where it is in the cut, which begins at 0 and ends at 1
   /// The part of the stance in which the sole is flat, as shares of the stance; both feet's overlap.
   double flat_from = 0.0, flat_to = 1.0;
   double hike_rad = 0.0;                                  ///< amplitude of the pelvis' roll as generator::hike has it

@@ -16,6 +16,8 @@ using generator::Vector3;
 template <typename T>
 struct Directions {
   Vector3<T> thigh, shank, sole, lateral;
+  Vector3<T> hip, knee, ankle;  // in the base frame [m]
+  Matrix3<T> R;                 // of the foot
 };
 
 /// Walks the chain once, keeping the origins of hip, knee and ankle.
@@ -43,7 +45,14 @@ Directions<T> directions(const LegGeometry& leg, const T* q) {
   }
   const Eigen::Vector3d forward = (leg.sole[0] + leg.sole[1] - leg.sole[2] - leg.sole[3]).normalized();
   const Eigen::Vector3d left = (leg.sole[0] - leg.sole[1] + leg.sole[2] - leg.sole[3]).normalized();
-  return {(knee - hip).normalized(), (ankle - knee).normalized(), R * forward.cast<T>(), R * left.cast<T>()};
+  return {(knee - hip).normalized(),
+          (ankle - knee).normalized(),
+          R * forward.cast<T>(),
+          R * left.cast<T>(),
+          hip,
+          knee,
+          ankle,
+          R};
 }
 
 struct ImitationResiduals {
@@ -77,6 +86,13 @@ SidePose leg_directions(const LegGeometry& leg, const LegVector<double>& q) {
   pose.shank = at.shank;
   pose.sole = at.sole;
   return pose;
+}
+
+LegPoints leg_points(const LegGeometry& leg, const LegVector<double>& q) {
+  const Directions<double> at = directions<double>(leg, q.data());
+  LegPoints points{at.hip, at.knee, at.ankle, {}};
+  for (std::size_t i = 0; i < leg.sole.size(); ++i) points.sole[i] = at.ankle + at.R * leg.sole[i];
+  return points;
 }
 
 double leg_length_m(const LegGeometry& leg) {

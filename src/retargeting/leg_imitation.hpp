@@ -1,6 +1,8 @@
 // A robot's leg in the directions of a human's: limb by limb, whatever the lengths.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "generator/gait_optimization.hpp"
@@ -10,6 +12,13 @@ namespace pmg::retargeting {
 
 /// Directions of the robot's leg at these angles, in the base frame. Arms stay as SidePose has them.
 SidePose leg_directions(const generator::LegGeometry& leg, const generator::LegVector<double>& q);
+
+/// Where the leg is, in the base frame [m]; the sole's corners as LegGeometry has them.
+struct LegPoints {
+  Eigen::Vector3d hip, knee, ankle;
+  std::array<Eigen::Vector3d, 4> sole;
+};
+LegPoints leg_points(const generator::LegGeometry& leg, const generator::LegVector<double>& q);
 
 /// Length from the hips' last joint over the knee to the ankle [m].
 double leg_length_m(const generator::LegGeometry& leg);

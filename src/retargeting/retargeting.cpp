@@ -134,26 +134,6 @@ DynamicClip whole_body(const generator::Making& making, const GaitTask& task, co
   return clip;
 }
 
-template <typename Angle>
-Likeness likeness(const generator::Making& making, const LegTrajectory& legs, const GaitTask& task,
-                  const HumanCycle& human, Angle angle) {
-  const std::vector<generator::BaseMotion> base = generator::hiking_base(task, 1.0);
-  Likeness worse;
-  for (const Foot foot : {kLeft, kRight}) {
-    Eigen::ArrayXd robot(kClipSamples), person(kClipSamples);
-    for (std::size_t k = 0; k < kClipSamples; ++k) {
-      SidePose pose = leg_directions(making.legs.geometry[foot], legs.q[k][foot]);
-      for (Eigen::Vector3d* d : {&pose.thigh, &pose.shank, &pose.sole}) *d = base[k].R_HB * *d;
-      robot[static_cast<Eigen::Index>(k)] = angle(pose);
-      person[static_cast<Eigen::Index>(k)] = angle(human.pose[k].side[foot]);
-    }
-    const Eigen::ArrayXd a = robot - robot.mean(), b = person - person.mean();
-    worse.rms_rad = std::max(worse.rms_rad, std::sqrt((robot - person).square().mean()));
-    worse.correlation = std::min(worse.correlation, (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum()));
-  }
-  return worse;
-}
-
 void measure_joints(const model::RobotModel& robot, RetargetedClip& made) {
   const DynamicClip& clip = made.clip;
   std::vector<std::vector<double>> curves(robot.joints.size());
@@ -178,12 +158,10 @@ void make_clip(const generator::Making& making, GaitTask task, const work::Progr
   made.gait.legs = generator::optimize_gait(making.legs, made.gait.task, progress).legs;
   const GaitTask& asked = made.gait.task;
   const LegTrajectory& legs = made.gait.legs;
-  made.ground = generator::measure(making.legs, legs, generator::timing(asked.period_s, asked.duty_factor),
-                                   generator::hiking_base(asked, 1.0));
+  const std::vector<generator::BaseMotion> base = generator::hiking_base(asked, 1.0);
+  made.ground = generator::measure(making.legs, legs, generator::timing(asked.period_s, asked.duty_factor), base);
   made.clip = whole_body(making, asked, legs, made.human, made.ground);
-  made.likeness = {likeness(making, legs, asked, made.human, thigh_pitch_rad),
-                   likeness(making, legs, asked, made.human, knee_flexion_rad),
-                   likeness(making, legs, asked, made.human, ankle_flexion_rad)};
+  made.likeness = imitation(leg_angles(making.legs, legs.q, base), leg_angles(made.human));
   made.joint_speed_share = 0.0;
   measure_joints(making.robot, made);
 }

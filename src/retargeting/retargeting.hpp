@@ -8,20 +8,10 @@
 #include "generator/gait_parts.hpp"
 #include "pmg/clip.hpp"
 #include "retargeting/human_cycle.hpp"
+#include "retargeting/likeness.hpp"
 #include "work/progress.hpp"
 
 namespace pmg::retargeting {
-
-/// Robot's curve against the same human's at the same phase; the worse of both legs.
-struct Likeness {
-  double rms_rad = 0.0;  ///< with the difference of the means
-  double correlation = 1.0;
-};
-
-/// Robot against human.
-struct Imitation {
-  Likeness thigh, knee, ankle;
-};
 
 /// A clip before fit_for_blending.
 struct Unmended {

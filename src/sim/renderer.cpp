@@ -118,10 +118,10 @@ Renderer::Renderer(const mjModel* model, const RendererOptions& options)
 Renderer::~Renderer() = default;
 
 const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::string& text,
-                                                  const std::optional<Rope>& rope) {
+                                                  const std::optional<Rope>& rope, std::span<const Bar> bars) {
   Impl& r = *impl_;
   r.follow(data);
-  mjr_render(r.viewport, &r.scene.update(data, r.camera, rope), &r.context);
+  mjr_render(r.viewport, &r.scene.update(data, r.camera, rope, bars), &r.context);
   if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, r.viewport, text.c_str(), nullptr, &r.context);
   mjr_readPixels(r.rows.data(), nullptr, r.viewport, &r.context);
   const std::size_t row = 3 * static_cast<std::size_t>(r.options.width);

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "sim/scene.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::sim {
@@ -33,7 +35,8 @@ class Renderer {
   /// width * height RGB triples, from the top left. The camera follows body 1, the robot's base. The text is drawn over
   /// the picture's top left corner.
   const std::vector<std::uint8_t>& render(mjData* data, const std::string& text = "",
-                                          const std::optional<Rope>& rope = std::nullopt);
+                                          const std::optional<Rope>& rope = std::nullopt,
+                                          std::span<const Bar> bars = {});
 
   int width() const;
   int height() const;

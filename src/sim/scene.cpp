@@ -18,20 +18,19 @@ Scene::Scene(const mjModel* model) : model_(model) {
 
 Scene::~Scene() { mjv_freeScene(&scene_); }
 
-mjvScene& Scene::update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope) {
+mjvScene& Scene::update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope, std::span<const Bar> bars) {
   mjv_updateScene(model_, data, &visible_, nullptr, &camera, mjCAT_ALL, &scene_);
-  if (rope) add(*rope);
+  if (rope) add({rope->bottom_W, rope->top_W, 0.006, {0.12F, 0.13F, 0.15F, 1.0F}});
+  for (const Bar& bar : bars) add(bar);
   return scene_;
 }
 
-void Scene::add(const Rope& rope) {
+void Scene::add(const Bar& bar) {
   if (scene_.ngeom >= scene_.maxgeom) return;
-  constexpr double kRadius_m = 0.006;
-  constexpr float kColour[4] = {0.12F, 0.13F, 0.15F, 1.0F};
   mjvGeom& geom = scene_.geoms[scene_.ngeom++];
-  mjv_initGeom(&geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, kColour);
-  const Eigen::Vector3d &a = rope.bottom_W, &b = rope.top_W;
-  mjv_makeConnector(&geom, mjGEOM_CAPSULE, kRadius_m, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+  mjv_initGeom(&geom, mjGEOM_CAPSULE, nullptr, nullptr, nullptr, bar.colour.data());
+  const Eigen::Vector3d &a = bar.from_W, &b = bar.to_W;
+  mjv_makeConnector(&geom, mjGEOM_CAPSULE, bar.radius_m, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
 }  // namespace pmg::sim

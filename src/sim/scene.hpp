@@ -3,11 +3,21 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
+#include <array>
 #include <optional>
+#include <span>
 
 #include "sim/world.hpp"
 
 namespace pmg::sim {
+
+/// A round bar that is only seen: a line of a stick figure.
+struct Bar {
+  Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();  ///< [m]
+  double radius_m = 0.01;
+  std::array<float, 4> colour = {0.1F, 0.1F, 0.1F, 1.0F};
+};
 
 class Scene {
  public:
@@ -18,12 +28,12 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// The floor, the robot's visual shapes and the gantry's rope, as the camera sees them.
-  mjvScene& update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope);
+  /// The floor, the robot's visual shapes, the gantry's rope and the bars, as the camera sees them.
+  mjvScene& update(mjData* data, mjvCamera& camera, const std::optional<Rope>& rope, std::span<const Bar> bars = {});
   mjvScene& last() { return scene_; }
 
  private:
-  void add(const Rope& rope);
+  void add(const Bar& bar);
 
   const mjModel* model_;
   mjvOption visible_{};

@@ -49,17 +49,18 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& path, int
           std::filesystem::absolute(path).string()};  // absolute: a path is never read as an option or a protocol
 }
 
-/// Starts a program with these as its standard input and standard error, in a process group of its own. A Ctrl-C at the
-/// terminal goes to the whole foreground group, and must not end ffmpeg before the last frame is written. Returns 0 or
-/// an errno.
-int spawn_apart(std::vector<std::string> arguments, int standard_input, int standard_error, pid_t& pid) {
+/// Starts a program with these as its standard input, and as its standard output and error together, in a process group
+/// of its own. A Ctrl-C at the terminal goes to the whole foreground group, and must not end ffmpeg before the last
+/// frame is written. Returns 0 or an errno.
+int spawn_apart(std::vector<std::string> arguments, int standard_input, int words, pid_t& pid) {
   std::vector<char*> argv;
   for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, standard_input, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, standard_error, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, words, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, words, STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);

@@ -6,51 +6,15 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "folders.hpp"
+#include "mocap_files/force_plates.hpp"
 #include "synthetic_gait.hpp"
 
 namespace pmg::mocap {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Times at which the vertical force of a foot rises above 20 N, and falls below it again, by an OpenSim .mot file.
-struct PlateEvents {
-  std::vector<double> contact_s, off_s;
-};
-
-PlateEvents plate_events(const fs::path& file, const std::string& column) {
-  std::ifstream in(file);
-  std::string line;
-  while (std::getline(in, line) && line.rfind("endheader", 0) != 0) {
-  }
-  std::getline(in, line);
-  std::istringstream header(line);
-  int wanted = -1;
-  std::string name;
-  for (int c = 0; header >> name; ++c) {
-    if (name == column) wanted = c;
-  }
-  EXPECT_GE(wanted, 0) << column;
-  PlateEvents events;
-  bool stood = false, first = true;
-  while (std::getline(in, line)) {
-    std::istringstream row(line);
-    double time_s = 0.0, value = 0.0, force_N = 0.0;
-    for (int c = 0; row >> value; ++c) {
-      if (c == 0) time_s = value;
-      if (c == wanted) force_N = value;
-    }
-    const bool stands = force_N > 20.0;
-    if (!first && stands != stood) (stands ? events.contact_s : events.off_s).push_back(time_s);
-    stood = stands;
-    first = false;
-  }
-  return events;
-}
 
 /// For each true time the error of the nearest found one [s].
 void add_errors(const std::vector<double>& truth_s, const std::vector<double>& found_s, std::vector<double>& errors_s) {
@@ -81,10 +45,12 @@ TEST(GaitEvents, AgreeWithForcePlates) {
   const Recording recording = make_recording(walk.string(), read_motion(walk), read_name_table(default_name_table()));
   const auto found = events_of(find_steps(recording));
   std::vector<double> errors_s;
-  for (const auto& [side, letter] : {std::pair{0U, 'l'}, std::pair{1U, 'r'}}) {
-    const PlateEvents truth = plate_events(plates, fmt::format("ground_force_{}_vy", letter));
-    add_errors(truth.contact_s, found[side].contact_s, errors_s);
-    add_errors(truth.off_s, found[side].off_s, errors_s);
+  const ForcePlates truth = read_force_plates(plates);
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const PlateContact& contact : truth.contacts[side]) {
+      if (contact.contact_s) add_errors({*contact.contact_s}, found[side].contact_s, errors_s);
+      if (contact.off_s) add_errors({*contact.off_s}, found[side].off_s, errors_s);
+    }
   }
   ASSERT_EQ(errors_s.size(), 6U);  // three stances are on plates
   for (const double e : errors_s) RecordProperty("error_ms", fmt::format("{:.1f}", 1000.0 * e));

@@ -55,6 +55,24 @@ TEST_F(Recipe, NamesRecordingFramesAndMirroringOfEachClip) {
   EXPECT_EQ(recipe.clips[3].options.up, "+y");
 }
 
+TEST_F(Recipe, MayStateTheDutyFactorOfAWalk) {
+  const std::string clips = with_forward("{recording: walk.bvh, frames: auto}");
+  EXPECT_FALSE(read_library_recipe(written(clips)).duty_factor.has_value());
+  EXPECT_EQ(read_library_recipe(written("duty_factor: 0.6277327719748981\n" + clips)).duty_factor, 0.6277327719748981);
+  // Below a half no instant has both feet on the ground; near 1 a foot has no time to swing.
+  for (const char* r : {"0.5", "0.96", "-0.6", "walk"})
+    expect_refused(std::string("duty_factor: ") + r + "\n" + clips, ":1:", "expected a number");
+}
+
+TEST_F(Recipe, FindsRecordingsInAnotherFolderThanItsOwn) {
+  const std::filesystem::path recordings = folder_.file("recordings");
+  std::filesystem::create_directory(recordings);
+  const std::filesystem::path recipe = written(with_forward("{recording: walk.bvh, frames: auto}"));
+  EXPECT_THROW(read_library_recipe(recipe, recordings), files::ConfigError) << "walk.bvh is beside the recipe";
+  std::filesystem::rename(folder_.file("walk.bvh"), recordings / "walk.bvh");
+  EXPECT_EQ(read_library_recipe(recipe, recordings).clips[0].recording, recordings / "walk.bvh");
+}
+
 TEST_F(Recipe, RefusesFramesThatAreNoRange) {
   expect_refused(with_forward("{recording: walk.bvh, frames: all}"), ":4:", "expected auto, or [first frame");
   expect_refused(with_forward("{recording: walk.bvh, frames: [90, 10]}"), ":4:", "expected auto, or [first frame");

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "folders.hpp"
 #include "generator/clip_report.hpp"
@@ -18,6 +20,7 @@
 #include "pmg/generator.hpp"
 #include "retargeting/build_library.hpp"
 #include "retargeting/leg_imitation.hpp"
+#include "retargeting/library_review.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::retargeting {
@@ -250,6 +253,54 @@ TEST_F(RecordedPeople, GiveALibraryThatLoadsAndThatTheGeneratorPlaysWithinLimits
       }
     }
   }
+}
+
+/// A review reads the clips from disk and the person from the recording; it must say of them what their making said.
+void expect_agreement(const LibraryReview& reviewed, const BuiltLibrary& built) {
+  ASSERT_EQ(reviewed.clips.size(), built.clips.size());
+  for (std::size_t i = 0; i < built.clips.size(); ++i) {
+    const ReviewedClip& clip = reviewed.clips[i];
+    const RetargetedClip& made = built.clips[i].made;
+    SCOPED_TRACE(clip.recipe.name);
+    EXPECT_NEAR(clip.made.knee.rms_rad, made.likeness.knee.rms_rad, 1e-5);
+    EXPECT_NEAR(clip.made.thigh.rms_rad, made.likeness.thigh.rms_rad, 0.005);  // its base is read from the waist
+    EXPECT_NEAR(clip.on_ground.knee.rms_rad, made.unmended->likeness.knee.rms_rad, 1e-5);
+    EXPECT_NEAR(clip.seam.angle_rad, made.seam.angle_rad, 1e-5);
+    EXPECT_NEAR(clip.length_ratio, made.length_ratio, 1e-9);
+    // Each step of the way costs likeness: the joints' limits hardly any.
+    EXPECT_LE(clip.in_limits.knee.rms_rad, 2.5 * kRadPerDegree);
+    EXPECT_LE(clip.in_limits.knee.rms_rad, clip.on_ground.knee.rms_rad);
+    EXPECT_LE(clip.on_ground.knee.rms_rad, clip.made.knee.rms_rad + 0.01);
+    EXPECT_TRUE(clip.hands_off_m.has_value());
+    EXPECT_EQ(clip.ground.failure, "");
+  }
+  EXPECT_NEAR(reviewed.dynamic_total_s, 6.45, 0.1);
+}
+
+/// The clips that a policy was trained with are those of its recipe. Another compiler's rounding may differ: by far
+/// less than an encoder can tell.
+TEST_F(RecordedPeople, GiveTheClipsOfTheCommittedPersonAgain) {
+  const std::filesystem::path committed = z1().robot.directory / "policies/cmu69";
+  const LibraryRecipe recipe = read_library_recipe(committed / "recipe.yaml", folder_);
+  const BuiltLibrary built = build_library(z1().robot, recipe);
+  const ClipLibrary& made = built.library;
+  const ClipLibrary kept = model::load_clip_library(committed / "clips", z1().robot);
+  const auto expect_same = [](const std::optional<DynamicClip>& a, const std::optional<DynamicClip>& b) {
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->q.size(), b->q.size());
+    EXPECT_NEAR(a->period_s, b->period_s, 1e-9);
+    EXPECT_NEAR(a->duty_factor[kLeft], b->duty_factor[kLeft], 1e-9);
+    for (std::size_t i = 0; i < kVelocityChannels; ++i) EXPECT_NEAR(a->mean_velocity[i], b->mean_velocity[i], 1e-6);
+    double largest_rad = 0.0;
+    for (std::size_t k = 0; k < a->q.size(); ++k)
+      largest_rad = std::max(largest_rad, (a->q[k] - b->q[k]).cwiseAbs().maxCoeff());
+    EXPECT_LE(largest_rad, 1e-6);
+  };
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    expect_same(made.positive[channel], kept.positive[channel]);
+    expect_same(made.negative[channel], kept.negative[channel]);
+  }
+  expect_agreement(review(z1().robot, kept, recipe), built);
 }
 
 }  // namespace

@@ -81,6 +81,13 @@ TEST(VideoWriter, WritesAnMp4) {
   std::filesystem::remove(path);
 }
 
+/// What a program prints is for machines, too (--json).
+TEST(VideoWriter, LooksForFfmpegWithoutAWordOnStandardOutput) {
+  testing::internal::CaptureStdout();
+  sim::expect_ffmpeg();
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
 TEST(VideoWriter, SaysSoWhenFfmpegIsMissing) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", testing::TempDir().c_str(), 1);
