@@ -5,7 +5,7 @@
 
 namespace pmg::sil {
 
-/// Options: gantry, viewer, motor, seed. It offers a hoist (not with gantry, nor for a bench), the truth, and with
+/// Options: gantry, viewer, camera, motor, seed. It offers a hoist (not with gantry, nor for a bench), the truth, and with
 /// viewer a window.
 void register_backend(hal::BackendFactory& factory);
 

@@ -2,6 +2,7 @@
 // Usage: node browser_test.mjs FOLDER_OF_PROGRAMS FOLDER_OF_PACKAGES; exit codes: 0 passed, 1 not, 77 no Chromium
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
+import dgram from 'node:dgram';
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import os from 'node:os';
@@ -23,6 +24,24 @@ function start(name, ...args) {
   children.push(child);
   return child;
 }
+/// Calls heard(time [ms], vx [m/s]) for each COMMAND on the network.
+function hearCommands(heard) {
+  const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
+  socket.on('message', (bytes) => {
+    const end = bytes.indexOf(0, 8);                       // magic, number, channel
+    if (bytes.toString('latin1', 8, end) !== 'COMMAND') return;
+    let at = end + 1 + 8 + 4;                              // fingerprint, version
+    const passText = () => { at += 4 + bytes.readInt32BE(at); };
+    passText();                                            // robot
+    at += 8;                                               // stamp
+    passText();                                            // source
+    heard(Date.now(), bytes.readDoubleBE(at + 8 + 8 + 8)); // session, sequence, lease
+  });
+  socket.bind(port, () => socket.addMembership('239.255.76.67'));
+  return socket;
+}
+/// Nearest rank.
+const percentile = (values, percent) => values.toSorted((a, b) => a - b)[Math.ceil(values.length * percent / 100) - 1];
 let tellMore = async () => '';
 async function until(what, condition, seconds = 60) {
   const end = Date.now() + 1000 * seconds;
@@ -162,6 +181,39 @@ async function run(browser, token) {
     await pause(500);
     return /at its target|on the way/.test(await rightArm());
   });
+
+  step('poses reach the network (times are reported, not judged)');
+  const commands = [];                                     // [time, vx]
+  const listener = hearCommands((time, vx) => commands.push([time, vx]));
+  await drive();
+  const sent = await vr.evaluate(() => new Promise((resolve) => {  // [time, metres ahead] of each step of the head that the page told
+    const told = [], {say} = connection, from_m = quest.position.z;
+    let last = null, steps = 0;
+    connection.say = (text) => {
+      const {head} = JSON.parse(text);
+      if (head && last !== null && Math.abs(head[2] - last) > 0.02) told.push([Date.now(), -head[2]]);
+      if (head) last = head[2];
+      return say.call(connection, text);
+    };
+    const timer = setInterval(() => {
+      if (++steps <= 100) { quest.position.z = from_m + (steps % 2 ? 0.05 + 0.0002 * steps : 0); return; }
+      clearInterval(timer);
+      connection.say = say;
+      resolve(told);
+    }, 250);
+  }));
+  await pause(500);
+  listener.close();
+  // A step has arrived with the first command whose velocity is the one that the head then keeps asking for.
+  const delays_ms = [];
+  sent.forEach(([time], k) => {
+    const until_ms = sent[k + 1]?.[0] ?? time + 250, within = commands.filter(([at]) => at >= time && at < until_ms);
+    const before = commands.findLast(([at]) => at < time)?.[1], kept = within.at(-1)?.[1];
+    if (before === undefined || kept === undefined || Math.abs(kept - before) < 1e-6) return;
+    delays_ms.push(within.find(([, vx]) => Math.abs(vx - kept) < 1e-9)[0] - time);
+  });
+  assert.ok(delays_ms.length >= 80, `of ${sent.length} steps of the head ${delays_ms.length} were seen in ${commands.length} commands`);
+  step(`pose to LCM: p50 ${percentile(delays_ms, 50)} ms, p99 ${percentile(delays_ms, 99)} ms over ${delays_ms.length} steps of the head`);
 
   step('a lost controller holds its palm and nothing else');
   await vr.evaluate(() => { quest.controllers.right.connected = false; });
