@@ -170,10 +170,10 @@ int table1(const apps::EvalArguments& arguments) {
   if (arguments.video && table.campaign.complete) {
     std::vector<FilmOrder> orders;
     for (const evaluation::Case& one : table.cases)
-      orders.push_back({.name = one.name + ".mp4",
-                        .shoot = [&](const fs::path& file, const evaluation::Supervision& supervision) {
-                          return film_case(one, table.scenario, file, supervision);
-                        }});
+      orders.push_back(
+          {.name = one.name + ".mp4", .shoot = [&](const fs::path& file, const evaluation::Supervision& supervision) {
+             return film_case(one, table.scenario, file, supervision);
+           }});
     failures = make_films(arguments, orders, table.films);
   }
   evaluate(table);

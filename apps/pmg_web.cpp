@@ -265,9 +265,10 @@ int main(int argc, char** argv) {
                  "Foxglove looks for 8765");
   app.add_option("--foxglove-origin", arguments.foxglove_origins,
                  "another site whose pages may look at these topics: https://HOST; may be repeated");
-  app.add_flag("--camera", arguments.camera,
-               "also show everybody who looks what the robot's camera sends; of a simulated robot: pmg_controller --hal "
-               "sil --camera");
+  app.add_flag(
+      "--camera", arguments.camera,
+      "also show everybody who looks what the robot's camera sends; of a simulated robot: pmg_controller --hal "
+      "sil --camera");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");

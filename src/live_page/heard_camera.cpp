@@ -15,7 +15,8 @@ bool is_picture(const pmg_msgs::camera_t& message) {
   const auto& jpeg = message.jpeg;
   return jpeg.size() > kBegin.size() + kEnd.size() &&
          jpeg.size() <= static_cast<std::size_t>(pmg_msgs::camera_t::MOST_BYTES) &&
-         std::equal(kBegin.begin(), kBegin.end(), jpeg.begin()) && std::equal(kEnd.rbegin(), kEnd.rend(), jpeg.rbegin());
+         std::equal(kBegin.begin(), kBegin.end(), jpeg.begin()) &&
+         std::equal(kEnd.rbegin(), kEnd.rend(), jpeg.rbegin());
 }
 
 }  // namespace

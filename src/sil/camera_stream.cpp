@@ -35,12 +35,11 @@ std::vector<std::uint8_t> CameraEye::look(const PoseSample& pose) {
   mj_kinematics(model_, data_.get());
   mj_comPos(model_, data_.get());
   mj_camlight(model_, data_.get());
-  return encoder_.encode(renderer_.render(data_.get(), "", pose.rope), kWidth, kHeight,
-                         pmg_msgs::camera_t::MOST_BYTES);
+  return encoder_.encode(renderer_.render(data_.get(), "", pose.rope), kWidth, kHeight, pmg_msgs::camera_t::MOST_BYTES);
 }
 
-CameraStream::CameraStream(const mjModel* model, const std::string& torso_link, SimulatedRobot& robot,
-                           std::string name, std::string lcm_url, const io::Clock& clock)
+CameraStream::CameraStream(const mjModel* model, const std::string& torso_link, SimulatedRobot& robot, std::string name,
+                           std::string lcm_url, const io::Clock& clock)
     : robot_(robot), name_(std::move(name)), lcm_url_(std::move(lcm_url)), clock_(clock) {
   std::future<void> ready = ready_.get_future();
   thread_ = std::jthread([this, model, torso_link](const std::stop_token& stop) { work(stop, model, torso_link); });

@@ -9,7 +9,9 @@ MountedCamera mounted(const HeadCamera& camera, const std::string& torso_link, i
   T_TC.translation() = camera.p_TC_m;
   T_TC.linear() = Eigen::AngleAxisd(camera.down_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const double corner = std::hypot(width, height);
-  return {.body = torso_link, .T_BC = T_TC, .half_height_rad = std::atan(std::tan(camera.half_angle_rad) * height / corner)};
+  return {.body = torso_link,
+          .T_BC = T_TC,
+          .half_height_rad = std::atan(std::tan(camera.half_angle_rad) * height / corner)};
 }
 
 }  // namespace pmg::sim

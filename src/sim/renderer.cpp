@@ -129,7 +129,7 @@ struct Renderer::Impl {
   RendererOptions options;
   const mjModel* model;
   int body = -1;  // of a mounted camera
-  GlContext gl;  // before the members that live in it
+  GlContext gl;   // before the members that live in it
   Scene scene;
   mjvCamera camera{};
   mjrContext context{};

@@ -26,7 +26,7 @@ struct RendererOptions {
   double distance_m = 2.9;         ///< from the camera to its target
   double azimuth_deg = 216.0;      ///< of the line of sight about z: from the robot's front and left at yaw 0
   double elevation_deg = -9.0;
-  double follow_s = 0.4;  ///< time constant with which the camera follows the robot
+  double follow_s = 0.4;                   ///< time constant with which the camera follows the robot
   std::optional<MountedCamera> mounted{};  ///< in place of the camera that follows
 };
 

@@ -50,9 +50,8 @@ bool ScriptedOperator::takes_over(const LedRobot& robot, double now_s) {
 }
 
 void ScriptedOperator::walk(double ahead_m_s, double left_m_s, double turn_rad_s) {
-  const Eigen::Vector2d lean_m =
-      lean_for({share_of(limits_, kVx, std::clamp(ahead_m_s, -0.2, 0.25)),
-                share_of(limits_, kVy, std::clamp(left_m_s, -0.2, 0.2))});
+  const Eigen::Vector2d lean_m = lean_for({share_of(limits_, kVx, std::clamp(ahead_m_s, -0.2, 0.25)),
+                                           share_of(limits_, kVy, std::clamp(left_m_s, -0.2, 0.2))});
   person_.lean({lean_m.x(), lean_m.y(), -down_m_},
                turn_for(share_of(limits_, kOmega, std::clamp(turn_rad_s, -0.3, 0.3))), bent_rad_);
 }

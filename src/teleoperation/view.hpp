@@ -15,8 +15,8 @@
 
 namespace pmg::teleoperation {
 
-/// ASSUMPTIONS: a video link of 0.12 s, and a person who judges places in the picture to within 5 mm and turns to within
-/// 2 degrees (standard deviations).
+/// ASSUMPTIONS: a video link of 0.12 s, and a person who judges places in the picture to within 5 mm and turns to
+/// within 2 degrees (standard deviations).
 struct ViewOptions {
   sim::HeadCamera camera{};
   double delay_s = 0.12, period_s = 1.0 / 30.0, noise_m = 0.005, noise_rad = 0.01,

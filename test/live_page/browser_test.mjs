@@ -24,6 +24,14 @@ function start(name, ...args) {
   children.push(child);
   return child;
 }
+/// Asks it to end, and waits until it has.
+async function ended(child) {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  const exit = new Promise((resolve) => child.once('exit', resolve));
+  child.kill('SIGCONT');
+  child.kill('SIGTERM');
+  await exit;
+}
 /// Calls heard(time [ms], vx [m/s]) for each COMMAND on the network.
 function hearCommands(heard) {
   const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
@@ -55,7 +63,7 @@ async function until(what, condition, seconds = 60) {
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const step = (text) => console.log(`- ${text}`);
 
-async function run(browser, token) {
+async function run(browser, token, robot) {
   const link = `https://localhost:${port}`;
   const open = async (options, place) => {
     const context = await browser.newContext({ignoreHTTPSErrors: true, ...options});
@@ -251,22 +259,37 @@ async function run(browser, token) {
   spawnSync(program('pmg_web'), ['revoke', 'phone', ...common]);
   for (const page of [phone, vr])
     await until('not paired', async () => (await page.textContent('#link')).includes('this token is not taken'), 20);
+
+  step('a page shows what the head sees, and marks a picture that has stopped');
+  assert.equal(await reader.evaluate(() => cameraView.words()), 'no picture');
+  await ended(robot);
+  const seeing = start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--camera', '--lcm-url', url);
+  const words = () => reader.evaluate(() => cameraView.words());
+  await until('a fresh picture', async () => (await words()) === '');
+  assert.equal(await reader.isVisible('#camera'), true);
+  assert.deepEqual(await reader.evaluate(async () => {
+    const picture = await createImageBitmap(await (await fetch('/camera.jpg')).blob());
+    return [picture.width, picture.height];
+  }), [320, 240]);
+  seeing.kill('SIGSTOP');
+  await until('it is marked', async () => /^OLD PICTURE/.test(await words()));
+  seeing.kill('SIGCONT');
+  await until('a fresh picture', async () => (await words()) === '');
 }
 
 let failed = null;
 try {
   const paired = spawnSync(program('pmg_web'), ['pair', 'phone', '--port', String(port), ...common], {encoding: 'utf8'});
   const token = /localhost:\d+\/#(\w+)/.exec(paired.stdout)[1];
-  start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
-  start('pmg_web', '--port', String(port), '--lcm-url', url, ...common);
+  const robot = start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
+  start('pmg_web', '--camera', '--port', String(port), '--lcm-url', url, ...common);
   const browser = await launcher.launch({executablePath: chromium, args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
     '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
-  try { await run(browser, token); } finally { await browser.close(); }
+  try { await run(browser, token, robot); } finally { await browser.close(); }
 } catch (error) {
   failed = error;
 } finally {
-  for (const child of children) child.kill('SIGTERM');
-  for (const child of children) await new Promise((resolve) => child.exitCode === null && child.signalCode === null ? child.once('exit', resolve) : resolve());
+  await Promise.all(children.map(ended));
   fs.rmSync(folder, {recursive: true, force: true});
 }
 if (failed) { console.error(failed); process.exitCode = 1; }

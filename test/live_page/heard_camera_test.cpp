@@ -42,7 +42,10 @@ TEST_F(HeardCameraTest, TheNewestPictureIsGivenOnceWhateverCameBefore) {
   EXPECT_FALSE(camera_.newest());
   for (int k = 1; k <= 100; ++k) say(picture(k, std::to_string(k)));
   EXPECT_EQ(camera_.newest()->number, 100);
-  EXPECT_EQ(camera_.take(), "\xff\xd8\xff" "100\xff\xd9") << "none waits behind it";
+  EXPECT_EQ(camera_.take(),
+            "\xff\xd8\xff"
+            "100\xff\xd9")
+      << "none waits behind it";
   EXPECT_FALSE(camera_.take());
 }
 

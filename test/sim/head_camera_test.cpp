@@ -24,9 +24,9 @@ std::array<int, 4> red_pixels(const Eigen::Vector3d& box_m) {
   WorldOptions options;
   options.props = {{.name = "box", .half_size_m = {0.1, 0.1, 0.1}, .p_WP_m = box_m, .colour = {1.0, 0.0, 0.0, 1.0}}};
   World world(z1(), options);
-  Renderer renderer(world.mj_model(), {.width = kWidth,
-                                       .height = kHeight,
-                                       .mounted = mounted(HeadCamera(), z1().torso_link, kWidth, kHeight)});
+  Renderer renderer(
+      world.mj_model(),
+      {.width = kWidth, .height = kHeight, .mounted = mounted(HeadCamera(), z1().torso_link, kWidth, kHeight)});
   const std::vector<std::uint8_t>& rgb = renderer.render(world.mj_data());
   std::array<int, 4> count{};
   for (std::size_t i = 0; i < rgb.size() / 3; ++i) {
@@ -38,7 +38,8 @@ std::array<int, 4> red_pixels(const Eigen::Vector3d& box_m) {
 }
 
 TEST(HeadCamera, SeesWhatIsAheadOnItsOwnSideAndNothingBehind) {
-  const auto left = red_pixels({0.8, 0.5, 0.1}), right = red_pixels({0.8, -0.5, 0.1}), behind = red_pixels({-0.8, 0.0, 0.1});
+  const auto left = red_pixels({0.8, 0.5, 0.1}), right = red_pixels({0.8, -0.5, 0.1}),
+             behind = red_pixels({-0.8, 0.0, 0.1});
   EXPECT_GT(left[2], 20) << "on the floor, to the left";
   EXPECT_EQ(left[1] + left[3], 0);
   EXPECT_GT(right[3], 20);

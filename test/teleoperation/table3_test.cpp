@@ -70,8 +70,8 @@ TEST(Table3, AFilmIsMadeOfATrialThatIsPlayedAgain) {
   Table3 table;
   table.evaluated = {.name = "pmg", .candidate = {"pmg", {}}, .plants = {}};
   int asked = 0;
-  const evaluation::Supervision supervision{
-      .jobs = 1, .progress = {.report = {}, .interrupted = [&] { return ++asked > 20; }}};
+  const evaluation::Supervision supervision{.jobs = 1,
+                                            .progress = {.report = {}, .interrupted = [&] { return ++asked > 20; }}};
   const auto file = folder.path() / "wiping.mp4";
   EXPECT_EQ(film_trial(table, {.task = "wiping", .trial = 3, .end = End::kDone}, file, supervision), "");
   EXPECT_GT(std::filesystem::file_size(file), 1000U);

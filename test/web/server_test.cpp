@@ -31,7 +31,8 @@ TEST_F(ServerTest, GivesOutWhatItIsGivenLater) {
     EXPECT_THAT(get("/robot.json"), HasSubstr(text));
   }
   server_.give_out({"/camera.jpg", "image/jpeg", std::string("\xff\xd8\0\xff", 4)});
-  EXPECT_THAT(get("/camera.jpg"), AllOf(HasSubstr("Content-Type: image/jpeg\r\n"), HasSubstr(std::string("\xff\xd8\0\xff", 4))));
+  EXPECT_THAT(get("/camera.jpg"),
+              AllOf(HasSubstr("Content-Type: image/jpeg\r\n"), HasSubstr(std::string("\xff\xd8\0\xff", 4))));
 }
 
 TEST_F(ServerTest, OneConnectionAsksForSeveralAssets) {
