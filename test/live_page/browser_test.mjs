@@ -165,7 +165,7 @@ async function run(browser, token, robot) {
   const rightArm = () => vr.evaluate(() => connection.state.arms[1]);
   let ahead_m = 0;
   const to = async (there_m) => { await move(-ahead_m, -there_m); ahead_m = there_m; };
-  const drive = async () => {
+  const drive = async (seconds = 60) => {
     await until('it drives', async () => {
       if ((await vr.evaluate(() => connection.state.you.drives)) && (await asked(vr, 0)) > 0.1 && (await mode(vr)) === 'walk') return true;
       await vr.evaluate(() => tracked());
@@ -177,7 +177,7 @@ async function run(browser, token, robot) {
       await to(0.25);
       await pause(1500);
       return false;
-    });
+    }, seconds);
   };
   await until('the palm is led', async () => {
     await drive();
@@ -193,34 +193,38 @@ async function run(browser, token, robot) {
   step('poses reach the network (times are reported, not judged)');
   const commands = [];                                     // [time, vx]
   const listener = hearCommands((time, vx) => commands.push([time, vx]));
-  await drive();
-  const sent = await vr.evaluate(() => new Promise((resolve) => {  // [time, metres ahead] of each step of the head that the page told
+  /// [time] of each of ten steps of the head, to and fro, that the page told.
+  const steps = () => vr.evaluate(() => new Promise((resolve) => {
     const told = [], {say} = connection, from_m = quest.position.z;
-    let last = null, steps = 0;
+    let last = null, count = 0;
     connection.say = (text) => {
       const {head} = JSON.parse(text);
-      if (head && last !== null && Math.abs(head[2] - last) > 0.02) told.push([Date.now(), -head[2]]);
+      if (head && last !== null && Math.abs(head[2] - last) > 0.02) told.push(Date.now());
       if (head) last = head[2];
       return say.call(connection, text);
     };
     const timer = setInterval(() => {
-      if (++steps <= 100) { quest.position.z = from_m + (steps % 2 ? 0.05 + 0.0002 * steps : 0); return; }
+      if (++count <= 10) { quest.position.z = from_m + (count % 2 ? 0.05 + 0.0002 * count : 0); return; }
       clearInterval(timer);
       connection.say = say;
       resolve(told);
     }, 250);
   }));
-  await pause(500);
+  const delays_ms = [], WANTED = 100;
+  await until(`${WANTED} steps of the head are seen in commands`, async () => {
+    await drive(300);                                      // a browser that the computer held up for 0.3 s has let go, as it must
+    const told = await steps();
+    await pause(250);
+    told.forEach((time, k) => {
+      const within = commands.filter(([at]) => at >= time && at < (told[k + 1] ?? time + 250));
+      const before = commands.findLast(([at]) => at < time)?.[1], kept = within.at(-1)?.[1];
+      // It has arrived with the first command whose velocity is the one that the head then keeps asking for.
+      if (before === undefined || !kept || Math.abs(kept - before) < 1e-6) return;
+      delays_ms.push(within.find(([, vx]) => Math.abs(vx - kept) < 1e-9)[0] - time);
+    });
+    return delays_ms.length >= WANTED;
+  }, 300);
   listener.close();
-  // A step has arrived with the first command whose velocity is the one that the head then keeps asking for.
-  const delays_ms = [];
-  sent.forEach(([time], k) => {
-    const until_ms = sent[k + 1]?.[0] ?? time + 250, within = commands.filter(([at]) => at >= time && at < until_ms);
-    const before = commands.findLast(([at]) => at < time)?.[1], kept = within.at(-1)?.[1];
-    if (before === undefined || kept === undefined || Math.abs(kept - before) < 1e-6) return;
-    delays_ms.push(within.find(([, vx]) => Math.abs(vx - kept) < 1e-9)[0] - time);
-  });
-  assert.ok(delays_ms.length >= 80, `of ${sent.length} steps of the head ${delays_ms.length} were seen in ${commands.length} commands`);
   step(`pose to LCM: p50 ${percentile(delays_ms, 50)} ms, p99 ${percentile(delays_ms, 99)} ms over ${delays_ms.length} steps of the head`);
 
   step('a lost controller holds its palm and nothing else');

@@ -46,7 +46,7 @@ class CameraStreamTest : public testing::Test {
 
   const model::JointCommand command_ = limp();
   model::RobotState state_;
-  sim::World world_{test::biped(), {.gantry = true}};
+  sim::World world_{test::biped(), world_with_noise(0, true)};
   SimulatedRobot robot_{world_, HoistedBy::kGantry, false};
 };
 
