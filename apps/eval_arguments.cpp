@@ -107,6 +107,8 @@ void declare_table3(CLI::App& app, EvalArguments& arguments) {
   command.add_option("--trials", arguments.tasks, "trials of each task, each with another robot and other places")
       ->check(in_range(1, 100000))
       ->capture_default_str();
+  command.add_flag("--video", arguments.video,
+                   "film of each task the first trial of each end, done or not (needs ffmpeg; minutes each)");
 }
 
 void declare_push(CLI::App& app, EvalArguments& arguments) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -115,24 +116,37 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result) {
   return worth.exit_code();
 }
 
-/// Errors of the films, one line each. The table gets the names of the films that were made.
-std::vector<std::string> make_films(const apps::EvalArguments& arguments, evaluation::Table1& table) {
+/// A film that may be made.
+struct FilmOrder {
+  std::string name;  ///< of the file beside the page
+  std::function<std::string(const fs::path& file, const evaluation::Supervision&)> shoot;  ///< its error; empty: none
+};
+
+/// Errors of the films, one line each. films gets the names of those that were made.
+std::vector<std::string> make_films(const apps::EvalArguments& arguments, const std::vector<FilmOrder>& orders,
+                                    std::vector<std::string>& films) {
   const Watch watch(arguments);
-  std::vector<std::optional<std::string>> failures(table.cases.size());  // empty: not begun
-  evaluation::for_each_piece(table.cases.size(), watch.supervision(), [&](std::size_t c) {
-    failures[c] =
-        film_case(table.cases[c], table.scenario, arguments.out / (table.cases[c].name + ".mp4"), watch.supervision());
+  std::vector<std::optional<std::string>> failures(orders.size());  // empty: not begun
+  evaluation::for_each_piece(orders.size(), watch.supervision(), [&](std::size_t i) {
+    failures[i] = orders[i].shoot(arguments.out / orders[i].name, watch.supervision());
   });
   std::vector<std::string> lines;
-  for (std::size_t c = 0; c < failures.size(); ++c) {
-    if (!failures[c]) continue;
-    if (failures[c]->empty()) {
-      table.films.push_back(table.cases[c].name + ".mp4");
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    if (!failures[i]) continue;
+    if (failures[i]->empty()) {
+      films.push_back(orders[i].name);
     } else {
-      lines.push_back(*failures[c]);
+      lines.push_back(*failures[i]);
     }
   }
   return lines;
+}
+
+/// (exit code of the table, errors of its films) => exit code
+int with_films(int code, const std::vector<std::string>& failures) {
+  for (const std::string& failure : failures) std::cerr << "pmg_eval: " << failure << '\n';
+  if (apps::interrupt_requested != 0) return kInterrupted;
+  return failures.empty() ? code : static_cast<int>(kBadInput);
 }
 
 int table1(const apps::EvalArguments& arguments) {
@@ -153,12 +167,17 @@ int table1(const apps::EvalArguments& arguments) {
                                             Watch(arguments).supervision());
   measure_yardsticks(table, Watch(arguments).supervision());
   std::vector<std::string> failures;
-  if (arguments.video && table.campaign.complete) failures = make_films(arguments, table);
+  if (arguments.video && table.campaign.complete) {
+    std::vector<FilmOrder> orders;
+    for (const evaluation::Case& one : table.cases)
+      orders.push_back(
+          {.name = one.name + ".mp4", .shoot = [&](const fs::path& file, const evaluation::Supervision& supervision) {
+             return film_case(one, table.scenario, file, supervision);
+           }});
+    failures = make_films(arguments, orders, table.films);
+  }
   evaluate(table);
-  const int code = hand_over(arguments, table);
-  for (const std::string& failure : failures) std::cerr << "pmg_eval: " << failure << '\n';
-  if (apps::interrupt_requested != 0) return kInterrupted;
-  return failures.empty() ? code : static_cast<int>(kBadInput);
+  return with_films(hand_over(arguments, table), failures);
 }
 
 int table2(const apps::EvalArguments& arguments) {
@@ -181,9 +200,20 @@ int table3(const apps::EvalArguments& arguments) {
   table.trials = arguments.tasks;
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   table.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
+  if (arguments.video) sim::expect_ffmpeg();
   fs::create_directories(arguments.out);
   run_table3(table, Watch(arguments).supervision());
-  return hand_over(arguments, table);
+  std::vector<std::string> failures;
+  if (arguments.video && table.complete) {
+    std::vector<FilmOrder> orders;
+    for (const teleoperation::FilmedTrial& one : trials_to_film(table))
+      orders.push_back({.name = one.file(),
+                        .shoot = [&table, one](const fs::path& file, const evaluation::Supervision& supervision) {
+                          return film_trial(table, one, file, supervision);
+                        }});
+    failures = make_films(arguments, orders, table.films);
+  }
+  return with_films(hand_over(arguments, table), failures);
 }
 
 int push(const apps::EvalArguments& arguments) {

@@ -20,6 +20,7 @@
 #include "io/plain_text.hpp"
 #include "live_page/assets.hpp"
 #include "live_page/foxglove_feed.hpp"
+#include "live_page/heard_camera.hpp"
 #include "live_page/page_state.hpp"
 #include "live_page/robot_shape.hpp"
 #include "operator/driving_station.hpp"
@@ -49,6 +50,7 @@ Examples:
   pmg_web pair phone
   pmg_web --robot z1 --listen 0.0.0.0
   pmg_web --robot z1 --foxglove 8765
+  pmg_web --robot z1 --camera
 
 Exit codes: 0 done, or ended with Ctrl-C or by a signal: velocity was brought to zero first; 1 revoke: nothing is paired under this name;
 2 bad input, no network, or a file that can't be used.)";
@@ -58,6 +60,7 @@ struct Arguments {
   std::vector<std::string> hosts, foxglove_origins;
   std::uint16_t port = 8443;
   std::optional<std::uint16_t> foxglove_port;
+  bool camera = false;
 };
 
 fs::path folder_of(const Arguments& arguments) {
@@ -164,6 +167,25 @@ class FoxgloveDoor {
   std::optional<live_page::FoxgloveFeed> feed_;
 };
 
+/// What the robot's camera shows, for pages, if it was asked for.
+class CameraDoor {
+ public:
+  CameraDoor(const Arguments& arguments, io::LcmLink& link, const io::Clock& clock, web::Server& server)
+      : server_(server) {
+    if (arguments.camera) heard_.emplace(link, clock);
+  }
+  void follow(const ops::RobotDriver* driver) {
+    if (!heard_) return;
+    heard_->follow(driver == nullptr ? "" : driver->robot());
+    if (auto picture = heard_->take()) server_.give_out({"/camera.jpg", "image/jpeg", std::move(*picture)});
+  }
+  const live_page::HeardCamera* heard() const { return heard_ ? &*heard_ : nullptr; }
+
+ private:
+  web::Server& server_;
+  std::optional<live_page::HeardCamera> heard_;
+};
+
 /// Closes the pages of names that are no longer paired.
 void end_revoked(web::Server& server, const std::vector<std::string>& paired) {
   for (const web::Page& page : server.pages())
@@ -195,6 +217,7 @@ int serve(const Arguments& arguments) {
     if (!here || (one.find("[::1]") == std::string::npos) == (arguments.listen != "::1")) std::cout << one << '\n';
   std::cout << "fingerprint of the certificate (SHA-256): " << certificate.fingerprint << '\n';
   FoxgloveDoor foxglove(arguments, link);
+  CameraDoor camera(arguments, link, clock, server);
   if (pairings.names().empty()) std::cout << "nothing is paired: pmg_web pair NAME\n";
   std::cout << std::flush;
   std::int64_t show_at_ns = 0, look_at_ns = 0;
@@ -207,6 +230,7 @@ int serve(const Arguments& arguments) {
     station.step(kWait_ms);
     known.take(station.news());
     foxglove.follow(station.news(), known.model());
+    camera.follow(station.driver());
     devices.set_robot_span(known.arm_span());
     if (std::string shape = known.take_shape(); !shape.empty())
       server.give_out({"/robot.json", "application/json", std::move(shape)});
@@ -217,7 +241,7 @@ int serve(const Arguments& arguments) {
     }
     if (now_ns < show_at_ns || pages.empty()) continue;
     show_at_ns = now_ns + kPicture_ns;
-    const std::string shared = live_page::shared_state(station, devices, arms, known.motion(), now_ns);
+    const std::string shared = live_page::shared_state(station, devices, arms, known.motion(), camera.heard(), now_ns);
     for (const web::Page& page : pages) server.show(page.id, live_page::page_state(shared, page, devices));
   }
   std::cout << station.last_words() << '\n';
@@ -241,6 +265,10 @@ int main(int argc, char** argv) {
                  "Foxglove looks for 8765");
   app.add_option("--foxglove-origin", arguments.foxglove_origins,
                  "another site whose pages may look at these topics: https://HOST; may be repeated");
+  app.add_flag(
+      "--camera", arguments.camera,
+      "also show everybody who looks what the robot's camera sends; of a simulated robot: pmg_controller --hal "
+      "sil --camera");
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");

@@ -42,6 +42,7 @@ if(PMG_SIL) # for simulation and calibration
   find_package(glfw3 REQUIRED)
   pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd) # chunks of MCAP files
   pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)
+  pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg) # pictures of a simulated camera
   pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt_cxx)
   find_path(PAGMO_INCLUDE_DIR pagmo/pagmo.hpp REQUIRED)
   find_library(PAGMO_LIBRARY pagmo REQUIRED)

@@ -55,6 +55,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "pmg (= ${PROJECT_VERSION}), cmake, pkg-config, libeigen3-dev, libyaml-cpp-dev, libfmt-dev, \
 liborocos-kdl-dev, liburdfdom-dev, libconsole-bridge-dev, libssl-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libceres-dev, libboost-dev, libcli11-dev, liblcm-dev, libspdlog-dev, nlohmann-json3-dev, \
-zlib1g-dev, libzstd-dev, libsdl2-dev, libglfw3-dev, libosmesa6-dev, libnlopt-cxx-dev, libnlopt-dev, libpagmo-dev")
+zlib1g-dev, libzstd-dev, libsdl2-dev, libglfw3-dev, libosmesa6-dev, libturbojpeg0-dev, libnlopt-cxx-dev, libnlopt-dev, libpagmo-dev")
 set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
 include(CPack)

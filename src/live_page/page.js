@@ -10,6 +10,7 @@ const HOLD_MS = 1000;                     // of a button that moves the robot
 
 // ---- the connection: what is held counts no longer when it, or the page, is away -------------------------------------
 const connection = new Connection({hear: show, lost: release});
+const cameraView = new CameraView($('camera'), $('camera'));
 let number = 0, presses = 0;
 // A phone that slept has a clock that stood still, and a connection that may be dead: begin anew.
 document.addEventListener('visibilitychange', () => {
@@ -144,6 +145,7 @@ function show(state) {
     robotView.load().catch(() => {});
   }
   robotView.show(state.joints, state.tilt);
+  cameraView.hear(state.camera);
   header();
 }
 function showChannels(state) {

@@ -21,7 +21,7 @@ double milli(double value) { return std::round(value * 1e3) / 1e3; }
 }  // namespace
 
 std::string shared_state(const ops::DrivingStation& station, const PageDevices& devices, const ops::ArmsBoard& arms,
-                         const MeasuredMotion* measured, std::int64_t now_ns) {
+                         const MeasuredMotion* measured, const HeardCamera* camera, std::int64_t now_ns) {
   const ops::RobotDriver* driver = station.driver();
   const ops::RobotNews* news = station.news();
   const double silence_s = news == nullptr ? 0.0 : static_cast<double>(now_ns - news->heard_ns) * 1e-9;
@@ -46,6 +46,10 @@ std::string shared_state(const ops::DrivingStation& station, const PageDevices& 
     const Eigen::Quaterniond& tilt = *measured->tilt();
     json["tilt"] = {milli(tilt.w()), milli(tilt.x()), milli(tilt.y()), milli(tilt.z())};
     for (const double q : news->state->q_rad) json["joints"].push_back(milli(q));
+  }
+  if (camera != nullptr) {
+    const auto newest = camera->newest();
+    json["camera"] = newest ? Json{{"number", newest->number}, {"age_s", milli(newest->age_s)}} : Json::object();
   }
   std::string text = text_of(json);
   text.pop_back();

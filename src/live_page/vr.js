@@ -5,7 +5,8 @@
 const SEND_MS = 15, HOLD_MS = 1000, PULLED = 0.7;
 
 // Entering VR may close the connection, and it comes back.
-const connection = new Connection({hear: show, lost: () => {}});
+const cameraView = new CameraView($('camera'), $('camera'));
+const connection = new Connection({hear: (state) => { cameraView.hear(state.camera); show(); }, lost: () => {}});
 function stop() { connection.stop(); show(); }
 wireStop(stop);
 
@@ -67,7 +68,7 @@ function letGo() {
 }
 
 // ---- the session ----------------------------------------------------------------------------------------------------
-let gl = null, program = null, texture = null;
+let gl = null, program = null;
 async function enter() {
   const canvas = document.createElement('canvas');
   gl = canvas.getContext('webgl', {xrCompatible: true, alpha: false});
@@ -102,7 +103,7 @@ if (navigator.xr) {
 
 // ---- what is seen: a panel ahead with mode, reason and measured motion ----------------------------------------------
 const panel = $('panel').getContext('2d');
-let painted = true;
+let panelPainted = true;
 function show() {
   const {state} = connection, news = state && state.news, alarm = connection.alarm(), lost = connection.isLost();
   connection.showHeader();
@@ -125,7 +126,7 @@ function show() {
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';
   panel.fillRect(0, 0, PANEL.width, PANEL.height);
   panel.drawImage($('robot-view'), PANEL.width - PANEL.robot, PANEL.height - PANEL.robot, PANEL.robot, PANEL.robot);
-  painted = true;
+  panelPainted = true;
   let placed = wrapped(lines, 1);
   for (let scale = 0.95; placed.at(-1).y > PANEL.height - PANEL.margin && scale > 0.4; scale -= 0.05) placed = wrapped(lines, scale);
   for (const {text, colour, size, y} of placed) {
@@ -164,7 +165,15 @@ setInterval(() => {                                        // drawing the robot 
   show();
 }, 200);
 
-const QUAD_M = {width: 1.6, height: 0.8, ahead: 1.8, up: 1.35};
+// Where they hang in the room [m]; with the camera's picture ahead, the panel is below it.
+const AHEAD_M = 1.8;
+const panelSurface = {canvas: $('panel'), width: 1.6, height: 0.8, up: () => surfaces().length > 1 ? 0.75 : 1.35, texture: null};
+const cameraSurface = {canvas: $('camera'), width: 1.2, height: 0.9, up: () => 1.65, texture: null};
+const surfaces = () => connection.state && connection.state.camera ? [panelSurface, cameraSurface] : [panelSurface];
+function corners({width: w, height: h, up}) {
+  const u = up(), a = AHEAD_M;
+  return new Float32Array([-w / 2, u - h / 2, -a, 0, 1, w / 2, u - h / 2, -a, 1, 1, -w / 2, u + h / 2, -a, 0, 0, w / 2, u + h / 2, -a, 1, 0]);
+}
 function prepare() {
   const compile = (kind, text) => { const one = gl.createShader(kind); gl.shaderSource(one, text); gl.compileShader(one); return one; };
   program = gl.createProgram();
@@ -173,14 +182,13 @@ function prepare() {
   gl.attachShader(program, compile(gl.FRAGMENT_SHADER,
     'precision mediump float; varying vec2 on; uniform sampler2D panel; void main() { gl_FragColor = texture2D(panel, on); }'));
   gl.linkProgram(program);
-  const {width: w, height: h, ahead: a, up: u} = QUAD_M;
-  const corners = new Float32Array([-w / 2, u - h / 2, -a, 0, 1, w / 2, u - h / 2, -a, 1, 1, -w / 2, u + h / 2, -a, 0, 0, w / 2, u + h / 2, -a, 1, 0]);
   gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-  gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
-  texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  for (const [what, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
-    gl.texParameteri(gl.TEXTURE_2D, what, value);
+  for (const surface of [panelSurface, cameraSurface]) {
+    surface.texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, surface.texture);
+    for (const [what, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+      gl.texParameteri(gl.TEXTURE_2D, what, value);
+  }
 }
 function paint(frame) {
   const layer = session.renderState.baseLayer, viewer = frame.getViewerPose(space);
@@ -189,21 +197,25 @@ function paint(frame) {
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   if (!viewer) return;
   gl.useProgram(program);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  if (painted) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, $('panel'));
-  painted = false;
-  for (const [name, size, offset] of [['at', 3, 0], ['uv', 2, 12]]) {
-    const place = gl.getAttribLocation(program, name);
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribPointer(place, size, gl.FLOAT, false, 20, offset);
+  for (const surface of surfaces()) {
+    gl.bindTexture(gl.TEXTURE_2D, surface.texture);
+    if (surface === panelSurface ? panelPainted : cameraView.takePainted())
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, surface.canvas);
+    gl.bufferData(gl.ARRAY_BUFFER, corners(surface), gl.DYNAMIC_DRAW);
+    for (const [name, size, offset] of [['at', 3, 0], ['uv', 2, 12]]) {
+      const place = gl.getAttribLocation(program, name);
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, gl.FLOAT, false, 20, offset);
+    }
+    for (const view of viewer.views) {
+      const port = layer.getViewport(view);
+      gl.viewport(port.x, port.y, port.width, port.height);
+      gl.uniformMatrix4fv(gl.getUniformLocation(program, 'view'), false, view.transform.inverse.matrix);
+      gl.uniformMatrix4fv(gl.getUniformLocation(program, 'lens'), false, view.projectionMatrix);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
   }
-  for (const view of viewer.views) {
-    const port = layer.getViewport(view);
-    gl.viewport(port.x, port.y, port.width, port.height);
-    gl.uniformMatrix4fv(gl.getUniformLocation(program, 'view'), false, view.transform.inverse.matrix);
-    gl.uniformMatrix4fv(gl.getUniformLocation(program, 'lens'), false, view.projectionMatrix);
-    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
-  }
+  panelPainted = false;
 }
 
 connection.open();

@@ -8,25 +8,31 @@
 
 namespace pmg::sil {
 
-Film::Film(sim::World& world, const std::filesystem::path& file)
+Film::Film(sim::World& world, const std::filesystem::path& file, double elevation_deg)
     : world_(world),
-      renderer_(world.mj_model(), {.width = 960, .height = 540}),
+      renderer_(world.mj_model(), {.width = 960, .height = 540, .elevation_deg = elevation_deg}),
       writer_(file, renderer_.width(), renderer_.height(), kFramesPerSecond) {}
 
+bool Film::due() noexcept { return failure_.empty() && ++ticks_ % kTicksPerFrame == 0; }
+
 void Film::after_tick(const RunProgress& progress) {
-  if (!failure_.empty() || ++ticks_ % kTicksPerFrame != 0) return;
+  if (!due()) return;
+  shoot(progress.time_s,
+        fmt::format("{}\n{}", control::mode_text(progress.result.mode, control::hanging(progress.result.maker)),
+                    progress.step.text));
+}
+
+void Film::after_tick(const std::string& words) {
+  if (due()) shoot(world_.time_s(), words);
+}
+
+void Film::shoot(double time_s, const std::string& words) {
   try {
-    shoot(progress);
+    writer_.write(
+        renderer_.render(world_.mj_data(), fmt::format("{:6.1f} s  {}", time_s, words), world_.gantry_rope()));
   } catch (const std::runtime_error& error) {
     failure_ = error.what();
   }
-}
-
-void Film::shoot(const RunProgress& progress) {
-  const std::string text = fmt::format(
-      "{:6.1f} s  {}\n{}", progress.time_s,
-      control::mode_text(progress.result.mode, control::hanging(progress.result.maker)), progress.step.text);
-  writer_.write(renderer_.render(world_.mj_data(), text, world_.gantry_rope()));
 }
 
 void Film::close() {

@@ -1,4 +1,4 @@
-// A film of a lockstep run.
+// A film of a run in lockstep, of whatever plays it.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,13 @@ namespace pmg::sil {
 /// fails on the way (ffmpeg dies, the disk is full) ends there and says why; the run that it shows goes on.
 class Film {
  public:
+  static constexpr double kElevation_deg = -9.0;  ///< of the line of sight
+
   /// Keeps a reference to world. Throws std::runtime_error without ffmpeg or OSMesa.
-  Film(sim::World& world, const std::filesystem::path& file);
+  Film(sim::World& world, const std::filesystem::path& file, double elevation_deg = kElevation_deg);
 
   void after_tick(const RunProgress& progress);
+  void after_tick(const std::string& words);  ///< which stand in the picture, below the time
   void close();
   const std::string& failure() const noexcept { return failure_; }  ///< one line; empty: all is well
 
@@ -27,7 +30,8 @@ class Film {
   static constexpr int kFramesPerSecond = 25;
   static constexpr int kTicksPerFrame = 4;
 
-  void shoot(const RunProgress& progress);
+  bool due() noexcept;
+  void shoot(double time_s, const std::string& words);
 
   sim::World& world_;
   sim::Renderer renderer_;

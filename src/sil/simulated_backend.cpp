@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
+#include "sil/camera_stream.hpp"
 #include "sil/driving_window.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/motors_in_force.hpp"
@@ -21,6 +23,8 @@ class SimulatedBackend final : public hal::Backend {
         world_options_(world_with_noise(option<std::uint64_t>("seed"), true)) {
     world_options_.motors = sim::motors_in_force(setup.robot, option<std::string>("motor"));
     world_options_.benched_joint = setup.benched_joint;
+    if (option<bool>("viewer") && option<bool>("camera"))
+      throw std::invalid_argument("--camera and --viewer: expected one of them (a window draws by another OpenGL)");
   }
 
   hal::OptionValues configuration() const override {
@@ -46,9 +50,12 @@ class SimulatedBackend final : public hal::Backend {
     world_.emplace(setup_.robot, world_options_);
     robot_.emplace(*world_, gantry_ ? HoistedBy::kGantry : HoistedBy::kCrane, setup_.keeps_truth);
     if (option<bool>("viewer")) window_.emplace(world_->mj_model(), *robot_, setup_.name, setup_.lcm_url);
+    if (option<bool>("camera"))
+      camera_.emplace(world_->mj_model(), setup_.robot.torso_link, *robot_, setup_.name, setup_.lcm_url, setup_.clock);
     return *robot_;
   }
 
+  std::string news() override { return camera_ ? camera_->take_failure() : std::string(); }
   hal::HoistLine* hoist() noexcept override { return robot_->hoist_line(); }
   hal::Window* window() noexcept override { return window_ ? &*window_ : nullptr; }
   const hal::TruthSample* take_truth(std::uint64_t bus_sample) noexcept override {
@@ -67,6 +74,7 @@ class SimulatedBackend final : public hal::Backend {
   std::optional<sim::World> world_;
   std::optional<SimulatedRobot> robot_;
   std::optional<DrivingWindow> window_;
+  std::optional<CameraStream> camera_;
 };
 
 }  // namespace
@@ -78,6 +86,7 @@ void register_backend(hal::BackendFactory& factory) {
        .options =
            {{"gantry", "hang the robot in a gantry for ever; otherwise a hoist sets it down when it stands", false},
             {"viewer", "a window with the robot, whose keys drive it", false},
+            {"camera", "send what the head's camera shows, ten pictures a second, for pmg_web --camera", false},
             {"motor", "motor.yaml, how the drives really are; robot.yaml's if not given, none for none", std::string()},
             {"robot-limits", "judge old states and late ticks as on a robot, and wait for no late controller", false},
             {"seed", "of the sensor noise", std::uint64_t{0}}},

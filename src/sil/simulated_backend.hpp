@@ -5,8 +5,8 @@
 
 namespace pmg::sil {
 
-/// Options: gantry, viewer, motor, seed. It offers a hoist (not with gantry, nor for a bench), the truth, and with
-/// viewer a window.
+/// Options: gantry, viewer, camera, motor, seed. It offers a hoist (not with gantry, nor for a bench), the truth, and
+/// with viewer a window.
 void register_backend(hal::BackendFactory& factory);
 
 }  // namespace pmg::sil

@@ -74,6 +74,10 @@ struct Renderer::Impl {
         viewport{0, 0, options.width, options.height},
         rows(3 * pixels()),
         rgb(3 * pixels()) {
+    if (options.mounted) {
+      body = mj_name2id(model, mjOBJ_BODY, options.mounted->body.c_str());
+      if (body < 0) throw std::runtime_error("no body " + options.mounted->body + " for the camera");
+    }
     mjr_defaultContext(&context);
     mjr_makeContext(model, &context, mjFONTSCALE_150);
     mjr_setBuffer(mjFB_OFFSCREEN, &context);
@@ -101,9 +105,31 @@ struct Renderer::Impl {
     last_time_s = data->time;
   }
 
+  /// Both eyes of the scene look from the camera's body.
+  void mount(const mjData* data, mjvScene& drawn) const {
+    constexpr double kNear_m = 0.05, kFar_m = 50.0;
+    const MountedCamera& mounted = *options.mounted;
+    Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();
+    T_WB.translation() = Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body);
+    T_WB.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * body);
+    const Eigen::Isometry3f T_WC = (T_WB * mounted.T_BC).cast<float>();
+    const auto top = static_cast<float>(kNear_m * std::tan(mounted.half_height_rad));
+    for (mjvGLCamera& eye : drawn.camera) {
+      Eigen::Map<Eigen::Vector3f>(eye.pos) = T_WC.translation();
+      Eigen::Map<Eigen::Vector3f>(eye.forward) = T_WC.linear() * Eigen::Vector3f::UnitX();
+      Eigen::Map<Eigen::Vector3f>(eye.up) = T_WC.linear() * Eigen::Vector3f::UnitZ();
+      eye.frustum_center = 0.0F;
+      eye.frustum_bottom = -top;
+      eye.frustum_top = top;
+      eye.frustum_near = static_cast<float>(kNear_m);
+      eye.frustum_far = static_cast<float>(kFar_m);
+    }
+  }
+
   RendererOptions options;
   const mjModel* model;
-  GlContext gl;  // before the members that live in it
+  int body = -1;  // of a mounted camera
+  GlContext gl;   // before the members that live in it
   Scene scene;
   mjvCamera camera{};
   mjrContext context{};
@@ -121,7 +147,9 @@ const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::strin
                                                   const std::optional<Rope>& rope, std::span<const Bar> bars) {
   Impl& r = *impl_;
   r.follow(data);
-  mjr_render(r.viewport, &r.scene.update(data, r.camera, rope, bars), &r.context);
+  mjvScene& drawn = r.scene.update(data, r.camera, rope, bars);
+  if (r.options.mounted) r.mount(data, drawn);
+  mjr_render(r.viewport, &drawn, &r.context);
   if (!text.empty()) mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, r.viewport, text.c_str(), nullptr, &r.context);
   mjr_readPixels(r.rows.data(), nullptr, r.viewport, &r.context);
   const std::size_t row = 3 * static_cast<std::size_t>(r.options.width);

@@ -120,19 +120,10 @@ class BoxPicker : public ScriptedOperator {
         if (low_->edge_m.value_or(1.0) > kBackOff_m) return go(Stage::kAside, now_s);
         walk(-0.2, 0.0, towards(low_->edge_yaw_rad, 0.10, 0.12));
         return;
-      case Stage::kAside: {
-        // The mark: the box's place along the higher table.
-        const double left_m = -high_->mark_m.value_or(0.0);
-        if (!approach(high_->edge_m.value_or(1.0) - kBackOff_m, left_m, high_->edge_yaw_rad)) since_s_ = now_s;
-        if (in_stage_s > 0.5) go(Stage::kForward, now_s);
-        return;
-      }
-      case Stage::kForward: {
-        const double left_m = -high_->mark_m.value_or(0.0);
-        if (!approach(high_->edge_m.value_or(1.0) - kPutDown_m, left_m, high_->edge_yaw_rad)) since_s_ = now_s;
-        if (in_stage_s > 0.8) go(Stage::kLower, now_s);
-        return;
-      }
+      case Stage::kAside:
+        return to_higher_table(kBackOff_m, 0.5, Stage::kForward, now_s);
+      case Stage::kForward:
+        return to_higher_table(kPutDown_m, 0.8, Stage::kLower, now_s);
       case Stage::kLower: {
         stay();
         if (above_m() < 0.01) rested_m_ += kDown_m_s * kTick_s;
@@ -165,6 +156,13 @@ class BoxPicker : public ScriptedOperator {
       walk(towards(gap[0], 0.03, 0.12), towards(gap[1], 0.03, 0.06), towards(gap[2], 0.08, 0.12));
     }
     return there;
+  }
+  /// Before the place for the box, so far from the table's edge; when it has stood there for so long, the next stage.
+  /// The mark: the box's place along the table.
+  void to_higher_table(double edge_m, double stood_s, Stage next, double now_s) {
+    const double in_stage_s = now_s - since_s_, left_m = -high_->mark_m.value_or(0.0);
+    if (!approach(high_->edge_m.value_or(1.0) - edge_m, left_m, high_->edge_yaw_rad)) since_s_ = now_s;
+    if (in_stage_s > stood_s) go(next, now_s);
   }
   static double left_of(Foot side) { return side == kLeft ? 1.0 : -1.0; }
   void both_hands(const Eigen::Vector3d& v_m_s) {

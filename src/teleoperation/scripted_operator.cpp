@@ -12,9 +12,12 @@ namespace pmg::teleoperation {
 
 namespace {
 
-// Z1's ranges of command, which an operator has learnt.
-constexpr double kFastest_m_s = 0.8, kFastestBack_m_s = 0.5, kFastestAside_m_s = 0.35, kFastestTurn_rad_s = 0.8,
-                 kMostPitch_rad = 0.5;
+/// The share of its range that a value is, in [-1, 1].
+double share_of(const CommandLimits& limits, Channel channel, double value) {
+  const double most = value < 0.0 ? -limits.lower[channel] : limits.upper[channel];
+  return most > 0.0 ? std::clamp(value / most, -1.0, 1.0) : 0.0;
+}
+
 constexpr double kStood_s = 3.0;
 constexpr double kDown_m_s = 0.12, kBend_rad_s = 0.2;  // of its own head
 constexpr double kGain_per_s = 1.5;                    // of a hand that closes a gap
@@ -23,6 +26,7 @@ constexpr double kGain_per_s = 1.5;                    // of a hand that closes 
 
 void ScriptedOperator::step(LedRobot& robot) {
   const double now_s = robot.time_s();
+  limits_ = robot.model().command_limits;
   for (const Foot side : {kLeft, kRight}) {
     person_.move_hand(side, Eigen::Vector3d::Zero());
     person_.turn_hand(side, Eigen::Vector3d::Zero());
@@ -46,18 +50,17 @@ bool ScriptedOperator::takes_over(const LedRobot& robot, double now_s) {
 }
 
 void ScriptedOperator::walk(double ahead_m_s, double left_m_s, double turn_rad_s) {
-  const Eigen::Vector2d lean_m =
-      lean_for({std::clamp(ahead_m_s, -0.2, 0.25) / (ahead_m_s < 0.0 ? kFastestBack_m_s : kFastest_m_s),
-                std::clamp(left_m_s, -0.2, 0.2) / kFastestAside_m_s});
-  person_.lean({lean_m.x(), lean_m.y(), -down_m_}, turn_for(std::clamp(turn_rad_s, -0.3, 0.3) / kFastestTurn_rad_s),
-               bent_rad_);
+  const Eigen::Vector2d lean_m = lean_for({share_of(limits_, kVx, std::clamp(ahead_m_s, -0.2, 0.25)),
+                                           share_of(limits_, kVy, std::clamp(left_m_s, -0.2, 0.2))});
+  person_.lean({lean_m.x(), lean_m.y(), -down_m_},
+               turn_for(share_of(limits_, kOmega, std::clamp(turn_rad_s, -0.3, 0.3))), bent_rad_);
 }
 
 void ScriptedOperator::stay() { person_.lean({0.0, 0.0, -down_m_}, 0.0, bent_rad_); }
 
 void ScriptedOperator::crouch(double height_m, double pitch_rad) noexcept {
   down_to_m_ = height_m < 0.0 ? vr::kHeightDead_m - height_m : 0.0;
-  bent_to_rad_ = bend_for(pitch_rad / kMostPitch_rad);
+  bent_to_rad_ = bend_for(share_of(limits_, kPitch, pitch_rad));
 }
 
 double ScriptedOperator::towards(double gap, double small, double least) {

@@ -45,6 +45,7 @@ class ScriptedOperator {
  private:
   static bool follows(const LedRobot& robot, Foot side);
 
+  CommandLimits limits_;  // its page tells them
   PerFoot<double> pulled_s_{-10.0, -10.0};
   double squeezed_s_ = 0.0;
   double down_m_ = 0.0, down_to_m_ = 0.0, bent_rad_ = 0.0, bent_to_rad_ = 0.0;  // of its own head

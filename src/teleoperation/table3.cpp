@@ -1,9 +1,15 @@
 #include "teleoperation/table3.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "sil/film.hpp"
 
 namespace pmg::teleoperation {
 
@@ -52,6 +58,14 @@ void add_trials(const TaskTrials& task, pages::Page& page) {
     if (lifts) row.insert(row.begin() + 3, fmt::format("{:.2f}", run.lifted_m));
   }
   page.table(runs);
+}
+
+TaskResult run_trial(const Table3& table, const std::string& task, const model::RobotModel& robot, std::size_t trial,
+                     const work::Progress& progress, const TaskObserver& observer) {
+  const sim::WorldOptions world = table.evaluated.plants.of(robot, trial + 1);
+  const evaluation::Candidate& candidate = table.evaluated.candidate;
+  return task == table.wiping.name ? run_wiping(candidate, world, WipingPlan::of(trial), progress, observer)
+                                   : run_box_picking(candidate, world, BoxPlan::of(trial), progress, observer);
 }
 
 std::string operator_text(const Table3& table) {
@@ -113,16 +127,51 @@ void run_table3(Table3& table, const evaluation::Supervision& supervision) {
   table.box_picking.runs.assign(trials, {});
   evaluation::for_each_piece(2 * trials, supervision, [&](std::size_t piece) {
     const std::size_t trial = piece / 2;  // an interrupted evaluation has some of both tasks
-    const sim::WorldOptions world = table.evaluated.plants.of(robot, trial + 1);
-    const evaluation::Candidate& candidate = table.evaluated.candidate;
-    if (piece % 2 == 0) {
-      table.wiping.runs[trial] = run_wiping(candidate, world, WipingPlan::of(trial), supervision.progress);
-    } else {
-      table.box_picking.runs[trial] = run_box_picking(candidate, world, BoxPlan::of(trial), supervision.progress);
-    }
+    TaskTrials& task = piece % 2 == 0 ? table.wiping : table.box_picking;
+    task.runs[trial] = run_trial(table, task.name, robot, trial, supervision.progress, {});
   });
   table.complete = std::ranges::all_of(
       table.tasks(), [](const TaskTrials* task) { return std::ranges::all_of(task->runs, took_place); });
+}
+
+std::string FilmedTrial::file() const {
+  std::string name = fmt::format("{} {}.mp4", task, end_name(end));
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
+std::vector<FilmedTrial> trials_to_film(const Table3& table) {
+  std::vector<FilmedTrial> filmed;
+  for (const TaskTrials* task : table.tasks()) {
+    std::set<End> ends{End::kInterrupted};
+    for (std::size_t trial = 0; trial < task->runs.size(); ++trial) {
+      const End end = task->runs[trial].end;
+      if (ends.insert(end).second) filmed.push_back({.task = task->name, .trial = trial, .end = end});
+    }
+  }
+  return filmed;
+}
+
+std::string film_trial(const Table3& table, const FilmedTrial& filmed, const std::filesystem::path& file,
+                       const evaluation::Supervision& supervision) {
+  constexpr double kFromAbove_deg = -20.0;  // onto a table
+  const model::RobotModel robot = model::load_robot(model::find_robot(table.evaluated.candidate.control.robot));
+  std::optional<sil::Film> film;
+  const auto shoot = [&](LedRobot& led, const std::string& stage) {
+    if (!film) film.emplace(led.world(), file, kFromAbove_deg);
+    film->after_tick(fmt::format("{}, trial {}\n{}\n{}", filmed.task, filmed.trial, stage, led.text()));
+  };
+  TaskResult result;
+  try {
+    result = run_trial(table, filmed.task, robot, filmed.trial, supervision.progress, shoot);
+  } catch (const std::runtime_error& error) {  // no OSMesa
+    return error.what();
+  }
+  if (!film) return "";  // interrupted before its first picture
+  film->close();
+  if (!film->failure().empty() || result.end == End::kInterrupted || result.end == filmed.end) return film->failure();
+  return fmt::format("{}: trial {} ended otherwise when it was played again: {}", file.filename().string(),
+                     filmed.trial, end_name(result.end));
 }
 
 ordered_json to_json(const Table3& table) {
@@ -132,6 +181,7 @@ ordered_json to_json(const Table3& table) {
       {"robot", table.robot},
       {"policy", table.evaluated.name},
       {"variation", table.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(table.ranges_file)},
+      {"films", table.films},
       {"tasks", ordered_json::array()}};
   for (const TaskTrials* task : table.tasks()) json["tasks"].push_back(to_json(*task, table.trials));
   return json;
@@ -144,6 +194,9 @@ pages::Page page_of(const Table3& table) {
     page.verdict(task->reached() ? work::Worth() : work::Worth(work::Grade::kMissed, "too few trials succeeded"),
                  fmt::format("{} in {} % of trials; the paper has {:.0f} % of 20 on the real robot", task->verb,
                              percent_with_interval(task->done()), 100.0 * task->paper));
+  if (!table.films.empty())
+    page.paragraph(fmt::format("Films of each task's first trial of each end lie beside this page: {}.",
+                               fmt::join(table.films, ", ")));
   for (const TaskTrials* task : table.tasks()) add_trials(*task, page);
   page.heading("How it was measured");
   for (const std::string& text : {operator_text(table), wiping_text(), box_text()}) page.paragraph(text);

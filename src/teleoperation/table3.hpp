@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -34,12 +36,30 @@ struct Table3 {
   TaskTrials wiping{.name = "wiping", .verb = "the towel is wiped", .paper = kPaperWiping, .runs = {}};
   TaskTrials box_picking{.name = "box picking", .verb = "the box is moved", .paper = kPaperBoxPicking, .runs = {}};
   bool complete = true;
+  std::vector<std::string> films{};  ///< files beside the page
 
   std::array<const TaskTrials*, 2> tasks() const { return {&wiping, &box_picking}; }
 };
 
 /// Trial i has the same robot and things for every policy. The result doesn't depend on the number of jobs.
 void run_table3(Table3& table, const evaluation::Supervision& supervision);
+
+/// A trial of which a film is made.
+struct FilmedTrial {
+  std::string task;  ///< its name
+  std::size_t trial = 0;
+  End end = End::kInterrupted;
+
+  std::string file() const;  ///< "box_picking_box_dropped.mp4"
+};
+
+/// Of each task the first trial that was done, and the first of each kind of failure.
+std::vector<FilmedTrial> trials_to_film(const Table3& table);
+
+/// Plays the trial again, until the supervision interrupts. Returns the film's error in one line, or that the trial
+/// ended otherwise; empty: none.
+std::string film_trial(const Table3& table, const FilmedTrial& filmed, const std::filesystem::path& file,
+                       const evaluation::Supervision& supervision);
 
 /// Interrupted; missed, below the paper's share in a task.
 work::Worth worth_of(const Table3& table);

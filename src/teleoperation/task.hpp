@@ -37,7 +37,7 @@ struct TaskResult {
 };
 
 /// Called after each tick, for pictures and tests; may be empty.
-using TaskObserver = std::function<void(const LedRobot& robot, const std::string& stage)>;
+using TaskObserver = std::function<void(LedRobot& robot, const std::string& stage)>;
 
 /// Called after each tick with the result so far, where it writes what moved: how the trial ends; nothing: go on.
 using TaskJudge = std::function<std::optional<End>(TaskResult& result)>;

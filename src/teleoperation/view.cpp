@@ -41,9 +41,10 @@ Eigen::Isometry3d View::body(const std::string& name) const { return world_.pose
 Eigen::Isometry3d View::torso() const { return body(robot_.torso_link); }
 
 bool View::in_picture(const Eigen::Vector3d& p_T_m) const {
-  const Eigen::Vector3d along(std::cos(options_.down_rad), 0.0, -std::sin(options_.down_rad));
-  const Eigen::Vector3d from_camera_m = p_T_m - options_.p_TC_m;
-  return from_camera_m.normalized().dot(along) >= std::cos(options_.half_angle_rad);
+  const sim::HeadCamera& camera = options_.camera;
+  const Eigen::Vector3d along(std::cos(camera.down_rad), 0.0, -std::sin(camera.down_rad));
+  const Eigen::Vector3d from_camera_m = p_T_m - camera.p_TC_m;
+  return from_camera_m.normalized().dot(along) >= std::cos(camera.half_angle_rad);
 }
 
 Eigen::Vector3d View::seen(const Eigen::Vector3d& p_T_m) {

@@ -10,15 +10,15 @@
 
 #include "arms/arm_setup.hpp"
 #include "model/robot_model.hpp"
+#include "sim/head_camera.hpp"
 #include "sim/world.hpp"
 
 namespace pmg::teleoperation {
 
-/// ASSUMPTIONS: Z1's camera isn't known. A wide one between the eyes that looks 45 degrees down, a video link of 0.12
-/// s, and a person who judges places in the picture to within 5 mm and turns to within 2 degrees (standard deviations).
+/// ASSUMPTIONS: a video link of 0.12 s, and a person who judges places in the picture to within 5 mm and turns to
+/// within 2 degrees (standard deviations).
 struct ViewOptions {
-  Eigen::Vector3d p_TC_m{0.08, 0.0, 0.50};  ///< the camera's place in the torso's frame
-  double down_rad = 0.785, half_angle_rad = 1.05;
+  sim::HeadCamera camera{};
   double delay_s = 0.12, period_s = 1.0 / 30.0, noise_m = 0.005, noise_rad = 0.01,
          noise_turn_rad = 0.035;  ///< of edges, which are long; of objects and palms
 };

@@ -26,6 +26,7 @@
 #include <utility>
 
 #include "web/admission.hpp"
+#include "web/beast_text.hpp"
 
 namespace pmg::web {
 
@@ -43,8 +44,6 @@ using Text = std::shared_ptr<const std::string>;
 constexpr std::uint8_t kMessageData = 0x01;  // the protocol's only binary message that this server sends
 constexpr auto kPatience = std::chrono::seconds(5), kIdle = std::chrono::seconds(20);
 const std::array<std::string, 3> kThisComputer = {"localhost", "127.0.0.1", "::1"};
-
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 

@@ -27,6 +27,7 @@
 
 #include "web/admission.hpp"
 #include "web/allowance.hpp"
+#include "web/beast_text.hpp"
 
 namespace pmg::web {
 
@@ -52,8 +53,6 @@ std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
-
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
 std::string_view field(const Request& request, http::field name) { return view(request[name]); }
 
@@ -370,7 +369,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void respond(http::status status, const std::string& type, const std::string& text, bool keep) {
     response_ = Response(status, 11);
-    response_.set(http::field::content_type, type + "; charset=utf-8");
+    response_.set(http::field::content_type, type.starts_with("image/") ? type : type + "; charset=utf-8");
     response_.set(http::field::cache_control, "no-store");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("X-Frame-Options", "DENY");

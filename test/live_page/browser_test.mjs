@@ -2,6 +2,7 @@
 // Usage: node browser_test.mjs FOLDER_OF_PROGRAMS FOLDER_OF_PACKAGES; exit codes: 0 passed, 1 not, 77 no Chromium
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
+import dgram from 'node:dgram';
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import os from 'node:os';
@@ -23,6 +24,32 @@ function start(name, ...args) {
   children.push(child);
   return child;
 }
+/// Asks it to end, and waits until it has.
+async function ended(child) {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  const exit = new Promise((resolve) => child.once('exit', resolve));
+  child.kill('SIGCONT');
+  child.kill('SIGTERM');
+  await exit;
+}
+/// Calls heard(time [ms], vx [m/s]) for each COMMAND on the network.
+function hearCommands(heard) {
+  const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
+  socket.on('message', (bytes) => {
+    const end = bytes.indexOf(0, 8);                       // magic, number, channel
+    if (bytes.toString('latin1', 8, end) !== 'COMMAND') return;
+    let at = end + 1 + 8 + 4;                              // fingerprint, version
+    const passText = () => { at += 4 + bytes.readInt32BE(at); };
+    passText();                                            // robot
+    at += 8;                                               // stamp
+    passText();                                            // source
+    heard(Date.now(), bytes.readDoubleBE(at + 8 + 8 + 8)); // session, sequence, lease
+  });
+  socket.bind(port, () => socket.addMembership('239.255.76.67'));
+  return socket;
+}
+/// Nearest rank.
+const percentile = (values, percent) => values.toSorted((a, b) => a - b)[Math.ceil(values.length * percent / 100) - 1];
 let tellMore = async () => '';
 async function until(what, condition, seconds = 60) {
   const end = Date.now() + 1000 * seconds;
@@ -36,7 +63,7 @@ async function until(what, condition, seconds = 60) {
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const step = (text) => console.log(`- ${text}`);
 
-async function run(browser, token) {
+async function run(browser, token, robot) {
   const link = `https://localhost:${port}`;
   const open = async (options, place) => {
     const context = await browser.newContext({ignoreHTTPSErrors: true, ...options});
@@ -138,7 +165,7 @@ async function run(browser, token) {
   const rightArm = () => vr.evaluate(() => connection.state.arms[1]);
   let ahead_m = 0;
   const to = async (there_m) => { await move(-ahead_m, -there_m); ahead_m = there_m; };
-  const drive = async () => {
+  const drive = async (seconds = 60) => {
     await until('it drives', async () => {
       if ((await vr.evaluate(() => connection.state.you.drives)) && (await asked(vr, 0)) > 0.1 && (await mode(vr)) === 'walk') return true;
       await vr.evaluate(() => tracked());
@@ -150,7 +177,7 @@ async function run(browser, token) {
       await to(0.25);
       await pause(1500);
       return false;
-    });
+    }, seconds);
   };
   await until('the palm is led', async () => {
     await drive();
@@ -162,6 +189,43 @@ async function run(browser, token) {
     await pause(500);
     return /at its target|on the way/.test(await rightArm());
   });
+
+  step('poses reach the network (times are reported, not judged)');
+  const commands = [];                                     // [time, vx]
+  const listener = hearCommands((time, vx) => commands.push([time, vx]));
+  /// [time] of each of ten steps of the head, to and fro, that the page told.
+  const steps = () => vr.evaluate(() => new Promise((resolve) => {
+    const told = [], {say} = connection, from_m = quest.position.z;
+    let last = null, count = 0;
+    connection.say = (text) => {
+      const {head} = JSON.parse(text);
+      if (head && last !== null && Math.abs(head[2] - last) > 0.02) told.push(Date.now());
+      if (head) last = head[2];
+      return say.call(connection, text);
+    };
+    const timer = setInterval(() => {
+      if (++count <= 10) { quest.position.z = from_m + (count % 2 ? 0.05 + 0.0002 * count : 0); return; }
+      clearInterval(timer);
+      connection.say = say;
+      resolve(told);
+    }, 250);
+  }));
+  const delays_ms = [], WANTED = 100;
+  await until(`${WANTED} steps of the head are seen in commands`, async () => {
+    await drive(300);                                      // a browser that the computer held up for 0.3 s has let go, as it must
+    const told = await steps();
+    await pause(250);
+    told.forEach((time, k) => {
+      const within = commands.filter(([at]) => at >= time && at < (told[k + 1] ?? time + 250));
+      const before = commands.findLast(([at]) => at < time)?.[1], kept = within.at(-1)?.[1];
+      // It has arrived with the first command whose velocity is the one that the head then keeps asking for.
+      if (before === undefined || !kept || Math.abs(kept - before) < 1e-6) return;
+      delays_ms.push(within.find(([, vx]) => Math.abs(vx - kept) < 1e-9)[0] - time);
+    });
+    return delays_ms.length >= WANTED;
+  }, 300);
+  listener.close();
+  step(`pose to LCM: p50 ${percentile(delays_ms, 50)} ms, p99 ${percentile(delays_ms, 99)} ms over ${delays_ms.length} steps of the head`);
 
   step('a lost controller holds its palm and nothing else');
   await vr.evaluate(() => { quest.controllers.right.connected = false; });
@@ -199,22 +263,37 @@ async function run(browser, token) {
   spawnSync(program('pmg_web'), ['revoke', 'phone', ...common]);
   for (const page of [phone, vr])
     await until('not paired', async () => (await page.textContent('#link')).includes('this token is not taken'), 20);
+
+  step('a page shows what the head sees, and marks a picture that has stopped');
+  assert.equal(await reader.evaluate(() => cameraView.words()), 'no picture');
+  await ended(robot);
+  const seeing = start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--camera', '--lcm-url', url);
+  const words = () => reader.evaluate(() => cameraView.words());
+  await until('a fresh picture', async () => (await words()) === '');
+  assert.equal(await reader.isVisible('#camera'), true);
+  assert.deepEqual(await reader.evaluate(async () => {
+    const picture = await createImageBitmap(await (await fetch('/camera.jpg')).blob());
+    return [picture.width, picture.height];
+  }), [320, 240]);
+  seeing.kill('SIGSTOP');
+  await until('it is marked', async () => /^OLD PICTURE/.test(await words()));
+  seeing.kill('SIGCONT');
+  await until('a fresh picture', async () => (await words()) === '');
 }
 
 let failed = null;
 try {
   const paired = spawnSync(program('pmg_web'), ['pair', 'phone', '--port', String(port), ...common], {encoding: 'utf8'});
   const token = /localhost:\d+\/#(\w+)/.exec(paired.stdout)[1];
-  start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
-  start('pmg_web', '--port', String(port), '--lcm-url', url, ...common);
+  const robot = start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
+  start('pmg_web', '--camera', '--port', String(port), '--lcm-url', url, ...common);
   const browser = await launcher.launch({executablePath: chromium, args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
     '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
-  try { await run(browser, token); } finally { await browser.close(); }
+  try { await run(browser, token, robot); } finally { await browser.close(); }
 } catch (error) {
   failed = error;
 } finally {
-  for (const child of children) child.kill('SIGTERM');
-  for (const child of children) await new Promise((resolve) => child.exitCode === null && child.signalCode === null ? child.once('exit', resolve) : resolve());
+  await Promise.all(children.map(ended));
   fs.rmSync(folder, {recursive: true, force: true});
 }
 if (failed) { console.error(failed); process.exitCode = 1; }

@@ -133,7 +133,7 @@ TEST_F(PageSocket, AStopDampsWithinFiftyMillisecondsAlsoWhileEverythingElseFlood
 TEST_F(PageSocket, APageSeesWhatTheRobotDoes) {
   const auto viewer = page();
   run(0.5);
-  const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
+  const std::string shared = shared_state(station_, devices_, arms_, nullptr, nullptr, network_.clock.now_ns());
   for (const web::Page& one : server_.pages()) server_.show(one.id, page_state(shared, one, devices_));
   const auto heard = viewer->hear();
   ASSERT_TRUE(heard);

@@ -23,7 +23,7 @@ class PageStateTest : public testing::Test {
     }
   }
   nlohmann::json state(const web::Page& page) {
-    const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
+    const std::string shared = shared_state(station_, devices_, arms_, nullptr, nullptr, network_.clock.now_ns());
     return nlohmann::json::parse(page_state(shared, page, devices_));
   }
   const web::Page phone_{1, "phone"}, reader_{2, ""};
@@ -71,10 +71,18 @@ TEST_F(PageStateTest, ACommandIsTakenWhileTheRobotStandsAndNoneAfterAStop) {
   for (const char* key : {"command", "optimised"}) EXPECT_FALSE(state(phone_)["news"].contains(key)) << key;
 }
 
+TEST_F(PageStateTest, TellsOfACameraOnlyWhereItIsShown) {
+  run(0.1);
+  EXPECT_FALSE(state(phone_).contains("camera"));
+  const HeardCamera camera(network_.link, network_.clock);
+  const std::string shared = shared_state(station_, devices_, arms_, nullptr, &camera, network_.clock.now_ns());
+  EXPECT_EQ(nlohmann::json::parse(shared + "}")["camera"], nlohmann::json::object()) << "no picture has come";
+}
+
 TEST_F(PageStateTest, ForeignTextIsNoMarkupAndBreaksNothing) {
   network_.add_robot("<img src=x>\xff\x1b[2J");
   run(1.5);
-  const std::string shared = shared_state(station_, devices_, arms_, nullptr, network_.clock.now_ns());
+  const std::string shared = shared_state(station_, devices_, arms_, nullptr, nullptr, network_.clock.now_ns());
   for (const char c : shared) EXPECT_TRUE(c >= ' ' && c < 127) << static_cast<int>(c);
   EXPECT_FALSE(state(phone_).is_discarded());
 }

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "pages/page.hpp"
@@ -44,6 +46,17 @@ inline std::string document_in_browser(const std::string& browser, std::string h
   for (std::size_t n = 0; pipe && (n = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;)
     document.append(buffer, n);
   return document;
+}
+
+/// (likewise) => the JSON that the script `after` has put into an element with the id "found".
+inline nlohmann::json found_in_browser(const std::string& browser, const std::string& html, const std::string& before,
+                                       const std::string& after) {
+  const std::string document = document_in_browser(browser, html, before, after);
+  const std::string open = "<pre id=\"found\">";
+  const std::size_t begin = document.find(open);
+  if (begin == std::string::npos) throw std::runtime_error("the browser drew nothing: " + document.substr(0, 500));
+  const std::size_t end = document.find("</pre>", begin);
+  return nlohmann::json::parse(document.substr(begin + open.size(), end - begin - open.size()));
 }
 
 }  // namespace pmg::pages

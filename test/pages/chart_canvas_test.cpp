@@ -67,12 +67,7 @@ const std::string kAfter = R"js(
 )js";
 
 nlohmann::json drawn_charts(const Page& page, const std::string& browser) {
-  const std::string document = document_in_browser(browser, page.html(), kBefore, kAfter);
-  const std::string open = "<pre id=\"found\">";
-  const std::size_t begin = document.find(open);
-  if (begin == std::string::npos) throw std::runtime_error("the browser drew nothing: " + document.substr(0, 500));
-  const std::size_t end = document.find("</pre>", begin);
-  return nlohmann::json::parse(document.substr(begin + open.size(), end - begin - open.size()));
+  return found_in_browser(browser, page.html(), kBefore, kAfter);
 }
 
 struct DrawnChart {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "control/control_setup.hpp"
 #include "control/fixtures.hpp"
 #include "files/config_error.hpp"
@@ -68,6 +70,10 @@ TEST_F(SimulatedBackendTest, NoHoistOnAGantryNorOnABench) {
     EXPECT_EQ(backend->hoist(), nullptr);
     EXPECT_TRUE(std::get<bool>(backend->configuration().at("gantry"))) << "the configuration in force";
   }
+}
+
+TEST_F(SimulatedBackendTest, ACameraBesideAWindowIsRefused) {
+  EXPECT_THROW(make({{"camera", true}, {"viewer", true}}), std::invalid_argument);
 }
 
 TEST_F(SimulatedBackendTest, AWrongMotorFileIsRefusedBeforeAnythingIsOpened) {

@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
 
 namespace pmg::teleoperation {
 namespace {
@@ -47,6 +52,33 @@ TEST(Table3, BothTasksStandInTheJsonAndInTheText) {
   EXPECT_EQ(json["tasks"][1]["runs"][0]["lifted_m"], 0.31);
   EXPECT_EQ(json["tasks"][1]["ends"]["box dropped"], 1);
   EXPECT_THAT(text_of(table), Contains(HasSubstr("box picking: done in 0 [0, 79] % of 1 trials (the paper: 80 %)")));
+}
+
+TEST(Table3, OfEachTaskTheFirstTrialOfEachEndIsFilmed) {
+  Table3 table;
+  table.wiping.runs = {{.end = End::kInterrupted}, {.end = End::kDone}, {.end = End::kDone}};
+  table.box_picking.runs = {{.end = End::kDropped}, {.end = End::kDone}, {.end = End::kDropped}, {.end = End::kFell}};
+  std::vector<std::string> films;
+  for (const FilmedTrial& one : trials_to_film(table)) films.push_back(one.file() + std::to_string(one.trial));
+  EXPECT_THAT(films, testing::ElementsAre("wiping_done.mp41", "box_picking_box_dropped.mp40", "box_picking_done.mp41",
+                                          "box_picking_fell.mp43"));
+}
+
+/// A moment of a trial: as long as its robot hangs.
+TEST(Table3, AFilmIsMadeOfATrialThatIsPlayedAgain) {
+  const test::TemporaryFolder folder;
+  Table3 table;
+  table.evaluated = {.name = "pmg", .candidate = {"pmg", {}}, .plants = {}};
+  int asked = 0;
+  const evaluation::Supervision supervision{.jobs = 1,
+                                            .progress = {.report = {}, .interrupted = [&] { return ++asked > 20; }}};
+  const auto file = folder.path() / "wiping.mp4";
+  EXPECT_EQ(film_trial(table, {.task = "wiping", .trial = 3, .end = End::kDone}, file, supervision), "");
+  EXPECT_GT(std::filesystem::file_size(file), 1000U);
+  asked = 0;
+  EXPECT_NE(film_trial(table, {.task = "wiping", .trial = 3, .end = End::kDone}, folder.path() / "none" / "wiping.mp4",
+                       supervision),
+            "");
 }
 
 TEST(Table3, InterruptedBeforeItsFirstTrialItShowsNoShare) {

@@ -30,6 +30,9 @@ TEST_F(ServerTest, GivesOutWhatItIsGivenLater) {
     server_.give_out({"/robot.json", "application/json", text});
     EXPECT_THAT(get("/robot.json"), HasSubstr(text));
   }
+  server_.give_out({"/camera.jpg", "image/jpeg", std::string("\xff\xd8\0\xff", 4)});
+  EXPECT_THAT(get("/camera.jpg"),
+              AllOf(HasSubstr("Content-Type: image/jpeg\r\n"), HasSubstr(std::string("\xff\xd8\0\xff", 4))));
 }
 
 TEST_F(ServerTest, OneConnectionAsksForSeveralAssets) {
