@@ -38,11 +38,13 @@ std::optional<Hottest> hottest(const RobotNews& news) {
 }
 
 /// The policy's variant (docs/reference/file-formats.md) in the configuration in force; pmg if the configuration has
-/// none that training makes.
-Variant variant(const pmg_msgs::robot_info_t& info) {
+/// none.
+std::string variant(const pmg_msgs::robot_info_t& info) {
   const auto options = nlohmann::json::parse(info.options, nullptr, false);
-  if (!options.is_object() || !options.contains("variant") || !options["variant"].is_string()) return Variant::kPmg;
-  return variant_named(options["variant"].get<std::string>()).value_or(Variant::kPmg);
+  if (!options.is_object() || !options.contains("variant") || !options["variant"].is_string()) {
+    return to_string(Variant::kPmg);
+  }
+  return options["variant"].get<std::string>();
 }
 
 std::string mode_text(const pmg_msgs::status_t& status) {
@@ -139,9 +141,9 @@ std::vector<std::string> screen(const RobotNews& news, double silence_s) {
     who += fmt::format("   model {}   policy {}   backend {}", news.info->model, news.info->policy, news.info->backend);
   }
   add("robot", who);
-  if (news.info && is_baseline(variant(*news.info))) {
-    add("BASELINE",
-        fmt::format("{}: a policy for comparison, not the controller's own", to_string(variant(*news.info))));
+  if (const auto trained = news.info ? variant_named(variant(*news.info)) : std::nullopt;
+      trained && is_baseline(*trained)) {
+    add("BASELINE", fmt::format("{}: a policy for comparison, not the controller's own", variant(*news.info)));
   }
   if (news.info) {
     add("software", fmt::format("{}   bundle {:.12}", news.info->software, news.info->bundle));

@@ -65,7 +65,7 @@ TEST_F(RobotBoardTest, ABaselineIsAnnounced) {
   baseline.info->options = R"({"policy": "other", "variant": "single_gait"})";
   EXPECT_THAT(screen(baseline, 0.0), Contains(AllOf(HasSubstr("BASELINE"), HasSubstr("single_gait"))));
   EXPECT_EQ(news_json(baseline, 0.0)["info"]["variant"], "single_gait");
-  for (const char* broken : {"", "{", R"({"variant": 3})", "[]"}) {
+  for (const char* broken : {"", "{", R"({"variant": 3})", "[]", R"({"variant": "velocity"})"}) {
     baseline.info->options = broken;
     EXPECT_THAT(screen(baseline, 0.0), Not(Contains(HasSubstr("BASELINE")))) << broken;
   }
