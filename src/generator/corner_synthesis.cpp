@@ -83,7 +83,7 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.reference = reference;
   task.weights.reference = LegVector<double>::Constant(1.0);
   task.weights.bias = LegVector<double>::Constant(0.5);
-  task.weights.step_height = 2400.0;
+  task.weights.step_height = 4500.0;
   task.weights.step_height_free_m = 0.004;
   task.weights.velocity = 12.0;
   task.weights.velocity_yaw = 6.0;

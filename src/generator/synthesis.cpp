@@ -19,25 +19,25 @@ GaitTask forward_task(const Making& making) {
   GaitTask task;
   task.period_s = 1.05;
   task.duty_factor = 0.62;
-  task.velocity = {0.82, 0.0, 0.0};  // ends at 0.79: flat soles pull it down
+  task.velocity = {0.845, 0.0, 0.0};  // ends at 0.81: flat soles pull it down
   task.sway_m = 0.015;
   task.clearance_m = 0.026;
   // The foot keeps 15 mm until 15 % of the swing are left: a robot's leg sags, and a foot that is low for long lands
   // early. Its whole cycle then shifts against the published one.
   task.landing = 1.2;
-  task.foot_gap_m = 0.06;
+  task.foot_gap_m = 0.055;
   task.flat_from = 0.15;
   task.flat_to = 0.62;
   // Published feet bend at the toes and rise by 50 degrees before they leave the ground. A rigid foot pivots over its
   // toe edge. This pivoting is limited, because at half amplitude it lifts the other foot or scrapes the ground.
   // Instead the pelvis lifts the swinging side.
-  task.hike_rad = 0.16;
+  task.hike_rad = 0.145;
   // Walking people are lower than standing people: their legs spread.
-  task.height_m = -0.018;
+  task.height_m = -0.022;
   task.reference = published_reference(making.legs);
   task.shape = {{kHipPitch, 0.960, 5.4 * kRadPerDegree},
-                {kKnee, 0.965, 5.4 * kRadPerDegree},
-                {kAnklePitch, 0.957, 5.8 * kRadPerDegree, 0.78}};
+                {kKnee, 0.967, 5.2 * kRadPerDegree},
+                {kAnklePitch, 0.962, 5.5 * kRadPerDegree, 0.86}};
   task.weights.reference << 0.5, 40.0, 60.0, 0.5, 0.5, 2.0;
   task.weights.bias << 1.0, 6.0, 20.0, 1.0, 1.0, 6.0;
   task.weights.slip = 75.0;
@@ -46,22 +46,22 @@ GaitTask forward_task(const Making& making) {
   task.weights.velocity = 25.0;
   task.weights.velocity_up = 4.0;  // high steps of the base would fall faster than a body can
   task.weights.foot_flat = 14.0;
-  task.weights.sole = 300.0;
-  task.sole_free_rad = 2.5 * kRadPerDegree;
+  task.weights.sole = 150.0;
+  task.sole_free_rad = 5.0 * kRadPerDegree;
   task.weights.clearance = 300.0;
-  task.weights.above_ground = 3600.0;
+  task.weights.above_ground = 5000.0;
   task.weights.correlation = 300.0;
   task.weights.rms = 300.0;
-  task.weights.amplitude = 60.0;
+  task.weights.amplitude = 80.0;
   task.weights.height = 60.0;
   task.weights.velocity_yaw = 4.0;
-  task.weights.limit = 300.0;
+  task.weights.limit = 1500.0;
   task.weights.smooth = 6e-3;
   task.scenarios = scenarios(making, 0.36);
   for (Scenario& scenario : task.scenarios) {  // small steps drag the toes most
     if (scenario.gain < 0.35 && scenario.addition.q.empty()) scenario.weight *= 2.0;
   }
-  task.later_iterations = 50;
+  task.later_iterations = 40;
   task.scenarios.push_back({0.5, 1.0, posture_addition(making, kHeight, -0.03)});
   return task;
 }

@@ -268,4 +268,14 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   return robot;
 }
 
+RobotModel standing_as(RobotModel robot, const JointVector& q_stand) {
+  for (Joint& joint : robot.joints) {
+    const double angle_rad = q_stand[robot.joint_index.at(joint.name)];
+    if (joint.sit_down_rad == joint.stand_rad) joint.sit_down_rad = angle_rad;
+    joint.stand_rad = angle_rad;
+  }
+  robot.standing_height_m = standing_height(robot);
+  return robot;
+}
+
 }  // namespace pmg::model
