@@ -14,6 +14,7 @@
 #include "hal/bus_cycle.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/standing_posture.hpp"
 #include "policy/onnx_policy.hpp"
 
 namespace pmg::control {

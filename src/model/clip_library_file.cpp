@@ -8,6 +8,7 @@
 #include "files/config_reader.hpp"
 #include "model/clip_table.hpp"
 #include "model/command_inverse_file.hpp"
+#include "model/standing_posture.hpp"
 #include "pmg/blending.hpp"
 #include "pmg/library_check.hpp"
 #include "pmg/periodic_slopes.hpp"

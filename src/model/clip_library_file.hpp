@@ -31,9 +31,6 @@ inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< upper bound of the sum 
 /// mean velocities in the wrong direction, a posture at command 0 that isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
 
-/// The posture that the library's posture clips have at command 0, joint by joint [rad]. Throws ConfigError.
-JointVector standing_posture(const std::filesystem::path& directory, const RobotModel& robot);
-
 /// Name of a clip of several velocities: the channels' names in turn, for example forward_turn or lateral_turn_right.
 std::string corner_clip_name(const Corner& corner);
 

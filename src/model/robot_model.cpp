@@ -11,6 +11,7 @@
 #include "files/config_reader.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/mirror.hpp"
+#include "model/standing_posture.hpp"
 #include "model/urdf_tree.hpp"
 
 namespace pmg::model {

@@ -98,10 +98,6 @@ struct RobotModel {
 /// Reads DIRECTORY/robot.yaml and the URDF it names. Throws ConfigError on anything missing, unknown or implausible.
 RobotModel load_robot(const std::filesystem::path& directory);
 
-/// (robot, standing posture [rad] within its limits) => the same robot, which stands so. A joint that sat down where it
-/// stood does so still.
-RobotModel standing_as(RobotModel robot, const JointVector& q_stand);
-
 /// config/robots/NAME beside the installed binary or in the source tree, or NAME itself if it is a directory. Throws
 /// ConfigError if there is none.
 std::filesystem::path find_robot(const std::string& name);

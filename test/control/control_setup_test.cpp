@@ -17,6 +17,8 @@
 
 #include "control/fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
+#include "model/bundle.hpp"
+#include "model/clip_library_file.hpp"
 #include "policy/linear_policy.hpp"
 
 namespace pmg::control {
