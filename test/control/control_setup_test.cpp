@@ -1,15 +1,24 @@
 // The policy's file alone determines the controller's composition.
 #include "control/control_setup.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include "control/fixtures.hpp"
 #include "generator_core/allocation_count.hpp"
+#include "model/bundle.hpp"
+#include "model/clip_library_file.hpp"
 #include "policy/linear_policy.hpp"
 
 namespace pmg::control {
@@ -161,6 +170,37 @@ TEST_F(ARobotOfTwoStyles, RunsAPolicyOnTheClipsBesideIt) {
   // Both policies without a name of their own: robot.yaml's, and none.
   for (const char* name : {"", "none"}) EXPECT_EQ(load_control(with(name)).clips, robot_.path() / "clips") << name;
   EXPECT_NE(person.bundle, load_control(with("pmg")).bundle);
+}
+
+TEST_F(ARobotOfTwoStyles, StandsAsThePolicysOwnClipsStand) {
+  constexpr double kLower_rad = 0.02;  // of the left knee, at every command of the posture clips
+  for (const char* name : model::kPostureNames) {
+    std::ifstream in(clips_of_z1() / (std::string(name) + ".csv"));
+    std::ofstream out(own_clips_ / (std::string(name) + ".csv"));
+    std::string line, field;
+    std::getline(in, line);
+    out << line << '\n';
+    const auto before = line.substr(0, line.find("left_knee"));
+    const auto knee = std::ranges::count(before, ',');
+    while (std::getline(in, line)) {
+      std::istringstream fields(line);
+      for (std::ptrdiff_t i = 0; std::getline(fields, field, ','); ++i)
+        out << (i > 0 ? "," : "") << fmt::format("{:.17g}", std::stod(field) - (i == knee ? kLower_rad : 0.0));
+      out << '\n';
+    }
+  }
+  const LoadedControl common = load_control(with("pmg"));
+  const model::RobotModel robot = load_robot(with("person"));
+  const int knee = robot.joint_index.at("left_knee");
+  EXPECT_NEAR(robot.q_stand()[knee], common.robot.q_stand()[knee] - kLower_rad, 1e-12);
+  EXPECT_EQ(robot.q_stand().tail(robot.joint_index.size() - knee - 1),
+            common.robot.q_stand().tail(robot.joint_index.size() - knee - 1));
+  EXPECT_GT(std::abs(robot.standing_height_m - common.robot.standing_height_m), 1e-5);
+  // The policy beside them was trained on other clips, and says so; another's clips named by hand don't move the robot.
+  EXPECT_THROW(load_control(with("person")), std::invalid_argument);
+  EXPECT_EQ(load_robot(with("person", robot_.path() / "clips")).q_stand(), common.robot.q_stand());
+  const LoadedControl none = load_control({.robot = robot_.path().string(), .clips = {}, .policy = "none"});
+  EXPECT_EQ(none.robot.q_stand(), common.robot.q_stand());
 }
 
 TEST_F(ARobotOfTwoStyles, RefusesAPolicyOnTheOthersClips) {
