@@ -223,7 +223,17 @@ void read_rules(const fs::path& directory, ClipLibrary& library) {
 
 JointVector standing_posture(const fs::path& directory, const RobotModel& robot) {
   const ClipTable table = read_postures(directory, kPostureNames.front(), robot);
-  return posture_at_zero(table, row_of_zero(table));
+  const std::size_t above = row_of_zero(table);
+  const JointVector q = posture_at_zero(table, above);
+  for (const Joint& joint : robot.joints) {
+    const int i = robot.joint_index.at(joint.name);
+    const int other = robot.mirror.partner[static_cast<std::size_t>(i)];
+    const double mirrored = robot.mirror.sign[static_cast<std::size_t>(i)] * q[other];
+    if (std::abs(q[i] - mirrored) <= kSamePosture_rad) continue;
+    files::raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", q[i]),
+                 fmt::format("{}, the mirror image of {}", mirrored, robot.joint_index.name(other)));
+  }
+  return q;
 }
 
 std::string corner_clip_name(const Corner& corner) {

@@ -8,7 +8,8 @@
 
 namespace pmg::model {
 
-/// The posture that a library's posture clips have at command 0, joint by joint [rad]. Throws ConfigError.
+/// The posture that a library's posture clips have at command 0, joint by joint [rad]. Throws ConfigError,
+/// also where left and right aren't mirror images.
 JointVector standing_posture(const std::filesystem::path& clips, const RobotModel& robot);
 
 /// (robot, standing posture [rad] within its limits) => the same robot, which stands so. A joint that sat down where it
