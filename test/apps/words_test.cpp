@@ -121,11 +121,11 @@ TEST_F(Words, AMistypedCommandIsNamedBesideTheOneThatWasMeant) {
   expect_line("pmg_send wlak --vx 1", "pmg_send: wlak: unknown command; did you mean walk?");
   expect_line("pmg_send stpo", "pmg_send: stpo: unknown command; did you mean stop?");
   expect_line("pmg_clips fly",
-              "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk, inspect, build");
-  expect_line(
-      "pmg_clips",
-      "pmg_clips: a command is missing; expected one of synth, show, invert, walk, inspect, build (pmg_clips --help "
-      "shows an example)");
+              "pmg_clips: fly: unknown command; expected one of synth, show, invert, walk, inspect, build, report, "
+              "preview");
+  expect_line("pmg_clips",
+              "pmg_clips: a command is missing; expected one of synth, show, invert, walk, inspect, build, report, "
+              "preview (pmg_clips --help shows an example)");
 }
 
 TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
