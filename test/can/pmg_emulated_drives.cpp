@@ -109,7 +109,7 @@ class FaultPipe {
           return fmt::format("'{}': expected one word after {}: {}", line, who, known);
         }
         fault->begin(drives_.drive(b, m));
-        return who + ": " + what;
+        return fmt::format("{}: {}", who, what);
       }
     }
     return fmt::format("'{}': expected a joint, or imu, and what it has", line);
