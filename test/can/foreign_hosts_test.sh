@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The emulated drives against hosts that this project did not write (third_party/python/foreign_can.txt): what the tests of this project's
 # client believe of a drive must be what these hosts believe of one. Each switches the left elbow on, reads it, moves it, and switches it off.
-# Usage: foreign_hosts_test.sh BIN
+# Usage: foreign_hosts_test.sh BIN      (PMG_CAN_HOSTS="damiao cia402": those hosts alone)
 # Exit codes: 0, 1 a host and the emulator differ, 77 the packages or a kernel with CAN are missing (the test is skipped)
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -24,7 +24,7 @@ drive_of() {
     ;;
   esac
 }
-for host in ${HOSTS:-cubemars mini_cheetah damiao damiao_motorbridge cia402}; do
+for host in ${PMG_CAN_HOSTS:-cubemars mini_cheetah damiao damiao_motorbridge cia402}; do
   robot=/run/$host
   cp -r config/robots/z1 "$robot"
   # Its bus is can0, which some of these hosts have built in, with room for a CANopen drive's frames; the others of that bus keep clear of CANopen's identifier 0.

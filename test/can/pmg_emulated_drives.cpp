@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -31,31 +30,27 @@ constexpr std::int64_t kPeriod_ns = test::HoistedRobot::kPeriod_ns;
 
 struct Fault {
   const char* word;
-  std::function<void(test::DriveEmulator&)> begin;
+  void (*begin)(test::DriveEmulator& drive);
 };
 
 /// What a drive can be told to have.
-const std::array<Fault, 8>& faults() {
-  using Drive = test::DriveEmulator;
-  static const std::array<Fault, 8> all = {{
-      {"silent", [](Drive& drive) { drive.silent = true; }},
-      {"twice", [](Drive& drive) { drive.twice = true; }},
-      {"stuck", [](Drive& drive) { drive.stuck_q = drive.shown_rad(); }},
-      {"turn", [](Drive& drive) { drive.turn_rad += 2.0 * std::numbers::pi; }},
-      {"hot", [](Drive& drive) { drive.temperature_degC = 120.0; }},
-      {"over-current", [](Drive& drive) { drive.fault = drives::DriveFault::kOverCurrent; }},
-      {"encoder", [](Drive& drive) { drive.fault = drives::DriveFault::kEncoder; }},
-      {"well",
-       [](Drive& drive) {
-         drive.silent = drive.twice = false;
-         drive.stuck_q.reset();
-         drive.turn_rad = 0.0;
-         drive.temperature_degC = Drive::kCool_degC;
-         drive.fault = drives::DriveFault::kNone;
-       }},
-  }};
-  return all;
-}
+constexpr std::array<Fault, 8> kFaults = {{
+    {"silent", [](test::DriveEmulator& drive) { drive.silent = true; }},
+    {"twice", [](test::DriveEmulator& drive) { drive.twice = true; }},
+    {"stuck", [](test::DriveEmulator& drive) { drive.stuck_q = drive.shown_rad(); }},
+    {"turn", [](test::DriveEmulator& drive) { drive.turn_rad += 2.0 * std::numbers::pi; }},
+    {"hot", [](test::DriveEmulator& drive) { drive.temperature_degC = 120.0; }},
+    {"over-current", [](test::DriveEmulator& drive) { drive.fault = drives::DriveFault::kOverCurrent; }},
+    {"encoder", [](test::DriveEmulator& drive) { drive.fault = drives::DriveFault::kEncoder; }},
+    {"well",
+     [](test::DriveEmulator& drive) {
+       drive.silent = drive.twice = false;
+       drive.stuck_q.reset();
+       drive.turn_rad = 0.0;
+       drive.temperature_degC = test::DriveEmulator::kCool_degC;
+       drive.fault = drives::DriveFault::kNone;
+     }},
+}};
 
 /// Lines of a named pipe: "left_knee silent", "imu silent", "imu well".
 class FaultPipe {
@@ -102,10 +97,10 @@ class FaultPipe {
     for (std::size_t b = 0; b < setup_.buses.size(); ++b) {
       for (std::size_t m = 0; m < setup_.buses[b].motors.size(); ++m) {
         if (setup_.buses[b].motors[m].joint != who) continue;
-        const auto fault = std::ranges::find_if(faults(), [&](const Fault& one) { return one.word == what; });
-        if (fault == faults().end() || !more.empty()) {
+        const auto fault = std::ranges::find_if(kFaults, [&](const Fault& one) { return one.word == what; });
+        if (fault == kFaults.end() || !more.empty()) {
           std::string known;
-          for (const Fault& one : faults()) known += (known.empty() ? "" : ", ") + std::string(one.word);
+          for (const Fault& one : kFaults) known += (known.empty() ? "" : ", ") + std::string(one.word);
           return fmt::format("'{}': expected one word after {}: {}", line, who, known);
         }
         fault->begin(drives_.drive(b, m));

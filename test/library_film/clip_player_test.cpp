@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "library_film/library_film.hpp"
 #include "model/clip_library_file.hpp"
+#include "sim/video_writer.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::library_film {
@@ -67,7 +67,7 @@ TEST(APlayedClip, FindsLinksInEachOther) {
 }
 
 TEST(LibraryFilm, ShowsEachClip) {
-  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "no ffmpeg";
+  sim::expect_ffmpeg();
   retargeting::ReviewedClip clip;
   clip.recipe.name = "forward";
   clip.recipe.recording = "walk.bvh";

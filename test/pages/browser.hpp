@@ -16,6 +16,10 @@
 
 namespace pmg::pages {
 
+/// What a test says that is skipped without one.
+inline constexpr const char* kNoBrowser =
+    "NO CHROMIUM: nobody looks at what pages draw; install chromium or set PMG_BROWSER";
+
 /// PMG_BROWSER, or the first Chromium on the path; nullopt if there is none.
 inline std::optional<std::string> find_browser() {
   if (const char* named = std::getenv("PMG_BROWSER")) return named;

@@ -115,7 +115,7 @@ class ChartCanvas : public testing::Test {
  protected:
   void SetUp() override {
     const auto found = find_browser();
-    if (!found) GTEST_SKIP() << "NO CHROMIUM: nobody looks at what charts draw; install chromium or set PMG_BROWSER";
+    if (!found) GTEST_SKIP() << kNoBrowser;
     browser_ = *found;
   }
   std::string browser_;

@@ -27,7 +27,7 @@ const std::string kLook = R"js(
 
 TEST(NarrowPage, NothingRunsOutAtTheRightAndNoWordOfATableIsBroken) {
   const auto browser = find_browser();
-  if (!browser) GTEST_SKIP() << "no Chromium";
+  if (!browser) GTEST_SKIP() << kNoBrowser;
   Page page("A page with pictures side by side, and tables");
   page.columns([&] {
     for (const char* title : {"one", "other"})
