@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -36,6 +37,15 @@ Ort::SessionOptions session_options() {
   return options;
 }
 
+/// name_at(i, allocator): of input or output i.
+template <typename NameAt>
+std::vector<std::string> names(std::size_t count, const NameAt& name_at) {
+  const Ort::AllocatorWithDefaultOptions allocator;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.emplace_back(name_at(i, allocator).get());
+  return names;
+}
+
 void expect_tensor(const char* role, const std::string& found_name, const Ort::TypeInfo& type,
                    const TensorExpected& expected) {
   if (!expected.name.empty() && found_name != expected.name) {
@@ -58,21 +68,6 @@ void expect_tensor(const char* role, const std::string& found_name, const Ort::T
 struct OnnxNetwork::Session {
   explicit Session(const std::filesystem::path& file)
       : session(environment, file.c_str(), session_options()), binding(session) {}
-
-  std::vector<std::string> input_names() const {
-    const Ort::AllocatorWithDefaultOptions allocator;
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < session.GetInputCount(); ++i)
-      names.emplace_back(session.GetInputNameAllocated(i, allocator).get());
-    return names;
-  }
-  std::vector<std::string> output_names() const {
-    const Ort::AllocatorWithDefaultOptions allocator;
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < session.GetOutputCount(); ++i)
-      names.emplace_back(session.GetOutputNameAllocated(i, allocator).get());
-    return names;
-  }
 
   Ort::Env environment{ORT_LOGGING_LEVEL_ERROR, "pmg"};
   Ort::Session session;
@@ -100,13 +95,17 @@ std::optional<std::string> OnnxNetwork::metadata(const char* key) const {
 }
 
 void OnnxNetwork::bind(const TensorExpected& input, const TensorExpected& output) {
-  const std::vector<std::string> inputs = session_->input_names(), outputs = session_->output_names();
+  const Ort::Session& session = session_->session;
+  const std::vector<std::string> inputs = names(session.GetInputCount(),
+                                                std::bind_front(&Ort::Session::GetInputNameAllocated, &session)),
+                                 outputs = names(session.GetOutputCount(),
+                                                 std::bind_front(&Ort::Session::GetOutputNameAllocated, &session));
   if (inputs.size() != 1 || outputs.size() != 1) {
     refuse(fmt::format("the network has {} inputs ({}) and {} outputs ({}); expected one of each", inputs.size(),
                        fmt::join(inputs, ", "), outputs.size(), fmt::join(outputs, ", ")));
   }
-  expect_tensor("input", inputs[0], session_->session.GetInputTypeInfo(0), input);
-  expect_tensor("output", outputs[0], session_->session.GetOutputTypeInfo(0), output);
+  expect_tensor("input", inputs[0], session.GetInputTypeInfo(0), input);
+  expect_tensor("output", outputs[0], session.GetOutputTypeInfo(0), output);
   input_.setZero(input.size);
   output_.setZero(output.size);
   const auto memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "drives/uniform.hpp"
+#include "refusal.hpp"
 
 namespace pmg::drives {
 namespace {
@@ -130,12 +131,7 @@ TEST(RodLinkage, MotorsGiveExactlyTheJointsTorqueAtTheMeasuredAngles) {
 TEST(RodLinkage, RangesWithASingularityAreRefused) {
   EXPECT_NO_THROW(ankle().check_ranges(angles(-0.6, -0.3), angles(0.5, 0.3)));
   const auto refusal = [](const auto& linkage, const auto& lower, const auto& upper) -> std::string {
-    try {
-      linkage.check_ranges(lower, upper);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "taken";
+    return test::refusal_by<std::invalid_argument>([&] { linkage.check_ranges(lower, upper); });
   };
   EXPECT_THAT(refusal(four_bar(), FourBar::Angles(-1.8), FourBar::Angles(0.5)),
               testing::AnyOf(testing::HasSubstr("nearly"), testing::HasSubstr("doesn't reach")));

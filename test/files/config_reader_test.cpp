@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "refusal.hpp"
 #include "temporary_folder.hpp"
 
 namespace pmg::files {
@@ -23,13 +24,9 @@ class Reader : public ::testing::Test {
   /// The message that the action throws, from the file's name on.
   template <typename Action>
   std::string refusal(Action action) const {
-    try {
-      action();
-    } catch (const ConfigError& error) {
-      const std::string text = error.what();
-      return text.substr(std::min(text.size(), text.find("a.yaml")));
-    }
-    return "nothing was thrown";
+    const std::string text = test::refusal_by<ConfigError>(action);
+    const std::size_t file = text.find("a.yaml");
+    return file == std::string::npos ? text : text.substr(file);
   }
 
   test::TemporaryFolder folder_;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "../sim/robots.hpp"
+#include "refusal.hpp"
 
 namespace pmg::hal {
 namespace {
@@ -42,12 +43,7 @@ BackendKind serial(const std::string& name) {
 }
 
 std::string refusal(const BackendFactory& factory, const std::string& name) {
-  try {
-    factory.kind(name);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "taken";
+  return test::refusal_by<std::invalid_argument>([&] { factory.kind(name); });
 }
 
 TEST(BackendFactory, NamesWhatTheBuildHasAndWhatItLacks) {

@@ -15,6 +15,7 @@
 #include "imu/imu_backend.hpp"
 #include "model/robots.hpp"
 #include "mti_emulator.hpp"
+#include "refusal.hpp"
 
 namespace pmg::imu {
 namespace {
@@ -28,12 +29,7 @@ model::SerialImuModel on(const MtiEmulator& device) {
 
 /// What the constructor says; "taken" when it says nothing.
 std::string refusal(MtiEmulator& device) {
-  try {
-    const SerialImu imu(on(device), [&] { device.step(); });
-    return "taken";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
+  return test::refusal_by<std::exception>([&] { const SerialImu imu(on(device), [&] { device.step(); }); });
 }
 
 TEST(SerialImuStart, IsSetUpTestedAndHeard) {

@@ -14,6 +14,7 @@
 #include "model/clip_library_writer.hpp"
 #include "model/robots.hpp"
 #include "pmg/periodic_slopes.hpp"
+#include "refusal.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {
@@ -129,12 +130,7 @@ TEST(ClipLibrary, SlopesAreThoseOfAPeriodicSpline) {
 class RefusedClips : public ::testing::Test {
  protected:
   std::string refusal() const {
-    try {
-      load_clip_library(copy_.file("clips"), robot_);
-    } catch (const files::ConfigError& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
+    return test::refusal_by<files::ConfigError>([&] { load_clip_library(copy_.file("clips"), robot_); });
   }
   void expect(const std::string& file, int line, const std::string& key, const std::string& what) const {
     const std::string text = refusal();
@@ -165,7 +161,7 @@ class RefusedClips : public ::testing::Test {
   TemporaryCopy copy_{kBipedFolder};
 };
 
-TEST_F(RefusedClips, TheUnspoiledOnesAreNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }
+TEST_F(RefusedClips, TheUnspoiledOnesAreNot) { EXPECT_EQ(refusal(), "taken"); }
 
 TEST_F(RefusedClips, UnknownKey) {
   expect_changed("turn.yaml", "period_s:", "speed: 1\nperiod_s:", "speed", "is unknown");
@@ -214,7 +210,7 @@ TEST_F(RefusedClips, ContactCentersAreComparedAroundTheCycle) {
     copy_.replace("clips/" + name + ".yaml", "left: {center: 0.3", "left: {center: " + center);
     copy_.replace("clips/" + name + ".yaml", "right: {center: 0.8", "right: {center: " + opposite);
   }
-  EXPECT_EQ(refusal(), "nothing was thrown");
+  EXPECT_EQ(refusal(), "taken");
 }
 TEST_F(RefusedClips, VelocityInTheWrongDirection) {
   expect_changed("backward.yaml", "vx_m_s: -0.3", "vx_m_s: 0.3", "mean_velocity.vx_m_s", "expected a number below 0");

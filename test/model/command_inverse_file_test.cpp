@@ -7,6 +7,7 @@
 #include "folders.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
+#include "refusal.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {
@@ -21,12 +22,7 @@ constexpr const char* kHeader =
 class CommandInverseFile : public testing::Test {
  protected:
   std::string refusal() const {
-    try {
-      load_clip_library(copy_.file("clips"), robot_);
-    } catch (const files::ConfigError& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
+    return test::refusal_by<files::ConfigError>([&] { load_clip_library(copy_.file("clips"), robot_); });
   }
 
   const std::string biped_ = pmg::test::project_folder() + "/test/data/robots/biped";

@@ -6,6 +6,7 @@
 #include "files/config_error.hpp"
 #include "folders.hpp"
 #include "model/robot_model.hpp"
+#include "refusal.hpp"
 #include "temporary_copy.hpp"
 
 namespace pmg::model {
@@ -17,12 +18,7 @@ using ::testing::StartsWith;
 class RefusedRobot : public ::testing::Test {
  protected:
   std::string refusal() const {
-    try {
-      load_robot(copy_.directory());
-    } catch (const files::ConfigError& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
+    return test::refusal_by<files::ConfigError>([&] { load_robot(copy_.directory()); });
   }
   void expect(const std::string& file, int line, const std::string& key, const std::string& what) const {
     const std::string text = refusal();
@@ -47,7 +43,7 @@ class RefusedRobot : public ::testing::Test {
   TemporaryCopy copy_{pmg::test::project_folder() + "/test/data/robots/biped"};
 };
 
-TEST_F(RefusedRobot, TheUnspoiledOneIsNot) { EXPECT_EQ(refusal(), "nothing was thrown"); }
+TEST_F(RefusedRobot, TheUnspoiledOneIsNot) { EXPECT_EQ(refusal(), "taken"); }
 
 TEST_F(RefusedRobot, UnknownKey) {
   expect_yaml("torso_link:", "torso_lnk: torso\ntorso_link:", "torso_lnk", "is unknown");

@@ -11,6 +11,7 @@
 #include "files/config_error.hpp"
 #include "model/robots.hpp"
 #include "policy/descriptor_file.hpp"
+#include "refusal.hpp"
 
 namespace pmg::policy {
 namespace {
@@ -21,13 +22,9 @@ using testing::HasSubstr;
 
 std::string descriptor_refusal(const std::filesystem::path& file, const model::RobotModel& robot = z1(),
                                double rate_Hz = 100.0) {
-  try {
-    read_policy_descriptor(file, robot, rate_Hz);
-  } catch (const files::ConfigError& error) {
-    EXPECT_THAT(error.what(), HasSubstr(file.stem().string())) << "it names the file";
-    return error.what();
-  }
-  return "was accepted";
+  const std::string text = test::refusal_by<files::ConfigError>([&] { read_policy_descriptor(file, robot, rate_Hz); });
+  EXPECT_THAT(text, testing::AnyOf("taken", HasSubstr(file.stem().string()))) << "it names the file";
+  return text;
 }
 
 std::string descriptor_refusal_after(const std::string& text, const std::string& instead) {

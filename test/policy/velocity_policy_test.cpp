@@ -12,6 +12,7 @@
 
 #include "model/robots.hpp"
 #include "policy/descriptor_file.hpp"
+#include "refusal.hpp"
 
 namespace pmg::policy {
 namespace {
@@ -100,12 +101,7 @@ TEST_F(AForeignPolicy, AStateThatIsNoNumberGivesNoTarget) {
 }
 
 std::string policy_refusal(const DescriptorFile& file) {
-  try {
-    const VelocityPolicy policy(file.file(), z1());
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "was accepted";
+  return test::refusal_by<std::invalid_argument>([&] { const VelocityPolicy policy(file.file(), z1()); });
 }
 
 TEST_F(AForeignPolicy, WhoseNetworkDoesNotFitItsDescriptorIsRefused) {

@@ -11,6 +11,7 @@
 
 #include "bench/bench.hpp"
 #include "control/fixtures.hpp"
+#include "refusal.hpp"
 
 namespace pmg::runtime {
 namespace {
@@ -37,12 +38,7 @@ class BenchSessionTest : public testing::Test {
     return BenchSession(robot_, joint, folder_ / "excitation", folder_ / "bench", options_);
   }
   std::string refusal(const std::string& joint = "left_elbow") const {
-    try {
-      session(joint);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "taken";
+    return test::refusal_by<std::exception>([&] { session(joint); });
   }
 
   const model::RobotModel& robot_ = test::z1();

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "files/config_error.hpp"
+#include "refusal.hpp"
 #include "robots.hpp"
 #include "sim/world.hpp"
 #include "temporary_folder.hpp"
@@ -244,12 +245,7 @@ class RangesFile : public testing::Test {
  protected:
   std::string refusal(const std::string& yaml) {
     std::ofstream(file_) << yaml;
-    try {
-      sim::load_variation_ranges(file_);
-    } catch (const files::ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
+    return test::refusal_by<files::ConfigError>([&] { sim::load_variation_ranges(file_); });
   }
   test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.file("ranges.yaml");
