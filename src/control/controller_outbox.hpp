@@ -32,6 +32,10 @@ class ControllerOutbox {
   /// Control thread: hands on one tick and its answers.
   void put(const TickRecord& record) noexcept {
     push(records, record, dropped_records_);
+    publish(record);
+  }
+  /// The same where nobody records.
+  void publish(const TickRecord& record) noexcept {
     for (std::size_t i = 0; i < record.result.ack_count; ++i) push(acks, record.result.acks[i], dropped_acks_);
     newest.put(record);
   }

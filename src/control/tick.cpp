@@ -110,8 +110,8 @@ const TickResult& Tick::step(const TickInput& input) noexcept {
   result_.mode = supervisor_.mode();
   if (result_.mode != Mode::kWalk) result_.arms.order = ArmsOrder::kNotWalking;
   result_.fault = supervisor_.fault();
-  sit_down(input, before);
-  if (!upright(result_.mode) && !sitting_down(result_.maker)) release(input.state, input.now_ns);
+  const bool sits_down = sit_down(input, before);
+  if (!upright(result_.mode) && !sits_down) release(input.state, input.now_ns);
   result_.entering = result_.mode == Mode::kStand && !entry_.done();
   see_excitation();
 
@@ -401,11 +401,10 @@ faults::Fault Tick::ask_policy(const model::RobotState& state) noexcept {
   return action_monitor_.watch(target_, result_.reference.q);
 }
 
-void Tick::sit_down(const TickInput& input, Mode before) noexcept {
+bool Tick::sit_down(const TickInput& input, Mode before) noexcept {
   if (result_.mode != Mode::kFault) {
     sit_down_.stop();
-    if (!upright(result_.mode)) take(TargetEvent::kReleased);
-    return;
+    return false;
   }
   const bool sound = !stop_asked_ && feet_ && supervisor_.robot_is_sound(evidence(input));
   if (sound && upright(before) && entry_.done() && result_.maker == TargetMaker::kPolicy &&
@@ -415,12 +414,9 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
     feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
   }
   if (sit_down_.active(input.now_ns) && (!sound || feet_->footing() == faults::Footing::kHangs)) sit_down_.stop();
-  if (!sit_down_.active(input.now_ns)) {
-    take(TargetEvent::kReleased);
-    return;
-  }
+  if (!sit_down_.active(input.now_ns)) return false;
   if (sit_down_.stage(input.now_ns) == SitDown::Stage::kReference) {
-    if (lower_reference(input)) return;
+    if (lower_reference(input)) return true;
     sit_down_.lower_joints(input.state.q, limiter_.last(), gains_in_use().kp_Nm_per_rad, input.now_ns);
     set_limiter_gains(sit_down_.gains());
     take(TargetEvent::kReferenceIsDown);
@@ -428,6 +424,7 @@ void Tick::sit_down(const TickInput& input, Mode before) noexcept {
   sit_down_.step(input.now_ns, result_.command);
   if (arms_) result_.arms.arm = arms_->keep(result_.command.q);
   result_.limited = limiter_.apply(input.state, result_.command.dq, result_.command.q);
+  return true;
 }
 
 void Tick::begin_sit_down(const TickInput& input) noexcept {

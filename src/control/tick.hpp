@@ -183,8 +183,8 @@ class Tick {
   faults::Fault make_target(const model::RobotState& state) noexcept;
   policy::Status act(const model::RobotState& state, JointVector& q_des) noexcept;
   bool sound(policy::Status status, const JointVector& q_des) const noexcept;
-  /// In Fault: begins, goes on with or ends the sit-down.
-  void sit_down(const TickInput& input, Mode before) noexcept;
+  /// In Fault: begins, goes on with or ends the sit-down. True if it made this tick's command.
+  bool sit_down(const TickInput& input, Mode before) noexcept;
   void begin_sit_down(const TickInput& input) noexcept;
   /// One tick of the sit-down's first stage; false when it is over or can't go on.
   bool lower_reference(const TickInput& input) noexcept;

@@ -41,9 +41,7 @@ void LedRobot::step(const vr::VrNews* news) {
   }
   link_.receive(0);
   cycle_.run(clock_.now_ns());
-  const control::TickRecord& record = cycle_.record();
-  for (std::size_t i = 0; i < record.result.ack_count; ++i) outbox_.acks.push(record.result.acks[i]);
-  outbox_.newest.put(record);
+  outbox_.publish(cycle_.record());
   comms_.step(0);
   link_.receive(0);
   if (news != nullptr) headset_.take(*news, clock_.now_ns());

@@ -74,8 +74,7 @@ class Driven {
 
   void step() {  // 10 ms
     cycle->run(clock.now_ns());
-    for (std::size_t i = 0; i < result().ack_count; ++i) outbox.acks.push(result().acks[i]);
-    outbox.newest.put(cycle->record());
+    outbox.publish(cycle->record());
     for (int k = 0; k < 5; ++k) {
       clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
       bus->run();
