@@ -7,7 +7,6 @@
 #include <chrono>
 #include <utility>
 
-#include "pmg_msgs/camera_t.hpp"
 #include "sim/head_camera.hpp"
 
 namespace pmg::sil {
@@ -38,6 +37,25 @@ std::vector<std::uint8_t> CameraEye::look(const PoseSample& pose) {
   return encoder_.encode(renderer_.render(data_.get(), "", pose.rope), kWidth, kHeight, pmg_msgs::camera_t::MOST_BYTES);
 }
 
+CameraSender::CameraSender(CameraEye& eye, SimulatedRobot& robot, const std::string& name, io::LcmLink& link,
+                           const io::Clock& clock)
+    : eye_(eye), robot_(robot), link_(link), clock_(clock), due_ns_(clock.now_ns()) {
+  picture_.robot = name;
+  picture_.session = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void CameraSender::step() {
+  const std::int64_t now_ns = clock_.now_ns();
+  if (now_ns < due_ns_) return;
+  due_ns_ = now_ns + kPeriod_ns;
+  if (!robot_.take(pose_)) return;
+  picture_.stamp_ns = now_ns;  // a pose is 10 ms old at most, unless the simulation stands still
+  picture_.jpeg = eye_.look(pose_);
+  picture_.size = static_cast<std::int32_t>(picture_.jpeg.size());
+  ++picture_.sequence;
+  link_.publish("CAMERA", picture_);
+}
+
 CameraStream::CameraStream(const mjModel* model, const std::string& torso_link, SimulatedRobot& robot, std::string name,
                            std::string lcm_url, const io::Clock& clock)
     : robot_(robot), name_(std::move(name)), lcm_url_(std::move(lcm_url)), clock_(clock) {
@@ -52,9 +70,10 @@ void CameraStream::work(const std::stop_token& stop, const mjModel* model, const
   try {
     CameraEye eye(model, torso_link);
     io::LcmLink link(lcm_url_);
+    CameraSender sender(eye, robot_, name_, link, clock_);
     ready_.set_value();
     begun = true;
-    publish_until(stop, eye, link);
+    send_until(stop, sender);
   } catch (const std::exception& error) {
     if (!begun) return ready_.set_exception(std::current_exception());
     const std::lock_guard lock(mutex_);
@@ -62,22 +81,11 @@ void CameraStream::work(const std::stop_token& stop, const mjModel* model, const
   }
 }
 
-void CameraStream::publish_until(const std::stop_token& stop, CameraEye& eye, io::LcmLink& link) {
-  pmg_msgs::camera_t picture{};
-  picture.robot = name_;
-  picture.session = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-  PoseSample pose;
+void CameraStream::send_until(const std::stop_token& stop, CameraSender& sender) {
   while (!stop.stop_requested()) {
-    const auto next = std::chrono::steady_clock::now() + std::chrono::nanoseconds(kPeriod_ns);
-    if (robot_.take(pose)) {
-      picture.stamp_ns = clock_.now_ns();  // a pose is 10 ms old at most, unless the simulation stands still
-      picture.jpeg = eye.look(pose);
-      picture.size = static_cast<std::int32_t>(picture.jpeg.size());
-      ++picture.sequence;
-      link.publish("CAMERA", picture);
-    }
+    sender.step();
     std::unique_lock lock(mutex_);
-    stopped_.wait_until(lock, stop, next, [] { return false; });
+    stopped_.wait_for(lock, stop, std::chrono::nanoseconds(sender.due_ns() - clock_.now_ns()), [] { return false; });
   }
 }
 

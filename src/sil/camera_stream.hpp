@@ -12,6 +12,7 @@
 
 #include "io/clock.hpp"
 #include "io/lcm_link.hpp"
+#include "pmg_msgs/camera_t.hpp"
 #include "sil/simulated_robot.hpp"
 #include "sim/jpeg.hpp"
 #include "sim/mujoco_objects.hpp"
@@ -37,12 +38,33 @@ class CameraEye {
   sim::JpegEncoder encoder_;
 };
 
-/// A thread of its own, of a lower priority than any other of the program, which publishes CAMERA. It draws only what
-/// is new: a simulation that stands still has no pictures.
-class CameraStream {
+/// What it shows as CAMERA on a network, once a period at most. Only what is new: a simulation that stands still has no
+/// pictures.
+class CameraSender {
  public:
   static constexpr std::int64_t kPeriod_ns = 100'000'000;
 
+  /// Keeps references; nobody else takes the robot's poses. name: the controller's. clock stamps and paces.
+  CameraSender(CameraEye& eye, SimulatedRobot& robot, const std::string& name, io::LcmLink& link,
+               const io::Clock& clock);
+
+  /// Looks if it is due. Throws what looking throws.
+  void step();
+  std::int64_t due_ns() const noexcept { return due_ns_; }  ///< the next look, by the clock
+
+ private:
+  CameraEye& eye_;
+  SimulatedRobot& robot_;
+  io::LcmLink& link_;
+  const io::Clock& clock_;
+  std::int64_t due_ns_;
+  PoseSample pose_;
+  pmg_msgs::camera_t picture_{};
+};
+
+/// A thread of its own, of a lower priority than any other of the program, in which a CameraSender looks.
+class CameraStream {
+ public:
   /// Keeps references; nobody else takes the robot's poses. name: the controller's. Throws std::runtime_error without
   /// OSMesa or network.
   CameraStream(const mjModel* model, const std::string& torso_link, SimulatedRobot& robot, std::string name,
@@ -53,7 +75,7 @@ class CameraStream {
 
  private:
   void work(const std::stop_token& stop, const mjModel* model, const std::string& torso_link);
-  void publish_until(const std::stop_token& stop, CameraEye& eye, io::LcmLink& link);
+  void send_until(const std::stop_token& stop, CameraSender& sender);
 
   SimulatedRobot& robot_;
   const std::string name_, lcm_url_;
