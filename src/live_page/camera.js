@@ -13,12 +13,12 @@ class CameraView {
     setInterval(() => this.draw(), 100);
   }
 
-  /// camera: of each state. A slow browser asks for the next picture when it has the one before, and gets the newest.
-  hear(camera) {
+  /// camera: of each state; late_ms: how late the state was. A slow browser asks for the next picture when it has the one before, and gets the newest.
+  hear(camera, late_ms) {
     this.whole.hidden = !camera;
     this.comes = Boolean(camera) && camera.number !== undefined;
     if (!this.comes) { this.picture = null; return; }
-    if (!this.underway && camera.number !== this.number) this.fetch(camera.number, performance.now() - 1000 * camera.age_s);
+    if (!this.underway && camera.number !== this.number) this.fetch(camera.number, performance.now() - 1000 * camera.age_s - late_ms);
   }
   /// The picture that comes is the one of this number or a newer one: it was taken at this time or later.
   async fetch(number, takenAt) {

@@ -4,16 +4,28 @@
 
 const $ = (id) => document.getElementById(id);
 
+/// How much longer a state travelled than the fastest one of its connection, as io::Transit counts it: the two clocks have
+/// different zeros, and the minimum grows by 1 ms a second, so that clocks that drift apart make nothing late for ever.
+class Transit {
+  constructor() { Object.assign(this, {smallest_ms: Infinity, taken_ms: 0}); }
+  take(stamp_ms, received_ms) {
+    const offset_ms = received_ms - stamp_ms, grown_ms = this.smallest_ms + (received_ms - this.taken_ms) / 1000;
+    this.smallest_ms = Math.min(grown_ms, offset_ms);
+    this.taken_ms = received_ms;
+    return offset_ms - this.smallest_ms;
+  }
+}
+
 /// Calls hear(state) for each state of the server, and lost() when the connection ends.
 class Connection {
-  static GONE_MS = 1000;               // without a state from the server
+  static GONE_MS = 1000;               // since the server's newest state left it
   static STOP_KEPT_MS = 10000;         // a stop that couldn't be sent is sent if the connection is back by then
   static AGAIN_MS = 500;               // between a connection's end and the next
   static REFUSALS = 2;                 // of the token; after so many the page looks without it
   static WAITING_BYTES = 4096;         // in the browser; what waits behind them would be old when it goes out
 
   constructor({hear, lost}) {
-    Object.assign(this, {hear, lost, state: null, socket: null, heardAt: -Infinity, paired: false, refused: 0, stopAt: 0, onItsWay: false});
+    Object.assign(this, {hear, lost, state: null, socket: null, heardAt: -Infinity, late_ms: 0, paired: false, refused: 0, stopAt: 0, onItsWay: false});
     this.token = location.hash.slice(1);
     try {
       if (this.token) localStorage.setItem('pmg.token', this.token);
@@ -26,6 +38,7 @@ class Connection {
   open() {
     const old = this.socket, withToken = Boolean(this.token) && this.refused < Connection.REFUSALS;
     const opening = new WebSocket(`wss://${location.host}/socket`, withToken ? ['pmg', 'pmg.token.' + this.token] : ['pmg']);
+    const transit = new Transit();
     let opened = false;
     this.socket = opening;
     this.paired = withToken;                             // once it is open: the server has taken the token
@@ -33,10 +46,12 @@ class Connection {
     opening.onopen = () => { opened = true; this.sendStop(); };
     opening.onmessage = (event) => {
       if (opening !== this.socket) return;
-      this.heardAt = performance.now();
       this.state = JSON.parse(event.data);
+      const now = performance.now();
+      this.late_ms = transit.take(1000 * this.state.at_s, now);
+      this.heardAt = now - this.late_ms;
       // The browser has sent it, and the connection lives.
-      if (this.onItsWay && opening.bufferedAmount === 0) { this.onItsWay = false; this.stopAt = 0; }
+      if (this.onItsWay && !this.isLost() && opening.bufferedAmount === 0) { this.onItsWay = false; this.stopAt = 0; }
       this.hear(this.state);
     };
     opening.onclose = () => {
@@ -50,7 +65,7 @@ class Connection {
     if (old) old.close();
   }
   isOpen() { return Boolean(this.socket) && this.socket.readyState === WebSocket.OPEN; }
-  isLost() { return !this.isOpen() || performance.now() - this.heardAt > Connection.GONE_MS; }
+  isLost() { return !this.isOpen() || !(performance.now() - this.heardAt <= Connection.GONE_MS); }   // a state without a time, too
   isRefused() { return Boolean(this.token) && this.refused >= Connection.REFUSALS; }
 
   /// False: not sent.

@@ -145,7 +145,7 @@ function show(state) {
     robotView.load().catch(() => {});
   }
   robotView.show(state.joints, state.tilt);
-  cameraView.hear(state.camera);
+  cameraView.hear(state.camera, connection.late_ms);
   header();
 }
 function showChannels(state) {

@@ -26,6 +26,7 @@ std::string shared_state(const ops::DrivingStation& station, const PageDevices& 
   const ops::RobotNews* news = station.news();
   const double silence_s = news == nullptr ? 0.0 : static_cast<double>(now_ns - news->heard_ns) * 1e-9;
   Json json;
+  json["at_s"] = milli(static_cast<double>(now_ns) * 1e-9);  // by the server's clock, so that a page sees what is late
   json["robot"] = driver == nullptr ? Json() : Json(driver->robot());
   json["text"] = driver == nullptr ? station.lines().front() : driver->text();
   json["heard"] = news != nullptr && silence_s <= ops::kGone_s;

@@ -6,7 +6,7 @@ const SEND_MS = 15, HOLD_MS = 1000, PULLED = 0.7;
 
 // Entering VR may close the connection, and it comes back.
 const cameraView = new CameraView($('camera'), $('camera'));
-const connection = new Connection({hear: (state) => { cameraView.hear(state.camera); show(); }, lost: () => {}});
+const connection = new Connection({hear: (state) => { cameraView.hear(state.camera, connection.late_ms); show(); }, lost: () => {}});
 function stop() { connection.stop(); show(); }
 wireStop(stop);
 

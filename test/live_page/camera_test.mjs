@@ -24,7 +24,7 @@ class Browser {
       })});
     this.view = vm.runInContext(source + '\nnew CameraView(canvas, canvas)', context);
   }
-  hears(number, age_s = 0) { this.view.hear({number, age_s}); }
+  hears(number, age_s = 0, late_ms = 0) { this.view.hear({number, age_s}, late_ms); }
   async gets() { this.asked.shift().come(); await settled(); }
   passes(ms) { this.now += ms; for (const call of this.timers) call(); }
 }
@@ -59,6 +59,14 @@ test('a picture that arrives late is as old as it is', async () => {
   browser.passes(400);
   await browser.gets();
   assert.match(browser.view.words(), /OLD PICTURE: 0.7 s/);
+});
+
+test('a picture of which a late state tells is as much older', async () => {
+  const browser = new Browser();
+  browser.hears(1, 0.1, 450);
+  await browser.gets();
+  browser.passes(100);
+  assert.deepEqual(browser.texts, ['OLD PICTURE: 0.7 s']);   // 0.65
 });
 
 test('a slow browser has one picture on its way, whatever comes meanwhile, and then gets the newest', async () => {

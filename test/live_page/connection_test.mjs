@@ -40,7 +40,8 @@ class Browser {
   }
   get socket() { return this.sockets.at(-1); }
   opens() { this.socket.readyState = 1; this.socket.onopen(); }
-  hears(paired = 'phone') { this.socket.onmessage({data: JSON.stringify({heard: true, robot: 'z1', news: {mode: 'stand'}, you: {paired}})}); }
+  /// late_ms: how long the state travelled; its server's clock has a zero of its own.
+  hears(paired = 'phone', late_ms = 0) { this.socket.onmessage({data: JSON.stringify({at_s: 77 + (this.now - late_ms) / 1000, heard: true, robot: 'z1', news: {mode: 'stand'}, you: {paired}})}); }
   async passes(ms) {
     await new Promise((resolve) => setImmediate(resolve));   // what is promised comes first
     this.now += ms;
@@ -156,6 +157,39 @@ test('two refusals count in a row alone', async () => {
     await browser.passes(500);
   }
   assert.equal(browser.socket.protocols.length, 2);
+});
+
+test('a state that travelled for more than a second is no connection, and no proof that a stop went out', async () => {
+  const browser = paired(), {connection} = browser;
+  await browser.passes(10000);
+  browser.hears('phone', 400);
+  assert.ok(Math.abs(connection.late_ms - 390) < 1e-6, `${connection.late_ms}: the fastest may have become 10 ms slower`);
+  assert.equal(connection.isLost(), false);
+  await browser.passes(600);
+  browser.hears('phone', 1000);
+  assert.equal(connection.isLost(), false);
+  connection.stop();
+  await browser.passes(400);
+  browser.hears('phone', 1400);
+  assert.equal(connection.isLost(), true);
+  assert.notEqual(connection.stopAt, 0);
+  assert.match(connection.alarm(), /THE STOP IS NOT SENT: no connection/);
+  browser.hears();
+  assert.equal(connection.late_ms, 0);
+  assert.equal(connection.alarm(), '');
+});
+
+test('each connection has a fastest state of its own: a server that was started again has another clock', async () => {
+  const browser = paired();
+  await browser.dropsAndIsBackAfter(500);
+  browser.hears('phone', 100000);
+  assert.equal(browser.connection.isLost(), false);
+});
+
+test('a state that does not say when it was made is none', () => {
+  const browser = paired();
+  browser.socket.onmessage({data: '{"you": {"paired": "phone"}}'});
+  assert.equal(browser.connection.isLost(), true);
 });
 
 test('a stop that a dead connection swallowed is said when it is too old to be sent again', async () => {
