@@ -1,0 +1,21 @@
+// What first movements take for enough, for joints of their own and for joints of a linkage.
+#pragma once
+
+#include "hal/bus_cycle.hpp"
+#include "pmg/types.hpp"
+
+namespace pmg::can {
+
+inline constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
+inline constexpr int kSettleCycles = 100;                      // 0.2 s at each end
+inline constexpr int kRestCycles = kSettleCycles / 2;          // of them at rest: means are taken there
+inline constexpr double kLeastShare = 0.5;                     // of the way asked for, with soft gains and dry friction
+inline constexpr double kOnStop_rad = 0.02;                    // a limp joint that lies on its stop
+inline constexpr double kLeastLean_rad = 0.5 * kRadPerDegree;  // sway and the steps of an IMU's values are less
+inline constexpr double kSureOfLean = 2.0;  // times what the base lacks when the joint is back: friction holds it there
+// Share of the way that a base turns which a joint turns. Less, and something else than --held holds the robot.
+inline constexpr double kLeastTurn = 0.3;
+// Frictions that a load must have to be compared; friction of opposite ways cancels out of the mean of both.
+inline constexpr double kSure = 3.0, kSureOfMean = 1.0;
+
+}  // namespace pmg::can
