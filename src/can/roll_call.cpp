@@ -220,7 +220,7 @@ void ask_canopen(const BusSetup& bus, Link& link, const Wait& wait, const std::f
 
 /// What switches each node off that these kinds may have, robot.yaml hasn't, and nobody sends as. nodes: their number.
 std::vector<drives::Message> off_messages(const BusSetup& bus, const std::vector<drives::DriveKind>& kinds,
-                                          const std::vector<std::uint32_t>& awaited, int& nodes) {
+                                          const std::function<bool(std::uint32_t id)>& sent_by_others, int& nodes) {
   const auto taken = [&](int node) {
     return std::ranges::find(bus.motors, node, &drives::MotorSetup::node) != bus.motors.end();
   };
@@ -232,7 +232,7 @@ std::vector<drives::Message> off_messages(const BusSetup& bus, const std::vector
       drives::Outbox out;
       kind->protocol(node, {}, bus.data_bitrate != 0)->off(out);
       for (const drives::Message& message : out.messages()) {
-        if (std::ranges::find(awaited, message.id) != awaited.end()) continue;
+        if (sent_by_others(message.id)) continue;
         messages[{message.id, {message.bytes().begin(), message.bytes().end()}}] = message;
         asked.insert(node);
       }
@@ -340,6 +340,9 @@ Strangers ask_strangers(const BusSetup& bus, Link& link, const Wait& wait, const
     return result;
   }
   const std::vector<std::uint32_t> awaited = awaited_ids(bus);
+  const auto sent_by_others = [&](std::uint32_t id) {
+    return std::ranges::find(awaited, id) != awaited.end() || (others != nullptr && others->heard(id));
+  };
   const auto listen = [&](const std::function<void(const drives::Message&)>& take) {
     if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were asked");
     wait();
@@ -350,9 +353,7 @@ Strangers ask_strangers(const BusSetup& bus, Link& link, const Wait& wait, const
   };
   for (int k = 0; k < kQuietWaits && result.why_not.empty(); ++k) {
     listen([&](const drives::Message& frame) {
-      if (frame.extended || frame.id == 0 || frame.id > drives::canopen::kNodeBits ||
-          std::ranges::find(awaited, frame.id) != awaited.end())
-        return;
+      if (frame.extended || frame.id == 0 || frame.id > drives::canopen::kNodeBits || sent_by_others(frame.id)) return;
       result.why_not = fmt::format("something else sends 0x{:X} there and may drive them", frame.id);
     });
   }
@@ -369,7 +370,7 @@ Strangers ask_strangers(const BusSetup& bus, Link& link, const Wait& wait, const
     }
     if (others != nullptr) others->note(frame);
   };
-  const std::vector<drives::Message> requests = off_messages(bus, kinds, awaited, result.asked);
+  const std::vector<drives::Message> requests = off_messages(bus, kinds, sent_by_others, result.asked);
   for (int round = 0; round < kStrangerRounds; ++round) {
     for (std::size_t at = 0; at < requests.size(); at += kBatch) {
       link.send(std::span(requests).subspan(at, std::min(kBatch, requests.size() - at)));

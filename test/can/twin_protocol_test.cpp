@@ -159,6 +159,13 @@ TEST_F(TwinProtocol, RollCallCountsItOnceAndFindsASecondOneAStrangerAndAFault) {
                                            "can0: somebody answers as node 9; expected only the nodes of robot.yaml"));
 }
 
+// Nobody knows what its message would do to a drive that robot.yaml doesn't have.
+TEST_F(TwinProtocol, NodesThatNobodyDescribedGetNoMessageThatMayDisturbThem) {
+  const Strangers strangers = ask_strangers(setup_.buses[0], *host_, [] {}, {});
+  EXPECT_EQ(strangers.why_not, "left_knee's protocol has no message that is known to be harmless to any drive");
+  EXPECT_EQ(host_->counts().sent, 0u);
+}
+
 TEST_F(TwinProtocol, OneMotorAloneIsSwitchedOnMovedAndSwitchedOff) {
   const std::function<void()> tick = [this] { drive_->answer(); };
   {
