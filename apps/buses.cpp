@@ -38,10 +38,9 @@ void print_rows(const can::BusSetup& bus, const drives::Readings& motors) {
     const std::vector<std::string> names = can::linked_joints(bus, motor);
     std::cout << fmt::format("{:22} {:6} {:4}  ", motor.joint, bus.name, motor.node)
               << (motors[m] ? values(motor, motor.transmission.to_joint(*motors[m])) : "-")
-              << (names.empty() ? ""
-                  : names.size() == 1
-                      ? "  (its crank)"
-                      : fmt::format("  (its crank; {} turn together)", fmt::join(names, " and ")))
+              << (names.empty()       ? ""
+                  : names.size() == 1 ? "  (its crank)"
+                                      : fmt::format("  (its crank; {} turn together)", fmt::join(names, " and ")))
               << '\n';
     if (names.empty()) continue;
     linked.push_back(

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "can/bus_setup.hpp"
 #include "drive_protocols/mit_drive.hpp"
