@@ -20,12 +20,10 @@ namespace pmg::can {
 
 namespace {
 
-constexpr double kLeastWay_rad = 3.0 * kRadPerDegree, kMostWay_rad = 20.0 * kRadPerDegree;
+constexpr double kMostWay_rad = 20.0 * kRadPerDegree;
 constexpr double kWayMargin =
     1.5;  // soft gains don't reach the end, and a step of the drive's torque counts as friction
-
 constexpr double kLeanWay_rad = 10.0 * kRadPerDegree;  // of a leg: the base leans by a degree or more
-constexpr double kNoWay_rad = 0.4 * kRadPerDegree;     // less than can be asked for: it lies on its stop
 
 /// At rest at one end of the way: means over half of the time there.
 struct End {
@@ -204,10 +202,8 @@ Verdict verdict(const Wiggle& wiggle) {
   constexpr const char* kLeastAsked =
       "it moved less than half the way: a brake, a stop, another limb, too much friction, "
       "or another joint's motor";
-  // Where a joint lies on its stop, a way has no length.
-  const bool up_short = wiggle.asked_rad > kNoWay_rad && wiggle.moved_rad < kLeastShare * wiggle.asked_rad;
-  const bool down_short =
-      wiggle.asked_down_rad > kLeastWay_rad && wiggle.moved_down_rad < kLeastShare * wiggle.asked_down_rad;
+  const bool up_short = is_short(wiggle.asked_rad, wiggle.moved_rad, kNoWay_rad);
+  const bool down_short = is_short(wiggle.asked_down_rad, wiggle.moved_down_rad, kLeastWay_rad);
   if (up_short && wiggle.moved_rad < 0.0)
     return {Tells::kWrong,
             "it moved the other way than its own drive was told: position and torque of the drive have "

@@ -237,13 +237,6 @@ class Driven {
     }
     target_rad_ = q_rad_;
     motors_.switch_on();
-    const Angles<N> load_Nm = judge_.holding_Nm(q_rad_, crank_rad_, std::nullopt);
-    for (std::size_t i = 0; i < kN; ++i) {
-      const double effort_Nm = std::abs(
-          setup(i).transmission.to_joint(drives::MotorCommand{.torque_Nm = setup(i).limits.torque_Nm}).torque_Nm);
-      most_Nm_[static_cast<Eigen::Index>(i)] =
-          given.options.effort_share * effort_Nm + 2.0 * std::abs(load_Nm[static_cast<Eigen::Index>(i)]);
-    }
   }
 
   LinkedWay way(std::size_t j) {
@@ -255,6 +248,7 @@ class Driven {
     const double up = std::min(start_rad + by_rad, range.q_upper_rad),
                  low = std::max(start_rad - by_rad, range.q_lower_rad);
     LinkedWay way{.joint = judge_.joint(j), .asked_rad = up - start_rad, .asked_down_rad = start_rad - low};
+    allow_load(j, up, low);
     way.begin = go_to(j, start_rad);
     const double began_rad = mean_rad_[at];
     way.highest = go_to(j, up);
@@ -273,6 +267,23 @@ class Driven {
   }
   const drives::MotorSetup& setup(std::size_t i) const { return given_.bus.motors[given_.linked.motors[i]]; }
   std::vector<double> crank_angles() const { return {crank_rad_.begin(), crank_rad_.end()}; }
+
+  /// Of each motor as much torque as the model's load may need on the joint's way, twice, and a share of its effort.
+  void allow_load(std::size_t j, double up_rad, double low_rad) {
+    Angles<N> load_Nm = Angles<N>::Zero();
+    for (const double end_rad : {up_rad, low_rad}) {
+      Angles<N> q_rad = target_rad_;
+      q_rad[static_cast<Eigen::Index>(j)] = end_rad;
+      const auto cranks = given_.linked.linkage.motor_angles(q_rad);
+      if (cranks) load_Nm = load_Nm.cwiseMax(judge_.holding_Nm(q_rad, *cranks, std::nullopt).cwiseAbs());
+    }
+    for (std::size_t i = 0; i < kN; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const double effort_Nm = std::abs(
+          setup(i).transmission.to_joint(drives::MotorCommand{.torque_Nm = setup(i).limits.torque_Nm}).torque_Nm);
+      most_Nm_[at] = given_.options.effort_share * effort_Nm + 2.0 * load_Nm[at];
+    }
+  }
 
   /// (what the motors said) => joints and cranks.
   void measure() {
@@ -351,7 +362,8 @@ template <int N>
 Verdict judge_ways(const Judge<N>& judge, const std::vector<Arrangement<N>>& all, const std::vector<LinkedWay>& ways) {
   using Tells = Verdict::Tells;
   for (const LinkedWay& way : ways) {
-    if (way.moved_rad >= kLeastShare * way.asked_rad && way.moved_down_rad >= kLeastShare * way.asked_down_rad)
+    if (!is_short(way.asked_rad, way.moved_rad, kNoWay_rad) &&
+        !is_short(way.asked_down_rad, way.moved_down_rad, kLeastWay_rad))
       continue;
     return {Tells::kWrong,
             fmt::format("{} moved less than half the way: a brake, a stop, another limb, too much friction, "
