@@ -134,7 +134,7 @@ class StrangersRollCall : public testing::Test {
     far_.buses.resize(1);
     setup_.buses.resize(1);
     std::vector<drives::MotorSetup>& motors = far_.buses[0].motors;
-    for (const auto& [like, node] : {std::pair{3, 9}, {3, 100}, {0, 33}, {0, 127}}) {
+    for (const auto& [like, node] : {std::pair{3, 9}, std::pair{3, 100}, std::pair{0, 33}, std::pair{0, 127}}) {
       motors.push_back(motors[static_cast<std::size_t>(like)]);
       motors.back().node = node;
     }
