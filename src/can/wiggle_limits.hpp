@@ -7,10 +7,10 @@
 namespace pmg::can {
 
 inline constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
-inline constexpr int kSettleCycles = 100;                      // 0.2 s at each end
-inline constexpr int kRestCycles = kSettleCycles / 2;          // of them at rest: means are taken there
+inline constexpr int kSettleCycles = 100;              // 0.2 s at each end
+inline constexpr int kRestCycles = kSettleCycles / 2;  // of them at rest: means are taken there
 inline constexpr double kLeastWay_rad = 3.0 * kRadPerDegree;
-inline constexpr double kNoWay_rad = 0.4 * kRadPerDegree;  // less than can be asked for: the joint lies on its stop
+inline constexpr double kNoWay_rad = 0.4 * kRadPerDegree;      // less than can be asked for: the joint lies on its stop
 inline constexpr double kLeastShare = 0.5;                     // of the way asked for, with soft gains and dry friction
 inline constexpr double kOnStop_rad = 0.02;                    // a limp joint that lies on its stop
 inline constexpr double kLeastLean_rad = 0.5 * kRadPerDegree;  // sway and the steps of an IMU's values are less
