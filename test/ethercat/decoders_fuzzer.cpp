@@ -46,7 +46,7 @@ void read_frame(Bytes input) {
   for (std::size_t k = 1; k < 4; ++k) {
     const std::array<std::uint8_t, 64> data{};
     const std::size_t bytes = std::min<std::size_t>(input[k] % 65, data.size());
-    if (sent.add(ethercat::Command::kLogicalRead, k, Bytes(data).first(bytes))) asked += bytes;
+    if (sent.add(ethercat::Command::kLogicalRead, static_cast<std::uint32_t>(k), Bytes(data).first(bytes))) asked += bytes;
   }
   // The frame as it went out, with the input over its end, or the input alone.
   std::vector<std::uint8_t> back(sent.bytes().begin(), sent.bytes().end());
