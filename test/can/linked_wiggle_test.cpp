@@ -249,51 +249,6 @@ TEST_P(LinkedLight, TheWaistsMotorsMoveTogetherAndHowTheyAreConnectedIsNamed) {
   for (const std::string& line : verdict.look) fmt::print("{}\n", line);
 }
 
-/// Z1 in its gantry, each motor of its left ankle beside the other in the shank.
-class LinkedAnkle : public testing::Test, protected test::HangingStage {
- protected:
-  LinkedAnkle() : HangingStage(linked("left_ankle_pitch", "left_ankle_roll", -0.25)) {}
-  std::vector<LinkedWay> wiggled(const WiggleOptions& options) {
-    return wiggle_linked(test::z1(), sensed_.q, setup_.buses[0], first_motor(setup_.buses[0]), *host_[0], options,
-                         [this] { tick(); }, {});
-  }
-  std::string refusal(const WiggleOptions& options) {
-    try {
-      wiggled(options);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "moved";
-  }
-};
-
-TEST_F(LinkedAnkle, BothJointsMoveThroughTheRodsAndTheEyeIsAsked) {
-  const std::vector<LinkedWay> ways = wiggled({.by_rad = 0.1, .gain_share = 1.0});
-  ASSERT_THAT(ways, SizeIs(2));
-  for (const LinkedWay& way : ways) {
-    EXPECT_NEAR(way.moved_rad, way.asked_rad, 0.3 * way.asked_rad) << way.joint;
-    EXPECT_NEAR(way.moved_down_rad, way.asked_down_rad, 0.3 * way.asked_down_rad) << way.joint;
-  }
-  const Verdict verdict = can::verdict(test::z1(), sensed_.q, setup_.buses[0], first_motor(setup_.buses[0]), ways);
-  EXPECT_EQ(verdict.tells, Tells::kNotAll) << verdict.text;
-  EXPECT_THAT(
-      verdict.look,
-      testing::Contains(testing::StartsWith("if the motors of left_ankle_pitch and left_ankle_roll are swapped: ")));
-}
-
-TEST_F(LinkedAnkle, WhatBlocksItAndAStartBeyondARangeSwitchBothMotorsOff) {
-  EXPECT_THAT(refusal({.by_rad = 0.1, .gain_share = 1.0, .effort_share = -0.1}),
-              HasSubstr("Nm at its crank; expected"));
-  tick();
-  for (const std::size_t m : {4U, 5U}) EXPECT_FALSE(drives_->drive(0, m).enabled());
-  drives_->drive(0, 4).turn_rad = 1.2;
-  EXPECT_THAT(refusal({}), testing::AnyOf(HasSubstr("expected a start within their ranges"),
-                                          HasSubstr("no angles of these joints belong to their cranks'")));
-  drives_->drive(0, 4).turn_rad = 0.0;
-  drives_->drive(0, 5).silent = true;
-  EXPECT_THAT(refusal({}), HasSubstr("left_ankle_roll (can0, node 6) does not answer"));
-}
-
 INSTANTIATE_TEST_SUITE_P(AsDescribed, LinkedLight, testing::Values(Connected{}));
 INSTANTIATE_TEST_SUITE_P(Swapped, LinkedLight, testing::Values(Connected{.swapped = true}));
 INSTANTIATE_TEST_SUITE_P(EveryOther, LinkedLight,
