@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -30,11 +31,16 @@ struct Buses {
   std::vector<std::unique_ptr<can::Link>> links;
 };
 
-using TakeAnswer = std::function<void(const can::BusSetup&, const drives::MotorSetup&, const can::Answer*)>;
+/// What each motor of a bus said, as its drive has it; nullopt: it didn't answer.
+using TakeReadings = std::function<void(const can::BusSetup&, const drives::Readings&)>;
 
-/// Asks every bus once; take gets each motor with its answer, nullptr for none. Returns all problems. Ends early after
-/// an interrupt.
-std::vector<std::string> ask(Buses& buses, const TakeAnswer& take);
+enum class Whom : std::uint8_t {
+  kOwn,  ///< the motors of robot.yaml
+  kAll,  ///< every node that a protocol of the bus can have
+};
+
+/// Asks every bus once; take gets what its motors said. Returns all problems. Ends early after an interrupt.
+std::vector<std::string> ask(Buses& buses, const TakeReadings& take, Whom whom = Whom::kOwn);
 
 /// What drives say that another program drives.
 class Overhearing {
@@ -58,7 +64,8 @@ class Overhearing {
   std::vector<std::vector<Heard>> heard_;  // of each bus: its motors
 };
 
-/// Asks every bus once, and prints a row for each motor and all problems. Returns the number of problems.
-std::size_t show(Buses& buses);
+/// Asks every bus once, and prints a row for each motor, one for each joint of a linkage, and all problems. Returns the
+/// number of problems.
+std::size_t show(Buses& buses, Whom whom = Whom::kOwn);
 
 }  // namespace pmg::apps

@@ -20,8 +20,9 @@
 #include "bus_recording.hpp"
 #include "buses.hpp"
 #include "can/bus_load.hpp"
+#include "can/few_motors.hpp"
 #include "can/first_light.hpp"
-#include "can/one_motor.hpp"
+#include "can/linked_wiggle.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
 #include "pmg/types.hpp"
@@ -67,7 +68,7 @@ int scan(const Arguments& arguments) {
     std::cout << fmt::format("{}: {} motors{}, {} frames a cycle, at most {:.0f} % of the bus\n", bus.name,
                              bus.motors.size(), bus.imu ? " and the IMU" : "", load.frames, 100.0 * load.share);
   }
-  return apps::show(buses) == 0 ? kOk : kProblems;
+  return apps::show(buses, apps::Whom::kAll) == 0 ? kOk : kProblems;
 }
 
 /// Asks; where another program drives the buses, it listens to what that program's drives say.
@@ -127,11 +128,11 @@ int enable(const Arguments& arguments) {
   Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
   const std::function<void()> tick = bus_tick();
-  can::OneMotor motor(one.bus, one.motor, one.link, tick);
+  can::FewMotors motor(one.bus, one.motor, one.link, tick);
   const bool on = motor.switch_on();
-  const drives::MotorReading at = motor.joint();
+  const drives::MotorReading at = motor.reading();
   for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
-  const drives::DriveFault fault = motor.joint().fault;
+  const drives::DriveFault fault = motor.reading().fault;
   if (!on) {
     std::cout << fmt::format("{} can't be enabled: {}\n", arguments.joint, drives::to_string(fault));
     return kProblems;
@@ -149,8 +150,8 @@ int zero(const Arguments& arguments) {
   Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
   const std::function<void()> tick = bus_tick();
-  can::OneMotor motor(one.bus, one.motor, one.link, tick);
-  const double before_rad = motor.joint().q_rad;
+  can::FewMotors motor(one.bus, one.motor, one.link, tick);
+  const double before_rad = motor.reading().q_rad;
   const double offset_rad = buses.robot.joints[static_cast<std::size_t>(one.motor.index)].bus.zero_offset_rad;
   if (!motor.set_zero()) {
     std::cout << fmt::format(
@@ -160,7 +161,7 @@ int zero(const Arguments& arguments) {
     return kOk;
   }
   for (int k = 0; k < kOffCycles; ++k) motor.exchange_off();
-  const double after_rad = motor.joint().q_rad;
+  const double after_rad = motor.reading().q_rad;
   std::cout << fmt::format("{}: was {:.2f} deg, is {:.2f} deg now\n", arguments.joint, before_rad / kRadPerDegree,
                            after_rad / kRadPerDegree);
   return std::abs(after_rad + offset_rad) < kRadPerDegree ? kOk : kProblems;
@@ -169,11 +170,14 @@ int zero(const Arguments& arguments) {
 /// How the robot hangs [rad]; joints whose motors don't answer as if they stood, their names in `silent`.
 JointVector posture(Buses& buses, std::vector<std::string>& silent) {
   JointVector q = buses.robot.q_stand();
-  apps::ask(buses, [&](const can::BusSetup&, const drives::MotorSetup& motor, const can::Answer* answer) {
-    if (answer == nullptr)
-      silent.push_back(motor.joint);
-    else
-      q[motor.index] = motor.transmission.to_joint(answer->reading).q_rad;
+  apps::ask(buses, [&](const can::BusSetup& bus, const drives::Readings& motors) {
+    const drives::Readings joints = drives::joint_readings(bus, motors);
+    for (std::size_t m = 0; m < joints.size(); ++m) {
+      if (!joints[m])
+        silent.push_back(bus.motors[m].joint);
+      else
+        q[bus.motors[m].index] = joints[m]->q_rad;
+    }
   });
   return q;
 }
@@ -204,6 +208,52 @@ model::Hanging hangs(Buses& buses, const OneMotor& one, const JointVector& q, ca
   return hanging;
 }
 
+int told(const can::Verdict& verdict) {
+  using Tells = can::Verdict::Tells;
+  return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
+}
+
+int wiggle_one(Buses& buses, const OneMotor& one, const Arguments& arguments, const JointVector& q,
+               const std::function<void()>& tick, const model::Hanging& hanging, can::Plumb* plumb) {
+  const double by_rad = arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree
+                                               : can::telling_way_rad(buses.robot, q, arguments.joint, hanging);
+  std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
+                           by_rad / kRadPerDegree, can::way_of(buses.robot, q, arguments.joint, by_rad))
+            << std::flush;
+  const can::Wiggle result =
+      can::wiggle(buses.robot, q, one.bus, one.motor, one.link, {.by_rad = by_rad, .gain_share = arguments.gain_share},
+                  tick, interrupted, hanging, plumb);
+  const can::Verdict verdict = can::verdict(result);
+  std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
+                           result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
+                           result.model_Nm, verdict.text);
+  return told(verdict);
+}
+
+/// The joint's linkage: all of its joints, one after the other.
+int wiggle_rods(Buses& buses, const OneMotor& one, const Arguments& arguments, const JointVector& q,
+                const std::function<void()>& tick, const model::Hanging& hanging, can::Plumb* plumb) {
+  can::WiggleOptions options{.gain_share = arguments.gain_share};
+  if (arguments.by_deg > 0.0) options.by_rad = arguments.by_deg * kRadPerDegree;
+  constexpr double kShown_rad = 5.0 * kRadPerDegree;
+  for (const std::string& joint : can::linked_joints(one.bus, one.motor)) {
+    std::cout << fmt::format(
+        "{} moves there and back, its linkage's motors together. For + the model's limb goes: {}\n", joint,
+        can::way_of(buses.robot, q, joint, options.by_rad.value_or(kShown_rad)));
+  }
+  std::cout << std::flush;
+  const std::vector<can::LinkedWay> ways =
+      can::wiggle_linked(buses.robot, q, one.bus, one.motor, one.link, options, tick, interrupted, hanging, plumb);
+  for (const can::LinkedWay& way : ways) {
+    std::cout << fmt::format("{}: asked {:.2f} deg, moved {:.2f} deg\n", way.joint, way.asked_rad / kRadPerDegree,
+                             way.moved_rad / kRadPerDegree);
+  }
+  const can::Verdict verdict = can::verdict(buses.robot, q, one.bus, one.motor, ways, hanging);
+  std::cout << verdict.text << '\n';
+  for (const std::string& line : verdict.look) std::cout << "  " << line << '\n';
+  return told(verdict);
+}
+
 int wiggle(const Arguments& arguments) {
   Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
@@ -221,20 +271,9 @@ int wiggle(const Arguments& arguments) {
     if (bus.imu) plumb.emplace(buses.robot, &bus == &one.bus ? nullptr : buses.links[b].get());
   }
   const model::Hanging hanging = hangs(buses, one, q, plumb ? &*plumb : nullptr, tick, arguments.held);
-  const double by_rad = arguments.by_deg > 0.0 ? arguments.by_deg * kRadPerDegree
-                                               : can::telling_way_rad(buses.robot, q, arguments.joint, hanging);
-  std::cout << fmt::format("{} moves by {:.1f} deg there and back. For + the model's limb goes: {}\n", arguments.joint,
-                           by_rad / kRadPerDegree, can::way_of(buses.robot, q, arguments.joint, by_rad))
-            << std::flush;
-  const can::Wiggle result =
-      can::wiggle(buses.robot, q, one.bus, one.motor, one.link, {.by_rad = by_rad, .gain_share = arguments.gain_share},
-                  tick, interrupted, hanging, plumb ? &*plumb : nullptr);
-  const can::Verdict verdict = can::verdict(result);
-  std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
-                           result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
-                           result.model_Nm, verdict.text);
-  using Tells = can::Verdict::Tells;
-  return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
+  can::Plumb* const plumbed = plumb ? &*plumb : nullptr;
+  return can::linked_joints(one.bus, one.motor).empty() ? wiggle_one(buses, one, arguments, q, tick, hanging, plumbed)
+                                                        : wiggle_rods(buses, one, arguments, q, tick, hanging, plumbed);
 }
 
 int dump(const Arguments& arguments) { return apps::dump_buses(arguments.robot, arguments.for_s); }
@@ -262,7 +301,7 @@ int main(int argc, char** argv) {
   const auto duration = [&](CLI::App* sub) {
     sub->add_option("--for", arguments.for_s, "end after so many seconds")->check(apps::positive());
   };
-  command("scan", "switch all drives off and ask each once", scan);
+  command("scan", "switch all drives off and ask every node that the buses' protocols can have", scan);
   duration(command("watch", "the same again and again: move the joints by hand and look", watch));
   joint(command("enable", "enable one drive without a command, and disable it", enable));
   CLI::App* zeroing =

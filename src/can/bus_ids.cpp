@@ -31,10 +31,9 @@ std::vector<SentId> sent_ids(const BusSetup& bus) {
   if (bus.imu) {
     for (const std::uint32_t id : kImuIds) ids.push_back({.id = id, .who = "the IMU"});
   }
-  if (bus.has_canopen()) {
-    ids.push_back({.id = drives::canopen::kNetworkManagement, .who = "CANopen's node commands"});
-    ids.push_back({.id = drives::canopen::kSync, .who = "CANopen's SYNC"});
-    ids.push_back({.id = drives::canopen::kHeartbeat + drives::canopen::kHostNode, .who = "this computer's heartbeat"});
+  if (const auto network = drives::network_of(bus)) {
+    for (const drives::NetworkMessage& message : network->messages())
+      ids.push_back({.id = message.id, .who = message.who});
   }
   return ids;
 }

@@ -10,7 +10,7 @@ namespace pmg::can {
 
 namespace {
 constexpr double kPeriod_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
-constexpr int kFrameBytes = 8, kImuFrames = 3, kHeartbeatBytes = 1;
+constexpr int kFrameBytes = 8, kImuFrames = 3;
 }  // namespace
 
 double frame_time_s(int bytes, int bitrate, int data_bitrate) {
@@ -32,9 +32,10 @@ BusLoad planned_load(const BusSetup& bus) {
   for (const drives::MotorSetup& motor : bus.motors) {
     add(motor.drive->messages_a_cycle(), kFrameBytes, bus.data_bitrate);
   }
-  if (bus.has_canopen()) {
-    add(1, 0, 0);                // SYNC
-    add(1, kHeartbeatBytes, 0);  // in one cycle of drives::canopen::kHeartbeatCycles
+  if (const auto network = drives::network_of(bus)) {
+    for (const drives::NetworkMessage& message : network->messages()) {
+      if (message.in_cycle) add(1, message.bytes, 0);
+    }
   }
   if (bus.imu) add(kImuFrames, kFrameBytes, 0);  // the IMU sends classic frames
   load.share = load.time_s / kPeriod_s;

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "can/one_motor.hpp"
+#include "can/few_motors.hpp"
+#include "can/wiggle_limits.hpp"
 #include "drives/robot_drives.hpp"
-#include "hal/bus_cycle.hpp"
 #include "model/hanging_load.hpp"
 #include "pmg/types.hpp"
 
@@ -21,29 +20,15 @@ namespace pmg::can {
 
 namespace {
 
-constexpr double kCycle_s = static_cast<double>(hal::BusCycle::kPeriod_ns) * 1e-9;
-constexpr int kSettleCycles = 100;   // 0.2 s at each end
-constexpr double kLeastShare = 0.5;  // of the way asked for, with soft gains and dry friction
-constexpr double kLeastWay_rad = 3.0 * kRadPerDegree, kMostWay_rad = 20.0 * kRadPerDegree;
-// Frictions that a load must have to be compared; friction of opposite ways cancels out of the mean of both.
-constexpr double kSure = 3.0, kSureOfMean = 1.0;
+constexpr double kMostWay_rad = 20.0 * kRadPerDegree;
 constexpr double kWayMargin =
     1.5;  // soft gains don't reach the end, and a step of the drive's torque counts as friction
-
-constexpr double kLeanWay_rad = 10.0 * kRadPerDegree;   // of a leg: the base leans by a degree or more
-constexpr double kLeastLean_rad = 0.5 * kRadPerDegree;  // sway and the steps of an IMU's values are less
-constexpr double kSureOfLean = 2.0;   // times what the base lacks when the joint is back: friction holds it there
-constexpr double kOnStop_rad = 0.02;  // a limp joint that lies on its stop
-constexpr double kNoWay_rad = 0.4 * kRadPerDegree;  // less than can be asked for: it lies on its stop
-// Share of the way that a base turns which a joint turns. Less, and something else than --held holds the robot.
-constexpr double kLeastTurn = 0.3;
+constexpr double kLeanWay_rad = 10.0 * kRadPerDegree;  // of a leg: the base leans by a degree or more
 
 /// At rest at one end of the way: means over half of the time there.
 struct End {
   double q_rad = 0.0, torque_Nm = 0.0;
-  Eigen::Vector3d down_B = Eigen::Vector3d::Zero();
-  Eigen::Vector4d base_WB = Eigen::Vector4d::Zero();  // coefficients, summed
-  bool plumbed = true;
+  PlumbMean plumb;
 };
 
 /// The joint's motion alone.
@@ -67,7 +52,7 @@ class Motion {
 
  private:
   double holding_Nm(const End& end, model::Hanging hanging, double q_rad) const {
-    if (end.plumbed) hanging.down_B = end.down_B.normalized();
+    if (const auto plumb = end.plumb.mean()) hanging.down_B = plumb->down_B;
     const model::GravityLoad load = model::gravity_load(robot_, joint_.name, at(q_rad), hanging);
     return load.holding_Nm(q_rad);
   }
@@ -76,14 +61,6 @@ class Motion {
   const model::Joint& joint_;
   int index_;
 };
-
-/// Of the base, from one end to another, in its own axes [rad].
-Eigen::Vector3d turned_rad(const End& from, const End& to) {
-  const Eigen::Quaterniond a(Eigen::Vector4d(from.base_WB.normalized())), b(Eigen::Vector4d(to.base_WB.normalized()));
-  const Eigen::AngleAxisd turn(a.conjugate() * b);
-  const double angle_rad = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
-  return angle_rad * turn.axis();
-}
 
 /// The way that the base leans when the joint turns by +: a unit vector in the base's axes. A base that the joint turns
 /// goes against its axis. Any other leans until the robot's centre of mass is below what holds it again, so against the
@@ -117,10 +94,10 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
               const model::Hanging& hanging, Plumb* plumb) {
   const model::Joint& joint = robot.joints[static_cast<std::size_t>(motor.index)];
   const Motion motion(robot, q, joint, motor.index);
-  OneMotor one(bus, motor, link, tick, [plumb](const drives::Message& message) {
+  FewMotors one(bus, motor, link, tick, [plumb](const drives::Message& message) {
     if (plumb != nullptr) plumb->hear(message);
   });
-  const double start_rad = one.joint().q_rad;
+  const double start_rad = one.reading().q_rad;
   const auto in_range = [&joint](double q_rad) {
     return q_rad >= joint.lower_rad - kOnStop_rad && q_rad <= joint.upper_rad + kOnStop_rad;
   };
@@ -141,7 +118,6 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
 
   double target_rad = start_rad;
   const auto go_to = [&](double end_rad) {
-    constexpr int kRestCycles = kSettleCycles / 2;
     End end;
     for (int settled = 0; settled < kSettleCycles;) {
       if (interrupted && interrupted()) throw std::runtime_error("interrupted; the motor is switched off");
@@ -149,22 +125,18 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
       one.exchange({.q_rad = target_rad,
                     .kp_Nm_per_rad = share * joint.kp_Nm_per_rad,
                     .kd_Nm_s_per_rad = share * joint.kd_Nm_s_per_rad});
-      if (std::abs(one.joint().torque_Nm) > most_Nm)
+      if (std::abs(one.reading().torque_Nm) > most_Nm)
         throw std::runtime_error(
             fmt::format("{} meets {:.1f} Nm; expected {:.1f} Nm at most on this way: something blocks it, or gear or "
                         "zero are wrong; it is switched off",
-                        name_of(bus, motor), std::abs(one.joint().torque_Nm), most_Nm));
-      const auto plumbed = plumb != nullptr ? plumb->sample(motion.at(one.joint().q_rad)) : std::nullopt;
+                        name_of(bus, motor), std::abs(one.reading().torque_Nm), most_Nm));
+      const auto plumbed = plumb != nullptr ? plumb->sample(motion.at(one.reading().q_rad)) : std::nullopt;
       if (target_rad != end_rad) continue;
       ++settled;
       if (settled <= kSettleCycles - kRestCycles) continue;  // the second half is at rest
-      end.q_rad += one.joint().q_rad / kRestCycles;
-      end.torque_Nm += one.joint().torque_Nm / kRestCycles;
-      end.plumbed = end.plumbed && plumbed.has_value();
-      if (!plumbed) continue;
-      end.down_B += plumbed->down_B;
-      const Eigen::Vector4d coefficients = plumbed->base_WB.coeffs();
-      end.base_WB += end.base_WB.dot(coefficients) < 0.0 ? Eigen::Vector4d(-coefficients) : coefficients;
+      end.q_rad += one.reading().q_rad / kRestCycles;
+      end.torque_Nm += one.reading().torque_Nm / kRestCycles;
+      end.plumb.add(plumbed);
     }
     return end;
   };
@@ -185,43 +157,30 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
   result.model_end_Nm = up_pulls_more ? model_up_Nm : model_low_Nm;
   result.inverted_end_Nm = motion.inverted_Nm(up_pulls_more ? highest : lowest, hanging);
   result.friction_Nm = joint.friction_Nm + motor.drive->torque_step_Nm();
-  if (!highest.plumbed || !lowest.plumbed || !begin.plumbed || !back.plumbed) return result;
+  const auto at_begin = begin.plumb.mean(), at_back = back.plumb.mean(), at_highest = highest.plumb.mean(),
+             at_lowest = lowest.plumb.mean();
+  if (!at_begin || !at_back || !at_highest || !at_lowest) return result;
   model::Hanging now = hanging;
-  now.down_B = begin.down_B.normalized();
+  now.down_B = at_begin->down_B;
   const auto way = leans(robot, motion.at(start_rad), motor.joint, now);
   if (!way) return result;
-  result.leaned_rad = turned_rad(lowest, highest).dot(*way);
-  result.least_lean_rad = std::max(kLeastLean_rad, kSureOfLean * std::abs(turned_rad(begin, back).dot(*way)));
+  result.leaned_rad = turned_rad(*at_lowest, *at_highest).dot(*way);
+  result.least_lean_rad = std::max(kLeastLean_rad, kSureOfLean * std::abs(turned_rad(*at_begin, *at_back).dot(*way)));
   if (model::turns_base(robot, motor.joint, hanging))
     result.least_lean_rad = std::max(result.least_lean_rad, kLeastTurn * (highest.q_rad - lowest.q_rad));
   return result;
 }
 
 std::string way_of(const model::RobotModel& robot, const JointVector& q, const std::string& joint, double by_rad) {
-  const auto centre = [&](const JointVector& at) {
-    // Centre of mass of the links beyond the joint, base upright: each link's frame from the base, by its own chain.
-    KDL::Vector sum = KDL::Vector::Zero();
-    double mass = 0.0;
-    for (const auto& [name, element] : robot.tree.getSegments()) {
-      KDL::Chain chain;
-      if (!robot.tree.getChain(robot.base_link, name, chain)) continue;
-      bool beyond = false;
-      KDL::Frame frame = KDL::Frame::Identity();
-      for (const KDL::Segment& segment : chain.segments) {
-        const bool moves = segment.getJoint().getType() != KDL::Joint::Fixed;
-        beyond = beyond || segment.getJoint().getName() == joint;
-        frame = frame * segment.pose(moves ? at[robot.joint_index.at(segment.getJoint().getName())] : 0.0);
-      }
-      if (!beyond) continue;
-      const KDL::RigidBodyInertia inertia = GetTreeElementSegment(element).getInertia();
-      sum += inertia.getMass() * (frame * inertia.getCOG());
-      mass += inertia.getMass();
-    }
-    return sum / mass;
-  };
   JointVector moved = q;
   moved[robot.joint_index.at(joint)] += by_rad;
-  const KDL::Vector way_mm = 1e3 * (centre(moved) - centre(q));
+  return way_between(robot, q, moved, joint);
+}
+
+std::string way_between(const model::RobotModel& robot, const JointVector& from, const JointVector& to,
+                        const std::string& joint) {
+  const Eigen::Vector3d way_mm =
+      1e3 * (model::hanging_load(robot, joint, to).center_m - model::hanging_load(robot, joint, from).center_m);
   constexpr std::array<std::array<const char*, 2>, 3> kWays = {
       {{"forward", "backward"}, {"to the left", "to the right"}, {"up", "down"}}};
   std::vector<std::pair<double, std::string>> parts;
@@ -243,10 +202,8 @@ Verdict verdict(const Wiggle& wiggle) {
   constexpr const char* kLeastAsked =
       "it moved less than half the way: a brake, a stop, another limb, too much friction, "
       "or another joint's motor";
-  // Where a joint lies on its stop, a way has no length.
-  const bool up_short = wiggle.asked_rad > kNoWay_rad && wiggle.moved_rad < kLeastShare * wiggle.asked_rad;
-  const bool down_short =
-      wiggle.asked_down_rad > kLeastWay_rad && wiggle.moved_down_rad < kLeastShare * wiggle.asked_down_rad;
+  const bool up_short = is_short(wiggle.asked_rad, wiggle.moved_rad, kNoWay_rad);
+  const bool down_short = is_short(wiggle.asked_down_rad, wiggle.moved_down_rad, kLeastWay_rad);
   if (up_short && wiggle.moved_rad < 0.0)
     return {Tells::kWrong,
             "it moved the other way than its own drive was told: position and torque of the drive have "

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "can/bus_setup.hpp"
 #include "can/link.hpp"
@@ -57,9 +58,14 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
 /// [rad], base upright: "31 mm backward, 4 mm up". This is what the eye compares.
 std::string way_of(const model::RobotModel& robot, const JointVector& q, const std::string& joint, double by_rad);
 
+/// The same from one posture to another.
+std::string way_between(const model::RobotModel& robot, const JointVector& from, const JointVector& to,
+                        const std::string& joint);
+
 struct Verdict {
   enum class Tells : std::uint8_t { kAgrees, kWrong, kNotAll } tells = Tells::kAgrees;
-  std::string text;  ///< one line
+  std::string text;                 ///< one line
+  std::vector<std::string> look{};  ///< of a linkage: what the eye would see if it were otherwise, a line each
 };
 
 /// What the figures say of direction and gear. A limb that hangs straight down from its joint pulls alike whichever way

@@ -73,6 +73,13 @@ void OtherFrames::note(const drives::Message& frame) {
   seen.last = frame;
 }
 
+bool OtherFrames::heard(std::uint32_t id) const {
+  return std::ranges::any_of(seen_, [id](const auto& one) {
+    const auto& [seen, extended, fd, bytes] = one.first;
+    return seen == id && !extended;
+  });
+}
+
 std::vector<std::string> OtherFrames::lines(const BusSetup& bus) const {
   const std::vector<SentId> ids = sent_ids(bus);
   std::vector<std::string> lines;

@@ -16,6 +16,7 @@ class OtherFrames {
  public:
   /// A frame that no drive of the bus answers with, or one whose last byte can't be a fault code.
   void note(const drives::Message& frame);
+  bool heard(std::uint32_t id) const;  ///< of 11 bits
   /// One line for each identifier and length: how often, and what it may be. Ours are not among them: the IMU's
   /// messages and what CANopen drives of this bus send.
   std::vector<std::string> lines(const BusSetup& bus) const;

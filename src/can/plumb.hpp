@@ -3,12 +3,16 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <string>
 
 #include "can/link.hpp"
 #include "can/xsens_imu.hpp"
 #include "model/robot_model.hpp"
 
 namespace pmg::can {
+
+/// (joints [rad]) => the link's axes in the base's.
+Eigen::Quaterniond link_in_base(const model::RobotModel& robot, const std::string& link, const JointVector& q);
 
 class Plumb {
  public:
@@ -30,5 +34,21 @@ class Plumb {
   Link* link_;
   XsensImu imu_;
 };
+
+/// The mean of some samples at rest.
+class PlumbMean {
+ public:
+  void add(const std::optional<Plumb::Sample>& sample);
+  /// Nullopt: there was none, or one of them was missing.
+  std::optional<Plumb::Sample> mean() const;
+
+ private:
+  Eigen::Vector3d down_B_ = Eigen::Vector3d::Zero();
+  Eigen::Vector4d base_WB_ = Eigen::Vector4d::Zero();  // coefficients, summed
+  bool whole_ = true;
+};
+
+/// Of the base, from one sample to another, in its own axes [rad].
+Eigen::Vector3d turned_rad(const Plumb::Sample& from, const Plumb::Sample& to);
 
 }  // namespace pmg::can

@@ -6,7 +6,6 @@
 #include <deque>
 #include <stdexcept>
 
-#include "drive_protocols/canopen.hpp"
 #include "hal/bus_cycle.hpp"
 
 namespace pmg::can {
@@ -19,10 +18,10 @@ constexpr std::int64_t kHole_ns = 5 * kPeriod_ns;
 /// Cycles after which every drive and the IMU have spoken that speak at all.
 constexpr std::uint64_t kFirstCycles = XsensImu::kSilentCycles + 2;
 
-/// This computer's own on a bus with CANopen drives.
-bool network(const drives::Message& frame) {
-  using namespace drives::canopen;
-  return !frame.extended && (frame.id == kNetworkManagement || frame.id == kHeartbeat + kHostNode) && frame.length <= 2;
+/// This computer sent it for all drives of a bus together.
+bool for_all(const std::unique_ptr<drives::Network>& network, const drives::Message& frame) {
+  return network && !frame.extended &&
+         std::ranges::find(network->messages(), frame.id, &drives::NetworkMessage::id) != network->messages().end();
 }
 
 }  // namespace
@@ -53,6 +52,7 @@ Replay::Replay(const DriveSetup& setup, const model::RobotModel& robot, Tell tel
     auto link = std::make_unique<RecordedLink>();
     links_.push_back(link.get());
     links.push_back(std::move(link));
+    networks_.push_back(drives::network_of(setup.buses[b]));
   }
   hal_ = std::make_unique<CanHal>(setup, robot, clock_, std::move(links));
   const int joints = robot.joint_index.size();
@@ -64,7 +64,7 @@ Replay::~Replay() = default;
 bool Replay::asks(std::size_t bus, const drives::Message& frame) const {
   if (frame.extended) return false;
   const BusSetup& setup = setup_.buses[bus];
-  if (setup.has_canopen() && frame.id == drives::canopen::kSync) return true;
+  if (networks_[bus] && frame.id == networks_[bus]->sync().id) return true;
   return std::ranges::any_of(setup.motors, [&](const drives::MotorSetup& motor) {
     return std::ranges::any_of(motor.drive->ids(motor.node),
                                [&](const drives::MotorId& id) { return !id.answer && id.id == frame.id; });
@@ -96,7 +96,7 @@ void Replay::take(const RecordedFrame& recorded) {
   }
   if (asking && !marker_) marker_ = {at, recorded.frame.id};
   if (asking && *marker_ == std::pair{at, recorded.frame.id} && stamp_ns_ > begin_ns_) begin(stamp_ns_);
-  if (!asking && !network(recorded.frame)) links_[at]->push(recorded.frame);
+  if (!asking && !for_all(networks_[at], recorded.frame)) links_[at]->push(recorded.frame);
 }
 
 void Replay::begin(std::int64_t stamp_ns) {

@@ -48,6 +48,7 @@ class Replay {
   Tell tell_;
   io::SimulationClock clock_;
   std::vector<RecordedLink*> links_;
+  std::vector<std::unique_ptr<drives::Network>> networks_;  // of each bus; null: there is none
   std::unique_ptr<CanHal> hal_;
   std::optional<std::pair<std::size_t, std::uint32_t>> marker_;  // bus and identifier that begin a cycle
   std::optional<std::int64_t> first_ns_;

@@ -1,6 +1,7 @@
 #include "can/roll_call.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,8 +9,15 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
+#include <set>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
+#include "can/bus_ids.hpp"
+#include "can/linked_wiggle.hpp"
+#include "drive_protocols/canopen.hpp"
 #include "drive_protocols/canopen_drive.hpp"
 
 namespace pmg::can {
@@ -20,6 +28,8 @@ constexpr int kRounds = 10;         // a drive that misses one frame is asked ag
 constexpr int kRoundWaits = 20;     // of some 1 ms
 constexpr int kCounted = 3;         // requests whose answers are counted
 constexpr std::size_t kBatch = 16;  // requests that an interface's queue takes
+constexpr int kQuietWaits = 50;     // in which another program that drives something has sent, at 20 Hz or more
+constexpr int kStrangerRounds = 2, kBatchWaits = 10, kLateWaits = 60;
 constexpr double kBeyondRange_rad =
     0.2;  // twice what the control thread takes for a fault: a limp joint may lie on its stop
 
@@ -80,6 +90,8 @@ void take_canopen(Link& link, Answers& answers, OtherFrames* others) {
       Answer& answer = answers[static_cast<int>(node)];
       answer.node = static_cast<int>(node);
       ++answer.count;
+      const auto said = drives::canopen::sdo_answer(frame);
+      if (said->upload && said->id.index == drives::object::kDeviceType.index) answer.device_type = said->value;
     }
   }
 }
@@ -153,6 +165,14 @@ void find_and_count(const Roll& roll, const std::vector<int>& nodes, const std::
     answer.count = std::max(1, static_cast<int>(std::lround(static_cast<double>(answer.count) / kCounted)));
 }
 
+/// " (CANopen device type 0x00020192: profile 402)"
+std::string kind_of(const Answer& answer) {
+  if (!answer.device_type) return {};
+  constexpr std::uint32_t kProfile = 0xFFFF;  // bits of it
+  return fmt::format(" (CANopen device type 0x{:08X}: profile {})", *answer.device_type,
+                     *answer.device_type & kProfile);
+}
+
 /// Switches the drive off and reads it.
 void read_node(const BusSetup& bus, const drives::MotorSetup& motor, Link& link, const Wait& wait, Answer& answer) {
   const auto& settings = *drives::as_cia402(motor.drive);
@@ -179,7 +199,7 @@ void ask_canopen(const BusSetup& bus, Link& link, const Wait& wait, const std::f
                       },
                   .take = [&](Answers& into) { take_canopen(link, into, others); }};
   std::vector<int> own, strangers;
-  for (int node = 1; node < static_cast<int>(drives::canopen::kHostNode); ++node) {
+  for (int node = 1; node <= static_cast<int>(drives::canopen::kHostNode); ++node) {  // nobody may have this computer's
     const auto motor = std::ranges::find(bus.motors, node, &drives::MotorSetup::node);
     if (motor == bus.motors.end()) {
       strangers.push_back(node);
@@ -198,7 +218,77 @@ void ask_canopen(const BusSetup& bus, Link& link, const Wait& wait, const std::f
   answers.merge(nodes);
 }
 
+/// What switches each node off that these kinds may have, robot.yaml hasn't, and nobody sends as. nodes: their number.
+std::vector<drives::Message> off_messages(const BusSetup& bus, const std::vector<drives::DriveKind>& kinds,
+                                          const std::function<bool(std::uint32_t id)>& sent_by_others, int& nodes) {
+  const auto taken = [&](int node) {
+    return std::ranges::find(bus.motors, node, &drives::MotorSetup::node) != bus.motors.end();
+  };
+  std::map<std::pair<std::uint32_t, std::vector<std::uint8_t>>, drives::Message> messages;  // each once
+  std::set<int> asked;
+  for (const drives::DriveKind& kind : kinds) {
+    for (int node = 1; node <= kind->most_node(); ++node) {
+      if (taken(node)) continue;
+      drives::Outbox out;
+      kind->protocol(node, {}, bus.data_bitrate != 0)->off(out);
+      for (const drives::Message& message : out.messages()) {
+        if (sent_by_others(message.id)) continue;
+        messages[{message.id, {message.bytes().begin(), message.bytes().end()}}] = message;
+        asked.insert(node);
+      }
+    }
+  }
+  nodes = static_cast<int>(asked.size());
+  std::vector<drives::Message> all;
+  for (const auto& [key, message] : messages) all.push_back(message);
+  return all;
+}
+
+/// Cranks whose angles belong to no posture, or to one beyond a joint's range.
+std::vector<std::string> linkage_problems(const BusSetup& bus, const drives::Readings& motors) {
+  std::vector<std::string> found;
+  const drives::Readings joints = drives::joint_readings(bus, motors);
+  const auto look = [&](const auto& linkages) {
+    for (const auto& linked : linkages) {
+      const auto silent = [&](std::size_t m) { return !motors[m]; };
+      if (std::ranges::any_of(linked.motors, silent)) continue;
+      std::vector<std::string> names;
+      std::vector<double> cranks_rad, joints_rad;
+      bool within = true;
+      for (std::size_t i = 0; i < linked.motors.size(); ++i) {
+        const std::size_t m = linked.motors[i];
+        names.push_back(bus.motors[m].joint);
+        cranks_rad.push_back(bus.motors[m].transmission.to_joint(*motors[m]).q_rad);
+        if (!joints[m]) continue;
+        joints_rad.push_back(joints[m]->q_rad);
+        within = within && joints[m]->q_rad >= linked.joints[i].q_lower_rad - kBeyondRange_rad &&
+                 joints[m]->q_rad <= linked.joints[i].q_upper_rad + kBeyondRange_rad;
+      }
+      if (within && !joints_rad.empty()) continue;
+      const std::string other = arranged_within_ranges(bus, bus.motors[linked.motors[0]], cranks_rad);
+      found.push_back(fmt::format(
+          "{} ({}): {}; expected angles within their ranges: {}", fmt::join(names, " and "), bus.name,
+          joints_rad.empty()
+              ? fmt::format("no angles of theirs belong to their cranks' ({:.2f} rad)", fmt::join(cranks_rad, " and "))
+              : fmt::format("their cranks' angles put them at {:.2f} rad", fmt::join(joints_rad, " and ")),
+          other.empty() ? "look at zeros, directions, gears, lost turns" : "it is as if " + other));
+    }
+  };
+  look(bus.four_bars);
+  look(bus.parallel);
+  return found;
+}
+
 }  // namespace
+
+drives::Readings motor_readings(const BusSetup& bus, const std::vector<Answer>& answers) {
+  drives::Readings readings;
+  for (const drives::MotorSetup& motor : bus.motors) {
+    const auto answer = std::ranges::find(answers, motor.node, &Answer::node);
+    readings.push_back(answer == answers.end() ? std::nullopt : std::optional(answer->reading));
+  }
+  return readings;
+}
 
 std::vector<Answer> ask_bus(const BusSetup& bus, Link& link, const Wait& wait, const std::function<bool()>& interrupted,
                             OtherFrames* others) {
@@ -230,6 +320,68 @@ std::vector<Answer> ask_bus(const BusSetup& bus, Link& link, const Wait& wait, c
   return list;
 }
 
+Strangers ask_strangers(const BusSetup& bus, Link& link, const Wait& wait, const std::function<bool()>& interrupted,
+                        OtherFrames* others) {
+  std::vector<drives::DriveKind> kinds;  // whose drives answer to their own messages
+  Strangers result;
+  for (const drives::MotorSetup& motor : bus.motors) {
+    const auto protocol = motor.drive->protocol(motor.node, motor.limits, bus.data_bitrate != 0);
+    if (protocol->asked_by() != drives::Protocol::AskedBy::kItsMessages) continue;
+    if (!motor.drive->off_is_harmless()) {
+      result.why_not =
+          fmt::format("{}'s protocol has no message that is known to be harmless to any drive", motor.joint);
+      return result;
+    }
+    kinds.push_back(motor.drive);
+  }
+  if (kinds.empty()) return result;
+  if (link.health() != BusHealth::kGood) {
+    result.why_not = "the bus isn't well";
+    return result;
+  }
+  const std::vector<std::uint32_t> awaited = awaited_ids(bus);
+  const auto sent_by_others = [&](std::uint32_t id) {
+    return std::ranges::find(awaited, id) != awaited.end() || (others != nullptr && others->heard(id));
+  };
+  const auto listen = [&](const std::function<void(const drives::Message&)>& take) {
+    if (interrupted && interrupted()) throw std::runtime_error("interrupted while the drives were asked");
+    wait();
+    std::array<drives::Message, 64> frames;
+    while (const std::size_t count = link.receive(frames)) {
+      for (const drives::Message& frame : std::span(frames).first(count)) take(frame);
+    }
+  };
+  for (int k = 0; k < kQuietWaits && result.why_not.empty(); ++k) {
+    listen([&](const drives::Message& frame) {
+      if (frame.extended || frame.id == 0 || frame.id > drives::canopen::kNodeBits || sent_by_others(frame.id)) return;
+      result.why_not = fmt::format("something else sends 0x{:X} there and may drive them", frame.id);
+    });
+  }
+  if (!result.why_not.empty()) return result;
+
+  std::map<int, Answer> found;
+  const auto take = [&](const drives::Message& frame) {
+    for (const drives::DriveKind& kind : kinds) {
+      const auto node = kind->sender(frame);
+      if (!node) continue;
+      if (std::ranges::find(bus.motors, *node, &drives::MotorSetup::node) == bus.motors.end())
+        found[*node] = {.node = *node, .count = 1};
+      return;
+    }
+    if (others != nullptr) others->note(frame);
+  };
+  const std::vector<drives::Message> requests = off_messages(bus, kinds, sent_by_others, result.asked);
+  for (int round = 0; round < kStrangerRounds; ++round) {
+    for (std::size_t at = 0; at < requests.size(); at += kBatch) {
+      link.send(std::span(requests).subspan(at, std::min(kBatch, requests.size() - at)));
+      for (int k = 0; k < kBatchWaits; ++k) listen(take);
+    }
+  }
+  for (int k = 0; k < kLateWaits; ++k) listen(take);
+  for (const auto& [node, answer] : found) result.answers.push_back(answer);
+  return result;
+}
+
 std::vector<std::string> problems(const BusSetup& bus, const std::vector<Answer>& answers) {
   std::vector<std::string> found;
   for (const drives::MotorSetup& motor : bus.motors) {
@@ -256,10 +408,11 @@ std::vector<std::string> problems(const BusSetup& bus, const std::vector<Answer>
                                         at.q_rad, motor.limits.q_lower_rad, motor.limits.q_upper_rad));
     }
   }
+  for (const std::string& problem : linkage_problems(bus, motor_readings(bus, answers))) found.push_back(problem);
   for (const Answer& answer : answers) {
     if (std::ranges::find(bus.motors, answer.node, &drives::MotorSetup::node) != bus.motors.end()) continue;
-    found.push_back(
-        fmt::format("{}: somebody answers as node {}; expected only the nodes of robot.yaml", bus.name, answer.node));
+    found.push_back(fmt::format("{}: somebody answers as node {}{}; expected only the nodes of robot.yaml", bus.name,
+                                answer.node, kind_of(answer)));
   }
   return found;
 }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "drive_protocols/canopen.hpp"
 
@@ -80,6 +82,16 @@ class CanopenNode final : public Protocol {
 /// SYNC asks all of its nodes; this computer's heartbeat keeps them on.
 class CanopenNetwork final : public Network {
  public:
+  std::span<const NetworkMessage> messages() const noexcept override {
+    static constexpr std::array<NetworkMessage, 3> kMessages = {
+        {{.id = canopen::kNetworkManagement, .who = "CANopen's node commands", .bytes = 2},
+         {.id = canopen::kSync, .who = "CANopen's SYNC", .bytes = 0, .in_cycle = true},
+         {.id = canopen::kHeartbeat + canopen::kHostNode,
+          .who = "this computer's heartbeat",
+          .bytes = 1,
+          .in_cycle = true}}};
+    return kMessages;
+  }
   Message sync() const noexcept override { return canopen::sync(); }
   void sign_of_life(int cycles, Outbox& out) noexcept override {
     since_ += cycles;

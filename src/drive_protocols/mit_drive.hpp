@@ -36,6 +36,9 @@ class MitDrive : public DriveType {
   DriveKind replying_as(std::uint32_t id) const override;
   std::vector<MotorId> ids(int node) const override;
   std::optional<int> sender(const Message& message) const noexcept override;
+  /// Of no dialect is a message known that only asks. Switching off is the least: every drive answers it with its
+  /// state.
+  bool off_is_harmless() const noexcept override { return true; }
   double torque_step_Nm() const noexcept override { return codec_.torque().step(); }
 
  protected:

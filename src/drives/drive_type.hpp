@@ -65,6 +65,9 @@ class DriveType {
   /// Messages of a motor in a cycle, both ways, at the most bytes each.
   virtual int messages_a_cycle() const noexcept { return 2; }
   virtual int most_node() const noexcept { return 127; }  ///< the largest node number
+  /// Protocol::off() leaves a drive that is off as it is, and makes it answer: a node may be asked that robot.yaml
+  /// doesn't have. False: nobody knows what the message does to a drive that nobody described.
+  virtual bool off_is_harmless() const noexcept { return false; }
 
   virtual LoopPlace loop() const noexcept { return LoopPlace::kDrive; }
   virtual bool tells_temperature() const noexcept { return true; }

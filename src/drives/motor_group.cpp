@@ -85,7 +85,7 @@ LinkedMotors<N> link(const model::RobotModel& robot, MotorGroup& bus,
     entries[i].finish();
   }
   try {
-    LinkedMotors<N> linked{.motors = motors, .linkage = RodLinkage<N>(axes, rods)};
+    LinkedMotors<N> linked{.motors = motors, .linkage = RodLinkage<N>(axes, rods), .joints = limits};
     linked.linkage.check_ranges(lower, upper);
     const auto needs = linked.linkage.needs(limits, gains);
     for (std::size_t i = 0; i < kN; ++i) {
@@ -138,6 +138,20 @@ void read_linkage(const model::RobotModel& robot, std::vector<MotorGroup>& group
   reader.finish();
 }
 
+template <int N>
+void read_linked(const LinkedMotors<N>& linked, Readings& joints) {
+  typename RodLinkage<N>::Readings cranks{};
+  bool whole = true;
+  for (std::size_t i = 0; i < cranks.size(); ++i) {
+    whole = whole && joints[linked.motors[i]].has_value();
+    cranks[i] = joints[linked.motors[i]].value_or(MotorReading{});
+  }
+  const auto found = whole ? linked.linkage.to_joints(cranks, RodLinkage<N>::Angles::Zero()) : std::nullopt;
+  for (std::size_t i = 0; i < cranks.size(); ++i) {
+    joints[linked.motors[i]] = found ? std::optional((*found)[i]) : std::nullopt;
+  }
+}
+
 bool linked(const MotorGroup& bus, std::size_t motor) {
   const auto has = [motor](const auto& linkage) {
     return std::ranges::find(linkage.motors, motor) != linkage.motors.end();
@@ -152,6 +166,16 @@ std::unique_ptr<Network> network_of(const MotorGroup& group) {
     if (auto network = motor.drive->network()) return network;
   }
   return nullptr;
+}
+
+Readings joint_readings(const MotorGroup& group, const Readings& motors) {
+  Readings joints = motors;
+  for (std::size_t m = 0; m < joints.size(); ++m) {
+    if (joints[m]) joints[m] = group.motors[m].transmission.to_joint(*joints[m]);
+  }
+  for (const auto& linked : group.four_bars) read_linked(linked, joints);
+  for (const auto& linked : group.parallel) read_linked(linked, joints);
+  return joints;
 }
 
 std::string name_of(const MotorGroup& group, const MotorSetup& motor) {

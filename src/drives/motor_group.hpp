@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,6 +33,7 @@ struct LinkedMotors {
   std::array<std::size_t, static_cast<std::size_t>(N)>
       motors{};  ///< in the group's motors; the i-th has the i-th joint's bus address
   RodLinkage<N> linkage;
+  std::array<MotorLimits, static_cast<std::size_t>(N)> joints{};  ///< the joints' limits
 };
 
 /// Motors that are reached the same way, and the linkages among them.
@@ -44,6 +46,12 @@ struct MotorGroup {
 
 /// Of the drives that have one; null: none has. Drives of different networks don't share a bus (can::load_drives()).
 std::unique_ptr<Network> network_of(const MotorGroup& group);
+
+/// (what each motor of a group says, as its drive has it; nullopt: nothing) => (the same at each motor's joint),
+/// through transmissions, cranks and rods. Nullopt where a motor of a linkage says nothing, or no joint angles belong
+/// to the cranks'. Not for the bus thread: RobotDrives keeps the last angles as a guess.
+using Readings = std::vector<std::optional<MotorReading>>;
+Readings joint_readings(const MotorGroup& group, const Readings& motors);
 
 /// "left_knee (can0, node 4)"
 std::string name_of(const MotorGroup& group, const MotorSetup& motor);

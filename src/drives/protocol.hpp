@@ -81,11 +81,21 @@ class Protocol {
   virtual std::uint16_t emergency() const noexcept { return 0; }
 };
 
+/// What this computer sends on a bus for all of its drives together.
+struct NetworkMessage {
+  std::uint32_t id = 0;
+  const char* who = "";   ///< "CANopen's SYNC"
+  int bytes = 0;          ///< at most
+  bool in_cycle = false;  ///< a bus cycle may have it
+};
+
 /// What a bus carries for all of its drives together, beside each motor's own messages. One a bus; no heap after
 /// construction, no lock.
 class Network {
  public:
   virtual ~Network() = default;
+  /// Every message that this computer sends for all of them, SYNC among them.
+  virtual std::span<const NetworkMessage> messages() const noexcept = 0;
   /// Asks every drive that is asked by it (Protocol::AskedBy::kSync).
   virtual Message sync() const noexcept = 0;
   /// This computer lives: its drives stop by themselves when they miss this for long. cycles: since the last call.

@@ -1,6 +1,5 @@
 #include "drives/robot_drives.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "model/constants.hpp"
@@ -79,31 +78,21 @@ void RobotDrives::read() noexcept {
   }
 }
 
-// (crank angles, speeds, torques) => (the joints'): q by Newton from the last sample, dq = J^-1 dtheta,
-// torque_q = J^T torque_theta.
+// (crank angles, speeds, torques) => (the joints'), from the last sample as guess.
 template <int N>
 void RobotDrives::read_joints(Group& group, Linked<N>& linked) noexcept {
-  typename RodLinkage<N>::Angles theta, dtheta, torque;
-  const auto motor = [&](int i) -> MotorReading& {
-    return group.motors[linked.setup->motors[static_cast<std::size_t>(i)]].joint;
-  };
-  for (int i = 0; i < N; ++i) {
-    theta[i] = motor(i).q_rad;
-    dtheta[i] = motor(i).dq_rad_s;
-    torque[i] = motor(i).torque_Nm;
-  }
-  const auto q = linked.setup->linkage.joint_angles(theta, linked.q_rad);
-  linked.solved = q.has_value();
-  if (!q) return;
-  const auto J = linked.setup->linkage.jacobian(theta, *q);
-  linked.q_rad = *q;
-  linked.theta_rad = theta;
-  linked.dq_rad_s = J.inverse() * dtheta;
-  const typename RodLinkage<N>::Angles joint_torque = J.transpose() * torque;
-  for (int i = 0; i < N; ++i) {
-    motor(i).q_rad = linked.q_rad[i];
-    motor(i).dq_rad_s = linked.dq_rad_s[i];
-    motor(i).torque_Nm = joint_torque[i];
+  const auto motor = [&](std::size_t i) -> MotorReading& { return group.motors[linked.setup->motors[i]].joint; };
+  typename RodLinkage<N>::Readings cranks{};
+  for (std::size_t i = 0; i < cranks.size(); ++i) cranks[i] = motor(i);
+  const auto joints = linked.setup->linkage.to_joints(cranks, linked.q_rad);
+  linked.solved = joints.has_value();
+  if (!joints) return;
+  for (std::size_t i = 0; i < cranks.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    linked.q_rad[at] = (*joints)[i].q_rad;
+    linked.dq_rad_s[at] = (*joints)[i].dq_rad_s;
+    linked.theta_rad[at] = cranks[i].q_rad;
+    motor(i) = (*joints)[i];
   }
 }
 

@@ -118,6 +118,30 @@ auto RodLinkage<N>::joint_angles(const Angles& theta_rad, const Angles& guess_ra
 }
 
 template <int N>
+auto RodLinkage<N>::to_joints(const Readings& motors, const Angles& guess_rad) const noexcept
+    -> std::optional<Readings> {
+  Angles theta, dtheta, torque;
+  for (int i = 0; i < N; ++i) {
+    const MotorReading& motor = motors[static_cast<std::size_t>(i)];
+    theta[i] = motor.q_rad;
+    dtheta[i] = motor.dq_rad_s;
+    torque[i] = motor.torque_Nm;
+  }
+  const std::optional<Angles> q = joint_angles(theta, guess_rad);
+  if (!q) return std::nullopt;
+  const Jacobian J = jacobian(theta, *q);
+  const Angles dq = J.inverse() * dtheta, joint_torque = J.transpose() * torque;
+  Readings joints = motors;
+  for (int i = 0; i < N; ++i) {
+    MotorReading& joint = joints[static_cast<std::size_t>(i)];
+    joint.q_rad = (*q)[i];
+    joint.dq_rad_s = dq[i];
+    joint.torque_Nm = joint_torque[i];
+  }
+  return joints;
+}
+
+template <int N>
 auto RodLinkage<N>::jacobian(const Angles& theta_rad, const Angles& q_rad) const noexcept -> Jacobian {
   Jacobian J;
   for (int i = 0; i < N; ++i) {

@@ -31,6 +31,7 @@ class RodLinkage {
   using Angles = Eigen::Matrix<double, N, 1>;
   using Jacobian = Eigen::Matrix<double, N, N>;
   using Commands = std::array<MotorCommand, kN>;
+  using Readings = std::array<MotorReading, kN>;
 
   /// The least sine of the angle between crank and rod, and the largest ratio of the Jacobian's singular values, that a
   /// linkage may have within the joints' ranges: closer to a singularity torques grow beyond any motor.
@@ -43,6 +44,10 @@ class RodLinkage {
   std::optional<Angles> motor_angles(const Angles& q_rad) const noexcept;
   /// (theta) => (q), Newton's method from a guess near the solution. Nullopt: no convergence.
   std::optional<Angles> joint_angles(const Angles& theta_rad, const Angles& guess_rad) const noexcept;
+
+  /// What the cranks' motors say, at the joints: dq = J^-1 dtheta, torque_q = J^T torque_theta; the rest is each
+  /// motor's own. Nullopt: no joint angles belong to the cranks'.
+  std::optional<Readings> to_joints(const Readings& motors, const Angles& guess_rad) const noexcept;
 
   /// J = d theta / d q at a pair of angles that belong together:
   ///   J_ij = ((C - P) . dP/dq_j) / ((C - P) . dC/dtheta_i).

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "can/one_motor.hpp"
 #include "drive_protocols/canopen_drive.hpp"
 #include "ethercat/coe_dictionary.hpp"
 #include "imu/at_rest.hpp"

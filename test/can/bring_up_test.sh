@@ -49,6 +49,7 @@ robot right
 step "nobody is powered" 1 'waist_pitch \(can0, node 1\) does not answer' 'right_hip_yaw \(can1, node 1\) does not answer' -- bus scan
 begin right
 step "scan" 0 '^can0: 4 motors, 13 frames a cycle, at most [0-9]+ % of the bus' '^can1: 7 motors and the IMU, 17 frames a cycle' \
+  '^can0: 122 other nodes were asked, and CANopen.s up to 127; 0 of them answered' '^can1: 117 other nodes were asked; 0 of them answered' \
   'waist_pitch +can0 +1 .* deg .* Nm +- degC  no fault' 'left_knee +can0 +3 .* Nm +35 degC  no fault' 'left_ankle_pitch +can0 +4 .*no fault' \
   'right_knee +can1 +4 .*no fault' -- bus scan
 step "watch" 0 'left_hip_pitch +can0 +2 .*no fault' -- bus watch --for 0.5
@@ -84,12 +85,21 @@ end
 # What is written down wrong, or wired wrong.
 robot torque -e '/^  torque:/s/rated_torque_Nm: 20/rated_torque_Nm: 25/'
 robot reply -e '/^  beside:/s/reply_id: 126/reply_id: 125/'
-robot nodes -e '/^  left_knee:/s/node: 3/node: 9/'
+robot nodes -e '/^  left_knee:/s/node: 3/node: 9/' -e '/^  right_knee:/s/node: 4/node: 9/'
+rods='linkages: [{joints: [right_ankle_pitch], motors: [{crank_centre_m: [0, 0, 0.3], axis: [0, 1, 0], crank_end_m: [0.05, 0, 0.3], rod_end_m: [0.05, 0, 0]}]}]'
+robot rods -e "\$a $rods"
 begin right
 described=torque step "another drive" 1 'left_knee \(can0, node 3\): object 0x6076 \(rated torque\) is 20 Nm; expected rated_torque_Nm 25' -- bus scan
 described=reply step "another reply identifier" 1 'left_ankle_pitch \(can0, node 4\) does not answer' \
   "can0: heard identifier 0x7E with 8 bytes, .*an answer of left_ankle_pitch with another identifier; robot.yaml's .reply_id. should be 0x7E" -- bus scan
-described=nodes step "another node" 1 'left_knee \(can0, node 9\) does not answer' 'can0: somebody answers as node 3' -- bus scan
+described=nodes step "another node" 1 'left_knee \(can0, node 9\) does not answer' \
+  'can0: somebody answers as node 3 \(CANopen device type 0x00020192: profile 402\)' 'right_knee \(can1, node 9\) does not answer' \
+  'can1: somebody answers as node 4; ' -- bus scan
+end
+begin rods
+described=rods step "a linkage" 0 'right_ankle_pitch +can1 +5 .*no fault  \(its crank\)' 'right_ankle_pitch +can1 +joint +-?[0-9.]+ deg' -- bus scan
+described=rods step "wiggle through a linkage" '0|3' '^right_ankle_pitch moves there and back, its linkage' 'right_ankle_pitch: asked 3.00 deg, moved [1-4]' -- \
+  bus wiggle right_ankle_pitch --by 3
 end
 [ $failed = 0 ] && echo "the bring-up went as the page says"
 exit $failed

@@ -505,7 +505,8 @@ TEST_F(CanopenDrives, TheRollCallFindsDrivesStrangersAndDifferences) {
   fewer.motors.erase(fewer.motors.begin() + 1);
   EXPECT_THAT(problems(fewer, ask_bus(fewer, *host_[kLeg], wait_, {})),
               testing::ElementsAre("left_hip_pitch (can0a, node 1) reports under-voltage; expected no fault",
-                                   "can0a: somebody answers as node 2; expected only the nodes of robot.yaml"));
+                                   "can0a: somebody answers as node 2 (CANopen device type 0x00020192: profile 402); "
+                                   "expected only the nodes of robot.yaml"));
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 
 #include <poll.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "can/cia402_emulator.hpp"
@@ -80,6 +82,10 @@ class EmulatedDrives {
         command.tau_ff[index] = joint.torque_Nm;
       }
     }
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
+      for (const auto& linked : setup_.buses[b].four_bars) pull_rods(b, linked, command);
+      for (const auto& linked : setup_.buses[b].parallel) pull_rods(b, linked, command);
+    }
   }
 
   void feel(const model::RobotState& state) noexcept {
@@ -90,6 +96,10 @@ class EmulatedDrives {
         drive->feel(drive->setup().transmission.to_motor(
             drives::MotorReading{.q_rad = state.q[index], .dq_rad_s = state.dq[index], .torque_Nm = state.tau[index]}));
       }
+    }
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
+      for (const auto& linked : setup_.buses[b].four_bars) feel_rods(b, linked);
+      for (const auto& linked : setup_.buses[b].parallel) feel_rods(b, linked);
     }
   }
 
@@ -139,6 +149,73 @@ class EmulatedDrives {
       links_[bus]->send(frames);
     } else {
       for (const drives::Message& frame : frames) held_.push_back({ticks_ + late_cycles, bus, frame});
+    }
+  }
+
+  /// The true joints of a linkage, their cranks, and how the ones turn the others.
+  template <int N>
+  struct Posture {
+    using Angles = typename drives::RodLinkage<N>::Angles;
+    Angles q_rad, dq_rad_s, torque_Nm, crank_rad;
+    typename drives::RodLinkage<N>::Jacobian J;
+  };
+  /// Nullopt: a rod doesn't reach.
+  template <int N>
+  std::optional<Posture<N>> posture(std::size_t bus, const drives::LinkedMotors<N>& linked) const noexcept {
+    Posture<N> at;
+    for (std::size_t i = 0; i < linked.motors.size(); ++i) {
+      const int joint = setup_.buses[bus].motors[linked.motors[i]].index;
+      const auto row = static_cast<Eigen::Index>(i);
+      at.q_rad[row] = sensed_.q[joint];
+      at.dq_rad_s[row] = sensed_.dq[joint];
+      at.torque_Nm[row] = sensed_.tau[joint];
+    }
+    const auto cranks = linked.linkage.motor_angles(at.q_rad);
+    if (!cranks) return std::nullopt;
+    at.crank_rad = *cranks;
+    at.J = linked.linkage.jacobian(*cranks, at.q_rad);
+    return at;
+  }
+  template <int N>
+  void feel_rods(std::size_t bus, const drives::LinkedMotors<N>& linked) noexcept {
+    const auto at = posture(bus, linked);
+    if (!at) return;
+    const typename Posture<N>::Angles rates = at->J * at->dq_rad_s,
+                                      torques = at->J.transpose().inverse() * at->torque_Nm;
+    for (std::size_t i = 0; i < linked.motors.size(); ++i) {
+      DriveEmulator& drive = *buses_[bus][linked.motors[i]];
+      const auto row = static_cast<Eigen::Index>(i);
+      drive.feel(drive.setup().transmission.to_motor(
+          drives::MotorReading{.q_rad = at->crank_rad[row], .dq_rad_s = rates[row], .torque_Nm = torques[row]}));
+    }
+  }
+  /// (commands of cranks) => those of joints: torque = J^T torque_crank now, and the diagonals of J^T K J from there.
+  template <int N>
+  void pull_rods(std::size_t bus, const drives::LinkedMotors<N>& linked, model::JointCommand& command) const noexcept {
+    const auto at = posture(bus, linked);
+    if (!at) return;
+    typename Posture<N>::Angles torques, kp, kd;
+    const typename Posture<N>::Angles rates = at->J * at->dq_rad_s;
+    for (std::size_t i = 0; i < linked.motors.size(); ++i) {
+      const DriveEmulator& drive = *buses_[bus][linked.motors[i]];
+      const drives::MotorCommand crank = drive.setup().transmission.to_joint(drive.command());
+      const auto row = static_cast<Eigen::Index>(i);
+      kp[row] = crank.kp_Nm_per_rad;
+      kd[row] = crank.kd_Nm_s_per_rad;
+      torques[row] =
+          kp[row] * (crank.q_rad - at->crank_rad[row]) + kd[row] * (crank.dq_rad_s - rates[row]) + crank.torque_Nm;
+    }
+    const typename Posture<N>::Angles pulled = at->J.transpose() * torques;
+    const typename drives::RodLinkage<N>::Jacobian stiffness = at->J.transpose() * kp.asDiagonal() * at->J,
+                                                   damping = at->J.transpose() * kd.asDiagonal() * at->J;
+    for (std::size_t i = 0; i < linked.motors.size(); ++i) {
+      const int joint = setup_.buses[bus].motors[linked.motors[i]].index;
+      const auto row = static_cast<Eigen::Index>(i);
+      command.q[joint] = at->q_rad[row];
+      command.dq[joint] = at->dq_rad_s[row];
+      command.kp[joint] = stiffness(row, row);
+      command.kd[joint] = damping(row, row);
+      command.tau_ff[joint] = pulled[row];
     }
   }
 

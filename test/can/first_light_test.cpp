@@ -13,39 +13,26 @@
 #include <stdexcept>
 #include <string>
 
-#include "can/emulated_robot.hpp"
-#include "can/memory_link.hpp"
+#include "can/hanging_stage.hpp"
 #include "can/mixed_drives.hpp"
 #include "drive_protocols/mit_drive.hpp"
 #include "model/hanging_load.hpp"
 #include "model/robots.hpp"
-#include "sil/simulated_robot.hpp"
 
 namespace pmg::can {
 namespace {
 
-/// Z1 on the gantry behind emulated drives. direction: as robot.yaml has it of the left knee, against a robot whose
-/// motor turns the other way round.
-class FirstLight : public testing::Test {
+/// The left knee's drive is a CiA 402 one in this mode, or as robot.yaml has it.
+can::DriveSetup with_knee(std::optional<drives::Cia402Mode> mode) {
+  can::DriveSetup setup = can::load_drives(test::z1());
+  drives::MotorSetup& motor = setup.buses[0].motors[3];
+  if (mode) motor.drive = drives::cia402_drive(test::cia402_for(motor, test::z1(), *mode));
+  return setup;
+}
+
+class FirstLight : public testing::Test, protected test::HangingStage {
  protected:
-  explicit FirstLight(std::optional<drives::Cia402Mode> mode = {})
-      : setup_(can::load_drives(test::z1())), world_(test::z1(), sil::world_with_noise(1, true)) {
-    drives::MotorSetup& motor = setup_.buses[0].motors[3];
-    if (mode) motor.drive = drives::cia402_drive(test::cia402_for(motor, test::z1(), *mode));
-    auto [host, far] = test::link_pairs<test::MemoryLink>(setup_.buses.size());
-    host_ = std::move(host);
-    drives_.emplace(setup_, std::move(far));
-    acting_.q = acting_.dq = acting_.kp = acting_.kd = acting_.tau_ff =
-        JointVector::Zero(test::z1().joint_index.size());
-    for (int k = 0; k < 500; ++k) tick();  // limp, it comes to rest
-  }
-  void tick() {
-    world_.read(sensed_);
-    drives_->feel(sensed_);
-    drives_->serve();
-    drives_->tick(acting_);
-    world_.step(acting_);
-  }
+  explicit FirstLight(std::optional<drives::Cia402Mode> mode = {}) : HangingStage(with_knee(mode)) {}
   Wiggle wiggle(const drives::MotorSetup& motor, const WiggleOptions& options = {}) {
     return can::wiggle(test::z1(), sensed_.q, setup_.buses[0], motor, *host_[0], options, [this] { tick(); }, {});
   }
@@ -125,13 +112,7 @@ class FirstLight : public testing::Test {
   }
   const drives::MotorSetup& knee() const { return setup_.buses[0].motors[3]; }
 
-  can::DriveSetup setup_;
-  sim::World world_;
   std::set<std::string> confirmed_;
-  test::Links host_;
-  std::optional<test::EmulatedDrives> drives_;
-  model::JointCommand acting_;
-  model::RobotState sensed_;
 };
 
 TEST_F(FirstLight, AKneeMovesAndItsLoadTellsTheDirection) {

@@ -16,8 +16,8 @@
 #include "can/bus_ids.hpp"
 #include "can/bus_load.hpp"
 #include "can/can_hal.hpp"
+#include "can/few_motors.hpp"
 #include "can/memory_link.hpp"
-#include "can/one_motor.hpp"
 #include "can/roll_call.hpp"
 #include "files/config_error.hpp"
 #include "model/temporary_copy.hpp"
@@ -159,11 +159,18 @@ TEST_F(TwinProtocol, RollCallCountsItOnceAndFindsASecondOneAStrangerAndAFault) {
                                            "can0: somebody answers as node 9; expected only the nodes of robot.yaml"));
 }
 
+// Nobody knows what its message would do to a drive that robot.yaml doesn't have.
+TEST_F(TwinProtocol, NodesThatNobodyDescribedGetNoMessageThatMayDisturbThem) {
+  const Strangers strangers = ask_strangers(setup_.buses[0], *host_, [] {}, {});
+  EXPECT_EQ(strangers.why_not, "left_knee's protocol has no message that is known to be harmless to any drive");
+  EXPECT_EQ(host_->counts().sent, 0u);
+}
+
 TEST_F(TwinProtocol, OneMotorAloneIsSwitchedOnMovedAndSwitchedOff) {
   const std::function<void()> tick = [this] { drive_->answer(); };
   {
-    OneMotor one(setup_.buses[0], setup_.buses[0].motors[0], *host_, tick);
-    EXPECT_NEAR(one.joint().q_rad, 0.3, 1e-6);
+    FewMotors one(setup_.buses[0], setup_.buses[0].motors[0], *host_, tick);
+    EXPECT_NEAR(one.reading().q_rad, 0.3, 1e-6);
     EXPECT_TRUE(one.switch_on());
     EXPECT_EQ(drive_->keys, test::Twin::kKeys);
     one.exchange({.q_rad = 0.4, .kp_Nm_per_rad = 100.0, .kd_Nm_s_per_rad = 5.0});

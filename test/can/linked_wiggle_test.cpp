@@ -1,0 +1,261 @@
+// pmg_bus wiggle on motors that turn their joints together: which motor turns which crank, and which way.
+#include "can/linked_wiggle.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "can/hanging_stage.hpp"
+#include "can/linked_drives.hpp"
+#include "can/roll_call.hpp"
+
+namespace pmg::can {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using Tells = Verdict::Tells;
+
+/// How somebody connected the motors, against robot.yaml.
+struct Connected {
+  bool swapped = false;
+  std::array<bool, 2> inverted{};
+};
+
+std::string words_of(const Connected& truth, const std::string& first, const std::string& second) {
+  std::string words = truth.swapped ? fmt::format("the motors of {} and {} are swapped", first, second) : "";
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!truth.inverted[i]) continue;
+    words +=
+        (words.empty() ? "" : ", and ") + fmt::format("`direction` of {}'s motor is wrong", i == 0 ? first : second);
+  }
+  return words;
+}
+
+std::vector<Connected> all_ways_to_connect() {
+  std::vector<Connected> all;
+  for (const bool swapped : {false, true}) {
+    for (const bool first : {false, true}) {
+      for (const bool second : {false, true}) all.push_back({swapped, {first, second}});
+    }
+  }
+  return all;
+}
+
+can::DriveSetup linked(const std::string& first, const std::string& second, double below_m) {
+  can::DriveSetup setup = can::load_drives(test::z1());
+  test::link_pair(setup, test::z1(), first, second, below_m);
+  return setup;
+}
+const can::BusSetup& bus_of(const can::DriveSetup& setup) {
+  return *std::ranges::find_if(setup.buses, [](const can::BusSetup& bus) { return !bus.parallel.empty(); });
+}
+const drives::MotorSetup& first_motor(const can::BusSetup& bus) { return bus.motors[bus.parallel[0].motors[0]]; }
+
+/// What a robot without friction shows whose motors are connected so, computed from its model. base: it has an IMU.
+std::vector<LinkedWay> shown(const can::BusSetup& bus, const Connected& truth, const model::Hanging& hanging,
+                             bool base) {
+  using Angles = drives::RodLinkage<2>::Angles;
+  const drives::LinkedMotors<2>& linked = bus.parallel[0];
+  const auto motor = [&](std::size_t i) -> const drives::MotorSetup& { return bus.motors[linked.motors[i]]; };
+  const auto turned = [&](const Angles& motors) {  // (motors as robot.yaml has them) <=> (cranks)
+    Angles cranks;
+    for (Eigen::Index i = 0; i < 2; ++i)
+      cranks[truth.swapped ? 1 - i : i] = (truth.inverted[static_cast<std::size_t>(i)] ? -1.0 : 1.0) * motors[i];
+    return cranks;
+  };
+  const auto told = [&](const Angles& cranks) {
+    Angles motors;
+    for (Eigen::Index i = 0; i < 2; ++i)
+      motors[i] = (truth.inverted[static_cast<std::size_t>(i)] ? -1.0 : 1.0) * cranks[truth.swapped ? 1 - i : i];
+    return motors;
+  };
+  const auto end = [&](const Angles& asked) {
+    const Angles motors = *linked.linkage.motor_angles(asked), cranks = turned(motors);
+    const Angles q = *linked.linkage.joint_angles(cranks, Angles::Zero());
+    JointVector whole = test::z1().q_stand();
+    for (std::size_t i = 0; i < 2; ++i) whole[motor(i).index] = q[static_cast<Eigen::Index>(i)];
+    CrankEnd shown{.crank_rad = {motors.begin(), motors.end()}};
+    model::Hanging now = hanging;
+    if (base) {
+      const Eigen::Quaterniond base_WB = link_in_base(test::z1(), hanging.held_link, whole).conjugate();
+      now.down_B = base_WB.conjugate() * hanging.down_B;  // in the held link's axes
+      shown.plumb = Plumb::Sample{.down_B = now.down_B, .base_WB = base_WB};
+    }
+    Angles joints;
+    for (std::size_t i = 0; i < 2; ++i)
+      joints[static_cast<Eigen::Index>(i)] =
+          model::gravity_load(test::z1(), motor(i).joint, whole, now).holding_Nm(q[static_cast<Eigen::Index>(i)]);
+    const Angles held = told(linked.linkage.jacobian(cranks, q).transpose().inverse() * joints);
+    shown.torque_Nm = {held.begin(), held.end()};
+    return shown;
+  };
+  std::vector<LinkedWay> ways;
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    Angles up = Angles::Zero(), low = Angles::Zero();
+    up[j] = 0.15;
+    low[j] = -0.15;
+    ways.push_back({.joint = motor(static_cast<std::size_t>(j)).joint,
+                    .asked_rad = 0.15,
+                    .moved_rad = 0.15,
+                    .asked_down_rad = 0.15,
+                    .moved_down_rad = 0.15,
+                    .begin = end(Angles::Zero()),
+                    .highest = end(up),
+                    .lowest = end(low),
+                    .back = end(Angles::Zero())});
+  }
+  return ways;
+}
+
+TEST(LinkedVerdict, EveryWayToConnectAWaistsMotorsIsNamed) {
+  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::BusSetup& bus = bus_of(setup);
+  const model::Hanging hanging{.held_link = test::z1().torso_link};
+  for (const Connected& truth : all_ways_to_connect()) {
+    const std::string words = words_of(truth, "waist_roll", "waist_pitch");
+    const Verdict verdict = can::verdict(test::z1(), test::z1().q_stand(), bus, first_motor(bus),
+                                         shown(bus, truth, hanging, true), hanging);
+    EXPECT_EQ(verdict.tells, words.empty() ? Tells::kAgrees : Tells::kWrong) << words << ": " << verdict.text;
+    EXPECT_EQ(verdict.text,
+              words.empty() ? "motors, rods and directions agree with the model" : "it moves as if " + words);
+  }
+}
+
+// Without an IMU, a robot that hangs obliquely: what the load can't tell is left to the eye, and nothing false is said.
+TEST(LinkedVerdict, OfAWaistWithoutAnImuNothingFalseIsSaid) {
+  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::BusSetup& bus = bus_of(setup);
+  const model::Hanging hanging{.down_B = Eigen::Vector3d(0.2, 0.15, -1.0).normalized(),
+                               .held_link = test::z1().torso_link};
+  for (const Connected& truth : all_ways_to_connect()) {
+    const std::string words = words_of(truth, "waist_roll", "waist_pitch");
+    const Verdict verdict = can::verdict(test::z1(), test::z1().q_stand(), bus, first_motor(bus),
+                                         shown(bus, truth, hanging, false), hanging);
+    if (words.empty()) {
+      EXPECT_NE(verdict.tells, Tells::kWrong) << verdict.text;
+    } else {
+      EXPECT_NE(verdict.tells, Tells::kAgrees) << words;
+      EXPECT_THAT(verdict.look, testing::Contains(testing::StartsWith("if " + words + ": ")));
+    }
+  }
+}
+
+// A foot weighs less than its joints' friction: the eye gets what each arrangement would look like.
+TEST(LinkedVerdict, OfAnAnkleTheEyeIsToldWhatSwappedAndInvertedMotorsWouldLookLike) {
+  const can::DriveSetup setup = linked("left_ankle_pitch", "left_ankle_roll", -0.25);
+  const can::BusSetup& bus = bus_of(setup);
+  const Verdict verdict =
+      can::verdict(test::z1(), test::z1().q_stand(), bus, first_motor(bus), shown(bus, {}, {}, false));
+  EXPECT_EQ(verdict.tells, Tells::kNotAll) << verdict.text;
+  ASSERT_THAT(verdict.look, SizeIs(8));
+  EXPECT_THAT(verdict.look.front(),
+              testing::StartsWith("as robot.yaml has it: for left_ankle_pitch's + the limb goes "));
+  std::set<std::string> seen;
+  for (const std::string& line : verdict.look) seen.insert(line.substr(line.find(": ")));
+  EXPECT_THAT(seen, SizeIs(8)) << "no two of them look alike";
+  EXPECT_THAT(
+      verdict.look,
+      testing::Contains(testing::StartsWith("if the motors of left_ankle_pitch and left_ankle_roll are swapped: ")));
+}
+
+TEST(LinkedVerdict, AGearThatIsWrongIsNoArrangementAndAShortWayIsSaid) {
+  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::BusSetup& bus = bus_of(setup);
+  const model::Hanging hanging{.down_B = Eigen::Vector3d(0.2, 0.15, -1.0).normalized(),
+                               .held_link = test::z1().torso_link};
+  std::vector<LinkedWay> ways = shown(bus, {}, hanging, false);
+  for (LinkedWay& way : ways) {
+    for (CrankEnd* end : {&way.highest, &way.lowest}) {
+      for (double& torque_Nm : end->torque_Nm) torque_Nm *= 4.0;
+    }
+  }
+  const auto said = [&] {
+    return can::verdict(test::z1(), test::z1().q_stand(), bus, first_motor(bus), ways, hanging);
+  };
+  EXPECT_EQ(said().tells, Tells::kWrong);
+  EXPECT_THAT(said().text, HasSubstr("no arrangement of these motors explains what they held: look at `gear`"));
+  ways[1].moved_rad = 0.05;
+  EXPECT_THAT(said().text, HasSubstr("waist_pitch moved less than half the way"));
+}
+
+TEST(LinkedRollCall, CranksThatNoPostureHasAndPosturesBeyondARangeAreNamed) {
+  const can::DriveSetup setup = linked("left_ankle_pitch", "left_ankle_roll", -0.25);
+  const can::BusSetup& bus = bus_of(setup);
+  const drives::LinkedMotors<2>& ankle = bus.parallel[0];
+  const auto said = [&](double first_rad, double second_rad) {
+    std::vector<Answer> answers;
+    for (std::size_t m = 0; m < bus.motors.size(); ++m) {
+      const drives::MotorLimits& limits = bus.motors[m].limits;
+      double q_rad = 0.5 * (limits.q_lower_rad + limits.q_upper_rad);
+      if (m == ankle.motors[0]) q_rad = first_rad;
+      if (m == ankle.motors[1]) q_rad = second_rad;
+      answers.push_back({.node = bus.motors[m].node, .count = 1, .reading = {.q_rad = q_rad}});
+    }
+    return problems(bus, answers);
+  };
+  const auto cranks = *ankle.linkage.motor_angles({-0.7, 0.2});  // toes up, which its range has; not toes down
+  EXPECT_THAT(said(cranks[0], cranks[1]), IsEmpty());
+  const auto toes_down = *ankle.linkage.motor_angles({0.95, 0.0});
+  EXPECT_THAT(said(toes_down[0], toes_down[1]), IsEmpty()) << "0.2 rad more than its range: a limp joint on its stop";
+  EXPECT_THAT(said(1.4, 1.4), testing::Contains(HasSubstr("left_ankle_pitch and left_ankle_roll (can0): ")));
+  EXPECT_THAT(said(0.9, -1.0),
+              testing::Contains(testing::AllOf(HasSubstr("left_ankle_pitch and left_ankle_roll (can0): "),
+                                               HasSubstr("expected angles within their ranges"))));
+}
+
+/// Z1 in its gantry whose waist has a linkage, connected so.
+class LinkedLight : public testing::TestWithParam<Connected>, protected test::HangingStage {
+ protected:
+  LinkedLight() : HangingStage(connected(GetParam())), described_(linked("waist_roll", "waist_pitch", 0.12)) {}
+  static can::DriveSetup connected(const Connected& truth) {
+    can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+    const auto bus = std::ranges::find_if(setup.buses, [](const can::BusSetup& one) { return !one.parallel.empty(); });
+    test::connect_otherwise(*bus, test::z1(), truth.swapped, truth.inverted);
+    return setup;
+  }
+  Verdict wiggled() {
+    const can::BusSetup& bus = bus_of(described_);
+    const auto at = static_cast<std::size_t>(&bus - described_.buses.data());
+    const auto with_imu =
+        static_cast<std::size_t>(std::ranges::find(setup_.buses, true, &can::BusSetup::imu) - setup_.buses.begin());
+    Plumb plumb(test::z1(), bus.imu ? nullptr : host_[with_imu].get());
+    const model::Hanging hanging{.held_link = test::z1().torso_link};
+    const auto ways = wiggle_linked(
+        test::z1(), sensed_.q, bus, first_motor(bus), *host_[at], {.by_rad = 0.12, .gain_share = 1.0},
+        [this] { tick(); }, {}, hanging, &plumb);
+    tick();  // the last frame arrives
+    for (const std::size_t m : bus.parallel[0].motors) EXPECT_FALSE(drives_->drive(at, m).enabled());
+    for (const LinkedWay& way : ways) EXPECT_NEAR(way.moved_rad, way.asked_rad, 0.3 * way.asked_rad) << way.joint;
+    return can::verdict(test::z1(), sensed_.q, bus, first_motor(bus), ways, hanging);
+  }
+  can::DriveSetup described_;
+};
+
+TEST_P(LinkedLight, TheWaistsMotorsMoveTogetherAndHowTheyAreConnectedIsNamed) {
+  const Verdict verdict = wiggled();
+  const std::string words = words_of(GetParam(), "waist_roll", "waist_pitch");
+  EXPECT_EQ(verdict.text,
+            words.empty() ? "motors, rods and directions agree with the model" : "it moves as if " + words);
+  for (const std::string& line : verdict.look) fmt::print("{}\n", line);
+}
+
+INSTANTIATE_TEST_SUITE_P(AsDescribed, LinkedLight, testing::Values(Connected{}));
+INSTANTIATE_TEST_SUITE_P(Swapped, LinkedLight, testing::Values(Connected{.swapped = true}));
+INSTANTIATE_TEST_SUITE_P(EveryOther, LinkedLight,
+                         testing::Values(Connected{.inverted = {true, false}}, Connected{.inverted = {false, true}},
+                                         Connected{.inverted = {true, true}},
+                                         Connected{.swapped = true, .inverted = {true, false}},
+                                         Connected{.swapped = true, .inverted = {false, true}},
+                                         Connected{.swapped = true, .inverted = {true, true}}));
+
+}  // namespace
+}  // namespace pmg::can
