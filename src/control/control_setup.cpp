@@ -160,6 +160,9 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/foot_load/found_s", tick.foot_load.found_s);
   visit("/foot_load/held_share", tick.foot_load.held_share);
   visit("/foot_load/filter_s", tick.foot_load.filter_s);
+  visit("/foot_load/change_per_sqrt_s", tick.foot_load.change_per_sqrt_s);
+  visit("/foot_load/wrong_inertia_share", tick.foot_load.wrong_inertia_share);
+  visit("/foot_load/acceleration_s", tick.foot_load.acceleration_s);
   visit("/foot_load/blind_share", tick.foot_load.blind_share);
   visit("/change_over/speed_rad_s", tick.change_over.speed_rad_s);
   visit("/change_over/shortest_s", tick.change_over.shortest_s);

@@ -18,8 +18,13 @@ int ticks(double time_s, double dt_s) { return std::max(1, static_cast<int>(std:
 const FootLoadOptions& checked(const FootLoadOptions& options) {
   if (!(options.lost_share < options.found_share))
     throw std::invalid_argument("FootLoadWatch: lost_share; expected less than found_share");
-  if (!(options.lost_s > 0.0 && options.found_s > 0.0 && options.filter_s > 0.0 && options.blind_share > 0.0))
-    throw std::invalid_argument("FootLoadWatch: times and blind_share; expected more than 0");
+  for (const double value : {options.lost_s, options.found_s, options.filter_s, options.change_per_sqrt_s,
+                             options.acceleration_s, options.blind_share}) {
+    if (!(value > 0.0))
+      throw std::invalid_argument("FootLoadWatch: times, change_per_sqrt_s and blind_share; expected more than 0");
+  }
+  if (!(options.wrong_inertia_share >= 0.0))
+    throw std::invalid_argument("FootLoadWatch: wrong_inertia_share; expected 0 or more");
   return options;
 }
 
@@ -31,9 +36,16 @@ FootLoadWatch::FootLoadWatch(const model::RobotModel& robot, const FootLoadOptio
       R_LI_(robot.imu.T_LI.linear()),
       options_(checked(options)),
       weight_N_(robot.total_mass_kg * kGravity_m_s2),
+      dt_s_(dt_s),
       filter_gain_(1.0 - std::exp(-dt_s / options.filter_s)),
+      acceleration_gain_(1.0 - std::exp(-dt_s / options.acceleration_s)),
+      change_variance_(options.change_per_sqrt_s * options.change_per_sqrt_s * dt_s),
       lost_ticks_needed_(ticks(options.lost_s, dt_s)),
-      found_ticks_needed_(ticks(options.found_s, dt_s)) {}
+      found_ticks_needed_(ticks(options.found_s, dt_s)),
+      dq_before_(JointVector::Zero(robot.joint_index.size())),
+      ddq_(dq_before_),
+      acceleration_sq_(dq_before_),
+      uncertain_rad_s2_(dq_before_) {}
 
 void FootLoadWatch::start() noexcept {
   footing_ = Footing::kUnknown;
@@ -48,7 +60,9 @@ const PerFoot<double>& FootLoadWatch::share() const noexcept {
 }
 
 void FootLoadWatch::update(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
-  if (!can_be_judged(state, in_force) || !measure(state, in_force)) return;
+  if (!can_be_judged(state, in_force)) return;
+  measure(state, in_force);
+  if (std::sqrt(sum(variance_)) > options_.blind_share) return;
   const double carried = sum(share());
   lost_ticks_ = carried < options_.lost_share && held_ > options_.held_share ? lost_ticks_ + 1 : 0;
   found_ticks_ = carried > options_.found_share ? found_ticks_ + 1 : 0;
@@ -60,28 +74,47 @@ bool FootLoadWatch::can_be_judged(const model::RobotState& state, const model::J
   const Eigen::Index n = in_force.q.size();
   return state.q.size() == n && state.dq.size() == n && state.tau.size() == n && state.q.allFinite() &&
          state.dq.allFinite() && state.tau.allFinite() && state.acceleration_m_s2.allFinite() &&
-         in_force.q.allFinite() && std::abs(state.orientation_WI.norm() - 1.0) < 0.1;  // false of NaN
+         state.gyro_rad_s.allFinite() && in_force.q.allFinite() &&
+         std::abs(state.orientation_WI.norm() - 1.0) < 0.1;  // false of NaN
 }
 
-bool FootLoadWatch::measure(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
-  base_to_imu_link_.compute(state.q);
-  const Eigen::Vector3d gravity_I = state.orientation_WI.conjugate() * -Eigen::Vector3d::UnitZ();
-  loads_.set_posture(state.q, (base_to_imu_link_.R() * (R_LI_ * gravity_I)).normalized());
-  for (const Foot foot : {kLeft, kRight}) {
-    if (!(loads_.friction_N(foot) <= options_.blind_share * weight_N_)) return false;
+void FootLoadWatch::measure(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
+  if (!begun_) {
+    dq_before_ = state.dq;
+    acceleration_sq_.setZero();
+    variance_ = {1.0, 1.0};
   }
+  ddq_ = (state.dq - dq_before_) / dt_s_;
+  dq_before_ = state.dq;
+  acceleration_sq_ += acceleration_gain_ * (ddq_.cwiseAbs2() - acceleration_sq_);
+  uncertain_rad_s2_ = options_.wrong_inertia_share * acceleration_sq_.cwiseSqrt();
+
+  base_to_imu_link_.compute(state.q);
+  const Eigen::Matrix3d R_BI = base_to_imu_link_.R() * R_LI_;
+  const Eigen::Vector3d gravity_I = state.orientation_WI.conjugate() * -Eigen::Vector3d::UnitZ();
+  loads_.set_motion({.q = state.q,
+                     .dq = state.dq,
+                     .ddq = ddq_,
+                     .gravity_B = (R_BI * gravity_I).normalized(),
+                     .specific_force_B = R_BI * state.acceleration_m_s2,
+                     .omega_B = R_BI * state.gyro_rad_s});
   const JointVector asked_Nm = in_force.kp.cwiseProduct(in_force.q - state.q) +
                                in_force.kd.cwiseProduct(in_force.dq - state.dq) + in_force.tau_ff;
   const PerFoot<model::SoleLoad> measured = loads_.of(state.tau), asked = loads_.of(asked_Nm);
   const double gain = begun_ ? filter_gain_ : 1.0;
-  for (const Foot foot : {kLeft, kRight}) {
-    measured_[foot] += gain * (measured[foot].vertical_N / weight_N_ - measured_[foot]);
-    asked_[foot] += gain * (asked[foot].vertical_N / weight_N_ - asked_[foot]);
+  for (const Foot foot :
+       {kLeft, kRight}) {  // a Kalman filter of one state, whose gain is at most the low-pass filter's
+    const double error = loads_.error_N(foot, uncertain_rad_s2_) / weight_N_;
+    variance_[foot] = std::min(1.0, variance_[foot] + change_variance_);
+    const double weight =
+        std::min(gain, variance_[foot] / (variance_[foot] + error * error));  // 0 of an infinite error
+    variance_[foot] *= 1.0 - weight;
+    measured_[foot] += weight * (measured[foot].vertical_N / weight_N_ - measured_[foot]);
+    asked_[foot] += weight * (asked[foot].vertical_N / weight_N_ - asked_[foot]);
   }
   const double up_m_s2 = -gravity_I.dot(state.acceleration_m_s2);
   held_ += gain * (up_m_s2 / kGravity_m_s2 - held_);
   begun_ = true;
-  return true;
 }
 
 }  // namespace pmg::faults

@@ -23,10 +23,16 @@ struct FootLoadOptions {
   /// Upward specific force at the IMU, in g. Above it something holds the robot; below it the robot flies. Some pushes
   /// of 50 N s that Z1 survives throw it into the air for 0.15 s.
   double held_share = 0.5;
-  double filter_s = 0.02;  ///< time constant of the low-pass filter of the loads and of the specific force
-  /// A posture is not judged when dry friction may falsify a foot's load by more than this share. Example: a straight
-  /// knee bears weight without torque.
-  double blind_share = 0.25;
+  double filter_s =
+      0.02;  ///< time constant of the low-pass filter of the specific force, and the shortest of the loads
+  /// Sudden changes of a foot's load that the filter follows: standard deviation of the change within 1 s [share]. A
+  /// load whose error is large beside it is filtered the longer.
+  double change_per_sqrt_s = 0.5;
+  double wrong_inertia_share = 0.6;  ///< of the inertia torques of joints that accelerate: how much may be wrong
+  double acceleration_s = 0.05;      ///< over such a time the acceleration of joints is taken (root mean square)
+  /// Nothing is judged while the standard error of both loads together is larger. Example: a straight knee bears weight
+  /// without torque.
+  double blind_share = 0.5;
 };
 
 /// The verdict on the feet's loads.
@@ -41,7 +47,7 @@ class FootLoadWatch {
   void start() noexcept;
 
   /// (state, command in force) => (footing, shares), once a tick. A state that isn't finite and whole changes nothing,
-  /// nor does a posture that can't be judged. No heap.
+  /// nor do loads that can't be judged. No heap.
   void update(const model::RobotState& state, const model::JointCommand& in_force) noexcept;
 
   Footing footing() const noexcept { return footing_; }
@@ -51,19 +57,20 @@ class FootLoadWatch {
   const PerFoot<double>& share() const noexcept;
 
  private:
-  bool measure(const model::RobotState& state, const model::JointCommand& in_force) noexcept;
+  void measure(const model::RobotState& state, const model::JointCommand& in_force) noexcept;
   bool can_be_judged(const model::RobotState& state, const model::JointCommand& in_force) const noexcept;
 
   model::SoleLoads loads_;
   model::ChainKinematics base_to_imu_link_;
   Eigen::Matrix3d R_LI_;
   FootLoadOptions options_;
-  double weight_N_, filter_gain_;
+  double weight_N_, dt_s_, filter_gain_, acceleration_gain_, change_variance_;
   int lost_ticks_needed_, found_ticks_needed_;
   Footing footing_ = Footing::kUnknown;
   bool begun_ = false;  // the filter has a value
   int lost_ticks_ = 0, found_ticks_ = 0;
-  PerFoot<double> measured_{}, asked_{};
+  PerFoot<double> measured_{}, asked_{}, variance_{};
+  JointVector dq_before_, ddq_, acceleration_sq_, uncertain_rad_s2_;
   double held_ = 0.0;  // specific force upwards, of g
 };
 

@@ -116,6 +116,7 @@ TEST_F(FootLoadWatchTest, ABrokenStateAndAStraightKneeChangeNothing) {
   for (const auto& spoil : {+[](model::RobotState& s) { s.tau[2] = std::numeric_limits<double>::quiet_NaN(); },
                             +[](model::RobotState& s) { s.q[2] = std::numeric_limits<double>::infinity(); },
                             +[](model::RobotState& s) { s.dq.conservativeResize(3); },
+                            +[](model::RobotState& s) { s.gyro_rad_s.x() = std::numeric_limits<double>::quiet_NaN(); },
                             +[](model::RobotState& s) { s.orientation_WI.coeffs().setZero(); }}) {
     model::RobotState spoilt = state_;
     spoil(spoilt);
@@ -125,6 +126,29 @@ TEST_F(FootLoadWatchTest, ABrokenStateAndAStraightKneeChangeNothing) {
   }
   state_.q[robot_.joint_index.at("left_knee")] = 0.0;
   EXPECT_EQ(ticks_until(Footing::kHangs, {0.0, 0.0}), -1) << "a straight leg may stand without torque";
+}
+
+// A knee of 6 degrees carries much with little torque. A leg that strikes the ground brakes within some hundredths of a second:
+// torques that don't fit its acceleration look like a pull of more than the robot's weight.
+TEST_F(FootLoadWatchTest, ANearlyStraightLegThatBrakesIsNoFootWithoutLoad) {
+  const Eigen::Index knees[] = {robot_.joint_index.at("left_knee"), robot_.joint_index.at("right_knee")};
+  for (const auto knee : knees) state_.q[knee] = 0.10;
+  stand();
+  constexpr int kTicks = 12;
+  for (const double sign : {1.0, -1.0, 1.0, -1.0}) {
+    for (int tick = 0; tick < 2 * kTicks; ++tick) {
+      const double direction = tick < kTicks ? sign : -sign;  // it ends as slow as it began
+      feet_.apply({0.5, 0.5}, state_);
+      for (const auto knee : knees) {
+        state_.dq[knee] += 0.5 * direction;
+        state_.tau[knee] += 6.0 * direction;
+      }
+      watch_.update(state_, command_);
+      ASSERT_EQ(watch_.footing(), Footing::kStands) << sign << ", " << tick;
+    }
+  }
+  state_.dq.setZero();
+  EXPECT_GE(ticks_until(Footing::kHangs, {0.0, 0.0}), 10) << "still legs tell it";
 }
 
 TEST_F(FootLoadWatchTest, ATiltedRobotIsWeighedAlongGravity) {
@@ -138,7 +162,9 @@ TEST_F(FootLoadWatchTest, ATiltedRobotIsWeighedAlongGravity) {
 TEST_F(FootLoadWatchTest, RefusesThresholdsThatCanNotBe) {
   for (const auto& spoil :
        {+[](FootLoadOptions& o) { o.lost_share = 0.4; }, +[](FootLoadOptions& o) { o.lost_s = 0.0; },
-        +[](FootLoadOptions& o) { o.found_s = -1.0; }, +[](FootLoadOptions& o) { o.filter_s = std::nan(""); }}) {
+        +[](FootLoadOptions& o) { o.found_s = -1.0; }, +[](FootLoadOptions& o) { o.filter_s = std::nan(""); },
+        +[](FootLoadOptions& o) { o.change_per_sqrt_s = 0.0; }, +[](FootLoadOptions& o) { o.blind_share = -1.0; },
+        +[](FootLoadOptions& o) { o.wrong_inertia_share = std::nan(""); }}) {
     FootLoadOptions options;
     spoil(options);
     EXPECT_THROW(FootLoadWatch(robot_, options, kTick_s), std::invalid_argument);

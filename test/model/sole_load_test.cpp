@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <kdl/chaindynparam.hpp>
+#include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <memory>
 #include <random>
 
@@ -52,6 +53,35 @@ class SoleLoadsTest : public testing::Test {
     return torque_Nm;
   }
 
+  /// The drives' torques of legs in the air, by KDL's own inverse dynamics of a chain that begins with a joint about
+  /// omega_B.
+  JointVector torques_in_the_air(const LegMotion& motion) {
+    JointVector torque_Nm = JointVector::Zero(motion.q.size());
+    const KDL::Vector omega(motion.omega_B.x(), motion.omega_B.y(), motion.omega_B.z());
+    for (const Foot foot : {kLeft, kRight}) {
+      const auto& joints = robot_.leg_joints[foot];
+      KDL::Chain chain;
+      chain.addSegment(KDL::Segment(KDL::Joint("base", KDL::Vector::Zero(), omega, KDL::Joint::RotAxis)));
+      chain.addChain(robot_.leg_chain[foot]);
+      const auto n = static_cast<unsigned>(joints.size() + 1);
+      KDL::JntArray q(n), dq(n), ddq(n), held(n);
+      dq(0) = motion.omega_B.norm();
+      for (unsigned i = 1; i < n; ++i) {
+        q(i) = motion.q[joints[i - 1]];
+        dq(i) = motion.dq[joints[i - 1]];
+        ddq(i) = motion.ddq[joints[i - 1]];
+      }
+      const Eigen::Vector3d gravity = -motion.specific_force_B;
+      KDL::ChainIdSolver_RNE dynamics(chain, KDL::Vector(gravity.x(), gravity.y(), gravity.z()));
+      EXPECT_EQ(dynamics.CartToJnt(q, dq, ddq, KDL::Wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()), held), 0);
+      for (unsigned i = 1; i < n; ++i) {
+        const Joint& joint = robot_.joints[static_cast<std::size_t>(joints[i - 1])];
+        torque_Nm[joints[i - 1]] = held(i) + joint.armature_kg_m2 * ddq(i);
+      }
+    }
+    return torque_Nm;
+  }
+
   RobotModel robot_ = load_robot(kZ1Folder);
   SoleLoads loads_{robot_};
   std::mt19937 random_{5};
@@ -91,15 +121,58 @@ TEST_F(SoleLoadsTest, OfALegThatHangsAreNothing) {
 TEST_F(SoleLoadsTest, FrictionFalsifiesThemByAFewNewtonsStandingAndBeyondMeasureWithAStraightKnee) {
   const Eigen::Vector3d down_B(0.0, 0.0, -1.0);
   JointVector q = robot_.q_stand();
+  const JointVector still = JointVector::Zero(q.size());
   loads_.set_posture(q, down_B);
   const double weight_N = robot_.total_mass_kg * 9.81;
-  EXPECT_LT(loads_.friction_N(kLeft), 0.05 * weight_N);
-  EXPECT_GT(loads_.friction_N(kLeft), 0.01 * weight_N);
+  EXPECT_LT(loads_.error_N(kLeft, still), 0.05 * weight_N);
+  EXPECT_GT(loads_.error_N(kLeft, still), 0.01 * weight_N);
   const int knee = robot_.joint_index.at("left_knee");
   q[knee] = 0.0;
   loads_.set_posture(q, down_B);
-  EXPECT_GT(loads_.friction_N(kLeft), weight_N);
-  EXPECT_LT(loads_.friction_N(kRight), 0.05 * weight_N) << "the other leg is as it was";
+  EXPECT_GT(loads_.error_N(kLeft, still), weight_N);
+  EXPECT_LT(loads_.error_N(kRight, still), 0.05 * weight_N) << "the other leg is as it was";
+}
+
+TEST_F(SoleLoadsTest, AJointsWrongAccelerationFalsifiesThemTheMoreTheStraighterItsLegIs) {
+  const Eigen::Vector3d down_B(0.0, 0.0, -1.0);
+  JointVector q = robot_.q_stand(), wrong = JointVector::Zero(q.size());
+  const int knee = robot_.joint_index.at("left_knee");
+  loads_.set_posture(q, down_B);
+  const double still_N = loads_.error_N(kLeft, wrong);
+  wrong[knee] = 50.0;
+  const double bent_N = loads_.error_N(kLeft, wrong);
+  EXPECT_GT(bent_N, 2.0 * still_N);
+  EXPECT_EQ(loads_.error_N(kRight, wrong), loads_.error_N(kRight, JointVector::Zero(q.size())));
+  q[knee] *= 0.3;
+  loads_.set_posture(q, down_B);
+  EXPECT_GT(loads_.error_N(kLeft, wrong), 2.0 * bent_N);
+}
+
+TEST_F(SoleLoadsTest, OfALegThatSwingsInTheAirAreNothingThoughItsJointsAccelerate) {
+  for (int trial = 0; trial < 50; ++trial) {
+    const JointVector q = posture();
+    JointVector dq = JointVector::Zero(q.size()), ddq = dq;
+    for (const Foot foot : {kLeft, kRight}) {
+      for (const int i : robot_.leg_joints[foot]) {
+        dq[i] = draw(-4.0, 4.0);
+        ddq[i] = draw(-60.0, 60.0);
+      }
+    }
+    const Eigen::Vector3d down_B = Eigen::Vector3d(draw(-0.2, 0.2), draw(-0.2, 0.2), -1.0).normalized();
+    const Eigen::Vector3d acceleration(draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0));
+    const LegMotion motion{.q = q,
+                           .dq = dq,
+                           .ddq = ddq,
+                           .gravity_B = down_B,
+                           .specific_force_B = acceleration - 9.81 * down_B,
+                           .omega_B = {draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)}};
+    const JointVector torque_Nm = torques_in_the_air(motion);
+    loads_.set_motion(motion);
+    for (const SoleLoad& load : loads_.of(torque_Nm)) EXPECT_NEAR(load.vertical_N, 0.0, 1e-6) << trial;
+    loads_.set_posture(q, down_B);
+    const PerFoot<SoleLoad> as_if_still = loads_.of(torque_Nm);
+    EXPECT_GT(std::abs(as_if_still[kLeft].vertical_N) + std::abs(as_if_still[kRight].vertical_N), 1.0) << trial;
+  }
 }
 
 TEST_F(SoleLoadsTest, NeverUseTheHeapNorTheRobot) {
