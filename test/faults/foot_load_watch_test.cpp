@@ -128,8 +128,8 @@ TEST_F(FootLoadWatchTest, ABrokenStateAndAStraightKneeChangeNothing) {
   EXPECT_EQ(ticks_until(Footing::kHangs, {0.0, 0.0}), -1) << "a straight leg may stand without torque";
 }
 
-// A knee of 6 degrees carries much with little torque. A leg that strikes the ground brakes within some hundredths of a second:
-// torques that don't fit its acceleration look like a pull of more than the robot's weight.
+// A knee of 6 degrees carries much with little torque. A leg that strikes the ground brakes within some hundredths of a
+// second: torques that don't fit its acceleration look like a pull of more than the robot's weight.
 TEST_F(FootLoadWatchTest, ANearlyStraightLegThatBrakesIsNoFootWithoutLoad) {
   const Eigen::Index knees[] = {robot_.joint_index.at("left_knee"), robot_.joint_index.at("right_knee")};
   for (const auto knee : knees) state_.q[knee] = 0.10;
