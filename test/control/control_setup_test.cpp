@@ -298,7 +298,8 @@ TEST_F(ARobotOfTwoStyles, RefusesOwnClipsThatStandOnOneBentLeg) {
     load_robot(with("person"));
     FAIL();
   } catch (const files::ConfigError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("bend.csv"), HasSubstr("left_knee"), HasSubstr("mirror image of right_knee")));
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("bend.csv"), HasSubstr("left_knee"), HasSubstr("mirror image of right_knee")));
   }
 }
 
