@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -78,25 +79,37 @@ double to_unit(const FitParameter& p, double value) {
   return (x - p.lower) / (p.upper - p.lower);
 }
 
+/// True for a torque, and for a torque over an angle, a speed or a drive's output.
+bool has_torque(model::Quantity quantity) {
+  using enum model::Quantity;
+  constexpr std::array kOfTorque = {kTorque, kStiffness, kHardening, kDamping, kQuadraticDamping, kTorqueOfOutput};
+  return std::ranges::find(kOfTorque, quantity) != kOfTorque.end();
+}
+
+/// A linear axis moves kilograms by hundreds of newtons.
+double scale_of_axis(model::Quantity quantity) {
+  using enum model::Quantity;
+  if (quantity == kInertia) return 1000.0;
+  if (quantity == kPower || has_torque(quantity)) return 100.0;
+  if (quantity == kShareOfTorque || quantity == kShareOfWork) return 0.01;
+  return quantity == kShareOfHeat ? 1e-4 : 1.0;
+}
+
 }  // namespace
 
+model::Quantity quantity(const std::string& name) {
+  return name == kInertia || name == kGravity ? model::Quantity::kNumber : model::actuator_parameter(name).quantity;
+}
+
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
-  if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
+  if (name == kInertia || name == kGravity) return {name, quantity(name), 0.3, 3.0};
   const model::ActuatorParameter& p = model::actuator_parameter(name);
   // A servo firmware's gain: its unit per radian of error, at a duty of 1.
-  if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
-  // A linear axis moves kilograms by hundreds of newtons.
+  if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, p.quantity, 1e-4, 5.0};
   const bool linear = bench.rig == bench::Rig::kLinear;
-  const double scale = !linear                         ? 1.0
-                       : p.unit.starts_with("kg")      ? 1000.0
-                       : p.unit.starts_with("Nm")      ? 100.0
-                       : p.unit.starts_with("1/Nm")    ? 0.01
-                       : p.unit.starts_with("1/(Nm^2") ? 1e-4
-                       : p.unit == "W"                 ? 100.0
-                       : p.unit == "1/J"               ? 0.01
-                                                       : 1.0;
-  if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
-  return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
+  if (linear && name == "friction.presliding_rad") return {name, p.quantity, 1e-6, 1e-3};
+  const double scale = linear ? scale_of_axis(p.quantity) : 1.0;
+  return {name, p.quantity, p.lower * scale, p.upper * scale};
 }
 
 std::vector<std::string> effect_words() {
@@ -207,7 +220,7 @@ std::vector<double> FitProblem::with_torques_scaled(std::span<const double> poin
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const FitParameter& p = parameters_[i];
     const bool gain = p.name == "drive.kp_scale" || p.name == "drive.kd_scale";
-    if (!(p.unit.starts_with("Nm") || p.unit.starts_with("kg") || (gain && gains_are_torques))) continue;
+    if (!(has_torque(p.quantity) || p.quantity == model::Quantity::kInertia || (gain && gains_are_torques))) continue;
     scaled[i] = to_unit(p, factor * to_range(p, point[i]));
   }
   return scaled;

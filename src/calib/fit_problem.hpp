@@ -14,10 +14,14 @@ namespace pmg::calib {
 /// A free parameter and its search range.
 struct FitParameter {
   std::string name;  ///< an actuator's ("friction.coulomb_Nm"), or load.inertia_scale, load.gravity_scale
-  std::string unit;
+  model::Quantity quantity;
   double lower, upper;
+  std::string unit() const { return std::string(model::unit(quantity)); }  ///< of a turning joint
   bool operator==(const FitParameter&) const = default;
 };
+
+/// What an actuator's or a load's parameter measures. Throws std::invalid_argument that lists the names.
+model::Quantity quantity(const std::string& name);
 
 /// (name of an actuator's or a load's parameter, bench) => (the parameter with its range on this rig). Throws
 /// std::invalid_argument that lists the names.

@@ -22,7 +22,7 @@ const effects::Unknown* at_edge(const std::string& effect, const effects::Forms&
   const std::vector<std::string>& parameters = effects::form_of(effect, forms).parameters;
   for (std::size_t i = 0; i < fitted.unknowns.size(); ++i) {
     const effects::Unknown& u = fitted.unknowns[i];
-    const bool order = effects::is_order(u.name) && effects::contains(parameters, u.name);
+    const bool order = u.quantity == model::Quantity::kOrder && effects::contains(parameters, u.name);
     if (!order && !effects::contains(strengths, u.name)) continue;
     const double x = u.value(fitted.coordinates[static_cast<Eigen::Index>(i)]), edge = 1e-6 * (u.upper - u.lower);
     const double none = std::clamp(calib::value(neutral, u.name), u.lower, u.upper);

@@ -26,10 +26,12 @@ struct Wave {
   std::string amplitude, phase;
 };
 
+bool is_order(const std::string& parameter) { return calib::quantity(parameter) == model::Quantity::kOrder; }
+
 std::vector<Wave> waves_of(const Form& form) {
   std::vector<Wave> found;
   for (std::size_t p = 1; p < form.parameters.size(); ++p) {
-    if (!form.parameters[p].ends_with("phase_rad")) continue;
+    if (calib::quantity(form.parameters[p]) != model::Quantity::kPhase) continue;
     const std::size_t amplitude = p - (is_order(form.parameters[p - 1]) ? 2 : 1);
     found.push_back({form.parameters[amplitude], form.parameters[p]});
   }

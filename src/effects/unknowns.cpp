@@ -102,76 +102,92 @@ double Unknown::value(double coordinate) const {
 // is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
 fitting::Coordinate Unknown::range() const {
   constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
-  const bool delay = name == "command.delay_s" || name == "sensor.delay_s" || name == "drive.torque_delay_s";
-  const double step = difference > 0.0 ? difference
-                      : delay          ? kDelayStep_s
-                      : logarithmic    ? kLogarithmStep
-                                       : kShareOfTypical * typical;
+  const double step = difference > 0.0                      ? difference
+                      : quantity == model::Quantity::kDelay ? kDelayStep_s
+                      : logarithmic                         ? kLogarithmStep
+                                                            : kShareOfTypical * typical;
   return {coordinate(lower), coordinate(upper), step, expected, deviation};
 }
 
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
+  using enum model::Quantity;
   Unknown u{calib::fit_parameter(name, bench)};
   const double torque = scale.torque_Nm, speed = scale.speed_rad_s;
-  if (u.unit.starts_with("Nm s^2")) {
-    u.typical = torque / (speed * speed);
-    u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit.starts_with("Nm s")) {
-    u.typical = torque / speed;
-    u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit == "Nm") {
-    u.typical = torque;
-    u.upper = std::max(u.upper, 5.0 * scale.torque_peak_Nm);
-  } else if (u.unit.starts_with("1/(Nm^2")) {
-    u.typical = 0.1 / (torque * torque);
-    u.lower = std::min(u.lower, -10.0 * u.typical);
-    if (u.upper > 0.0) u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit == "1/J") {
-    u.typical = 1.0 / (torque * speed * scale.duration_s);
-    u.lower = std::min(u.lower, -100.0 * u.typical);
-    u.upper = std::max(u.upper, 100.0 * u.typical);
-  } else if (u.unit == "unit") {
-    u.typical = scale.output;
-    u.upper = std::max(u.upper, 5.0 * scale.output);
-  } else if (u.unit == "unit/s") {
-    u.lower = std::min(u.lower, scale.output);
-    u.upper = std::max(u.upper, 1e3 * scale.output);
-  } else if (u.unit == "W") {
-    u.lower = std::min(u.lower, 0.02 * torque * speed);
-    u.upper = std::max(u.upper, 10.0 * scale.torque_peak_Nm * speed);
-  } else if (u.unit == "rad/s^2") {
-    u.lower = std::min(u.lower, speed);
-    u.upper = std::max(u.upper, 1e3 * speed);
-  } else if (u.unit == "1/K") {
-    u.typical = 0.02;
-  } else if (u.unit == "1/Nm") {
-    u.typical = 0.3 / torque;
-    u.upper = 3.0 / scale.torque_peak_Nm;  // a source three times as weak as the motor it feeds
-  } else if (u.unit == "s") {
-    u.typical = 0.01;
-    constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
-    if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
-  } else if (u.unit == "rad") {
-    u.typical = 0.05 * (scale.position_high_rad - scale.position_low_rad);
-  } else if (u.unit == "rad/s") {
-    u.typical = speed;
-    u.lower = std::min(u.lower, 0.02 * speed);
-    u.upper = std::max(u.upper, 10.0 * speed);
-  } else {
-    u.typical = 0.3;
+  const auto typically = [&](double value) { u.typical = value; };
+  const auto reach_up = [&](double upper) { u.upper = std::max(u.upper, upper); };
+  const auto reach_down = [&](double lower) { u.lower = std::min(u.lower, lower); };
+  switch (u.quantity) {
+    case kTorque:
+      typically(torque), reach_up(5.0 * scale.torque_peak_Nm);
+      break;
+    case kDamping:
+      typically(torque / speed), reach_up(10.0 * u.typical);
+      break;
+    case kQuadraticDamping:
+      typically(torque / (speed * speed)), reach_up(10.0 * u.typical);
+      break;
+    case kShareOfHeat:
+      typically(0.1 / (torque * torque)), reach_down(-10.0 * u.typical);
+      if (u.upper > 0.0) reach_up(10.0 * u.typical);
+      break;
+    case kShareOfWork:
+      typically(1.0 / (torque * speed * scale.duration_s)), reach_down(-100.0 * u.typical), reach_up(100.0 * u.typical);
+      break;
+    case kShareOfTemperature:
+      typically(0.02);
+      break;
+    case kShareOfTorque:
+      typically(0.3 / torque);
+      u.upper = 3.0 / scale.torque_peak_Nm;  // a source three times as weak as the motor it feeds
+      break;
+    case kOutput:
+      typically(scale.output), reach_up(5.0 * scale.output);
+      break;
+    case kOutputRate:
+      reach_down(scale.output), reach_up(1e3 * scale.output);
+      break;
+    case kPower:
+      reach_down(0.02 * torque * speed), reach_up(10.0 * scale.torque_peak_Nm * speed);
+      break;
+    case kSpeed:
+      typically(speed), reach_down(0.02 * speed), reach_up(10.0 * speed);
+      break;
+    case kAcceleration:
+      reach_down(speed), reach_up(1e3 * speed);
+      break;
+    case kTime:
+    case kDelay:
+    case kPeriod:
+      typically(0.01);
+      if (name == "drive.supply_sag_time_s") u.lower = 0.01;  // quicker than a joint moves: a resistance
+      break;
+    case kAngle:
+    case kQuantum:
+      typically(0.05 * (scale.position_high_rad - scale.position_low_rad));
+      break;
+    case kPhase:
+      u.lower = -10.0, u.upper = 10.0;
+      break;
+    case kOrder:  // with less than one period over the range of motion, a wave is a proxy for an offset or a slope
+      u.lower = std::max(u.lower, lowest_order(scale));
+      break;
+    case kInertia:
+      typically(0.3), reach_down(1e-4 * scale.inertia_kg_m2);
+      break;
+    case kNumber:
+    case kStiffness:
+    case kHardening:
+    case kOutputOfSpeed:
+    case kTorqueOfOutput:
+      typically(0.3);
+      break;
   }
-  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && !is_order(name);
-  // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
-  if (is_order(name)) u.lower = std::max(u.lower, lowest_order(scale)), u.typical = 1.0;
-  if (name.ends_with("phase_rad")) u.lower = -10.0, u.upper = 10.0, u.typical = 1.0;
-  if (name == "transmission.armature_kg_m2") u.lower = std::min(u.lower, 1e-4 * scale.inertia_kg_m2);
+  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && u.quantity != kOrder;
   return u;
 }
 
-bool is_order(const std::string& parameter) {
-  return parameter == "ripple.order" || parameter == "sensor.eccentricity_order";
+bool is_jagged(const std::string& parameter) {
+  return is_period(parameter) || calib::quantity(parameter) == model::Quantity::kQuantum;
 }
-
-bool is_jagged(const std::string& parameter) { return is_period(parameter) || parameter == "sensor.quantum_rad"; }
 
 }  // namespace pmg::effects

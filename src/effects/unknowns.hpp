@@ -45,9 +45,6 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
 /// Order of a wave with one period over the range of motion [1/turn].
 double lowest_order(const BenchScale& scale);
 
-/// True for the orders of waves over the joint's angle.
-bool is_order(const std::string& parameter);
-
 /// True for parameters that a fit keeps at their start value, because rollouts are not smooth in them: the period of a
 /// sample-and-hold and a sensor's quantum.
 bool is_jagged(const std::string& parameter);

@@ -155,10 +155,41 @@ struct ActuatorParameters {
   bool operator==(const ActuatorParameters&) const = default;
 };
 
+/// What a number measures. It decides the unit, and how a fit scales the number to a joint.
+enum class Quantity {
+  kNumber,              ///< a factor, a share, an exponent, a switch
+  kTime,                ///< [s]
+  kDelay,               ///< [s] commands are held, so that it acts by whole steps of a simulation
+  kPeriod,              ///< [s] of a sample and hold; rollouts are not smooth in it
+  kAngle,               ///< [rad]
+  kQuantum,             ///< [rad] of readings; rollouts are not smooth in it
+  kPhase,               ///< [rad] of a wave over the joint's angle
+  kOrder,               ///< of such a wave: periods a turn
+  kSpeed,               ///< [rad/s]
+  kAcceleration,        ///< [rad/s^2]
+  kInertia,             ///< [kg m^2]
+  kTorque,              ///< [Nm]
+  kStiffness,           ///< [Nm/rad]
+  kHardening,           ///< [Nm/rad^3]
+  kDamping,             ///< [Nm s/rad]
+  kQuadraticDamping,    ///< [Nm s^2/rad^2]
+  kPower,               ///< [W]
+  kOutput,              ///< of a drive, in its own unit
+  kOutputRate,          ///< [unit/s]
+  kOutputOfSpeed,       ///< [unit s/rad]
+  kTorqueOfOutput,      ///< [Nm/unit]
+  kShareOfTorque,       ///< [1/Nm]
+  kShareOfTemperature,  ///< [1/K]
+  kShareOfHeat,         ///< [1/(Nm^2 s)] of a winding
+  kShareOfWork,         ///< [1/J]
+};
+
+std::string_view unit(Quantity quantity);
+
 /// One number of ActuatorParameters: its name in motor.yaml, and the range of its search in a fit.
 struct ActuatorParameter {
   std::string_view name;  ///< "friction.coulomb_Nm": group and key
-  std::string_view unit;
+  Quantity quantity;
   double lower, upper;  ///< of a search; a file may exceed them
   bool may_be_negative;
   double& (*in)(ActuatorParameters&);
