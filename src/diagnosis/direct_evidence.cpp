@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "effects/catalogue.hpp"
-#include "evidence/strength.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::diagnosis {
 
@@ -21,12 +21,18 @@ bool in_base(const std::string& name, const model::ActuatorParameters& base) {
 
 namespace {
 
+/// The recordings give the size of the check's effect: measured_causes() decides, and no fit.
+bool is_read_off(const evidence::Signature& check) {
+  const effects::Effect* one = effects::find(check.effect);
+  return one != nullptr && one->check == effects::CheckSays::kSize;
+}
+
 std::vector<MeasuredCause> measured_causes(const std::vector<evidence::Signature>& checks,
                                            const model::ActuatorParameters& base, double noise_rms_rad,
                                            const JointDiagnosisOptions& options) {
   std::vector<MeasuredCause> found;
   for (const evidence::Signature& check : checks) {
-    if (check.effect != "quantisation" || check.agreement != evidence::Agreement::kAgrees) continue;
+    if (!is_read_off(check) || check.agreement != evidence::Agreement::kAgrees) continue;
     const double quantum_rad = check.value.value;
     const double rms_rad = quantum_rad / std::sqrt(12.0);  // of the rounding error, uniform over one quantum
     if (quantum_rad < options.coarser_quantum * base.sensor.quantum_rad ||
@@ -46,18 +52,23 @@ bool some_check(const std::vector<evidence::Signature>& checks, const std::strin
 
 std::vector<std::string> shown_effects(const std::vector<evidence::Signature>& checks,
                                        const model::ActuatorParameters& base) {
-  const std::string thermal = "thermal_drift";
-  if (!some_check(checks, thermal, evidence::Agreement::kAgrees) || in_base(thermal, base)) return {};
-  return {thermal};
+  std::vector<std::string> found;
+  for (const effects::Effect& one : effects::catalogue()) {
+    const bool shown =
+        one.check == effects::CheckSays::kAll && some_check(checks, one.name, evidence::Agreement::kAgrees);
+    if (shown && !in_base(one.name, base)) found.push_back(one.name);
+  }
+  return found;
 }
 
-/// Effects in doubt. Not `load`: its check compares inertia with weight, and a wrong mass changes both alike.
+/// Effects in doubt.
 std::vector<std::string> doubted_effects(const std::vector<evidence::Signature>& checks,
                                          const model::ActuatorParameters& base) {
   std::vector<std::string> found;
   for (const effects::Effect& one : effects::catalogue()) {
     const bool doubted = some_check(checks, one.name, evidence::Agreement::kDisagrees) &&
-                         !some_check(checks, one.name, evidence::Agreement::kAgrees) && one.name != "load";
+                         !some_check(checks, one.name, evidence::Agreement::kAgrees) &&
+                         one.check != effects::CheckSays::kNothingAgainst;
     if (doubted && !in_base(one.name, base)) found.push_back(one.name);
   }
   return found;
@@ -68,10 +79,10 @@ std::map<std::string, std::vector<double>> evident_effects(const std::vector<evi
                                                            const JointDiagnosisOptions& options) {
   std::map<std::string, std::vector<double>> found;
   for (const evidence::Signature& check : checks) {
-    const bool read_off = check.effect == "quantisation";  // measured_causes() decides
-    if (check.agreement != evidence::Agreement::kAgrees || read_off || !evidence::has_its_sign(check)) continue;
+    if (check.agreement != evidence::Agreement::kAgrees || is_read_off(check) || !effects::has_its_sign(check))
+      continue;
     if (!in_base(check.effect, base))
-      found[check.effect] = evidence::measured_strength(check, base, fastest_rad_s, options.signatures);
+      found[check.effect] = effects::measured_strength(check, base, fastest_rad_s, options.signatures);
   }
   return found;
 }

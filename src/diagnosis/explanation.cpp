@@ -179,7 +179,7 @@ class Explaining {
   /// Why an effect that is read off the recordings is no cause; nothing for other effects, and where they don't tell.
   std::optional<std::string> measured(const std::string& effect) const {
     for (const evidence::Signature& check : from_.checks) {
-      if (effect != "quantisation" || check.effect != effect) continue;
+      if (effects::effect(effect).check != effects::CheckSays::kSize || check.effect != effect) continue;
       if (check.agreement == evidence::Agreement::kDisagrees) return "the readings have no common step";
       if (check.agreement == evidence::Agreement::kAgrees)
         return "the step of the readings is small beside the noise, or the simulation has it already";

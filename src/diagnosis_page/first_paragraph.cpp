@@ -210,7 +210,7 @@ void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {
   std::set<std::string> listed;
   const auto add = [&](const std::string& effect) {
     if (!listed.insert(effect).second) return;
-    const WorkshopWords words = workshop_words(effect);
+    const effects::WorkshopWords words = workshop_words(effect);
     table.rows.push_back({words.what, effects::title(effect), words.check});
   };
   for (const Cause& cause : diagnosis.causes) {

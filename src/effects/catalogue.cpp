@@ -1,9 +1,13 @@
 #include "effects/catalogue.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
+
+#include "effects/named.hpp"
 
 namespace pmg::effects {
 
@@ -11,9 +15,8 @@ namespace {
 
 /// Empty where the effect has one form only, or doesn't know the name.
 std::string form_title(const std::string& effect, const std::string& form) {
-  for (const Effect& one : catalogue()) {
-    if (one.name != effect) continue;
-    for (const Form& each : one.forms) {
+  if (const Effect* one = find(effect); one != nullptr) {
+    for (const Form& each : one->forms) {
       if (each.name == form) return each.title;
     }
   }
@@ -22,20 +25,28 @@ std::string form_title(const std::string& effect, const std::string& form) {
 
 }  // namespace
 
+std::span<const Effect> catalogue() {
+#define PMG_EFFECT(name) named::name(),
+  static const std::vector<Effect> kEffects = {PMG_EFFECTS(PMG_EFFECT)};
+#undef PMG_EFFECT
+  return kEffects;
+}
+
+const Effect* find(std::string_view name) {
+  const std::span<const Effect> all = catalogue();
+  const auto found = std::ranges::find(all, name, &Effect::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
 const Effect& effect(std::string_view name) {
-  std::string names;
-  for (const Effect& one : catalogue()) {
-    if (one.name == name) return one;
-    names += (names.empty() ? "" : ", ") + one.name;
-  }
-  throw std::invalid_argument(fmt::format("no effect is called '{}'; expected one of {}", name, names));
+  if (const Effect* one = find(name); one != nullptr) return *one;
+  throw std::invalid_argument(fmt::format("no effect is called '{}'; expected one of {}", name,
+                                          fmt::join(catalogue() | std::views::transform(&Effect::name), ", ")));
 }
 
 std::string title(const std::string& name) {
-  for (const Effect& one : catalogue()) {
-    if (one.name == name) return one.title;
-  }
-  return name;
+  const Effect* one = find(name);
+  return one == nullptr ? name : one->title;
 }
 
 std::string described(const std::string& effect, const std::string& form, const std::vector<std::string>& open_forms) {

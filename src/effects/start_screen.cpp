@@ -86,11 +86,11 @@ void StartScreen::screen(const Effect& effect, const Form& form, const std::vect
   if (there.empty()) return;
   refit_linearly(there, form, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  if (values.size() == 1 || effect.name == "load") line_search(form, values, there, into);
+  if (values.size() == 1 || effect.linear) line_search(form, values, there, into);
 }
 
 /// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
-/// within 0..3. For the load's effect and effects of one parameter, in which rollouts are nearly linear.
+/// within 0..3. For effects in which rollouts are nearly linear: those of one parameter, and the load's.
 void StartScreen::line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
                               std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;
@@ -186,7 +186,7 @@ std::vector<ScreenedStart> StartScreen::at(const Effect& effect, std::size_t for
 std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, std::size_t form_index,
                                                               const BenchScale& scale) const {
   const Form& form = effect.forms.at(form_index);
-  if (fit_.runs().size() <= kRunsForOrders) return starts(effect, form, current_.model, scale);
+  if (fit_.runs().size() <= kRunsForOrders) return starts(form, current_.model, scale);
   const NestedFit few(calib::spread(fit_.runs(), kRunsForOrders), fit_.threads());
   std::vector<std::vector<double>> found;
   for (const ScreenedStart& start : StartScreen(few, current_).best(effect, form_index, scale)) {
@@ -203,7 +203,7 @@ std::vector<ScreenedStart> StartScreen::best(const Effect& effect, std::size_t f
   const Form& form = effect.forms.at(form_index);
   const bool waves = !waves_of(form).empty();
   const std::vector<std::vector<double>> grid =
-      has_order(form) ? promising_waves(effect, form_index, scale) : starts(effect, form, current_.model, scale);
+      has_order(form) ? promising_waves(effect, form_index, scale) : starts(form, current_.model, scale);
   for (const std::vector<double>& values : grid) {
     if (waves)
       screen_waves(form, values, found);

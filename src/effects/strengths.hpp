@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "effects/extension.hpp"
+#include "evidence/signature.hpp"
 
 namespace pmg::effects {
 
@@ -15,6 +16,15 @@ std::vector<std::string> strengths(const std::string& effect, const Forms& forms
 /// True if the effect's strength has the other sign than its physics: a Stribeck term below zero is viscous friction
 /// that levels off.
 bool has_other_sign(const std::string& effect, const calib::JointModel& model);
+
+/// False where the check measures the other sign than the effect's physics has. Friction that is smaller at low speed
+/// than at high speed is viscous friction that levels off, and not Stribeck friction.
+bool has_its_sign(const evidence::Signature& check);
+
+/// (check, joint without the effect, fastest speed [rad/s]) => (values of the parameters of the effect's first form;
+/// empty for checks whose value is no parameter). A value in volts counts torque_per_unit_Nm each.
+std::vector<double> measured_strength(const evidence::Signature& check, const model::ActuatorParameters& joint,
+                                      double fastest_rad_s, const evidence::SignatureOptions& options);
 
 /// True if the effect's form has Stribeck friction of which less than half fades up to this speed [rad/s]: on such runs
 /// it is Coulomb friction by another name, and may take the place of Coulomb friction and of a second effect.

@@ -2,14 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "calib/fit_problem.hpp"
-#include "calib/synthetic_bench.hpp"
-#include "effects/starts.hpp"
-#include "folders.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -42,26 +37,6 @@ TEST(Catalogue, FormsOfAnEffectHaveNamesTitlesAndSources) {
       EXPECT_TRUE(titles.insert(form.title).second) << effect.name << " " << form.name;
       EXPECT_EQ(form.title.empty(), effect.forms.size() == 1) << effect.name << " " << form.name;
       EXPECT_FALSE(form.source.empty()) << effect.name << " " << form.name;
-    }
-  }
-}
-
-TEST(Catalogue, EveryFormIsInTheDocumentationWithItsSource) {
-  std::ifstream in(pmg::test::project_folder() + "/docs/reference/effects.md");
-  std::ostringstream read;
-  read << in.rdbuf();
-  const std::string text = read.str();
-  for (const Effect& effect : effects::catalogue()) {
-    for (const Form& form : effect.forms) {
-      const std::string row = "| `" + effect.name + "` | `" + form.name + "` |";
-      const std::size_t at = text.find(row);
-      ASSERT_NE(at, std::string::npos) << row;
-      const std::string line = text.substr(at, text.find('\n', at) - at);
-      EXPECT_NE(line.find(form.source), std::string::npos) << line;
-      for (const std::string& parameter : form.parameters)
-        EXPECT_NE(line.find("`" + parameter + "`"), std::string::npos) << line << " lacks " << parameter;
-      for (const effects::FixedValue& fixed : form.fixed)
-        EXPECT_NE(line.find("`" + fixed.parameter + "` = "), std::string::npos) << line << " lacks " << fixed.parameter;
     }
   }
 }

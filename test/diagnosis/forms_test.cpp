@@ -73,7 +73,7 @@ TEST(Forms, EveryStartOfEveryFormCanBeSimulatedAndShows) {
     for (const Effect& effect : effects::catalogue()) {
       for (const Form& form : effect.forms) {
         bool shows = false;
-        for (const std::vector<double>& values : starts(effect, form, joint.model, scale)) {
+        for (const std::vector<double>& values : starts(form, joint.model, scale)) {
           ASSERT_EQ(values.size(), form.parameters.size()) << effect.name << " " << form.name;
           calib::JointModel with = joint.model;
           for (const effects::FixedValue& fixed : form.fixed) calib::set(with, fixed.parameter, fixed.value);
@@ -109,7 +109,7 @@ TEST(Forms, FixedValuesAloneChangeNothing) {
 calib::JointModel in_form(const Joint& joint, calib::JointModel model, const Effect& effect, const Form& form) {
   const effects::BenchScale scale = effects::scale_of(joint.bench, joint.runs, joint.model);
   for (const effects::FixedValue& fixed : form.fixed) calib::set(model, fixed.parameter, fixed.value);
-  const auto values = starts(effect, form, joint.model, scale);
+  const auto values = starts(form, joint.model, scale);
   for (std::size_t p = 0; !values.empty() && p < form.parameters.size(); ++p)
     calib::set(model, form.parameters[p], values.front()[p]);
   return model;

@@ -130,7 +130,7 @@ TEST(FirstParagraph, HasNoTermOfTheFieldAndNoLongSentence) {
 
 TEST(Workshop, EveryEffectOfTheCatalogueHasACheck) {
   for (const effects::Effect& effect : effects::catalogue()) {
-    const WorkshopWords words = workshop_words(effect.name);
+    const effects::WorkshopWords words = workshop_words(effect.name);
     EXPECT_NE(words.what, effect.title) << effect.name;
     EXPECT_THAT(words.check, testing::ContainsRegex("[.?]$")) << effect.name;
     EXPECT_THAT(words.cost, testing::ContainsRegex("[.]$")) << effect.name;

@@ -7,7 +7,7 @@
 #include "calib/fit_problem.hpp"
 #include "diagnosis/random_bench.hpp"
 #include "effects/catalogue.hpp"
-#include "evidence/strength.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::evidence {
 namespace {

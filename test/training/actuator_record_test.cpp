@@ -26,6 +26,7 @@ constexpr int kSteps = 120;
 constexpr double kOtherLibm_Nm = 1e-9;
 
 const std::string kActuatorRecord = pmg::test::project_folder() + "/test/data/training/actuators.json";
+const std::string kNeutralValues = pmg::test::project_folder() + "/training/pmg_train/neutral_actuator.json";
 
 /// Each effect by itself, then with what it meets.
 const std::map<std::string, Values> kCases = {
@@ -281,6 +282,22 @@ ordered_json actuators_now() {
     cases[name] = outputs(values, residual == kResidualTorques.end() ? "" : residual->second);
   }
   return {{"step_s", kStep_s}, {"names", names}, {"steps", inputs()}, {"cases", cases}};
+}
+
+/// Each number of motor.yaml without any effect; null for infinity, which JSON lacks.
+ordered_json neutral_now() {
+  ordered_json values = ordered_json::object();
+  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) {
+    const double value = parameter.value({});
+    values[std::string(parameter.name)] = std::isinf(value) ? ordered_json(nullptr) : ordered_json(value);
+  }
+  return {{"reference_temperature_C", model::kReferenceTemperature_C}, {"parameters", values}};
+}
+
+TEST(ActuatorRecord, TrainingReadsTheNeutralValuesOfTheActuatorModels) {
+  const ordered_json now = neutral_now();
+  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kNeutralValues) << now.dump(2) << '\n';
+  EXPECT_EQ(ordered_json::parse(std::ifstream(kNeutralValues)), now);
 }
 
 TEST(ActuatorRecord, ShowsEveryEffectAtWork) {
