@@ -71,6 +71,11 @@ TEST_F(PageStateTest, ACommandIsTakenWhileTheRobotStandsAndNoneAfterAStop) {
   for (const char* key : {"command", "optimised"}) EXPECT_FALSE(state(phone_)["news"].contains(key)) << key;
 }
 
+TEST_F(PageStateTest, SaysWhenItWasMadeByTheServersClock) {
+  run(1.25);
+  EXPECT_DOUBLE_EQ(state(phone_)["at_s"], static_cast<double>(network_.clock.now_ns()) * 1e-9);
+}
+
 TEST_F(PageStateTest, TellsOfACameraOnlyWhereItIsShown) {
   run(0.1);
   EXPECT_FALSE(state(phone_).contains("camera"));

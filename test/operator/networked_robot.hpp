@@ -30,9 +30,8 @@ struct NetworkedRobot {
   /// One control tick. As in the controller's threads, messages sent before are received first.
   void control() {
     cycle.run(clock_.now_ns());
-    const control::TickRecord& record = cycle.record();
-    for (std::size_t i = 0; i < record.result.ack_count && !acks_lost; ++i) outbox.acks.push(record.result.acks[i]);
-    outbox.newest.put(record);
+    outbox.publish(cycle.record());
+    if (acks_lost) outbox.acks.reset();
   }
   const control::TickResult& result() const { return cycle.record().result; }
 
