@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/csv_table.hpp"
 #include "bench/excitation.hpp"
+#include "files/csv_table.hpp"
 #include "files/nearest_name.hpp"
 #include "model/robot_model.hpp"
 #include "option_checks.hpp"
@@ -94,8 +94,8 @@ class ExcitationCommand {
 
   static std::pair<double, double> pair(const std::string& text, char between, const char* option, const char* form) {
     const std::size_t at = text.find(between);
-    const auto first = bench::to_number(text.substr(0, at));
-    const auto second = at == std::string::npos ? std::nullopt : bench::to_number(text.substr(at + 1));
+    const auto first = files::to_number(text.substr(0, at));
+    const auto second = at == std::string::npos ? std::nullopt : files::to_number(text.substr(at + 1));
     if (!first || !second) throw std::invalid_argument(fmt::format("{} {}; expected {}", option, text, form));
     return {*first, *second};
   }

@@ -105,7 +105,7 @@ std::pair<std::string, std::string> split(const std::string& text, const char* e
 }
 
 double number(const std::string& text, const std::string& what) {
-  const auto value = bench::to_number(text);
+  const auto value = files::to_number(text);
   if (!value) throw std::invalid_argument(fmt::format("{}: '{}' isn't a number", what, text));
   return *value;
 }

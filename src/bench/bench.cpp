@@ -107,16 +107,16 @@ void check_units(ConfigReader units, bool linear) {
     units.fail("t", "is '" + units.required<std::string>("t") + "'", "s");
 }
 
-std::optional<std::string> cell(const CsvTable& table, std::size_t row, const std::string& column) {
+std::optional<std::string> cell(const files::CsvTable& table, std::size_t row, const std::string& column) {
   const auto c = table.find(column);
   if (!c || table.rows[row][*c].empty()) return std::nullopt;
   return table.rows[row][*c];
 }
 
-std::optional<double> number(const CsvTable& table, std::size_t row, const std::string& column) {
+std::optional<double> number(const files::CsvTable& table, std::size_t row, const std::string& column) {
   const auto text = cell(table, row, column);
   if (!text) return std::nullopt;
-  const auto value = to_number(*text);
+  const auto value = files::to_number(*text);
   if (!value || !std::isfinite(*value)) files::raise(table.place(row), column, "is '" + *text + "'", "a finite number");
   return value;
 }
@@ -168,7 +168,7 @@ void expect_recorded(const std::filesystem::path& folder) {
 }
 
 /// Columns are free, for --fit and --score; one that is nearly a known one would leave that one unread.
-void expect_no_misspelt_column(const CsvTable& runs) {
+void expect_no_misspelt_column(const files::CsvTable& runs) {
   static const std::vector<std::string> known = {"file",         "trajectory",    "repeat",
                                                  "kp_firmware",  "kp_Nm_per_rad", "kd_Nm_s_per_rad",
                                                  "load_mass_kg", "load_length_m", "temp_C"};
@@ -223,7 +223,7 @@ Bench read_bench(const std::filesystem::path& folder) {
   if (reader.has("design")) reader.required<std::string>("design");
   if (reader.has("reference")) reader.map("reference");  // a reference result for comparisons; a fit does not use it
   reader.finish();
-  bench.runs = read_csv(folder / "runs.csv");
+  bench.runs = files::read_csv(folder / "runs.csv");
   expect_no_misspelt_column(bench.runs);
   return bench;
 }

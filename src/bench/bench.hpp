@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "bench/correction.hpp"
-#include "bench/csv_table.hpp"
 #include "bench/joint_load.hpp"
 #include "bench/recording.hpp"
 #include "bench/row_filter.hpp"
+#include "files/csv_table.hpp"
 #include "model/actuator_parameters.hpp"
 #include "work/progress.hpp"
 
@@ -57,7 +57,7 @@ struct Bench {
   double kp_of_law = 1.0, kd_of_law = 0.0;  ///< gains of a cascade, if runs.csv has no columns of gains
   double supply_V = 1.0;                    ///< supply voltage if no bus voltage is recorded
   std::vector<BenchLoad> loads;
-  CsvTable runs;
+  files::CsvTable runs;
   std::vector<Correction> corrections;  ///< of what the files say; none of them until somebody asks for it
   std::vector<std::string> left_out;    ///< files of runs that are not read
   bool other_units = false;             ///< positions too large for their unit are read, too (RecordingFormat)

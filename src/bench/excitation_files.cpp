@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/csv_table.hpp"
 #include "bench/excitation.hpp"
+#include "files/csv_table.hpp"
 #include "files/number_table.hpp"
 #include "io/whole_file.hpp"
 #include "model/bundle.hpp"
@@ -38,10 +38,10 @@ ExcitationTrajectory read_trajectory(const fs::path& file, const std::string& na
   return trajectory;
 }
 
-double finite_number(const CsvTable& table, std::size_t row, const std::string& column) {
+double finite_number(const files::CsvTable& table, std::size_t row, const std::string& column) {
   const auto at = table.find(column);
   if (!at) files::raise({table.file.string(), table.header_line}, column, "is missing", "a column of an excitation");
-  const auto value = to_number(table.rows[row][*at]);
+  const auto value = files::to_number(table.rows[row][*at]);
   if (!value || !std::isfinite(*value)) {
     files::raise(table.place(row), column, "is '" + table.rows[row][*at] + "'", "a finite number");
   }
@@ -90,7 +90,7 @@ Excitation read_excitation(const fs::path& folder) {
                     "--make-excitation)",
                     folder.string()));
   }
-  const CsvTable table = read_csv(folder / "runs.csv");
+  const files::CsvTable table = files::read_csv(folder / "runs.csv");
   Excitation excitation;
   std::map<std::string, double> rate_hz;
   std::set<std::string> files;

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "bench/csv_table.hpp"
+#include "files/csv_table.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::bench {
@@ -22,7 +22,7 @@ constexpr double kSmallestUnit = 1000.0;     // thousandths: the smallest unit t
 
 double largest_position(bool linear) { return linear ? kLargestPosition_m : kLargestAngle_rad; }
 
-void check_times(const CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
+void check_times(const files::CsvTable& table, const std::vector<double>& t_s, double sample_rate_hz) {
   const double step_s = 1.0 / sample_rate_hz;
   std::vector<double> steps_s;
   for (std::size_t k = 1; k < t_s.size(); ++k) {
@@ -45,7 +45,7 @@ void check_times(const CsvTable& table, const std::vector<double>& t_s, double s
   }
 }
 
-void check_positions(const CsvTable& table, const std::string& column, const std::vector<double>& values,
+void check_positions(const files::CsvTable& table, const std::string& column, const std::vector<double>& values,
                      const RecordingFormat& format) {
   const bool linear = format.linear;
   const double most = largest_position(linear) * (format.other_units ? kSmallestUnit : 1.0);
@@ -100,7 +100,7 @@ bool plausible_positions(const Recording& recording, bool linear) {
 }
 
 Recording read_recording(const std::filesystem::path& file, const RecordingFormat& format) {
-  const CsvTable table = read_csv(file);
+  const files::CsvTable table = files::read_csv(file);
   const std::string unit = format.linear ? "_m" : "_rad", rate = unit + "_s";
   const std::string force = format.linear ? "_N" : "_Nm";
   const auto column = [&](const std::string& quantity) {  // the error of a missing column names the unit that is there

@@ -50,7 +50,7 @@ std::vector<std::string> list(const std::string& word) {
 }
 
 bool equal(const std::string& a, const std::string& b) {
-  const auto x = to_number(a), y = to_number(b);
+  const auto x = files::to_number(a), y = files::to_number(b);
   return x && y ? *x == *y : a == b;
 }
 
@@ -88,7 +88,7 @@ bool RowFilter::holds(const Term& term, const std::string& cell) {
   const bool listed = std::any_of(term.values.begin(), term.values.end(), is_cell);
   if (term.relation == "in" || term.relation == "==") return listed;
   if (term.relation == "not in" || term.relation == "!=") return !listed;
-  const auto x = to_number(cell), y = to_number(term.values.front());
+  const auto x = files::to_number(cell), y = files::to_number(term.values.front());
   if (!x || !y) {
     throw std::invalid_argument(fmt::format("{} {} {}: '{}' isn't a number", term.column, term.relation,
                                             term.values.front(), x ? term.values.front() : cell));
@@ -98,7 +98,7 @@ bool RowFilter::holds(const Term& term, const std::string& cell) {
   return term.relation == ">" ? *x > *y : *x >= *y;
 }
 
-std::vector<bool> RowFilter::keeps(const CsvTable& table) const {
+std::vector<bool> RowFilter::keeps(const files::CsvTable& table) const {
   std::vector<bool> kept(table.rows.size(), true);
   for (const Term& term : terms_) {
     const auto column = table.find(term.column);

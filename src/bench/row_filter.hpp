@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/csv_table.hpp"
+#include "files/csv_table.hpp"
 
 namespace pmg::bench {
 
@@ -16,7 +16,7 @@ class RowFilter {
   explicit RowFilter(const std::string& text);
 
   /// One flag per row. Throws std::invalid_argument that lists the table's columns if a column is missing.
-  std::vector<bool> keeps(const CsvTable& table) const;
+  std::vector<bool> keeps(const files::CsvTable& table) const;
 
   const std::string& text() const { return text_; }
 

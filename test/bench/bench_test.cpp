@@ -37,7 +37,7 @@ class BenchFiles : public testing::Test {
   void change(const std::function<std::string(int row, std::vector<std::string> cells)>& edit,
               const char* header = nullptr) const {
     const fs::path file = folder_ / "runs" / "run1.csv";
-    const bench::CsvTable table = bench::read_csv(file);
+    const files::CsvTable table = files::read_csv(file);
     std::ofstream out(file);
     out << (header != nullptr ? header : "t_s,q_cmd_rad,q_rad") << '\n';
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -173,7 +173,7 @@ TEST(RowFilter, SaysWhatItCannotRead) {
 }
 
 TEST(RowFilter, ComparesNumbersAsNumbersAndNamesAsNames) {
-  bench::CsvTable table;
+  files::CsvTable table;
   table.file = "runs.csv";
   table.header = {"trajectory", "kp"};
   table.rows = {{"swing", "4"}, {"swing", "8.0"}, {"step", "16"}, {"step", "32"}};

@@ -1,4 +1,4 @@
-#include "bench/csv_table.hpp"
+#include "files/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "files/bounded_file.hpp"
 
-namespace pmg::bench {
+namespace pmg::files {
 
 namespace {
 
@@ -28,10 +28,10 @@ std::vector<std::string> cells(std::string line) {
 void check_header(const CsvTable& table) {
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
-    const files::Place place{table.file.string(), table.header_line};
-    if (name.empty()) files::raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
+    const Place place{table.file.string(), table.header_line};
+    if (name.empty()) raise(place, "", fmt::format("column {} has no name", c + 1), "a name in every column");
     if (std::count(table.header.begin(), table.header.end(), name) > 1) {
-      files::raise(place, name, "is there twice", "it once");
+      raise(place, name, "is there twice", "it once");
     }
   }
 }
@@ -54,14 +54,14 @@ std::optional<std::size_t> CsvTable::find(const std::string& column) const {
 
 std::vector<double> CsvTable::numbers(const std::string& column) const {
   const std::optional<std::size_t> c = find(column);
-  if (!c) files::raise({file.string(), header_line}, column, "is missing", "a column of that name");
+  if (!c) raise({file.string(), header_line}, column, "is missing", "a column of that name");
   std::vector<double> values;
   values.reserve(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const std::string& text = rows[r][*c];
     const std::optional<double> value = to_number(text);
     if (!value || !std::isfinite(*value)) {
-      files::raise(place(r), column, text.empty() ? "is empty" : "is '" + text + "'", "a finite number");
+      raise(place(r), column, text.empty() ? "is empty" : "is '" + text + "'", "a finite number");
     }
     values.push_back(*value);
   }
@@ -69,7 +69,7 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& file) {
-  std::istringstream stream(files::read_bounded_text(file, files::kLargestTable_bytes, "a CSV file"));
+  std::istringstream stream(read_bounded_text(file, kLargestTable_bytes, "a CSV file"));
   CsvTable table;
   table.file = file;
   std::string line;
@@ -81,11 +81,11 @@ CsvTable read_csv(const std::filesystem::path& file) {
     table.rows.push_back(cells(line));
     const std::size_t count = table.rows.back().size();
     if (count == table.header.size()) continue;
-    files::raise(table.place(table.rows.size() - 1), "", fmt::format("{} cells", count),
-                 fmt::format("{} as in the header", table.header.size()));
+    raise(table.place(table.rows.size() - 1), "", fmt::format("{} cells", count),
+          fmt::format("{} as in the header", table.header.size()));
   }
-  if (table.rows.empty()) files::raise({file.string()}, "", "no rows below the header", "at least one");
+  if (table.rows.empty()) raise({file.string()}, "", "no rows below the header", "at least one");
   return table;
 }
 
-}  // namespace pmg::bench
+}  // namespace pmg::files
