@@ -99,9 +99,9 @@ void print_table(const std::vector<generator::ClipReport>& clips, const std::vec
               << " rad from limits: " << (clip.failure.empty() ? "ok" : clip.failure) << "\n";
   }
   for (const generator::NormReport& norm : norms) {
-    std::cout << "forward " << norm.curve << ": correlation " << std::setprecision(3) << norm.correlation << ", RMS "
-              << std::setprecision(1) << norm.rms_deg << " degrees from the norm, at contact " << norm.at_contact_deg
-              << "\n";
+    std::cout << "forward " << norm.curve << ": correlation " << std::setprecision(3) << norm.agreement.correlation
+              << ", RMS " << std::setprecision(1) << norm.agreement.rms_deg << " degrees from the norm, at contact "
+              << norm.at_contact_deg << "\n";
   }
   if (norms.empty()) return;
   std::cout << "forward sole from 10 to 30 % of the cycle: toes up by " << sole.toes_up_deg << " degrees, the norm "
@@ -134,8 +134,9 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
     }
   }
   for (const generator::NormReport& norm : norms) {
-    out["norms"][norm.curve] = {
-        {"correlation", norm.correlation}, {"rms_deg", norm.rms_deg}, {"contact_deg", norm.at_contact_deg}};
+    out["norms"][norm.curve] = {{"correlation", norm.agreement.correlation},
+                                {"rms_deg", norm.agreement.rms_deg},
+                                {"contact_deg", norm.at_contact_deg}};
   }
   if (!norms.empty()) {
     out["sole"] = {{"toes_up_deg", sole.toes_up_deg}, {"published_toes_up_deg", sole.published_toes_up_deg}};
@@ -151,8 +152,9 @@ int show(const ShowOptions& options) {
   std::vector<generator::NormReport> norms;
   generator::SoleReport sole;
   if (library.positive[kVx]) {
-    norms = generator::compare_with_norms(robot, *library.positive[kVx], options.norms);
-    sole = generator::compare_sole_with_norms(robot, *library.positive[kVx], options.norms);
+    const generator::GaitNorms published = generator::norms_of(options.norms);
+    norms = generator::compare_with_norms(robot, *library.positive[kVx], published);
+    sole = generator::compare_sole_with_norms(robot, *library.positive[kVx], published);
   }
   options.json ? print_json(clips, norms, sole) : print_table(clips, norms, sole);
   for (const generator::ClipReport& clip : clips) {

@@ -247,7 +247,7 @@ int gait(const apps::EvalArguments& arguments) {
   evaluation::GaitTest test;
   test.robot = arguments.robot;
   test.speed_m_s = arguments.speed_m_s;
-  test.norms = arguments.norms.empty() ? evaluation::built_in_norms() : evaluation::load_norms(arguments.norms);
+  test.norms = generator::norms_of(arguments.norms);
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   test.evaluated = {.name = c.name, .candidate = c, .plants = {}};
   fs::create_directories(arguments.out);

@@ -54,8 +54,8 @@ FootGait foot_gait(const FootRecording& recording, const GaitNorms& norms) {
   for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
     gait.measured_deg[joint] = mean_cycle(recording.measured_deg[joint], contacts);
     gait.reference_deg[joint] = mean_cycle(recording.reference_deg[joint], contacts);
-    gait.measured[joint] = agreement(gait.measured_deg[joint], norms.deg[joint]);
-    gait.reference[joint] = agreement(gait.reference_deg[joint], norms.deg[joint]);
+    gait.measured[joint] = generator::agreement(gait.measured_deg[joint], norms.deg[joint]);
+    gait.reference[joint] = generator::agreement(gait.reference_deg[joint], norms.deg[joint]);
   }
   return gait;
 }
@@ -65,12 +65,6 @@ ordered_json agreement_json(const CurveAgreement& a) {
 }
 
 }  // namespace
-
-std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg,
-                                             double pelvis_pitch_rad) {
-  return {(-q[leg[generator::kHipPitch]] - pelvis_pitch_rad) / kRadPerDegree, q[leg[generator::kKnee]] / kRadPerDegree,
-          -q[leg[generator::kAnklePitch]] / kRadPerDegree};
-}
 
 std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s) {
   const auto shortest = static_cast<std::size_t>(std::lround(kShortestSwing_s / dt_s));
@@ -106,15 +100,6 @@ double mean_at(const std::vector<double>& values, const std::vector<std::size_t>
   double sum = 0.0;
   for (const std::size_t tick : contacts) sum += values[tick];
   return sum / static_cast<double>(contacts.size());
-}
-
-CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published) {
-  const auto n = static_cast<Eigen::Index>(ours.size());
-  const Eigen::Map<const Eigen::ArrayXd> a(ours.data(), n), b(published.data(), n);
-  const Eigen::ArrayXd da = a - a.mean(), db = b - b.mean();
-  return {.correlation = (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()),
-          .rms_deg = std::sqrt((a - b).square().mean()),
-          .shape_rms_deg = std::sqrt((da - db).square().mean())};
 }
 
 bool GaitTest::duty_reached(Foot foot) const {
@@ -167,8 +152,8 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
       recordings[foot].loaded.push_back(truth.foot_force_N[foot] > kLoadedFoot_N);
       recordings[foot].since_planned_contact.push_back(
           cycles_since_contact(planned.phase, planned.contact_center[foot], planned.duty_factor[foot]));
-      const auto measured = flexions_deg(state.q, roles.leg[foot], sil::roll_pitch(truth.q_WB).pitch_rad);
-      const auto reference = flexions_deg(planned.q, roles.leg[foot], planned_pitch_rad);
+      const auto measured = generator::flexions_deg(state.q, roles.leg[foot], sil::roll_pitch(truth.q_WB).pitch_rad);
+      const auto reference = generator::flexions_deg(planned.q, roles.leg[foot], planned_pitch_rad);
       for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
         recordings[foot].measured_deg[joint].push_back(measured[joint]);
         recordings[foot].reference_deg[joint].push_back(reference[joint]);

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "evaluation/campaign.hpp"
-#include "evaluation/gait_norms.hpp"
-#include "generator/joint_roles.hpp"
+#include "generator/gait_norms.hpp"
 #include "pages/page.hpp"
 
 namespace pmg::evaluation {
+
+using generator::CurveAgreement, generator::GaitNorms, generator::kCyclePoints, generator::kGaitJointNames,
+    generator::kGaitJoints;
 
 inline constexpr double kAskedCorrelation = 0.9, kAskedDutyDifference = 0.05;
 /// RMS difference from the published mean, in standard deviations between persons: of 20 people 19 are as near.
@@ -26,11 +28,6 @@ struct FootRecording {
   std::array<std::vector<double>, kGaitJoints> measured_deg, reference_deg;
 };
 
-/// Flexions [deg] of thigh, knee and ankle; positive as in gait analysis. The thigh's is against the vertical, as the
-/// norms': the hip joint's less the pelvis' forward pitch.
-std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, generator::kLegJoints>& leg,
-                                             double pelvis_pitch_rad);
-
 /// Ticks at which the foot comes down after at least 0.1 s in the air.
 std::vector<std::size_t> initial_contacts(const std::vector<bool>& loaded, double dt_s);
 
@@ -42,14 +39,6 @@ double cycles_since_contact(double phase, double contact_center, double duty_fac
 
 /// Mean of `values` at the ticks `contacts`.
 double mean_at(const std::vector<double>& values, const std::vector<std::size_t>& contacts);
-
-struct CurveAgreement {
-  double correlation = 0.0;
-  double rms_deg = 0.0;
-  double shape_rms_deg = 0.0;  ///< RMS after both means are subtracted
-  /// Correlation and RMS differences of two curves of equal length.
-};
-CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published);
 
 struct FootGait {
   int cycles = 0;

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "files/bounded_file.hpp"
-#include "files/config_error.hpp"
 #include "generator/joint_roles.hpp"
-#include "generator/published_gait.hpp"
 #include "model/leg_kinematics.hpp"
 
 namespace pmg::generator {
@@ -17,50 +13,12 @@ namespace {
 /// At small gains the foot that has just lifted off is then below the ground for the first ticks of its swing.
 constexpr double kSwingBelowGround_m = 0.006;
 
-LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain,
-                             const JointVector& q_stand) {
-  LegTrajectory legs;
-  for (std::size_t k = 0; k < clip.q.size(); ++k) {
-    LegPose q;
-    LegPose dq;
-    for (const Foot foot : {kLeft, kRight}) {
-      for (std::size_t role = 0; role < kLegJoints; ++role) {
-        const int joint = roles.leg[foot][role];
-        const auto i = static_cast<Eigen::Index>(role);
-        q[foot][i] = q_stand[joint] + gain * (clip.q[k][joint] - q_stand[joint]);
-        dq[foot][i] = gain * clip.dq_dphi[k][joint];
-      }
-    }
-    legs.q.push_back(q);
-    legs.dq_dphi.push_back(dq);
-  }
-  return legs;
-}
-
-/// The base's mean pitch [rad] under an upright torso.
-double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand) {
-  if (!roles.waist_pitch) {
-    return 0.0;
-  }
+/// The base's mean pitch [rad] under an upright torso, forward positive.
+double pelvis_tilt_rad(const model::RobotModel& robot, const JointRoles& roles, const DynamicClip& clip) {
+  if (!roles.waist_pitch) return 0.0;
   double mean = 0.0;
-  for (const JointVector& q : clip.q) {
-    mean += q[*roles.waist_pitch] / static_cast<double>(clip.q.size());
-  }
-  return -gain * (mean - q_stand[*roles.waist_pitch]);
-}
-
-/// The base's attitude and rate under an upright torso, one per sample.
-std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain) {
-  model::BaseAttitude attitude(robot);
-  const JointVector q_stand = robot.q_stand();
-  std::vector<BaseMotion> base;
-  for (std::size_t k = 0; k < clip.q.size(); ++k) {
-    const JointVector q = q_stand + gain * (clip.q[k] - q_stand);
-    const JointVector dq = gain / clip.period_s * clip.dq_dphi[k];
-    const model::BaseAttitude::Result at = attitude.compute(q, dq, 0.0, 0.0, 0.0, 0.0);
-    base.push_back({at.R_HB, at.omega_HB_H});
-  }
-  return base;
+  for (const JointVector& q : clip.q) mean += q[*roles.waist_pitch] / static_cast<double>(clip.q.size());
+  return robot.q_stand()[*roles.waist_pitch] - mean;
 }
 
 constexpr double kClearance_m = 0.025;  // for a floor that isn't quite flat
@@ -121,116 +79,76 @@ ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, 
   return out;
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    cells.push_back(cell);
+// Where people's feet lie flat [% of the cycle]: the published curves turn the sole by less than 3 degrees there.
+constexpr std::size_t kFlatFrom = 10, kFlatTo = 30;
+
+/// A leg's flexions as norms have them [deg at kCyclePoints].
+using LegCurves = std::array<std::vector<double>, kGaitJoints>;
+
+/// Of the left leg, under an upright torso.
+LegCurves curves_of(const model::RobotModel& robot, const DynamicClip& forward) {
+  const JointRoles roles = find_joint_roles(robot);
+  const double tilt_rad = pelvis_tilt_rad(robot, roles, forward);
+  LegCurves curves;
+  for (std::size_t k = 0; k < kCyclePoints; ++k) {
+    const auto flexed = flexions_deg(forward.q[k * forward.q.size() / kCyclePoints], roles.leg[kLeft], tilt_rad);
+    for (std::size_t joint = 0; joint < kGaitJoints; ++joint) curves[joint].push_back(flexed[joint]);
   }
-  return cells;
+  return curves;
 }
 
-/// One column of a norms file without its last row, because 100 % is 0 % again.
-std::vector<double> read_column(const std::filesystem::path& file, const std::string& name) {
-  std::istringstream in(files::read_bounded_text(file, files::kLargestTable_bytes, "a file of norms"));
-  std::vector<double> values;
-  std::ptrdiff_t column = -1;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line.front() == '#') {
-      continue;
-    }
-    const std::vector<std::string> cells = split(line);
-    if (column < 0) {
-      column = std::find(cells.begin(), cells.end(), name) - cells.begin();
-    } else if (column < std::ssize(cells)) {
-      values.push_back(std::strtod(cells[static_cast<std::size_t>(column)].c_str(), nullptr));
-    }
-  }
-  if (values.size() != 101) {
-    throw files::ConfigError(file.string() + ": " + name + ": " + std::to_string(values.size()) +
-                             " values; expected a column of 101, 0 to 100 % of the cycle");
-  }
-  values.pop_back();
-  return values;
+/// Mean rise of the toes where people's feet lie flat.
+double toes_up_deg(const LegCurves& curves) {
+  double sum = 0.0;
+  for (std::size_t k = kFlatFrom; k <= kFlatTo; ++k)
+    sum += curves[kHip][k] - curves[kKneeFlexion][k] + curves[kAnkle][k];
+  return sum / static_cast<double>(kFlatTo - kFlatFrom + 1);
+}
+
+/// The thigh against the pelvis.
+std::vector<double> hip_flexion(std::vector<double> thigh_deg, const std::vector<double>& pelvic_tilt_deg) {
+  for (std::size_t k = 0; k < thigh_deg.size(); ++k) thigh_deg[k] += pelvic_tilt_deg[k];
+  return thigh_deg;
 }
 
 NormReport compare(const std::string& curve, const std::vector<double>& ours, const std::vector<double>& published) {
-  const auto n = static_cast<Eigen::Index>(ours.size());
-  const Eigen::Map<const Eigen::ArrayXd> a(ours.data(), n);
-  const Eigen::Map<const Eigen::ArrayXd> b(published.data(), n);
-  const Eigen::ArrayXd da = a - a.mean();
-  const Eigen::ArrayXd db = b - b.mean();
-  return {curve, (da * db).sum() / std::sqrt(da.square().sum() * db.square().sum()), std::sqrt((a - b).square().mean()),
-          a[0]};
-}
-
-constexpr std::size_t kNormPoints = 100;  // 0 to 99 % of the cycle
-
-// Where people's feet lie flat [kNormPoints]: the published curves turn the sole by less than 3 degrees there.
-constexpr std::size_t kFlatFrom = 10, kFlatTo = 30;
-
-/// Published means [deg] at kNormPoints.
-struct NormCurves {
-  std::vector<double> hip, tilt, knee, ankle;
-};
-
-/// The left leg's flexion [deg] at kNormPoints.
-struct LegCurves {
-  std::vector<double> hip, thigh, knee, ankle;
-
-  /// Mean rise of the toes where people's feet lie flat.
-  double toes_up_deg() const {
-    double sum = 0.0;
-    for (std::size_t k = kFlatFrom; k <= kFlatTo; ++k) sum += thigh[k] - knee[k] + ankle[k];
-    return sum / static_cast<double>(kFlatTo - kFlatFrom + 1);
-  }
-};
-
-LegCurves curves_of(const model::RobotModel& robot, const DynamicClip& forward) {
-  const JointRoles roles = find_joint_roles(robot);
-  const double tilt_deg = pelvis_tilt(forward, roles, 1.0, robot.q_stand()) / kRadPerDegree;
-  LegCurves curves;
-  const std::size_t n = forward.q.size();
-  for (std::size_t k = 0; k < kNormPoints; ++k) {
-    const JointVector& q = forward.q[k * n / kNormPoints];
-    curves.hip.push_back(-q[roles.leg[kLeft][kHipPitch]] / kRadPerDegree);
-    curves.thigh.push_back(curves.hip.back() - tilt_deg);
-    curves.knee.push_back(q[roles.leg[kLeft][kKnee]] / kRadPerDegree);
-    curves.ankle.push_back(-q[roles.leg[kLeft][kAnklePitch]] / kRadPerDegree);
-  }
-  return curves;
-}
-
-LegCurves curves_of(const NormCurves& norms) {
-  LegCurves curves{.hip = norms.hip, .thigh = norms.hip, .knee = norms.knee, .ankle = norms.ankle};
-  for (std::size_t k = 0; k < kNormPoints; ++k) curves.thigh[k] -= norms.tilt[k];
-  return curves;
-}
-
-/// Of generator/published_gait.hpp.
-NormCurves published_norms() {
-  const PublishedGait& gait = published_gait();
-  NormCurves norms;
-  for (std::size_t k = 0; k < kNormPoints; ++k) {
-    const double phase = static_cast<double>(k) / static_cast<double>(kNormPoints);
-    norms.hip.push_back(gait.hip_flexion.at_rad(phase) / kRadPerDegree);
-    norms.tilt.push_back(gait.pelvic_tilt_deg);
-    norms.knee.push_back(gait.knee_flexion.at_rad(phase) / kRadPerDegree);
-    norms.ankle.push_back(gait.ankle_dorsiflexion.at_rad(phase) / kRadPerDegree);
-  }
-  return norms;
-}
-
-/// norms: as of compare_with_norms.
-NormCurves read_norms(const std::filesystem::path& norms) {
-  if (norms.empty()) return published_norms();
-  return {.hip = read_column(norms, "hip_flexion_mean"),
-          .tilt = read_column(norms, "pelvis_tilt_ant+_mean"),
-          .knee = read_column(norms, "knee_flexion_mean"),
-          .ankle = read_column(norms, "ankle_dorsiflexion_mean")};
+  return {curve, agreement(ours, published), ours.front()};
 }
 
 }  // namespace
+
+LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain,
+                             const JointVector& q_stand) {
+  LegTrajectory legs;
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    LegPose q;
+    LegPose dq;
+    for (const Foot foot : {kLeft, kRight}) {
+      for (std::size_t role = 0; role < kLegJoints; ++role) {
+        const int joint = roles.leg[foot][role];
+        const auto i = static_cast<Eigen::Index>(role);
+        q[foot][i] = q_stand[joint] + gain * (clip.q[k][joint] - q_stand[joint]);
+        dq[foot][i] = gain * clip.dq_dphi[k][joint];
+      }
+    }
+    legs.q.push_back(q);
+    legs.dq_dphi.push_back(dq);
+  }
+  return legs;
+}
+
+std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain) {
+  model::BaseAttitude attitude(robot);
+  const JointVector q_stand = robot.q_stand();
+  std::vector<BaseMotion> base;
+  for (std::size_t k = 0; k < clip.q.size(); ++k) {
+    const JointVector q = q_stand + gain * (clip.q[k] - q_stand);
+    const JointVector dq = gain / clip.period_s * clip.dq_dphi[k];
+    const model::BaseAttitude::Result at = attitude.compute(q, dq, 0.0, 0.0, 0.0, 0.0);
+    base.push_back({at.R_HB, at.omega_HB_H});
+  }
+  return base;
+}
 
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library) {
   const JointRoles roles = find_joint_roles(robot);
@@ -250,15 +168,17 @@ std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary
 }
 
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
-                                           const std::filesystem::path& norms) {
-  const LegCurves ours = curves_of(robot, forward), published = curves_of(read_norms(norms));
-  return {compare("hip", ours.hip, published.hip), compare("thigh", ours.thigh, published.thigh),
-          compare("knee", ours.knee, published.knee), compare("ankle", ours.ankle, published.ankle)};
+                                           const GaitNorms& norms) {
+  const LegCurves ours = curves_of(robot, forward), &published = norms.deg;
+  const std::vector<double> tilt_deg(kCyclePoints,
+                                     pelvis_tilt_rad(robot, find_joint_roles(robot), forward) / kRadPerDegree);
+  return {compare("hip", hip_flexion(ours[kHip], tilt_deg), hip_flexion(published[kHip], norms.pelvic_tilt_deg)),
+          compare("thigh", ours[kHip], published[kHip]), compare("knee", ours[kKneeFlexion], published[kKneeFlexion]),
+          compare("ankle", ours[kAnkle], published[kAnkle])};
 }
 
-SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
-                                   const std::filesystem::path& norms) {
-  return {curves_of(robot, forward).toes_up_deg(), curves_of(read_norms(norms)).toes_up_deg()};
+SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward, const GaitNorms& norms) {
+  return {toes_up_deg(curves_of(robot, forward)), toes_up_deg(norms.deg)};
 }
 
 }  // namespace pmg::generator

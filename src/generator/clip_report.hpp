@@ -1,15 +1,22 @@
 // The figures of a clip library that an engineer checks before it goes to a robot.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "generator/gait_measure.hpp"
+#include "generator/gait_norms.hpp"
+#include "generator/joint_roles.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/clip.hpp"
 
 namespace pmg::generator {
+
+/// The legs of a clip that is blended with standing: q_stand + gain (q_clip - q_stand) [rad], one entry per sample.
+LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain, const JointVector& q_stand);
+
+/// The base of the same under an upright torso, one entry per sample.
+std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain);
 
 /// A dynamic clip, blended with standing at one gain.
 struct GainReport {
@@ -36,15 +43,12 @@ std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary
 /// Agreement of a walking clip's left leg with a published mean; the offset counts.
 struct NormReport {
   std::string curve;
-  double correlation = 0.0, rms_deg = 0.0;
+  CurveAgreement agreement;
   double at_contact_deg = 0.0;  ///< flexion at initial contact
 };
 
-/// norms: empty for the means that the forward clip is made from (published_gait.hpp), or a CSV of 101 rows (0 .. 100 %
-/// of the cycle) with columns hip_flexion_mean, knee_flexion_mean, ankle_dorsiflexion_mean and pelvis_tilt_ant+_mean,
-/// in degrees. Throws files::ConfigError.
 std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
-                                           const std::filesystem::path& norms);
+                                           const GaitNorms& norms);
 
 /// How far a walking clip's left sole stands on its heel in the mean of 10 to 30 % of the cycle, where people's feet
 /// lie flat: thigh flexion - knee flexion + ankle dorsiflexion [deg]. A robot's foot lies flat on the floor there,
@@ -52,8 +56,6 @@ std::vector<NormReport> compare_with_norms(const model::RobotModel& robot, const
 struct SoleReport {
   double toes_up_deg = 0.0, published_toes_up_deg = 0.0;
 };
-/// norms: as of compare_with_norms.
-SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward,
-                                   const std::filesystem::path& norms);
+SoleReport compare_sole_with_norms(const model::RobotModel& robot, const DynamicClip& forward, const GaitNorms& norms);
 
 }  // namespace pmg::generator

@@ -11,7 +11,6 @@
 #include "files/config_error.hpp"
 #include "generator/gait_parts.hpp"
 #include "mocap/gait_events.hpp"
-#include "model/leg_kinematics.hpp"
 #include "retargeting/build_library.hpp"
 #include "retargeting/leg_imitation.hpp"
 #include "retargeting/retargeting.hpp"
@@ -30,30 +29,6 @@ const DynamicClip& clip_of(const ClipLibrary& library, const ClipRecipe& recipe)
                  fmt::format("{}, as pmg_clips makes them", generator::kClipSamples));
   }
   return *clip;
-}
-
-std::vector<generator::LegPose> leg_poses(const generator::JointRoles& roles, const DynamicClip& clip) {
-  std::vector<generator::LegPose> poses;
-  for (const JointVector& q : clip.q) {
-    generator::LegPose pose;
-    for (const Foot foot : {kLeft, kRight}) {
-      for (std::size_t role = 0; role < generator::kLegJoints; ++role)
-        pose[foot][static_cast<Eigen::Index>(role)] = q[roles.leg[foot][role]];
-    }
-    poses.push_back(pose);
-  }
-  return poses;
-}
-
-/// Under an upright torso.
-std::vector<generator::BaseMotion> bases_of(const model::RobotModel& robot, const DynamicClip& clip) {
-  model::BaseAttitude attitude(robot);
-  std::vector<generator::BaseMotion> bases;
-  for (std::size_t k = 0; k < clip.q.size(); ++k) {
-    const auto base = attitude.compute(clip.q[k], clip.dq_dphi[k] / clip.period_s, 0.0, 0.0, 0.0, 0.0);
-    bases.push_back({base.R_HB, base.omega_HB_H});
-  }
-  return bases;
 }
 
 mocap::SeamJump seam_of(const DynamicClip& clip) {
@@ -125,7 +100,8 @@ ReviewedClip review_clip(const generator::Making& making, const DynamicClip& cli
   out.froude_ratio = anew.froude_ratio;
   out.frames_per_s = anew.frames_per_s;
   out.person_legs = leg_angles(out.human);
-  out.robot_legs = leg_angles(making.legs, leg_poses(making.roles, clip), bases_of(making.robot, clip));
+  const generator::LegTrajectory legs = generator::leg_trajectory(clip, making.roles, 1.0, making.robot.q_stand());
+  out.robot_legs = leg_angles(making.legs, legs.q, generator::base_of(making.robot, clip, 1.0));
   out.in_limits = imitation(leg_angles(making.legs, anew.gait.task.reference,
                                        std::vector<generator::BaseMotion>(anew.gait.task.reference.size())),
                             out.person_legs);

@@ -4,17 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-
-#include "files/config_error.hpp"
-#include "temporary_folder.hpp"
 
 namespace pmg::evaluation {
 namespace {
 
+using generator::kHip;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -28,16 +24,6 @@ TEST(Gait, AContactIsAFootThatComesDownAfterASwing) {
   lift(45, 48);  // a bounce
   lift(70, 80);
   EXPECT_THAT(initial_contacts(loaded, 0.01), ElementsAre(40U, 80U));
-}
-
-TEST(Gait, ATiltedPelvisIsTakenOffTheHipBecauseTheNormsAreTheThighs) {
-  JointVector q = JointVector::Zero(6);
-  q << -30.0, 1.0, 2.0, 40.0, -15.0, 3.0;  // the order of generator::LegRole
-  q *= std::numbers::pi / 180.0;
-  const auto flexed = flexions_deg(q, {0, 1, 2, 3, 4, 5}, 10.0 * std::numbers::pi / 180.0);
-  EXPECT_NEAR(flexed[kHip], 20.0, 1e-9);
-  EXPECT_NEAR(flexed[kKneeFlexion], 40.0, 1e-9);
-  EXPECT_NEAR(flexed[kAnkle], 15.0, 1e-9);
 }
 
 TEST(Gait, CyclesOfDifferentLengthAreStretchedOntoEachOther) {
@@ -67,78 +53,11 @@ TEST(Gait, WhenFeetLandIsTheMeanAtTheirContacts) {
   EXPECT_NEAR(mean_at({0.4, -0.06, -0.05, 0.0, -0.02}, {1, 4}), -0.04, 1e-12);
 }
 
-TEST(Gait, AnOffsetSpoilsTheRmsButNeitherCorrelationNorShape) {
-  std::vector<double> published, ours;
-  for (std::size_t k = 0; k < kCyclePoints; ++k) {
-    published.push_back(20.0 * std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / kCyclePoints));
-    ours.push_back(published.back() + 5.0);
-  }
-  const CurveAgreement a = agreement(ours, published);
-  EXPECT_NEAR(a.correlation, 1.0, 1e-12);
-  EXPECT_NEAR(a.rms_deg, 5.0, 1e-9);
-  EXPECT_NEAR(a.shape_rms_deg, 0.0, 1e-9);
-  for (double& value : ours) value = -value;
-  EXPECT_NEAR(agreement(ours, published).correlation, -1.0, 1e-12);
-}
-
-class NormsFile : public testing::Test {
- protected:
-  void write(const std::string& text) { std::ofstream(file_) << text; }
-  std::string refusal() {
-    try {
-      load_norms(file_);
-    } catch (const files::ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
-  }
-  test::TemporaryFolder folder_;
-  std::filesystem::path file_ = folder_.file("norms.csv");
-};
-
-constexpr const char* kHeader =
-    "# source\npct_cycle,pelvis_tilt_ant+_mean,hip_flexion+_mean,hip_flexion+_sd,knee_flexion+_mean,"
-    "ankle_dorsiflexion+_mean\n";
-
-TEST_F(NormsFile, AnyEqualStepsAreTakenAndPelvicTiltIsOffTheHip) {
-  std::string text = kHeader;
-  for (int row = 0; row <= 10; ++row) text += std::to_string(10 * row) + ",12," + std::to_string(12 + row) + ",1,7,3\n";
-  write(text);
-  const GaitNorms norms = load_norms(file_);
-  EXPECT_NEAR(norms.deg[kHip][0], 0.0, 1e-12);
-  EXPECT_NEAR(norms.deg[kHip][50], 5.0, 1e-12);
-  EXPECT_NEAR(norms.deg[kHip][55], 5.5, 1e-12);
-  EXPECT_EQ(norms.deg[kKneeFlexion][99], 7.0);
-}
-
-TEST_F(NormsFile, WhatIsWrongIsNamed) {
-  EXPECT_THAT(refusal(), HasSubstr("cannot be read"));
-  std::string few_columns = "pct_cycle,hip_flexion_mean\n";
-  for (int row = 0; row <= 10; ++row) few_columns += std::to_string(row) + ",1\n";
-  write(few_columns);
-  EXPECT_THAT(refusal(), HasSubstr(":1: knee_flexion..._mean: is missing"));
-  write(std::string(kHeader) + "0,1,2,3,4,5\n");
-  EXPECT_THAT(refusal(), HasSubstr("1 rows"));
-  std::string text = std::string(kHeader) + "0,1,2,3,four,5\n";
-  for (int row = 1; row <= 10; ++row) text += "0,1,2,3,4,5\n";
-  write(text);
-  EXPECT_THAT(refusal(), HasSubstr(":3: knee_flexion+_mean: is 'four'"));
-}
-
-TEST(Gait, BuiltInNormsAreThoseOfWalking) {
-  const GaitNorms norms = built_in_norms();
-  const auto& knee = norms.deg[kKneeFlexion];
-  const auto peak = std::max_element(knee.begin(), knee.end()) - knee.begin();
-  EXPECT_GT(peak, 65) << "the knee bends most in swing";
-  EXPECT_LT(peak, 80);
-  EXPECT_GT(norms.deg[kHip].front(), norms.deg[kHip][50]) << "flexed at contact, extended when the other foot lands";
-}
-
 /// A test whose both feet move as the norms say, with so much added to each joint.
 GaitTest walk_of(std::array<double, kGaitJoints> offset_deg) {
   GaitTest test;
   test.robot = "z1";
-  test.norms = built_in_norms();
+  test.norms = generator::built_in_norms();
   test.trial.complete = true;
   for (FootGait& gait : test.feet) {
     gait.cycles = 10;
@@ -148,7 +67,7 @@ GaitTest walk_of(std::array<double, kGaitJoints> offset_deg) {
       std::vector<double> curve = test.norms.deg[joint];
       for (double& value : curve) value += offset_deg[joint];
       gait.measured_deg[joint] = gait.reference_deg[joint] = curve;
-      gait.measured[joint] = gait.reference[joint] = agreement(curve, test.norms.deg[joint]);
+      gait.measured[joint] = gait.reference[joint] = generator::agreement(curve, test.norms.deg[joint]);
     }
   }
   return test;

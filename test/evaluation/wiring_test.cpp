@@ -43,7 +43,7 @@ TEST(Wiring, AGaitThatIsInterruptedBeforeTwoStepsIsNoRobotThatCannotWalk) {
   GaitTest test;
   test.robot = "z1";
   test.evaluated = {.name = "pmg", .candidate = pmg_policy(), .plants = {}};
-  test.norms = built_in_norms();
+  test.norms = generator::built_in_norms();
   int questions = 0;
   const Supervision supervision{.jobs = 1, .progress = {.report = {}, .interrupted = [&] { return ++questions > 20; }}};
   EXPECT_THROW(run_gait(test, supervision), work::Interrupted);
@@ -55,7 +55,7 @@ TEST(Wiring, GaitComparesTheMeasuredJointsWithTheReferenceAndBothWithThePublishe
   test.robot = "z1";
   test.evaluated = {.name = "pmg", .candidate = pmg_policy(), .plants = {}};
   test.steady_s = 3.0;
-  test.norms = built_in_norms();
+  test.norms = generator::built_in_norms();
   run_gait(test, {});
   for (const Foot foot : {kLeft, kRight}) {
     const FootGait& gait = test.feet[foot];
@@ -70,8 +70,8 @@ TEST(Wiring, GaitComparesTheMeasuredJointsWithTheReferenceAndBothWithThePublishe
   // The clip's pelvis tilts forward by 8 degrees under an upright torso. Thighs are 9 and 12 degrees from the means;
   // hip joints, from which nobody takes the tilt off, 17 and 19.
   for (const Foot foot : {kLeft, kRight}) {
-    EXPECT_LT(test.feet[foot].measured[kHip].rms_deg, 13.0);
-    EXPECT_LT(test.feet[foot].reference[kHip].rms_deg, 15.0);
+    EXPECT_LT(test.feet[foot].measured[generator::kHip].rms_deg, 13.0);
+    EXPECT_LT(test.feet[foot].reference[generator::kHip].rms_deg, 15.0);
   }
   // A foot that lands 5 % early takes 0.2 off the correlations of knee and ankle.
   for (const Foot foot : {kLeft, kRight}) EXPECT_LT(std::abs(test.feet[foot].contact_late), 0.03);

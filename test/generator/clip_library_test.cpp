@@ -89,16 +89,16 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeans) {
   if (!std::filesystem::exists(norms)) {
     GTEST_SKIP() << "no published means at " << norms;
   }
-  for (const NormReport& norm : compare_with_norms(*robot_, *library_->positive[kVx], norms)) {
-    EXPECT_GE(norm.correlation, 0.95) << norm.curve;
-    EXPECT_LE(norm.rms_deg, 6.0) << norm.curve;
+  for (const NormReport& norm : compare_with_norms(*robot_, *library_->positive[kVx], load_norms(norms))) {
+    EXPECT_GE(norm.agreement.correlation, 0.95) << norm.curve;
+    EXPECT_LE(norm.agreement.rms_deg, 6.0) << norm.curve;
   }
 }
 
 TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeansOffsetIncludedAndLandsOnANearlyStraightKnee) {
-  for (const NormReport& norm : compare_with_norms(*robot_, *library_->positive[kVx], {})) {
-    EXPECT_GE(norm.correlation, 0.95) << norm.curve;
-    EXPECT_LE(norm.rms_deg, 8.0) << norm.curve;
+  for (const NormReport& norm : compare_with_norms(*robot_, *library_->positive[kVx], built_in_norms())) {
+    EXPECT_GE(norm.agreement.correlation, 0.95) << norm.curve;
+    EXPECT_LE(norm.agreement.rms_deg, 8.0) << norm.curve;
     if (norm.curve == "knee") {
       EXPECT_LE(norm.at_contact_deg, 15.0);
     }
@@ -108,7 +108,7 @@ TEST_F(ClipsOfZ1, ForwardFollowsThePublishedMeansOffsetIncludedAndLandsOnANearly
 TEST_F(ClipsOfZ1, ForwardsSoleIsComparedWherePeoplesFeetLieFlat) {
   const JointRoles roles = find_joint_roles(*robot_);
   ASSERT_EQ(library_->positive[kVx]->q.size(), 100U);  // a row for each percent of the cycle
-  const SoleReport sole = compare_sole_with_norms(*robot_, *library_->positive[kVx], {});
+  const SoleReport sole = compare_sole_with_norms(*robot_, *library_->positive[kVx], built_in_norms());
   EXPECT_NEAR(sole.published_toes_up_deg, 0.0, 1.0);
   EXPECT_LE(sole.toes_up_deg, 10.5);  // not yet flat: no later clip shall stand farther on its heel
   const auto toes_up_deg = [&](LegRole role, double added_deg, int from_percent, int to_percent) {
@@ -116,7 +116,7 @@ TEST_F(ClipsOfZ1, ForwardsSoleIsComparedWherePeoplesFeetLieFlat) {
     for (int k = from_percent; k <= to_percent; ++k) {
       moved.q[static_cast<std::size_t>(k)][roles.leg[kLeft][role]] += added_deg * kRadPerDegree;
     }
-    return compare_sole_with_norms(*robot_, moved, {}).toes_up_deg;
+    return compare_sole_with_norms(*robot_, moved, built_in_norms()).toes_up_deg;
   };
   // Flexion of hip and ankle is negative in this robot's joints, that of the knee positive.
   EXPECT_NEAR(toes_up_deg(kHipPitch, -4.0, 10, 30), sole.toes_up_deg + 4.0, 1e-9);

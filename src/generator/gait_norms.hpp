@@ -1,4 +1,4 @@
-// Published mean joint curves over the gait cycle.
+// Joint curves over the gait cycle: those of people, published, and how near others come to them.
 #pragma once
 
 #include <array>
@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace pmg::evaluation {
+#include "generator/joint_roles.hpp"
+
+namespace pmg::generator {
 
 enum GaitJoint : std::size_t { kHip, kKneeFlexion, kAnkle, kGaitJoints };
 inline constexpr std::array<const char*, kGaitJoints> kGaitJointNames = {"hip flexion", "knee flexion",
@@ -18,6 +20,7 @@ inline constexpr std::size_t kCyclePoints = 100;  ///< 0 to 99 % of the cycle, f
 struct GaitNorms {
   std::string source;
   std::array<std::vector<double>, kGaitJoints> deg;
+  std::vector<double> pelvic_tilt_deg;  ///< anterior
   /// One standard deviation between persons, rms over the cycle. Of files without columns ..._sd that of the built-in
   /// norms.
   std::array<double, kGaitJoints> deviation_deg{};
@@ -31,4 +34,20 @@ GaitNorms built_in_norms();
 /// of the first three as far as they are there. Throws files::ConfigError.
 GaitNorms load_norms(const std::filesystem::path& file);
 
-}  // namespace pmg::evaluation
+/// Those of the file; the built-in ones if none is named.
+GaitNorms norms_of(const std::filesystem::path& file);
+
+/// Flexions [deg] of thigh, knee and ankle; positive as in gait analysis. The thigh's is against the vertical, as the
+/// norms': the hip joint's less the pelvis' forward pitch.
+std::array<double, kGaitJoints> flexions_deg(const JointVector& q, const std::array<int, kLegJoints>& leg,
+                                             double pelvis_pitch_rad);
+
+/// Correlation and RMS differences of two curves of equal length.
+struct CurveAgreement {
+  double correlation = 0.0;
+  double rms_deg = 0.0;
+  double shape_rms_deg = 0.0;  ///< RMS after both means are subtracted
+};
+CurveAgreement agreement(const std::vector<double>& ours, const std::vector<double>& published);
+
+}  // namespace pmg::generator
