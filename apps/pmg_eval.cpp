@@ -105,12 +105,12 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result) {
   add_to(json, worth);
   fs::create_directories(arguments.out);
   sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
-  page_of(result).write(arguments.out / "report.html");
+  const pages::Page page = page_of(result);
+  page.write(arguments.out / "report.html");
   if (arguments.json) {
     apps::print_json(json);
   } else {
-    if (!worth.reservations().empty()) std::cout << worth.sentence() << '\n';
-    for (const std::string& line : text_of(result)) std::cout << line << '\n';
+    for (const std::string& line : page.lines()) std::cout << line << '\n';
     std::cout << "report in " << (arguments.out / "report.html").string() << '\n';
   }
   return worth.exit_code();

@@ -122,26 +122,13 @@ ordered_json to_json(const JumpTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const JumpTest& test) {
-  std::vector<std::string> lines;
-  for (const bool with : {false, true}) {
-    lines.push_back(fmt::format("{:<24} jump every {} s for {:.0f} s: survived {}", kGroupNames[with ? 1 : 0], kJump_s,
-                                test.duration_s, percent(survival(test, with))));
-  }
-  for (std::size_t i = 0; i < test.runs.size(); ++i) {
-    const TrialResult& run = test.runs[i];
-    if (run.complete && !run.survived()) lines.push_back(fmt::format("seed {}: {}", i + 1, end_of(run)));
-  }
-  return lines;
-}
-
 pages::Page page_of(const JumpTest& test) {
   pages::Page page(fmt::format("Jumping commands: {} on {}", test.evaluated.name, test.robot));
   page.worth(worth_of(test));
   if (worth_of(test).usable()) page.verdict({}, "No robot fell or faulted");
   page.heading("Robots");
   for (const bool with : {false, true}) {
-    page.paragraph(fmt::format("{} jump: survived {}", kGroupNames[with ? 1 : 0], percent(survival(test, with))));
+    page.note(fmt::format("{} jump: survived {}", kGroupNames[with ? 1 : 0], percent(survival(test, with))));
   }
   pages::Table table{.header = {"seed", "jumping", "end"}, .rows = {}};
   for (std::size_t e = 0; e < evaluation::kErrors; ++e) {

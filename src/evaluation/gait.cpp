@@ -228,31 +228,26 @@ ordered_json to_json(const GaitTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const GaitTest& test) {
-  std::vector<std::string> lines = {
-      difference_text(test), test.trial.fell ? "FELL" : "did not fall",
-      fmt::format("against {}:          measured                      reference", test.norms.source),
-      "joint                       correlation  RMS deg  shape RMS   correlation  RMS deg"};
+namespace {
+
+pages::Table joints_table(const GaitTest& test) {
+  pages::Table table{.header = {"foot", "joint", "correlation", "RMS [deg]", "shape RMS [deg]",
+                                "reference's correlation", "reference's RMS [deg]", ""},
+                     .rows = {}};
   for (const Foot foot : {kLeft, kRight}) {
     for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
       const CurveAgreement &m = test.feet[foot].measured[joint], &r = test.feet[foot].reference[joint];
-      lines.push_back(
-          fmt::format("{:<6}{:<22}{:>11.3f}{:>9.1f}{:>11.1f}{:>14.3f}{:>9.1f}{}", kSideNames[foot],
-                      kGaitJointNames[joint], m.correlation, m.rms_deg, m.shape_rms_deg, r.correlation, r.rms_deg,
-                      m.correlation >= kAskedCorrelation && m.rms_deg <= test.rms_limit_deg(joint) ? "" : "  MISSED"));
+      const bool reached = m.correlation >= kAskedCorrelation && m.rms_deg <= test.rms_limit_deg(joint);
+      table.rows.push_back({kSideNames[foot], kGaitJointNames[joint], fmt::format("{:.3f}", m.correlation),
+                            fmt::format("{:.1f}", m.rms_deg), fmt::format("{:.1f}", m.shape_rms_deg),
+                            fmt::format("{:.3f}", r.correlation), fmt::format("{:.1f}", r.rms_deg),
+                            reached ? "ok" : "MISSED"});
     }
   }
-  for (const Foot foot : {kLeft, kRight}) {
-    lines.push_back(
-        fmt::format("{} duty factor {:.3f}, period {:.3f} s over {} cycles (reference {:.3f}, published {:.2f}){}",
-                    kSideNames[foot], test.feet[foot].duty_factor, test.feet[foot].period_s, test.feet[foot].cycles,
-                    test.reference_duty_factor, kPublishedDutyFactor, test.duty_reached(foot) ? "" : "  MISSED"));
-    lines.push_back(fmt::format("{} foot lands {:.1f} % of a cycle {} the reference", kSideNames[foot],
-                                100.0 * std::abs(test.feet[foot].contact_late),
-                                test.feet[foot].contact_late < 0.0 ? "before" : "after"));
-  }
-  return lines;
+  return table;
 }
+
+}  // namespace
 
 pages::Page page_of(const GaitTest& test) {
   pages::Page page(
@@ -288,16 +283,17 @@ pages::Page page_of(const GaitTest& test) {
       }
     }
   });
+  page.table(joints_table(test));
   page.heading("Feet");
   pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published",
-                               "lands after the reference [% of a cycle]"},
+                               "lands after the reference [% of a cycle]", ""},
                     .rows = {}};
   for (const Foot foot : {kLeft, kRight}) {
     const FootGait& gait = test.feet[foot];
     feet.rows.push_back({kSideNames[foot], std::to_string(gait.cycles), fmt::format("{:.3f}", gait.period_s),
                          fmt::format("{:.3f}", gait.duty_factor), fmt::format("{:.3f}", test.reference_duty_factor),
-                         fmt::format("{:.2f}", kPublishedDutyFactor),
-                         fmt::format("{:.1f}", 100.0 * gait.contact_late)});
+                         fmt::format("{:.2f}", kPublishedDutyFactor), fmt::format("{:.1f}", 100.0 * gait.contact_late),
+                         test.duty_reached(foot) ? "ok" : "MISSED"});
   }
   page.table(feet);
   page.heading("How it was measured");

@@ -16,15 +16,21 @@ struct Curve {
   }
 };
 
-void add_curves(const PushTest& test, pages::Page& page) {
+void add_survival(const PushTest& test, pages::Page& page) {
+  pages::Table table{.header = {"impulse [N s]", "survived, all [%]", "standing", "walking"}, .rows = {}};
   std::vector<double> impulse, asked;
   Curve all, standing, walking;
   for (const PushTrials& at : test.strengths) {
     impulse.push_back(at.impulse_N_s);
     asked.push_back(100.0 * kPushSurvival);
-    all.add(test.survival(at));
-    standing.add(test.survival(at, [](const PushPlan& plan) { return !plan.walking; }));
-    walking.add(test.survival(at, [](const PushPlan& plan) { return plan.walking; }));
+    const Estimate of_all = test.survival(at),
+                   of_standing = test.survival(at, [](const PushPlan&plan) { return !plan.walking; }),
+                   of_walking = test.survival(at, [](const PushPlan&plan) { return plan.walking; });
+    all.add(of_all);
+    standing.add(of_standing);
+    walking.add(of_walking);
+    table.rows.push_back({fmt::format("{:.0f}", at.impulse_N_s), percent_with_interval(of_all),
+                          percent_with_interval(of_standing), percent_with_interval(of_walking)});
   }
   using namespace pages;
   const auto curve = [&](const std::string& title, const Curve& of, const char* colour) {
@@ -42,6 +48,7 @@ void add_curves(const PushTest& test, pages::Page& page) {
     curve("survived, standing [%]", standing, colour::kGreen);
     curve("survived, walking at 0.5 m/s [%]", walking, colour::kVermillion);
   });
+  page.table(table);
 }
 
 void add_directions(const PushTest& test, pages::Page& page) {
@@ -83,7 +90,7 @@ pages::Page page_of(const PushTest& test) {
     }
   }
   page.heading("Survival");
-  add_curves(test, page);
+  add_survival(test, page);
   page.heading("By direction");
   add_directions(test, page);
   page.heading("How it was measured");

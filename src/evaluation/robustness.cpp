@@ -79,19 +79,6 @@ ordered_json to_json(const RobustnessTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const RobustnessTest& test) {
-  std::vector<std::string> lines = {fmt::format("{:<34}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}", "condition", "survived",
-                                                "lin vel", "yaw vel", "roll", "pitch", "height")};
-  for (std::size_t c = 0; c < test.cases.size(); ++c) {
-    const CaseSummary& summary = test.summaries[c];
-    std::string line =
-        fmt::format("{:<34}{:>9}", test.cases[c].name, fmt::format("{}/{}", summary.survived, summary.trials));
-    for (const Estimate& error : summary.errors) line += fmt::format("{:>10.4f}", error.mean);
-    lines.push_back(line);
-  }
-  return lines;
-}
-
 pages::Page page_of(const RobustnessTest& test) {
   pages::Page page(fmt::format("Robustness: {} on {}", test.cases.front().candidate.name, test.robot));
   page.worth(worth_of(test));
@@ -110,9 +97,7 @@ pages::Page page_of(const RobustnessTest& test) {
     set.values.push_back(100.0 * share.mean);
     set.intervals.push_back({100.0 * share.lower, 100.0 * share.upper});
     std::vector<std::string> row = {test.cases[c].name, fmt::format("{} of {}", summary.survived, summary.trials)};
-    for (const Estimate& error : summary.errors) {
-      row.push_back(fmt::format("{:.4f} [{:.4f}, {:.4f}]", error.mean, error.lower, error.upper));
-    }
+    for (const Estimate& error : summary.errors) row.push_back(mean_with_interval(error));
     table.rows.push_back(row);
   }
   bars.sets = {set};

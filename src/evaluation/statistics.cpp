@@ -49,6 +49,11 @@ Estimate share_interval(std::int64_t successes, std::int64_t trials) {
   return {share, successes == 0 ? 0.0 : center - half_width, successes == trials ? 1.0 : center + half_width};
 }
 
+std::string mean_with_interval(const Estimate& mean) {
+  if (!std::isfinite(mean.upper)) return fmt::format("{:.4f}", mean.mean);
+  return fmt::format("{:.4f} +-{:.4f}", mean.mean, mean.upper - mean.mean);
+}
+
 std::string percent_with_interval(const Estimate& share) {
   if (std::isnan(share.mean)) return "-";
   return fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100.0 * share.mean, 100.0 * share.lower, 100.0 * share.upper);

@@ -26,6 +26,9 @@ Estimate paired_difference(std::span<const double> a, std::span<const double> b)
 /// It stays within [0, 1] and is good for shares near its ends. Without trials: NaN with [0, 1].
 Estimate share_interval(std::int64_t successes, std::int64_t trials);
 
+/// A mean for people: "0.0640 +-0.0051", half of its interval; "0.0640" without one.
+std::string mean_with_interval(const Estimate& mean);
+
 /// A share for people: "80 [49, 94]" of 8 in 10; "-" without trials.
 std::string percent_with_interval(const Estimate& share);
 

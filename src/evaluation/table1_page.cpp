@@ -56,11 +56,6 @@ pages::Bars step_bars(const Table1& table, std::size_t error) {
   return bars;
 }
 
-std::string interval_text(const Estimate& estimate) {
-  if (!std::isfinite(estimate.upper)) return fmt::format("{:.4f}", estimate.mean);
-  return fmt::format("{:.4f} [{:.4f}, {:.4f}]", estimate.mean, estimate.lower, estimate.upper);
-}
-
 void add_verdicts(const Table1& table, pages::Page& page) {
   const CaseSummary& judged = table.summaries[table.judged];
   page.worth(worth_of(table));
@@ -89,7 +84,7 @@ pages::Table errors_table(const Table1& table) {
   out.header.push_back("falls");
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     std::vector<std::string> row = {table.cases[c].name};
-    for (const Estimate& estimate : table.summaries[c].errors) row.push_back(interval_text(estimate));
+    for (const Estimate& estimate : table.summaries[c].errors) row.push_back(mean_with_interval(estimate));
     row.push_back(fmt::format("{} of {}", table.summaries[c].falls, table.summaries[c].trials));
     out.rows.push_back(row);
     const auto figures = [&](const std::string& name, const Errors& values) {
@@ -99,7 +94,7 @@ pages::Table errors_table(const Table1& table) {
       out.rows.push_back(row);
     };
     row = {table.cases[c].name + ", raw: tick by tick"};
-    for (const Estimate& estimate : table.summaries[c].errors_raw) row.push_back(interval_text(estimate));
+    for (const Estimate& estimate : table.summaries[c].errors_raw) row.push_back(mean_with_interval(estimate));
     row.push_back("");
     out.rows.push_back(row);
     figures("doing nothing", table.yardsticks[c].nothing.errors);
@@ -107,7 +102,8 @@ pages::Table errors_table(const Table1& table) {
     figures("share left", table.shares(c));
     if (std::isfinite(table.summaries[c].errors_beyond_reach[0].mean)) {
       row = {table.cases[c].name + ", steps beyond the clips' reach"};
-      for (const Estimate& estimate : table.summaries[c].errors_beyond_reach) row.push_back(interval_text(estimate));
+      for (const Estimate& estimate : table.summaries[c].errors_beyond_reach)
+        row.push_back(mean_with_interval(estimate));
       row.push_back("");
       out.rows.push_back(row);
     }
@@ -118,6 +114,12 @@ pages::Table errors_table(const Table1& table) {
     row.push_back("not told");
     out.rows.push_back(row);
   }
+  std::vector<std::string> limits = {
+      fmt::format("limit for {}{}", table.cases[table.judged].name, table.gentle() ? "" : "'s share")};
+  for (std::size_t e = 0; e < kErrors; ++e)
+    limits.push_back(fmt::format("{:.4f} {}", table.limit(e), table.reached(e) ? "ok" : "MISSED"));
+  limits.emplace_back(table.summaries[table.judged].falls == 0 ? "0 ok" : "0 MISSED");
+  out.rows.push_back(limits);
   return out;
 }
 
@@ -153,7 +155,7 @@ pages::Table differences_table(const Table1& table) {
   for (const Comparison& comparison : table.comparisons) {
     std::vector<std::string> row = {comparison.policy + " - " + comparison.other};
     for (const Estimate& d : comparison.difference) {
-      row.push_back(interval_text(d) + (d.excludes_zero() ? " excludes zero" : ""));
+      row.push_back(mean_with_interval(d) + (d.upper < 0.0 ? " better" : d.lower > 0.0 ? " worse" : " ?"));
     }
     row.push_back(std::to_string(comparison.pairs));
     out.rows.push_back(row);

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "pages/assets.hpp"
 #include "pages/bar_picture.hpp"
@@ -15,6 +16,7 @@
 #include "pages/histogram_picture.hpp"
 #include "pages/line_data.hpp"
 #include "pages/plot_picture.hpp"
+#include "pages/table_text.hpp"
 #include "pages/text.hpp"
 
 namespace pmg::pages {
@@ -97,35 +99,40 @@ const char* colour_class(work::Grade grade) {
 
 }  // namespace
 
-Page::Page(std::string title) : title_(std::move(title)) {}
+Page::Page(std::string title) : title_(std::move(title)), lines_{title_} {}
 
 void Page::worth(const work::Worth& worth) {
   worth_.add(worth);
-  if (!worth.reservations().empty()) highlighted(worth.grade(), worth.sentence());
+  if (!worth.reservations().empty()) highlighted(colour_class(worth.grade()), worth.sentence());
 }
 
 void Page::verdict(const work::Worth& worth, const std::string& text) {
   const std::string before = worth.sentence();
-  highlighted(std::max(worth.grade(), worth_.grade()), before.empty() ? text : before + ". " + text);
+  highlighted(colour_class(std::max(worth.grade(), worth_.grade())), before.empty() ? text : before + ". " + text);
 }
 
-void Page::note(const std::string& text) {
-  body_ += "<div class=\"verdict neutral\">" + escape_markup(text) + "</div>\n";
-}
+void Page::note(const std::string& text) { highlighted("neutral", text); }
 
-void Page::highlighted(work::Grade grade, const std::string& text) {
-  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", colour_class(grade), escape_markup(text));
+void Page::highlighted(const char* colour, const std::string& text) {
+  body_ += fmt::format("<div class=\"verdict {}\">{}</div>\n", colour, escape_markup(text));
+  if (folds_ == 0) lines_.push_back(text);
 }
 
 void Page::heading(const std::string& text) {
   ++headings_;
   body_ += fmt::format("<h2 id=\"s{}\">{}</h2>\n", headings_, escape_markup(text));
+  heading_ = text;
   contents_ += fmt::format("<a href=\"#s{}\">{}</a> ", headings_, escape_markup(text));
 }
 
 void Page::paragraph(const std::string& text) { body_ += "<p>" + escape_markup(text) + "</p>\n"; }
 
 void Page::table(const Table& table) {
+  if (folds_ == 0) {
+    lines_.emplace_back();
+    if (!heading_.empty()) lines_.push_back(std::exchange(heading_, {}));
+    std::ranges::copy(lines_of(table), std::back_inserter(lines_));
+  }
   body_ += "<div class=\"scroll\"><table class=\"data\"><tr>";
   for (const std::string& cell : table.header) body_ += "<th>" + escape_markup(cell) + "</th>";
   body_ += "</tr>\n";
@@ -212,7 +219,9 @@ void Page::columns(const std::function<void()>& fill) {
 
 void Page::folded(const std::string& summary, const std::function<void()>& fill) {
   body_ += "<details><summary>" + escape_markup(summary) + "</summary>\n";
+  ++folds_;
   fill();
+  --folds_;
   body_ += "</details>\n";
 }
 

@@ -43,15 +43,21 @@ class Page {
   void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown after a click
 
   std::string html() const;
+  /// For a terminal: the title, and what stands outside folds of worth, verdicts, notes and tables; a heading above its
+  /// tables.
+  const std::vector<std::string>& lines() const noexcept { return lines_; }
   void write(const std::filesystem::path& file) const;  ///< throws std::runtime_error
 
  private:
   void picture(const std::string& title, const std::string& content);
   void show_x(const std::string& axis, double x);
 
-  void highlighted(work::Grade grade, const std::string& text);
+  void highlighted(const char* colour, const std::string& text);
 
   std::string title_, body_, contents_;
+  std::vector<std::string> lines_;
+  std::string heading_;  ///< that lines_ lacks
+  int folds_ = 0;        ///< around what comes next
   work::Worth worth_;
   int headings_ = 0;
   bool needs_script_ = false;          ///< for charts and lanes

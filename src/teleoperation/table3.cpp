@@ -57,7 +57,7 @@ void add_trials(const TaskTrials& task, pages::Page& page) {
     auto& row = runs.rows.back();
     if (lifts) row.insert(row.begin() + 3, fmt::format("{:.2f}", run.lifted_m));
   }
-  page.table(runs);
+  page.folded("Every trial", [&] { page.table(runs); });
 }
 
 TaskResult run_trial(const Table3& table, const std::string& task, const model::RobotModel& robot, std::size_t trial,
@@ -192,8 +192,8 @@ pages::Page page_of(const Table3& table) {
   page.worth(worth_of(table));
   for (const TaskTrials* task : table.tasks())
     page.verdict(task->reached() ? work::Worth() : work::Worth(work::Grade::kMissed, "too few trials succeeded"),
-                 fmt::format("{} in {} % of trials; the paper has {:.0f} % of 20 on the real robot", task->verb,
-                             percent_with_interval(task->done()), 100.0 * task->paper));
+                 fmt::format("{} in {} % of {} trials; the paper has {:.0f} % of 20 on the real robot", task->verb,
+                             percent_with_interval(task->done()), table.trials, 100.0 * task->paper));
   if (!table.films.empty())
     page.paragraph(fmt::format("Films of each task's first trial of each end lie beside this page: {}.",
                                fmt::join(table.films, ", ")));
@@ -201,16 +201,6 @@ pages::Page page_of(const Table3& table) {
   page.heading("How it was measured");
   for (const std::string& text : {operator_text(table), wiping_text(), box_text()}) page.paragraph(text);
   return page;
-}
-
-std::vector<std::string> text_of(const Table3& table) {
-  std::vector<std::string> lines;
-  for (const TaskTrials* task : table.tasks()) {
-    lines.push_back(fmt::format("{}: done in {} % of {} trials (the paper: {:.0f} %)", task->name,
-                                percent_with_interval(task->done()), table.trials, 100.0 * task->paper));
-    for (const auto& [name, count] : task->ends()) lines.push_back(fmt::format("  {}: {}", name, count));
-  }
-  return lines;
 }
 
 }  // namespace pmg::teleoperation

@@ -62,6 +62,11 @@ TEST(Statistics, SharesAtTheEndsKeepAnInterval) {
   EXPECT_TRUE(std::isnan(share_interval(0, 0).mean));
 }
 
+TEST(Statistics, AMeanIsWrittenWithHalfOfItsIntervalAndAloneWithoutOne) {
+  EXPECT_EQ(mean_with_interval({.mean = 0.064, .lower = 0.0589, .upper = 0.0691}), "0.0640 +-0.0051");
+  EXPECT_EQ(mean_with_interval(mean_interval(std::array{0.5})), "0.5000");
+}
+
 TEST(Statistics, AShareIsWrittenWithItsIntervalAndWithoutTrialsAsADash) {
   EXPECT_EQ(percent_with_interval(share_interval(8, 10)), "80 [49, 94]");
   EXPECT_EQ(percent_with_interval(share_interval(0, 0)), "-");

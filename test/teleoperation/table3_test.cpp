@@ -51,7 +51,8 @@ TEST(Table3, BothTasksStandInTheJsonAndInTheText) {
   EXPECT_EQ(json["tasks"][1]["success"]["share"], 0.0);
   EXPECT_EQ(json["tasks"][1]["runs"][0]["lifted_m"], 0.31);
   EXPECT_EQ(json["tasks"][1]["ends"]["box dropped"], 1);
-  EXPECT_THAT(text_of(table), Contains(HasSubstr("box picking: done in 0 [0, 79] % of 1 trials (the paper: 80 %)")));
+  EXPECT_THAT(page_of(table).lines(),
+              Contains(HasSubstr("the box is moved in 0 [0, 79] % of 1 trials; the paper has 80 %")));
 }
 
 TEST(Table3, OfEachTaskTheFirstTrialOfEachEndIsFilmed) {
@@ -86,7 +87,7 @@ TEST(Table3, InterruptedBeforeItsFirstTrialItShowsNoShare) {
   table.trials = 1;
   table.complete = false;
   table.wiping.runs = table.box_picking.runs = {{.end = End::kInterrupted}};
-  EXPECT_THAT(text_of(table), Contains("wiping: done in - % of 1 trials (the paper: 95 %)"));
+  EXPECT_THAT(page_of(table).lines(), Contains(HasSubstr("the towel is wiped in - % of 1 trials; the paper has 95 %")));
 }
 
 }  // namespace
