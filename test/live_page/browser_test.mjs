@@ -48,6 +48,50 @@ function hearCommands(heard) {
   socket.bind(port, () => socket.addMembership('239.255.76.67'));
   return socket;
 }
+/// A camera whose pictures say which they are by their colour. sentAs: one of CAMERA's datagrams on the network, for its type.
+class ColouredCamera {
+  static STEP = 20;
+  static colours = Array.from({length: 144}, (_, k) => [10 + ColouredCamera.STEP * (k % 12), 10 + ColouredCamera.STEP * Math.floor(k / 12), 250]);
+  /// page: any that can make JPEGs.
+  static async of(page, sentAs) {
+    const jpegs = await page.evaluate((colours) => Promise.all(colours.map(async (rgb) => {
+      const canvas = Object.assign(document.createElement('canvas'), {width: 320, height: 240}), ink = canvas.getContext('2d');
+      ink.fillStyle = `rgb(${rgb})`;
+      ink.fillRect(0, 0, 320, 240);
+      return canvas.toDataURL('image/jpeg', 0.95).split(',')[1];
+    })), ColouredCamera.colours);
+    const begin = 8 + 'CAMERA'.length + 1;
+    return Object.assign(new ColouredCamera(), {jpegs: jpegs.map((text) => Buffer.from(text, 'base64')), type: sentAs.subarray(begin, begin + 8),
+      taken: [], socket: dgram.createSocket('udp4'), session: BigInt(Date.now())});
+  }
+  /// Takes a picture now, and sends it so much later.
+  take(late_ms) {
+    const number = this.taken.push(Date.now()) - 1, jpeg = this.jpegs[number % this.jpegs.length];
+    const int = (bytes, value) => { const out = Buffer.alloc(bytes); bytes === 8 ? out.writeBigInt64BE(BigInt(value)) : out.writeInt32BE(value); return out; };
+    const message = Buffer.concat([Buffer.from('LC02'), int(4, number), Buffer.from('CAMERA\0'), this.type, int(8, BigInt(this.taken[number]) * 1000000n),
+      int(4, 3), Buffer.from('z1\0'), int(8, this.session), int(8, number + 1), int(4, jpeg.length), jpeg]);
+    setTimeout(() => this.socket.send(message, port, '239.255.76.67'), late_ms);
+  }
+  /// Ten pictures a second until the condition holds.
+  async until(what, condition, late_ms = 0) {
+    const timer = setInterval(() => this.take(late_ms), 100);
+    try { await until(what, condition); } finally { clearInterval(timer); }
+  }
+  /// (what was seen, when) => the age [ms] of this picture; nothing: it is marked as old, or none.
+  age_ms([red, green, blue], now) {
+    if (blue < 200) return undefined;
+    const near = (value) => Math.round((value - 10) / ColouredCamera.STEP), colour = near(red) + 12 * near(green);
+    return now - this.taken.findLast((time, number) => number % this.jpegs.length === colour && time <= now);
+  }
+}
+/// Resolves with the first datagram of this channel.
+const firstOf = (channel) => new Promise((resolve) => {
+  const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
+  socket.on('message', (bytes) => {
+    if (bytes.toString('latin1', 8, bytes.indexOf(0, 8)) === channel) { socket.close(); resolve(bytes); }
+  });
+  socket.bind(port, () => socket.addMembership('239.255.76.67'));
+});
 /// Nearest rank.
 const percentile = (values, percent) => values.toSorted((a, b) => a - b)[Math.ceil(values.length * percent / 100) - 1];
 let tellMore = async () => '';
@@ -281,6 +325,65 @@ async function run(browser, token, robot) {
   await until('it is marked', async () => /^OLD PICTURE: ([3-9]|\d\d)/.test(await reader.evaluate(() => cameraView.words())));
   seeing.kill('SIGCONT');
   await more();
+
+  step('no picture without a mark is old, on a page and in a headset, whatever is late');
+  const camera = await ColouredCamera.of(reader, await firstOf('CAMERA'));
+  await ended(seeing);
+  for (const page of [reader, vr]) await until('its last picture is marked', () => page.evaluate(() => cameraView.words() !== ''));
+  start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
+  for (const page of [reader, vr]) {
+    await page.evaluate(() => {
+      // Where no words stand: a quarter from the left, a fifth from above.
+      const {canvas, ink, draw} = cameraView, at = [canvas.width / 4, canvas.height / 5];
+      const onCanvas = () => [...ink.getImageData(...at, 1, 1).data].slice(0, 3);
+      window.seen = [];                                    // [time, colour]
+      window.inHeadset = [];                               // [colour on the canvas, colour before an eye]
+      cameraView.draw = () => { draw.call(cameraView); seen.push([Date.now(), onCanvas()]); };
+      if (!window.paint) return;
+      const times = (m, v) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[4 + i] * v[1] + m[8 + i] * v[2] + m[12 + i] * v[3]);
+      const {paint} = window;
+      window.paint = (frame) => {
+        paint(frame);
+        if (!connection.state.camera) return;
+        const viewer = frame.getViewerPose(space);
+        if (!viewer) return;
+        const [view] = viewer.views, port = session.renderState.baseLayer.getViewport(view), {width, height, up} = cameraSurface;
+        const [x, y, , w] = times(view.projectionMatrix, times(view.transform.inverse.matrix, [-width / 4, up() + 0.3 * height, -AHEAD_M, 1]));
+        const eye = new Uint8Array(4);
+        gl.readPixels(port.x + (x / w + 1) / 2 * port.width, port.y + (y / w + 1) / 2 * port.height, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, eye);
+        inHeadset.push([onCanvas(), [...eye].slice(0, 3)]);
+      };
+    });
+  }
+  // A mark comes after half a second; the fastest way of a picture and of a state is counted as none.
+  const MOST_MS = 500 + 200;
+  const judged = async (page) => {
+    const [seen, inHeadset] = await page.evaluate(() => [window.seen.splice(0), window.inHeadset.splice(0)]);
+    const ages_ms = seen.map(([time, colour]) => camera.age_ms(colour, time)), unmarked_ms = ages_ms.filter((age_ms) => age_ms !== undefined);
+    for (const age_ms of unmarked_ms) assert.ok(age_ms <= MOST_MS, `a picture of ${age_ms} ms has no mark`);
+    for (const [shown, before] of inHeadset) assert.ok(shown.every((value, i) => Math.abs(value - before[i]) < 16), `${shown} is ${before} in the headset`);
+    return {fresh: unmarked_ms.length, marked: ages_ms.length - unmarked_ms.length, frames: inHeadset.length};
+  };
+  for (const page of [reader, vr]) {
+    const sum = {fresh: 0, marked: 0, frames: 0};
+    const count = async () => { for (const [what, number] of Object.entries(await judged(page))) sum[what] += number; return sum; };
+    await judged(page);
+    await camera.until('fresh pictures', async () => (await count()).fresh >= 20);
+    Object.assign(sum, {fresh: 0, marked: 0});
+    await camera.until('pictures that come late', async () => (await count()).fresh + sum.marked >= 40, 400);
+    sum.marked = 0;
+    await until('the last one is marked', async () => (await count()).marked >= 10);
+    await page.evaluate(() => {                            // states travel 1.5 s from now on
+      const {socket} = connection, {onmessage} = socket;
+      socket.onmessage = (event) => setTimeout(() => onmessage(event), 1500);
+    });
+    Object.assign(sum, {fresh: 0, marked: 0});
+    await camera.until('pictures of which late states tell', async () => (await count()).fresh + sum.marked >= 40);
+    sum.marked = 0;
+    await until('the last one is marked', async () => (await count()).marked >= 30);
+    assert.equal(await page.textContent('#link'), 'no connection');
+    assert.equal(page === vr, sum.frames > 0);
+  }
 }
 
 let failed = null;
