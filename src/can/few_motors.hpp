@@ -49,7 +49,6 @@ class FewMotors {
     const drives::MotorSetup& setup;
     drives::MotorMonitor monitor;
     std::unique_ptr<drives::MotorChannel> channel;
-    bool asked = false;  // in this cycle
   };
   void cycle(const std::function<void(std::size_t motor, bool synced, drives::Outbox&)>& ask);
   bool all(bool (drives::MotorMonitor::*is)() const noexcept) const;

@@ -43,9 +43,7 @@ FootLoadWatch::FootLoadWatch(const model::RobotModel& robot, const FootLoadOptio
       lost_ticks_needed_(ticks(options.lost_s, dt_s)),
       found_ticks_needed_(ticks(options.found_s, dt_s)),
       dq_before_(JointVector::Zero(robot.joint_index.size())),
-      ddq_(dq_before_),
-      acceleration_sq_(dq_before_),
-      uncertain_rad_s2_(dq_before_) {}
+      acceleration_sq_(dq_before_) {}
 
 void FootLoadWatch::start() noexcept {
   footing_ = Footing::kUnknown;
@@ -84,17 +82,17 @@ void FootLoadWatch::measure(const model::RobotState& state, const model::JointCo
     acceleration_sq_.setZero();
     variance_ = {1.0, 1.0};
   }
-  ddq_ = (state.dq - dq_before_) / dt_s_;
+  const JointVector ddq = (state.dq - dq_before_) / dt_s_;
   dq_before_ = state.dq;
-  acceleration_sq_ += acceleration_gain_ * (ddq_.cwiseAbs2() - acceleration_sq_);
-  uncertain_rad_s2_ = options_.wrong_inertia_share * acceleration_sq_.cwiseSqrt();
+  acceleration_sq_ += acceleration_gain_ * (ddq.cwiseAbs2() - acceleration_sq_);
+  const JointVector uncertain_rad_s2 = options_.wrong_inertia_share * acceleration_sq_.cwiseSqrt();
 
   base_to_imu_link_.compute(state.q);
   const Eigen::Matrix3d R_BI = base_to_imu_link_.R() * R_LI_;
   const Eigen::Vector3d gravity_I = state.orientation_WI.conjugate() * -Eigen::Vector3d::UnitZ();
   loads_.set_motion({.q = state.q,
                      .dq = state.dq,
-                     .ddq = ddq_,
+                     .ddq = ddq,
                      .gravity_B = (R_BI * gravity_I).normalized(),
                      .specific_force_B = R_BI * state.acceleration_m_s2,
                      .omega_B = R_BI * state.gyro_rad_s});
@@ -102,12 +100,12 @@ void FootLoadWatch::measure(const model::RobotState& state, const model::JointCo
                                in_force.kd.cwiseProduct(in_force.dq - state.dq) + in_force.tau_ff;
   const PerFoot<model::SoleLoad> measured = loads_.of(state.tau), asked = loads_.of(asked_Nm);
   const double gain = begun_ ? filter_gain_ : 1.0;
-  for (const Foot foot :
-       {kLeft, kRight}) {  // a Kalman filter of one state, whose gain is at most the low-pass filter's
-    const double error = loads_.error_N(foot, uncertain_rad_s2_) / weight_N_;
+  // A Kalman filter of one state a foot, whose gain is at most the low-pass filter's, and 0 where the error is
+  // infinite.
+  for (const Foot foot : {kLeft, kRight}) {
+    const double error = loads_.error_N(foot, uncertain_rad_s2) / weight_N_;
     variance_[foot] = std::min(1.0, variance_[foot] + change_variance_);
-    const double weight =
-        std::min(gain, variance_[foot] / (variance_[foot] + error * error));  // 0 of an infinite error
+    const double weight = std::min(gain, variance_[foot] / (variance_[foot] + error * error));
     variance_[foot] *= 1.0 - weight;
     measured_[foot] += weight * (measured[foot].vertical_N / weight_N_ - measured_[foot]);
     asked_[foot] += weight * (asked[foot].vertical_N / weight_N_ - asked_[foot]);

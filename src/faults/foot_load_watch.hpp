@@ -23,8 +23,7 @@ struct FootLoadOptions {
   /// Upward specific force at the IMU, in g. Above it something holds the robot; below it the robot flies. Some pushes
   /// of 50 N s that Z1 survives throw it into the air for 0.15 s.
   double held_share = 0.5;
-  double filter_s =
-      0.02;  ///< time constant of the low-pass filter of the specific force, and the shortest of the loads
+  double filter_s = 0.02;  ///< time constant of the specific force's low-pass filter, and the loads' shortest
   /// Sudden changes of a foot's load that the filter follows: standard deviation of the change within 1 s [share]. A
   /// load whose error is large beside it is filtered the longer.
   double change_per_sqrt_s = 0.5;
@@ -70,7 +69,7 @@ class FootLoadWatch {
   bool begun_ = false;  // the filter has a value
   int lost_ticks_ = 0, found_ticks_ = 0;
   PerFoot<double> measured_{}, asked_{}, variance_{};
-  JointVector dq_before_, ddq_, acceleration_sq_, uncertain_rad_s2_;
+  JointVector dq_before_, acceleration_sq_;
   double held_ = 0.0;  // specific force upwards, of g
 };
 

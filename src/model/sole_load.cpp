@@ -18,17 +18,6 @@ constexpr double kRank = 1e-3;
 /// spread leg of five joints loses a little, because its foot turns.
 constexpr double kLiftMiss = 0.2;
 
-/// About the link's centre of mass, in the frame that pose leads to [kg m^2].
-Eigen::Matrix3d inertia_about_center(const KDL::RigidBodyInertia& link, const KDL::Frame& pose) noexcept {
-  const KDL::RotationalInertia about_frame = link.getRotationalInertia();
-  const Eigen::Vector3d c = to_eigen(link.getCOG());
-  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.M.data);
-  return R *
-         (Eigen::Map<const Eigen::Matrix3d>(about_frame.data) -
-          link.getMass() * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose())) *
-         R.transpose();
-}
-
 }  // namespace
 
 SoleLoads::SoleLoads(const RobotModel& robot)
@@ -106,7 +95,9 @@ void SoleLoads::compute(Leg& leg, const LegMotion& motion) noexcept {
     const double mass = link.getMass();
     const Eigen::Vector3d center = to_eigen(pose * link.getCOG());
     const Eigen::Vector3d force = mass * (specific_force + relative(center - point));
-    const Eigen::Matrix3d inertia = inertia_about_center(link, pose);
+    const KDL::RotationalInertia about_center =
+        (pose.M * KDL::RigidBodyInertia(link).RefPoint(link.getCOG())).getRotationalInertia();
+    const Eigen::Matrix3d inertia = Eigen::Map<const Eigen::Matrix3d>(about_center.data);  // symmetric
     mass_kg[moving - 1] += mass;
     moment_kg_m[moving - 1] += mass * center;
     force_N[moving - 1] += force;
