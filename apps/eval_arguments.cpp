@@ -18,6 +18,7 @@ Examples:
   pmg_eval table1 --policy pmg=trained/new.onnx --policy without_gco --seeds 4 --out out/new
   pmg_eval table2 --robot z1 --policy pmg --out out/table2
   pmg_eval table3 --trials 100 --out out/table3
+  pmg_eval table3 --first 58 --trials 1 --video --out out/trial_58
   pmg_eval push --trials 200 --out out/push
   pmg_eval robust --seeds 20 --out out/robust
   pmg_eval gait --out out/gait
@@ -106,6 +107,9 @@ void declare_table3(CLI::App& app, EvalArguments& arguments) {
   declare_policy(command, arguments);
   command.add_option("--trials", arguments.tasks, "trials of each task, each with another robot and other places")
       ->check(in_range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--first", arguments.first, "number of the first trial; a trial is the same in every evaluation")
+      ->check(in_range(0, 1000000))
       ->capture_default_str();
   command.add_flag("--video", arguments.video,
                    "film of each task the first trial of each end, done or not (needs ffmpeg; minutes each)");

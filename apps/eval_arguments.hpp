@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@ struct EvalArguments {
   std::filesystem::path clips, out, scenario, variation = "variation", norms, plants = "table2";
   std::vector<double> strengths_N_s = {0.0, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0};
   int seeds = 20, trials = 200, tasks = 100, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::size_t first = 0;
   double speed_m_s = 0.8, duration_s = 60.0;
   bool gantry = false, nominal = false, video = false, json = false;
 

@@ -197,6 +197,7 @@ int table3(const apps::EvalArguments& arguments) {
   teleoperation::Table3 table;
   table.robot = arguments.robot;
   table.ranges_file = arguments.ranges_file();
+  table.first = arguments.first;
   table.trials = arguments.tasks;
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   table.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};

@@ -303,7 +303,7 @@ TaskResult run_box_picking(const evaluation::Candidate& candidate, sim::WorldOpt
                          .yaw_rad = plan.yaw_rad,
                          .mass_kg = BoxPlan::kMass_kg,
                          .friction = BoxPlan::kFriction,
-                         .colour = {0.15, 0.15, 0.17, 1.0}};
+                         .colour = {0.25, 0.50, 0.80, 1.0}};
   world.props = {low, high, box};
   world.hand_boxes = palm_boxes(loaded.robot);
   LedRobot robot(loaded, world);

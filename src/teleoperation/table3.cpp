@@ -28,9 +28,8 @@ ordered_json to_json(const TaskTrials& task, int trials) {
                        {"paper", task.paper},
                        {"ends", task.ends()},
                        {"runs", ordered_json::array()}};
-  for (std::size_t trial = 0; trial < task.runs.size(); ++trial) {
-    const TaskResult& run = task.runs[trial];
-    json["runs"].push_back({{"trial", trial},
+  for (const TaskResult& run : task.runs) {
+    json["runs"].push_back({{"trial", run.trial},
                             {"end", end_name(run.end)},
                             {"moved_m", run.moved_m},
                             {"lifted_m", run.lifted_m},
@@ -50,9 +49,8 @@ void add_trials(const TaskTrials& task, pages::Page& page) {
   pages::Table runs{.header = {"trial", "end", "moved [m]", "after [s]", "what the operator did", "what it was told"},
                     .rows = {}};
   if (lifts) runs.header.insert(runs.header.begin() + 3, "lifted [m]");
-  for (std::size_t trial = 0; trial < task.runs.size(); ++trial) {
-    const TaskResult& run = task.runs[trial];
-    runs.rows.push_back({std::to_string(trial), end_name(run.end), fmt::format("{:.2f}", run.moved_m),
+  for (const TaskResult& run : task.runs) {
+    runs.rows.push_back({std::to_string(run.trial), end_name(run.end), fmt::format("{:.2f}", run.moved_m),
                          fmt::format("{:.0f}", run.duration_s), run.stage, run.words});
     auto& row = runs.rows.back();
     if (lifts) row.insert(row.begin() + 3, fmt::format("{:.2f}", run.lifted_m));
@@ -64,8 +62,11 @@ TaskResult run_trial(const Table3& table, const std::string& task, const model::
                      const work::Progress& progress, const TaskObserver& observer) {
   const sim::WorldOptions world = table.evaluated.plants.of(robot, trial + 1);
   const evaluation::Candidate& candidate = table.evaluated.candidate;
-  return task == table.wiping.name ? run_wiping(candidate, world, WipingPlan::of(trial), progress, observer)
-                                   : run_box_picking(candidate, world, BoxPlan::of(trial), progress, observer);
+  TaskResult result = task == table.wiping.name
+                          ? run_wiping(candidate, world, WipingPlan::of(trial), progress, observer)
+                          : run_box_picking(candidate, world, BoxPlan::of(trial), progress, observer);
+  result.trial = trial;
+  return result;
 }
 
 std::string operator_text(const Table3& table) {
@@ -123,12 +124,14 @@ work::Worth worth_of(const Table3& table) {
 void run_table3(Table3& table, const evaluation::Supervision& supervision) {
   const model::RobotModel robot = model::load_robot(model::find_robot(table.evaluated.candidate.control.robot));
   const auto trials = static_cast<std::size_t>(table.trials);
-  table.wiping.runs.assign(trials, {});
-  table.box_picking.runs.assign(trials, {});
+  for (TaskTrials* task : {&table.wiping, &table.box_picking}) {
+    task->runs.assign(trials, {});
+    for (std::size_t i = 0; i < trials; ++i) task->runs[i].trial = table.first + i;
+  }
   evaluation::for_each_piece(2 * trials, supervision, [&](std::size_t piece) {
-    const std::size_t trial = piece / 2;  // an interrupted evaluation has some of both tasks
-    TaskTrials& task = piece % 2 == 0 ? table.wiping : table.box_picking;
-    task.runs[trial] = run_trial(table, task.name, robot, trial, supervision.progress, {});
+    TaskTrials& task = piece % 2 == 0 ? table.wiping : table.box_picking;  // an interrupted evaluation has some of both
+    TaskResult& run = task.runs[piece / 2];
+    run = run_trial(table, task.name, robot, run.trial, supervision.progress, {});
   });
   table.complete = std::ranges::all_of(
       table.tasks(), [](const TaskTrials* task) { return std::ranges::all_of(task->runs, took_place); });
@@ -144,10 +147,8 @@ std::vector<FilmedTrial> trials_to_film(const Table3& table) {
   std::vector<FilmedTrial> filmed;
   for (const TaskTrials* task : table.tasks()) {
     std::set<End> ends{End::kInterrupted};
-    for (std::size_t trial = 0; trial < task->runs.size(); ++trial) {
-      const End end = task->runs[trial].end;
-      if (ends.insert(end).second) filmed.push_back({.task = task->name, .trial = trial, .end = end});
-    }
+    for (const TaskResult& run : task->runs)
+      if (ends.insert(run.end).second) filmed.push_back({.task = task->name, .trial = run.trial, .end = run.end});
   }
   return filmed;
 }
@@ -159,7 +160,7 @@ std::string film_trial(const Table3& table, const FilmedTrial& filmed, const std
   std::optional<sil::Film> film;
   const auto shoot = [&](LedRobot& led, const std::string& stage) {
     if (!film) film.emplace(led.world(), file, kFromAbove_deg);
-    film->after_tick(fmt::format("{}, trial {}\n{}\n{}", filmed.task, filmed.trial, stage, led.text()));
+    film->after_tick(fmt::format("{}, trial {}: {}\n{}\n{}", filmed.task, filmed.trial, end_name(filmed.end), stage, led.text()));
   };
   TaskResult result;
   try {
@@ -180,6 +181,7 @@ ordered_json to_json(const Table3& table) {
       {"complete", table.complete},
       {"robot", table.robot},
       {"policy", table.evaluated.name},
+      {"first_trial", table.first},
       {"variation", table.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(table.ranges_file)},
       {"films", table.films},
       {"tasks", ordered_json::array()}};
@@ -195,7 +197,8 @@ pages::Page page_of(const Table3& table) {
                  fmt::format("{} in {} % of trials; the paper has {:.0f} % of 20 on the real robot", task->verb,
                              percent_with_interval(task->done()), 100.0 * task->paper));
   if (!table.films.empty())
-    page.paragraph(fmt::format("Films of each task's first trial of each end lie beside this page: {}.",
+    page.paragraph(fmt::format("Films of each task's first trial of each end lie beside this page: {}. A film of trial N: "
+                               "pmg_eval table3 --first N --trials 1 --video.",
                                fmt::join(table.films, ", ")));
   for (const TaskTrials* task : table.tasks()) add_trials(*task, page);
   page.heading("How it was measured");

@@ -22,7 +22,7 @@ inline constexpr double kPaperWiping = 0.95, kPaperBoxPicking = 0.80;  ///< over
 struct TaskTrials {
   std::string name, verb;        ///< "wiping", "wiped": of what was handled
   double paper = 0.0;            ///< share of success
-  std::vector<TaskResult> runs;  ///< by trial; kInterrupted: it didn't take place
+  std::vector<TaskResult> runs;  ///< in the order of trials; kInterrupted: it didn't take place
 
   evaluation::Estimate done() const;  ///< share of success with Wilson's interval, over the trials that took place
   std::map<std::string, int> ends() const;  ///< of those, by end_name()
@@ -32,6 +32,7 @@ struct TaskTrials {
 struct Table3 {
   std::string robot, ranges_file;
   evaluation::Case evaluated;
+  std::size_t first = 0;  ///< trial; run i of each task is trial first + i
   int trials = 0;
   TaskTrials wiping{.name = "wiping", .verb = "the towel is wiped", .paper = kPaperWiping, .runs = {}};
   TaskTrials box_picking{.name = "box picking", .verb = "the box is moved", .paper = kPaperBoxPicking, .runs = {}};

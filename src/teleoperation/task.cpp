@@ -11,25 +11,10 @@ namespace {
 
 constexpr double kSteadied_s = 2.5, kSetDown_s = 1.0;  // until it stands a gantry steadies it
 constexpr double kFallen = 0.5;                        // of its standing height
+constexpr double kAftermath_s = 1.5;                   // shown to the observer
 
-}  // namespace
-
-const char* end_name(End end) noexcept {
-  constexpr std::array kNames = {"done",
-                                 "fell",
-                                 "fault",
-                                 "towel off the table",
-                                 "palm not on the towel in time",
-                                 "towel lost",
-                                 "box dropped",
-                                 "box not lifted in time",
-                                 "box not put down in time",
-                                 "interrupted"};
-  return kNames.at(static_cast<std::size_t>(end));
-}
-
-TaskResult run_task(LedRobot& robot, ScriptedOperator& person, const TaskJudge& judge, double longest_s,
-                    const TimeUp& time_up, const work::Progress& progress, const TaskObserver& observer) {
+TaskResult play(LedRobot& robot, ScriptedOperator& person, const TaskJudge& judge, double longest_s,
+                const TimeUp& time_up, const work::Progress& progress, const TaskObserver& observer) {
   robot.set_hoist(1.0);
   robot.ask_for_stand();
   TaskResult result;
@@ -57,6 +42,34 @@ TaskResult run_task(LedRobot& robot, ScriptedOperator& person, const TaskJudge& 
     }
   }
   result.end = time_up();
+  return result;
+}
+
+}  // namespace
+
+const char* end_name(End end) noexcept {
+  constexpr std::array kNames = {"done",
+                                 "fell",
+                                 "fault",
+                                 "towel off the table",
+                                 "palm not on the towel in time",
+                                 "towel not wiped far enough in time",
+                                 "box dropped",
+                                 "box not lifted in time",
+                                 "box not put down in time",
+                                 "interrupted"};
+  return kNames.at(static_cast<std::size_t>(end));
+}
+
+TaskResult run_task(LedRobot& robot, ScriptedOperator& person, const TaskJudge& judge, double longest_s,
+                    const TimeUp& time_up, const work::Progress& progress, const TaskObserver& observer) {
+  TaskResult result = play(robot, person, judge, longest_s, time_up, progress, observer);
+  if (!observer || result.end == End::kInterrupted) return result;
+  for (const double until_s = robot.time_s() + kAftermath_s;
+       robot.time_s() < until_s && !robot.world().diverged() && !progress.interrupted_now();) {
+    person.step(robot);
+    observer(robot, person.stage());
+  }
   return result;
 }
 

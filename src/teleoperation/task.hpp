@@ -1,6 +1,7 @@
 // One trial of a task: a simulated robot led by a scripted operator, and a judge who sees everything.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -19,7 +20,7 @@ enum class End : std::uint8_t {
   kFault,        ///< the controller latched a fault
   kOffTable,     ///< the towel left the table
   kNotReached,   ///< time was up while the palm was off the towel: before it was there, or gripping anew
-  kLostTowel,    ///< time was up, and the hand had lost it on the way
+  kNotWiped,     ///< time was up while the palm still moved the towel
   kDropped,      ///< the box fell or tipped over
   kNotLifted,    ///< time was up, and the box had not been lifted far enough
   kNotPutDown,   ///< time was up before the lifted box stood on the other table
@@ -28,6 +29,7 @@ enum class End : std::uint8_t {
 const char* end_name(End end) noexcept;
 
 struct TaskResult {
+  std::size_t trial = 0;  ///< its number: the robot and the places of things
   End end = End::kInterrupted;
   double moved_m = 0.0;   ///< of the towel along the table, of the box horizontally, from where it was
   double lifted_m = 0.0;  ///< of the box, at most; 0 where nothing is to be lifted
@@ -36,7 +38,8 @@ struct TaskResult {
   std::string stage{};  ///< what the operator was doing at the end
 };
 
-/// Called after each tick, for pictures and tests; may be empty.
+/// Called after each tick, for pictures and tests, and for a moment after the end: a box that was dropped is seen to
+/// fall. May be empty.
 using TaskObserver = std::function<void(LedRobot& robot, const std::string& stage)>;
 
 /// Called after each tick with the result so far, where it writes what moved: how the trial ends; nothing: go on.

@@ -212,7 +212,7 @@ TaskResult run_wiping(const evaluation::Candidate& candidate, sim::WorldOptions 
     result.moved_m = (from_m - towel_m.y()) * end_sign;
     return judge_towel(towel_m, result.moved_m);
   };
-  const auto time_up = [&] { return wiper.wipes() ? End::kLostTowel : End::kNotReached; };
+  const auto time_up = [&] { return wiper.wipes() ? End::kNotWiped : End::kNotReached; };
   return run_task(robot, wiper, judge, WipingPlan::kLongest_s, time_up, progress, observer);
 }
 

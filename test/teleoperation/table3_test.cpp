@@ -58,10 +58,29 @@ TEST(Table3, OfEachTaskTheFirstTrialOfEachEndIsFilmed) {
   Table3 table;
   table.wiping.runs = {{.end = End::kInterrupted}, {.end = End::kDone}, {.end = End::kDone}};
   table.box_picking.runs = {{.end = End::kDropped}, {.end = End::kDone}, {.end = End::kDropped}, {.end = End::kFell}};
+  for (TaskTrials* task : {&table.wiping, &table.box_picking})
+    for (std::size_t i = 0; i < task->runs.size(); ++i) task->runs[i].trial = 50 + i;
   std::vector<std::string> films;
   for (const FilmedTrial& one : trials_to_film(table)) films.push_back(one.file() + std::to_string(one.trial));
-  EXPECT_THAT(films, testing::ElementsAre("wiping_done.mp41", "box_picking_box_dropped.mp40", "box_picking_done.mp41",
-                                          "box_picking_fell.mp43"));
+  EXPECT_THAT(films, testing::ElementsAre("wiping_done.mp451", "box_picking_box_dropped.mp450",
+                                          "box_picking_done.mp451", "box_picking_fell.mp453"));
+}
+
+/// Moments of them: as long as their robots hang.
+TEST(Table3, AnEvaluationsFirstTrialMayBeAny) {
+  Table3 table;
+  table.first = 58;
+  table.trials = 2;
+  table.evaluated = {.name = "pmg", .candidate = {"pmg", {}}, .plants = {}};
+  int asked = 0;
+  run_table3(table, {.jobs = 1, .progress = {.report = {}, .interrupted = [&] { return ++asked > 40; }}});
+  EXPECT_GT(table.wiping.runs[0].duration_s, 0.0);
+  const nlohmann::ordered_json json = to_json(table);
+  EXPECT_EQ(json["first_trial"], 58);
+  for (const nlohmann::ordered_json& task : json["tasks"]) {
+    EXPECT_EQ(task["runs"][0]["trial"], 58);
+    EXPECT_EQ(task["runs"][1]["trial"], 59);
+  }
 }
 
 /// A moment of a trial: as long as its robot hangs.
