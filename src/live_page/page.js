@@ -116,11 +116,17 @@ function row(body, cells) {
   });
   body.append(line);
 }
-const fixed = (value, digits = 2) => typeof value === 'number' ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(digits) : '–';
+/// With a sign, unless it is shown as zero.
+const fixed = (value, digits = 2) => {
+  if (typeof value !== 'number') return '–';
+  const size = Math.abs(value).toFixed(digits);
+  return (Number(size) === 0 ? '' : value < 0 ? '−' : '+') + size;
+};
 
 function header() {
   connection.showHeader();
   document.body.classList.toggle('stale', connection.isLost());
+  document.body.classList.toggle('silent', Boolean(connection.state) && !connection.state.heard);
 }
 setInterval(header, 200);
 
@@ -194,21 +200,25 @@ function keep(asked, taken, measured) {
   const now = performance.now() / 1000;
   past.push([now, asked, taken, measured]);
   while (past.length && past[0][0] < now - KEPT_S) past.shift();
-  const canvas = $('tracking'), ink = canvas.getContext('2d'), {width, height} = canvas;
+  const canvas = $('tracking'), ink = canvas.getContext('2d'), {clientWidth: width, clientHeight: height} = canvas;
+  const LEFT = 34, scale = window.devicePixelRatio || 1;   // of the curves: numbers stand to the left of them
+  canvas.width = Math.round(scale * width);                // it is empty now
+  canvas.height = Math.round(scale * height);
+  ink.scale(scale, scale);
   const values = past.flatMap(([, ...rest]) => rest).filter((value) => typeof value === 'number');
   const top = Math.max(0.5, ...values), bottom = Math.min(-0.2, ...values);
   const y = (value) => height - 6 - (height - 12) * (value - bottom) / (top - bottom);
-  ink.clearRect(0, 0, width, height);
   ink.strokeStyle = '#d5dae1';
   ink.lineWidth = 1;
   ink.beginPath();
-  ink.moveTo(0, y(0));
+  ink.moveTo(LEFT, y(0));
   ink.lineTo(width, y(0));
   ink.stroke();
   ink.fillStyle = '#55606c';
   ink.font = '12px system-ui, sans-serif';
-  ink.fillText(top.toFixed(1), 3, 13);
-  ink.fillText(bottom.toFixed(1), 3, height - 4);
+  ink.textAlign = 'right';
+  ink.textBaseline = 'middle';
+  for (const value of [top, 0, bottom]) ink.fillText(fixed(value, 1), LEFT - 4, Math.max(8, Math.min(height - 8, y(value))));
   ink.lineWidth = 2;
   ['#7d8894', '#00558a', '#d55e00'].forEach((colour, k) => {
     ink.strokeStyle = colour;
@@ -217,7 +227,7 @@ function keep(asked, taken, measured) {
     for (const point of past) {
       const value = point[k + 1];
       if (typeof value !== 'number') { down = false; continue; }
-      const x = width * (1 - (now - point[0]) / KEPT_S);
+      const x = width - (width - LEFT) * (now - point[0]) / KEPT_S;
       if (down) ink.lineTo(x, y(value)); else ink.moveTo(x, y(value));
       down = true;
     }

@@ -120,7 +120,7 @@ function show() {
   if (note) lines.push([note, '#ffcc80', 36]);
   if (state && state.asked) {
     const of = (values, i) => values ? values[i].toFixed(2) : '–';
-    lines.push([`forwards ${of(state.asked, 0)} (does ${of(state.measured, 0)}) m/s   turn ${of(state.asked, 2)} rad/s`, '#b0d4f1', 34]);
+    lines.push([`forwards ${of(state.asked, 0)} m/s (does ${of(state.measured, 0)}), turn ${of(state.asked, 2)} rad/s`, '#b0d4f1', 34]);
   }
   for (const line of (state && state.arms) || []) lines.push([line, '#b0d4f1', 30]);
   panel.fillStyle = lost ? '#5a1a10' : '#14202c';

@@ -48,6 +48,99 @@ function hearCommands(heard) {
   socket.bind(port, () => socket.addMembership('239.255.76.67'));
   return socket;
 }
+/// A camera whose pictures say which they are by their colour. sentAs: one of CAMERA's datagrams on the network, for its type.
+class ColouredCamera {
+  static STEP = 20;
+  static colours = Array.from({length: 144}, (_, k) => [10 + ColouredCamera.STEP * (k % 12), 10 + ColouredCamera.STEP * Math.floor(k / 12), 250]);
+  /// page: any that can make JPEGs.
+  static async of(page, sentAs) {
+    const jpegs = await page.evaluate((colours) => Promise.all(colours.map(async (rgb) => {
+      const canvas = Object.assign(document.createElement('canvas'), {width: 320, height: 240}), ink = canvas.getContext('2d');
+      ink.fillStyle = `rgb(${rgb})`;
+      ink.fillRect(0, 0, 320, 240);
+      return canvas.toDataURL('image/jpeg', 0.95).split(',')[1];
+    })), ColouredCamera.colours);
+    const begin = 8 + 'CAMERA'.length + 1;
+    return Object.assign(new ColouredCamera(), {jpegs: jpegs.map((text) => Buffer.from(text, 'base64')), type: sentAs.subarray(begin, begin + 8),
+      taken: [], socket: dgram.createSocket('udp4').unref(), session: BigInt(Date.now())});
+  }
+  /// Takes a picture now, and sends it so much later.
+  take(late_ms) {
+    const number = this.taken.push(Date.now()) - 1, jpeg = this.jpegs[number % this.jpegs.length];
+    const int = (bytes, value) => { const out = Buffer.alloc(bytes); bytes === 8 ? out.writeBigInt64BE(BigInt(value)) : out.writeInt32BE(value); return out; };
+    const message = Buffer.concat([Buffer.from('LC02'), int(4, number), Buffer.from('CAMERA\0'), this.type, int(8, BigInt(this.taken[number]) * 1000000n),
+      int(4, 3), Buffer.from('z1\0'), int(8, this.session), int(8, number + 1), int(4, jpeg.length), jpeg]);
+    setTimeout(() => this.socket.send(message, port, '239.255.76.67'), late_ms);
+  }
+  /// Ten pictures a second until the condition holds.
+  async until(what, condition, late_ms = 0) {
+    const timer = setInterval(() => this.take(late_ms), 100);
+    try { await until(what, condition); } finally { clearInterval(timer); }
+  }
+  /// (what was seen, when) => the age [ms] of this picture; nothing: it is marked as old, or none.
+  age_ms([red, green, blue], now) {
+    if (blue < 200) return undefined;
+    const near = (value) => Math.round((value - 10) / ColouredCamera.STEP), colour = near(red) + 12 * near(green);
+    return now - this.taken.findLast((time, number) => number % this.jpegs.length === colour && time <= now);
+  }
+}
+/// Resolves with the first datagram of this channel.
+const firstOf = (channel) => new Promise((resolve) => {
+  const socket = dgram.createSocket({type: 'udp4', reuseAddr: true});
+  socket.on('message', (bytes) => {
+    if (bytes.toString('latin1', 8, bytes.indexOf(0, 8)) === channel) { socket.close(); resolve(bytes); }
+  });
+  socket.bind(port, () => socket.addMembership('239.255.76.67'));
+});
+/// What a person could not read on this page, one line each: text that runs out of the window, is small, lies on other text, or is
+/// hardly darker than its ground (WCAG 2's contrast: 4.5, large text 3; what is disabled is exempt).
+const unreadable = (page) => page.evaluate((wide) => {
+  const SMALL_PX = 9, complaints = [], texts = [];
+  const luminance = (rgb) => rgb.map((value) => value / 255).map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, i) => sum + [0.2126, 0.7152, 0.0722][i] * v, 0);
+  const colour = (text) => text.match(/[\d.]+/g).map(Number);
+  const ground = (element) => {
+    for (let e = element; e; e = e.parentElement) {
+      const [r, g, b, alpha = 1] = colour(getComputedStyle(e).backgroundColor);
+      if (alpha > 0) return [r, g, b];
+    }
+    return [255, 255, 255];
+  };
+  for (const element of document.body.querySelectorAll('*')) {
+    const own = [...element.childNodes].filter((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
+    if (!own.length || element.tagName === 'SCRIPT' || !element.checkVisibility()) continue;
+    const style = getComputedStyle(element), size_px = parseFloat(style.fontSize), name = `"${own[0].data.trim()}"`;
+    const rects = own.flatMap((node) => { const range = document.createRange(); range.selectNode(node); return [...range.getClientRects()]; });
+    texts.push({element, name, rects});
+    if (rects.some(({left, right}) => left < 0 || right > wide)) complaints.push(`${name} runs out of the window`);
+    if (size_px < SMALL_PX) complaints.push(`${name} has ${size_px} px`);
+    const [light, dark] = [luminance(colour(style.color).slice(0, 3)), luminance(ground(element))].sort((a, b) => b - a);
+    const contrast = (light + 0.05) / (dark + 0.05), large = size_px >= 24 || (size_px >= 18.66 && Number(style.fontWeight) >= 700);
+    if (!element.matches(':disabled') && contrast < (large ? 3 : 4.5)) complaints.push(`${name} has a contrast of ${contrast.toFixed(1)}`);
+  }
+  for (const [i, one] of texts.entries())
+    for (const other of texts.slice(i + 1))
+      if (one.rects.some((a) => other.rects.some((b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 3)))
+        complaints.push(`${one.name} lies on ${other.name}`);
+  if (document.documentElement.scrollWidth > wide) complaints.push(`the page is ${document.documentElement.scrollWidth} px wide`);
+  for (const [canvas, [size_px, text]] of smallest) if (canvas.checkVisibility() && size_px < SMALL_PX) complaints.push(`"${text}" in ${canvas.id} has ${size_px} px`);
+  return complaints;
+}, page.viewportSize().width);
+/// Before a page's own scripts: notes the smallest text in each of its canvases.
+const noteTexts = () => {
+  window.smallest = new Map();                             // canvas => [height in the window, px; text]
+  const {fillText} = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...where) {
+    const {canvas} = this, size_px = parseFloat(this.font.match(/[\d.]+px/)[0]) * this.getTransform().a * canvas.clientWidth / canvas.width;
+    if (canvas.clientWidth && !(smallest.get(canvas)?.[0] <= size_px)) smallest.set(canvas, [size_px, text]);
+    return fillText.call(this, text, ...where);
+  };
+};
+/// Those of these elements that can't be seen without scrolling.
+const below = (page, ...selectors) => page.evaluate((all) => all.filter((one) => {
+  const {top, bottom, height} = document.querySelector(one).getBoundingClientRect();
+  return height === 0 || top < 0 || bottom > innerHeight;
+}), selectors);
 /// Nearest rank.
 const percentile = (values, percent) => values.toSorted((a, b) => a - b)[Math.ceil(values.length * percent / 100) - 1];
 let tellMore = async () => '';
@@ -69,6 +162,7 @@ async function run(browser, token, robot) {
     const context = await browser.newContext({ignoreHTTPSErrors: true, ...options});
     const page = await context.newPage();
     page.on('pageerror', (error) => { console.error(error); process.exitCode = 1; });
+    await page.addInitScript(noteTexts);
     if (place.startsWith('/vr')) await page.addInitScript(iwer);
     if (place.startsWith('/vr')) {
       await page.addInitScript(() => {
@@ -127,8 +221,25 @@ async function run(browser, token, robot) {
   await until('it walks', walks);
 
   step('a second page is told who drives, and stops the robot');
-  const laptop = await open({viewport: {width: 1366, height: 768}}, '/#' + token);
+  const laptop = await open({viewport: {width: 1366, height: 650}}, '/#' + token);  // of 768 px, a browser's bars have the others
   await until('the note', async () => { await push(); return (await laptop.textContent('#note')) === 'phone drives the robot'; });
+
+  step('a phone and a laptop show what they have readably, and what an operator needs without scrolling');
+  const curves = (page) => page.evaluate(() => {
+    const canvas = $('tracking'), {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height), found = new Set();
+    for (let i = 0; i < data.length; i += 4) found.add(`${data[i]} ${data[i + 1]} ${data[i + 2]}`);
+    return ['125 136 148', '0 85 138', '213 94 0'].filter((colour) => found.has(colour)).length;
+  });
+  for (const page of [phone, laptop]) await until('three curves', async () => { await push(); return (await curves(page)) === 3; });
+  for (const [page, ...first] of [[phone, '#stop', '#main-stick', '.modes'], [laptop, '#stop', '#main-stick', '.modes', '#camera', '#robot-view', '#tracking']]) {
+    assert.deepEqual(await unreadable(page), []);
+    assert.deepEqual(await below(page, ...first), []);
+    assert.doesNotMatch(await page.textContent('#channels'), /[+−]0\.00/, 'zero has no sign');
+  }
+  assert.deepEqual(await unreadable(reader), []);
+  await reader.setViewportSize({width: 1000, height: 768});
+  assert.deepEqual(await unreadable(reader), []);
+  await reader.setViewportSize({width: 1366, height: 768});
   await laptop.keyboard.press('Escape');
   await is(phone, 'damping');
   await phone.mouse.up();
@@ -150,8 +261,10 @@ async function run(browser, token, robot) {
   await is(phone, 'stand');
 
   step('a headset drives by a step, and leads a palm by a trigger');
-  const vr = await open({viewport: {width: 320, height: 240}}, '/vr#' + token);
+  const vr = await open({viewport: {width: 390, height: 844}}, '/vr#' + token);
   await until('paired', async () => (await vr.textContent('#link')) === 'paired as phone');
+  assert.deepEqual(await unreadable(vr), []);
+  await vr.setViewportSize({width: 320, height: 240});
   await vr.click('#enter');
   await until('a session', () => vr.evaluate(() => Boolean(session) && head !== null));
   await vr.evaluate(() => { tracked(); quest.controllers.right.position.set(0.25, 1.2, -0.4); });
@@ -279,8 +392,75 @@ async function run(browser, token, robot) {
   }), [320, 240]);
   seeing.kill('SIGSTOP');
   await until('it is marked', async () => /^OLD PICTURE: ([3-9]|\d\d)/.test(await reader.evaluate(() => cameraView.words())));
+  const opacity = (selector) => reader.evaluate((one) => {
+    let product = 1;
+    for (let e = document.querySelector(one); e; e = e.parentElement) product *= Number(getComputedStyle(e).opacity);
+    return product;
+  }, selector);
+  for (const selector of ['#state', '#robot-view']) await until(`${selector} of a silent robot is grey`, async () => (await opacity(selector)) < 0.6);
+  assert.equal(await opacity('#camera'), 1, 'its own mark stays readable');
+  assert.deepEqual(await unreadable(reader), []);
   seeing.kill('SIGCONT');
   await more();
+
+  step('no picture without a mark is old, on a page and in a headset, whatever is late');
+  const camera = await ColouredCamera.of(reader, await firstOf('CAMERA'));
+  await ended(seeing);
+  for (const page of [reader, vr]) await until('its last picture is marked', () => page.evaluate(() => cameraView.words() !== ''));
+  start('pmg_controller', '--hal', 'sil', '--robot', 'z1', '--no-log', '--lcm-url', url);
+  for (const page of [reader, vr]) {
+    await page.evaluate(() => {
+      // Where no words stand: a quarter from the left, a fifth from above.
+      const {canvas, ink, draw} = cameraView, at = [canvas.width / 4, canvas.height / 5];
+      const onCanvas = () => [...ink.getImageData(...at, 1, 1).data].slice(0, 3);
+      window.seen = [];                                    // [time, colour]
+      window.inHeadset = [];                               // [colour on the canvas, colour before an eye]
+      cameraView.draw = () => { draw.call(cameraView); seen.push([Date.now(), onCanvas()]); };
+      if (!window.paint) return;
+      const times = (m, v) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[4 + i] * v[1] + m[8 + i] * v[2] + m[12 + i] * v[3]);
+      const {paint} = window;
+      window.paint = (frame) => {
+        paint(frame);
+        if (!connection.state.camera) return;
+        const viewer = frame.getViewerPose(space);
+        if (!viewer) return;
+        const [view] = viewer.views, port = session.renderState.baseLayer.getViewport(view), {width, height, up} = cameraSurface;
+        const [x, y, , w] = times(view.projectionMatrix, times(view.transform.inverse.matrix, [-width / 4, up() + 0.3 * height, -AHEAD_M, 1]));
+        const eye = new Uint8Array(4);
+        gl.readPixels(port.x + (x / w + 1) / 2 * port.width, port.y + (y / w + 1) / 2 * port.height, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, eye);
+        inHeadset.push([onCanvas(), [...eye].slice(0, 3)]);
+      };
+    });
+  }
+  // A mark comes after half a second; the fastest way of a picture and of a state is counted as none.
+  const MOST_MS = 500 + 200;
+  const judged = async (page) => {
+    const [seen, inHeadset] = await page.evaluate(() => [window.seen.splice(0), window.inHeadset.splice(0)]);
+    const ages_ms = seen.map(([time, colour]) => camera.age_ms(colour, time)), unmarked_ms = ages_ms.filter((age_ms) => age_ms !== undefined);
+    for (const age_ms of unmarked_ms) assert.ok(age_ms <= MOST_MS, `a picture of ${age_ms} ms has no mark`);
+    for (const [shown, before] of inHeadset) assert.ok(shown.every((value, i) => Math.abs(value - before[i]) < 16), `${shown} is ${before} in the headset`);
+    return {fresh: unmarked_ms.length, marked: ages_ms.length - unmarked_ms.length, frames: inHeadset.length};
+  };
+  for (const page of [reader, vr]) {
+    const sum = {fresh: 0, marked: 0, frames: 0};
+    const count = async () => { for (const [what, number] of Object.entries(await judged(page))) sum[what] += number; return sum; };
+    await judged(page);
+    await camera.until('fresh pictures', async () => (await count()).fresh >= 20);
+    Object.assign(sum, {fresh: 0, marked: 0});
+    await camera.until('pictures that come late', async () => (await count()).fresh + sum.marked >= 40, 400);
+    sum.marked = 0;
+    await until('the last one is marked', async () => (await count()).marked >= 10);
+    await page.evaluate(() => {                            // states travel 1.5 s from now on
+      const {socket} = connection, {onmessage} = socket;
+      socket.onmessage = (event) => setTimeout(() => onmessage(event), 1500);
+    });
+    Object.assign(sum, {fresh: 0, marked: 0});
+    await camera.until('pictures of which late states tell', async () => (await count()).fresh + sum.marked >= 40);
+    sum.marked = 0;
+    await until('the last one is marked', async () => (await count()).marked >= 30);
+    assert.equal(await page.textContent('#link'), 'no connection');
+    assert.equal(page === vr, sum.frames > 0);
+  }
 }
 
 let failed = null;
