@@ -105,8 +105,8 @@ nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
 
 std::string limits_text(const RobotNews& news) {
   const pmg_msgs::status_t& status = news.status;
-  std::string text = fmt::format("joints by range {}, speed {}, torque {}", status.limited_position, status.limited_rate,
-                                 status.limited_torque);
+  std::string text = fmt::format("joints by range {}, speed {}, torque {}", status.limited_position,
+                                 status.limited_rate, status.limited_torque);
   const pmg_msgs::reference_t* reference = reference_in_force(news);
   if (reference != nullptr && reference->command_limited) {
     const std::string why = beyond_reach(reference->user, news);

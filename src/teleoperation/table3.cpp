@@ -160,7 +160,8 @@ std::string film_trial(const Table3& table, const FilmedTrial& filmed, const std
   std::optional<sil::Film> film;
   const auto shoot = [&](LedRobot& led, const std::string& stage) {
     if (!film) film.emplace(led.world(), file, kFromAbove_deg);
-    film->after_tick(fmt::format("{}, trial {}: {}\n{}\n{}", filmed.task, filmed.trial, end_name(filmed.end), stage, led.text()));
+    film->after_tick(
+        fmt::format("{}, trial {}: {}\n{}\n{}", filmed.task, filmed.trial, end_name(filmed.end), stage, led.text()));
   };
   TaskResult result;
   try {
@@ -197,9 +198,10 @@ pages::Page page_of(const Table3& table) {
                  fmt::format("{} in {} % of trials; the paper has {:.0f} % of 20 on the real robot", task->verb,
                              percent_with_interval(task->done()), 100.0 * task->paper));
   if (!table.films.empty())
-    page.paragraph(fmt::format("Films of each task's first trial of each end lie beside this page: {}. A film of trial N: "
-                               "pmg_eval table3 --first N --trials 1 --video.",
-                               fmt::join(table.films, ", ")));
+    page.paragraph(
+        fmt::format("Films of each task's first trial of each end lie beside this page: {}. A film of trial N: "
+                    "pmg_eval table3 --first N --trials 1 --video.",
+                    fmt::join(table.films, ", ")));
   for (const TaskTrials* task : table.tasks()) add_trials(*task, page);
   page.heading("How it was measured");
   for (const std::string& text : {operator_text(table), wiping_text(), box_text()}) page.paragraph(text);

@@ -1,5 +1,5 @@
-// libFuzzer on what a page and a headset may say over their socket: texts are read whole and in their ranges, or refused.
-// "scripts/fuzz page" builds and runs it.
+// libFuzzer on what a page and a headset may say over their socket: texts are read whole and in their ranges, or
+// refused. "scripts/fuzz page" builds and runs it.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
