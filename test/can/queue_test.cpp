@@ -129,7 +129,7 @@ TEST(Queues, ASecondDriveIsNamedAmongStallsAndGoneWhenItIsOff) {
 }
 
 TEST(QueuesCampaign, NoneOfAThousandTrialsHasAFalseFaultAndEverySecondDriveIsNamed) {
-  for (std::uint64_t seed = 101; seed <= 600; ++seed) {
+  for (std::uint64_t seed = 101; seed <= 1100; ++seed) {
     expect_no_false_fault(seed);
     expect_the_second_drive_named(seed);
   }
