@@ -140,6 +140,10 @@ TEST_F(LevelSole, ASoleThatLiesNotLevelIsSaidAndAnArmHasNone) {
   const Verdict said = verdict(q, Eigen::Vector3d(0.0, 0.5, -1.0).normalized());
   EXPECT_EQ(said.tells, Tells::kWrong);
   EXPECT_THAT(said.text, HasSubstr("no way to connect these motors puts the sole level, the best is 2"));
+  const Verdict nearly = verdict(on_level(10.0 * kDeg, 25.0 * kDeg, Eigen::Vector3d::UnitZ()),
+                                 Eigen::Vector3d(0.0, std::sin(7.0 * kDeg), -std::cos(7.0 * kDeg)));
+  EXPECT_EQ(nearly.tells, Tells::kWrong);
+  EXPECT_THAT(nearly.text, HasSubstr("the best is 7.0 deg off"));
   const auto arm = std::ranges::find_if(setup_.buses, [](const BusSetup& bus) {
     return std::ranges::find(bus.motors, "left_elbow", &drives::MotorSetup::joint) != bus.motors.end();
   });
