@@ -75,8 +75,8 @@ constexpr int kDisturbedCycles = 1000;
 /// A full queue of 1,000 frames takes 0.25 s on the wire with its answers, and as long again while commands go on. Then
 /// the robot is damped for a while.
 constexpr int kSettlesWithin = 700;
-/// The robot may stand while the queue's last answers still come, for as long; a check of what was given up is due after
-/// the last of them, and the motors of a bus take turns.
+/// The robot may stand while the queue's last answers still come, for as long; a check of what was given up is due
+/// after the last of them, and the motors of a bus take turns.
 constexpr int kLookedAfterWithin = 500;
 /// What was lost before may be taken for a second drive's answers: as many as a queue holds.
 constexpr int kNamedWithin = drives::AnswerLedger::kMostOwed + 100;
